@@ -5,7 +5,8 @@
 
 namespace roomradar {
 
-/// Sets only the fields that depend on the quality. A default quality leaves a default config unchanged.
+/// Sets only the fields that depend on the quality. A default quality leaves a default configuration
+/// unchanged.
 void apply(const ScanQuality& quality, PrescanConfig& config);
 
 }  // namespace roomradar

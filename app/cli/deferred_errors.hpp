@@ -9,9 +9,10 @@
 
 namespace roomradar {
 
-/// Keeps the first error, to be thrown at the end. Later errors are printed to stderr at once.
+/// Keeps the first error, so the caller can throw it at the end. Prints later errors to stderr immediately.
 class DeferredErrors {
  public:
+  /// Calls act() and adds its error if it throws one.
   template <typename Act>
   void attempt(const Act& act) {
     try {
@@ -20,6 +21,7 @@ class DeferredErrors {
       add(error.what());
     }
   }
+  /// Adds an error message.
   void add(const std::string& fault) {
     if (first_.empty())
       first_ = fault;

@@ -1,4 +1,4 @@
-// interrupt.hpp: the first Ctrl-C ends the work in an orderly way; the second kills the process.
+// interrupt.hpp: handles Ctrl-C: the first ends the work in an orderly way, the second kills the process.
 #pragma once
 #include <memory>
 
@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// While an instance exists, the first SIGINT only sets a flag; the second ends the process. At most one
-/// instance at a time.
+/// While an instance exists, the first SIGINT only sets a flag, and the second ends the process. At most one
+/// instance may exist at a time.
 class Interrupt {
  public:
   Interrupt();
@@ -15,12 +15,12 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  /// Replaces the message that Ctrl-C prints. By default it says that no more frames are read and the work
-  /// ends with those so far. The string must stay valid and end with a line break.
+  /// Replaces the message that Ctrl-C prints. The default message says that no more frames are read and that
+  /// the work ends with the frames read so far. The string must stay valid and end with a line break.
   static void say(const char* sentence);
-  /// Returns true if Ctrl-C was pressed, once; later calls return false.
+  /// Returns true once if Ctrl-C was pressed; later calls return false.
   static bool take();
-  /// Returns true if Ctrl-C was pressed and take() has not returned it.
+  /// Returns true if Ctrl-C was pressed and take() has not been called since.
   static bool is_asked();
 };
 

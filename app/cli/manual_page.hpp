@@ -8,8 +8,9 @@ class App;
 
 namespace roomradar {
 
-/// Returns roomradar(1) in man(7) macros: every command of `app` with its arguments and options as in --help,
-/// plus sources, files, environment and examples. Options without a group are omitted.
+/// Returns the manual page roomradar(1) in man(7) macros. It has every command of `app` with its arguments
+/// and options as in --help, and sections on sources, files, environment and examples. Options without a
+/// group are omitted.
 std::string manual_page(const CLI::App& app);
 
 }  // namespace roomradar

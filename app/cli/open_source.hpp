@@ -13,27 +13,29 @@ namespace roomradar {
 
 struct MapInfo;
 
-/// Returns the calibration file for a source: the chosen one, or else calibration.json in the source's
-/// folder; empty if there is none.
+/// Returns the calibration file for a source: `chosen` if it is not empty, otherwise calibration.json in the
+/// source's folder. Returns an empty path if there is none.
 std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen);
 
-/// Returns true if open_source() delivers frames with lens and depth errors corrected, either by the file of
-/// calibration_for() or before recording. Throws Error as reading the recording's description does.
+/// Returns true if open_source() delivers frames whose lens and depth errors are corrected: either with the
+/// file of calibration_for(), or because they were corrected before recording. Throws Error if the
+/// recording's description cannot be read.
 bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen);
 
-/// Opens `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder with a recording or a
-/// recorded session, recognised by its files. With `frames`, delivers only that range. With a calibration, or
-/// a file calibration.json in the folder, frames are as if taken by ideal, calibrated cameras.
+/// Opens `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder. A folder holds a
+/// recording or a recorded session, recognised by its files. With `frames`, delivers only that range. With a
+/// calibration file, or a file calibration.json in the folder, corrects lens and depth errors of the frames.
 ///
-/// Throws Error listing the kinds of source if this is none of them, and Error if the frames would be
-/// calibrated twice. Also throws whatever opening the source or the calibration throws.
+/// @throws Error listing the kinds of source if `source` is none of them, if the frames would be corrected
+/// twice, or if source or calibration cannot be opened
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});
 
-/// Throws Error if the map was scanned from frames without recorded poses: a recording's poses have no
-/// meaning in its world.
-/// @param map,source  names for the message
+/// Throws Error if the map was scanned from frames without recorded poses, since a recording's poses then do
+/// not refer to the map's world frame.
+/// @param map     name of the map, for the message
+/// @param source  name of the source, for the message
 void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source);
 
 }  // namespace roomradar

@@ -9,28 +9,36 @@ namespace roomradar {
 
 /// Content of a progress line.
 struct ProgressState {
-  std::string what;                   ///< name of the work: "track", "fuse"
-  std::int64_t done = 0;              ///< number of steps
-  std::optional<std::int64_t> total;  ///< unset: unknown
-  double per_s = 0.0;                 ///< recent steps per second; 0: not measured so far
-  std::string note;                   ///< such as "tracked; 12.4 m2 seen"
-  bool is_over = false;               ///< finished, even if done < total
+  /// Name of the work, for example "track" or "fuse".
+  std::string what;
+  /// Number of finished steps.
+  std::int64_t done = 0;
+  /// Total number of steps; unset if unknown.
+  std::optional<std::int64_t> total;
+  /// Recent steps per second; 0 if not measured so far.
+  double per_s = 0.0;
+  /// Text after the count, for example "tracked; 12.4 m2 seen".
+  std::string note;
+  /// True if the work has ended, even if done < total.
+  bool is_over = false;
 };
 
-/// Returns "track [######      ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". Bar and time left appear
-/// only if the total is known, and the bar only if requested.
+/// Returns the line, for example "track [######      ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen".
+/// Bar and remaining time appear only if the total is known, and the bar only if requested.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
-/// Redraws a bar in place if stderr is a terminal; otherwise prints a line every few seconds.
+/// Shows a progress line on stderr. Redraws it in place if stderr is a terminal; otherwise prints a line
+/// every few seconds.
 class Progress {
  public:
   Progress(std::string what, std::optional<std::int64_t> total);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Ends the line being redrawn.
+  /// Ends the line that is redrawn.
   ~Progress();
 
-  /// Counts one finished step; `note` is shown after the count ("tracked", "lost", ...).
+  /// Counts one finished step.
+  /// @param note  shown after the count, for example "tracked" or "lost"
   void step(const std::string& note = {});
 
  private:
@@ -41,8 +49,10 @@ class Progress {
   bool is_terminal_;
   Time started_;
   Time shown_;
-  Time counted_;                   ///< start of the interval over which the rate is measured
-  std::int64_t counted_from_ = 0;  ///< number of steps done at that time
+  /// Start of the interval over which the rate is measured.
+  Time counted_;
+  /// Number of finished steps at the start of that interval.
+  std::int64_t counted_from_ = 0;
 };
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// report.hpp: JSON file written by --report: settings, times per stage, memory, results.
+// report.hpp: the JSON file that --report writes: settings, times per stage, memory, results.
 #pragma once
 #include <Eigen/Core>
 #include <chrono>
@@ -11,11 +11,12 @@
 
 namespace roomradar {
 
-/// Contents common to all commands' reports. Each command's own keys go into `results`, which is merged into
-/// the top level.
+/// Content common to all commands' reports. `results` has the keys specific to the command; they are merged
+/// into the top level.
 struct Report {
   std::string command;
   std::string source;
+  /// Name of the renderer.
   std::string renderer = "none";
   nlohmann::json settings = nlohmann::json::object();
   std::int64_t frames_read = 0;
@@ -25,23 +26,23 @@ struct Report {
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };
 
-/// Returns [x, y, z].
+/// Returns the vector as an array [x, y, z].
 nlohmann::json to_json(const Eigen::Vector3d& v);
 
-/// Returns the report as one object, with peak_rss_mb and wall_s as of now. Numbers that are not finite
-/// become null.
+/// Returns the report as one object, with the present values of peak_rss_mb and wall_s. Numbers that are not
+/// finite become null.
 nlohmann::json to_json(const Report& report);
 
-/// Throws Error if a file cannot be written there, or would be inside a map's folder. Call this before
-/// long work. An empty path is allowed.
+/// Throws Error if a file cannot be written at this path, or the path is inside a map's folder. Callers check
+/// before long work. An empty path is allowed.
 void require_writable(const std::filesystem::path& path);
 
 /// Writes the report; does nothing if the path is empty. Throws Error if the file cannot be written.
 void write_report(const Report& report, const std::filesystem::path& path);
 
-/// Returns this process's peak resident memory so far, in 10^6 bytes.
+/// Returns the peak resident memory of this process so far, in 10^6 bytes.
 double peak_rss_mb();
-/// Returns the CPU time of all threads of this process so far.
+/// Returns the CPU time of all threads of this process so far, ms.
 double process_cpu_ms();
 
 }  // namespace roomradar

@@ -1,10 +1,11 @@
-// session_folder.hpp: records a run in a folder and replays it: frames, events, settings and results.
+// session_folder.hpp: records a run (session) in a folder and replays it: frames, events, settings and
+// results.
 //
 //   session.json   format, settings, source, map
 //   events.txt     every event, in the format of `--script`
-//   frames/        the source's frames, bit by bit (SpooledSource)
-//   meshes/        files of virtual objects
-//   results.txt    a line per frame: number, fingerprint of the objects, fingerprint of the picture
+//   frames/        the source's frames, bit-exact (SpooledSource)
+//   meshes/        mesh files of virtual objects
+//   results.txt    one line per frame: frame number, hash of the objects, hash of the rendered image
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -21,28 +22,29 @@
 
 namespace roomradar {
 
-/// Throws Error if the folder exists and is not empty.
+/// Throws Error if the folder exists and is not empty, so no session can be recorded in it.
 void require_can_become_session(const std::filesystem::path& folder);
 
-/// Writes a session during the run. Files contain only whole lines at any time, so a killed run can be
-/// replayed up to its last frame.
+/// Records a session during the run. Files always consist of whole lines, so the session of a killed run can
+/// be replayed up to its last frame.
 class SessionRecorder {
  public:
   /// Creates the folder, or uses an empty one. Throws Error if it is not empty or cannot be written.
-  /// @param map  as loaded; its checksums show later whether the map has changed
-  /// @param are_calibrated  lens and depth errors of the frames are corrected
+  /// @param map  the loaded map; its checksum is recorded, so a replay can detect that the map has changed
+  /// @param are_calibrated  true if lens and depth errors of the frames are already corrected
   SessionRecorder(std::filesystem::path folder, const RunOptions& options, const MapInfo& map,
                   bool are_calibrated);
 
-  /// Wraps a source so its frames are recorded as they are read and can be read again.
+  /// Wraps a source, so its frames are recorded as they are read and can be read again.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
-  /// Copies the mesh file of a kAdd event to the folder and returns the event with the copy's name. Call
-  /// before applying the event: if the copy fails, this throws Error, and the object must not be added
-  /// without being recorded.
+  /// Copies the mesh file that a kAdd event names into the folder, and returns the event with the copy's
+  /// name. Call before applying the event. Throws Error if the copy fails; the caller must then not add the
+  /// object, so every object in the run is also in the recording.
   ScriptEvent with_mesh_kept(ScriptEvent event);
-  /// Records an event returned by with_mesh_kept() and applied before frame `run_frame`. Throws Error if the
-  /// event cannot be written.
+  /// Records an event that with_mesh_kept() returned and that is applied before frame `run_frame`. Throws
+  /// Error if the event cannot be written.
   void write(ScriptEvent event, std::int64_t run_frame);
+  /// Records the hashes of a frame's result.
   void write(const FrameFingerprint& fingerprint);
 
  private:
@@ -51,35 +53,41 @@ class SessionRecorder {
   int meshes_ = 0;
 };
 
-/// Returns true if a folder holds a recorded session.
+/// Returns true if the folder holds a recorded session.
 bool is_session_folder(const std::filesystem::path& folder);
-/// Returns true if a session's frames had their lens and depth errors corrected before recording. Throws
-/// Error naming the file and the fault.
+/// Returns true if lens and depth errors of a session's frames were corrected before recording. Throws Error,
+/// naming the file and the problem, if session.json is missing or invalid.
 bool is_session_calibrated(const std::filesystem::path& folder);
-/// Returns true if a file is the events file of a recorded session.
+/// Returns true if the file is the events file of a recorded session.
 bool is_session_events(const std::filesystem::path& file);
 
-/// Returns the recorded command: source (the folder itself), map, script, and the settings that affect
-/// results. Throws Error naming the file and the fault.
+/// Returns the recorded options: the folder itself as source, its events file as script, the map, and the
+/// settings that affect results. Throws Error, naming the file and the problem, if session.json is missing or
+/// invalid.
 RunOptions read_session(const std::filesystem::path& folder);
 
 /// Opens the recorded frames. Throws Error if there are none.
 std::unique_ptr<FrameSource> open_session_frames(const std::filesystem::path& folder);
 
-/// Returns a sentence saying that the map has changed since the recording; empty if it has not.
+/// Returns a message if the map differs from the recorded one; empty if it does not.
 std::string map_difference(const std::filesystem::path& folder, const MapInfo& map);
 
 /// Compares the frames of a replay with the recorded results.
 class ReplayCheck {
  public:
   explicit ReplayCheck(const std::filesystem::path& folder);
+  /// Compares the next frame's hashes with the recorded ones.
   void compare(const FrameFingerprint& fingerprint);
 
+  /// Returns the number of frames that are the same.
   [[nodiscard]] std::int64_t same() const { return same_; }
+  /// Returns the number of frames that differ.
   [[nodiscard]] std::int64_t different() const { return different_; }
+  /// Returns the number of frames recorded.
   [[nodiscard]] std::int64_t recorded() const { return static_cast<std::int64_t>(recorded_.size()); }
+  /// Returns the number of the first frame that differs; -1 if there is none.
   [[nodiscard]] std::int64_t first_different() const { return first_different_; }
-  /// Returns the run's frame number of the last recorded result; -1 if there is none.
+  /// Returns the frame number of the last recorded result; -1 if there is none.
   [[nodiscard]] std::int64_t last_frame() const {
     return recorded_.empty() ? -1 : recorded_.back().run_frame;
   }

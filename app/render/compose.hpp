@@ -1,4 +1,4 @@
-// compose.hpp: composes virtual objects into the camera's picture, with occlusion and shadows.
+// compose.hpp: composes virtual objects into the camera image, with occlusion and shadows.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -13,48 +13,52 @@ namespace roomradar {
 
 struct ComposeConfig {
   OcclusionConfig occlusion;
-  float shadow_strength = 0.75F;  ///< 0: none; 1: black where the object occludes the whole sky
+  /// Darkness of shadows. 0: no shadows; 1: black where the object occludes the whole sky.
+  float shadow_strength = 0.75F;
 };
-/// Throws Error such as "compose.shadow_strength = 2: must be in 0..1".
+/// Checks that all values are in their ranges.
+/// @throws Error naming the field, its value and the rule
 void require_valid(const ComposeConfig& config);
 
 /// An object that casts a shadow on surfaces below it.
+/// Shadow of the object, made for about its present orientation.
 struct ShadowCaster {
   const ContactShadow* shadow = nullptr;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
 
-/// Returns the pixels whose real depth is needed: those of the layer with the occlusion margin, and of the
-/// shadows.
+/// Returns the pixels whose real depth is needed: the pixels of the object layer, enlarged by the occlusion
+/// margin, and the pixels of the shadows.
 PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
                             const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
                             const OcclusionConfig& config);
 
-/// Copies the background with the objects' shadows, without the objects themselves.
+/// Copies the background and darkens it by the objects' shadows. Does not draw the objects. The cost is one
+/// copy plus the shadows' rectangles.
 ///
-/// @param background       the camera's picture, of its size: live colour, or depth shaded by shade_depth()
-/// @param camera           the (colour) camera
-/// @param T_world_camera   its pose
-/// @param real_depth_m     real surfaces in this camera, of its size; pixels of 0 get no shadow
+/// @param background       colour image of the camera, or depth shaded by shade_depth(); of the camera's size
+/// @param camera           colour camera
+/// @param T_world_camera   camera pose
+/// @param real_depth_m     depth of real surfaces in this camera, of its size; pixels of 0 get no shadow
 /// @param casters          objects that cast a soft shadow on real surfaces
-/// @param strength         0: none; 1: black where an object occludes the whole sky
-/// @param picture          out, of the camera's size; must not be `background`
-/// @throws Error if sizes disagree
-/// Beyond one copy, only the shadows' rectangles cost time.
+/// @param strength         0: no shadows; 1: black where an object occludes the whole sky
+/// @param[out] picture     resized to the camera's size; must not be `background`
+/// @throws Error if sizes differ
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
                   std::span<const ShadowCaster> casters, float strength, ColourImage& picture);
 
-/// Blends the objects over the picture that already has their shadows.
+/// Blends the objects over an image that already has their shadows.
 ///
-/// @param layer         the objects in the picture's camera (ObjectDrawer)
-/// @param real_depth_m  real surfaces, of the picture's size; 0 occludes nothing
-/// @param occlusion     out: occlusion of the objects; reused buffers
-/// @throws Error if sizes disagree, or the layer exceeds the picture
+/// @param layer         objects rendered in the image's camera (ObjectDrawer)
+/// @param real_depth_m  depth of real surfaces, of the image's size; pixels of 0 occlude nothing
+/// @param[out] occlusion    occlusion of the objects; its buffers are reused
+/// @param[in,out] picture   image with the shadows
+/// @throws Error if sizes differ, or the layer exceeds the image
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
                  Occlusion& occlusion, ColourImage& picture);
 
-/// Renders a depth image as a grey picture lit from the camera, for sources without colour. Pixels without
+/// Renders a depth image as a grey image lit from the camera, for sources without colour. Pixels without
 /// depth are dark.
 void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture);
 

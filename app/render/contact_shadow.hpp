@@ -1,4 +1,4 @@
-// contact_shadow.hpp: ambient occlusion by an object of the surfaces below it.
+// contact_shadow.hpp: soft shadow of an object on surfaces below it, as ambient occlusion in a lookup table.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>
@@ -7,47 +7,63 @@
 
 namespace roomradar {
 
-/// Points spread evenly over an object's surface, in its own frame; sufficient to compute its shadow.
+/// Points sampled uniformly on an object's surface, in the object's frame. A contact shadow is computed from
+/// these points alone.
 struct SurfacePoints {
   std::vector<Eigen::Vector3f> p_object_m;
-  Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();  ///< centre of their bounding box
+  /// Centre of the object's bounding box.
+  Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();
 };
 
-/// Samples about 8,000 points, each representing the same area; triangles smaller than that get a point with
-/// proportional frequency. Deterministic. Ignores invalid triangles; a mesh without valid ones gets no
-/// points.
+/// Samples about 8,000 points; each represents the same area. A triangle smaller than this area gets a point
+/// with a probability proportional to its area. Deterministic. Ignores invalid triangles; a mesh without
+/// valid triangles gets no points.
 SurfacePoints spread_points(const Mesh& mesh);
 
-/// Ambient occlusion by an object's underside, tabulated over (x, y, clearance) for one orientation. Axes are
-/// the world's (z up), relative to the object's origin.
+/// Lookup table of the ambient occlusion by an object's underside, for one orientation. Three-dimensional:
+/// columns along x, rows along y, levels of clearance. x and y are world axes (z up), relative to the
+/// object's origin. The clearance of a point is its distance below the object's lowest point.
 struct ContactShadow {
-  Eigen::Matrix3d R_world_object = Eigen::Matrix3d::Identity();  ///< orientation of the table
-  Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();     ///< centre of the object's bounding box
-  float x0_m = 0.0F, y0_m = 0.0F;  ///< centre of the first cell, relative to the object's origin
+  /// Orientation of the object for which the table was made.
+  Eigen::Matrix3d R_world_object = Eigen::Matrix3d::Identity();
+  /// Centre of the object's bounding box, in the object's frame.
+  Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();
+  /// Centre of the first cell, relative to the object's origin, world axes.
+  float x0_m = 0.0F, y0_m = 0.0F;
+  /// Side of a cell.
   float cell_m = 0.0F;
   int columns = 0, rows = 0;
-  float bottom_m = 0.0F;            ///< the object's lowest point relative to its origin
-  float extent_m = 0.0F;            ///< no shadow farther than this below the lowest point
-  std::vector<float> clearances_m;  ///< clearance of each level, ascending
-  int cells_across = 0;             ///< resolution of the table
-  std::vector<float> covered;       ///< occluded fraction of the sky, 0..1; level by level, row by row
+  /// Height of the object's lowest point relative to its origin.
+  float bottom_m = 0.0F;
+  /// Max clearance: points at least this far below the lowest point get no shadow.
+  float extent_m = 0.0F;
+  /// Clearance of each level, ascending.
+  std::vector<float> clearances_m;
+  /// Number of cells along the longer side of the object's bounding box.
+  int cells_across = 0;
+  /// Occluded fraction of the sky, 0 to 1, of each cell: level by level, row by row.
+  std::vector<float> covered;
 };
 
-/// Tabulates the form factors of the underside's patches, seen from a horizontal point below: dF = H^2 dA /
-/// (pi (r^2 + H^2)^2). Source: Cohen, Wallace, Radiosity and Realistic Image Synthesis 1993, section 4. An
-/// object without points gives an empty table. Reuses the shadow's memory; takes a few milliseconds.
-/// @param cells_across  along the object's longer side; the time grows with its fourth power. 16: cells
-/// of 1.5 cm
-///                      for a 25 cm teapot, since a shadow is soft
+/// Computes the lookup table. The underside is divided into patches. A horizontal surface point at distance H
+/// below a patch and horizontal distance r from it has the differential form factor dF = H^2 dA / (pi (r^2 +
+/// H^2)^2), where dA is the patch's area element; the factors of all patches are summed. Source: Cohen,
+/// Wallace, Radiosity and Realistic Image Synthesis 1993, section 4. An object without points gives an empty
+/// table. Reuses the shadow's memory. Takes a few milliseconds.
+/// @param cells_across  number of cells along the longer side of the object's bounding box; the time grows
+///                      with its fourth power. 16 gives cells of 1.5 cm for a 25 cm teapot, which is fine
+///                      enough for a soft shadow.
 void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_world_object,
                          ContactShadow& shadow, int cells_across = 16);
 
 /// Returns the world position of the table's origin for an object at this pose. If the object has rotated
-/// slightly since the table was made, its centre stays aligned, wherever its origin is.
+/// slightly since the table was made, the table stays aligned with the centre of the object's bounding box,
+/// even if the object's origin is elsewhere.
 Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3d& T_world_object);
 
-/// Returns the occluded fraction of the sky at a real surface point; p_object_m = point minus the object's
-/// origin, world axes. Returns 0 for points more than some centimetres above the object's lowest point.
+/// Returns the occluded fraction of the sky at a real surface point. Returns 0 for points more than 4 cm
+/// above the object's lowest point.
+/// @param p_object_m  the point minus the object's origin, world axes, m
 float ambient_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m);
 
 }  // namespace roomradar

@@ -5,13 +5,18 @@
 
 namespace roomradar {
 
-/// Pixel (x, y) of the camera's image, if inside rect, has samples x samples sub-pixels: ((x - rect.x) *
-/// samples + i, (y - rect.y) * samples + j) with i, j < samples.
+/// Rendered objects in a rectangle of the camera's image. Each pixel (x, y) of rect has samples x samples
+/// sub-pixels. Its sub-pixels are ((x - rect.x) * samples + i, (y - rect.y) * samples + j) with i, j <
+/// samples.
 struct ObjectLayer {
-  PixelRect rect;      ///< in the camera's image; width 0: nothing in view
-  int samples = 2;     ///< sub-pixels per pixel and axis
-  ColourImage colour;  ///< sub-pixels; undefined where depth_m is 0
-  DepthImage depth_m;  ///< sub-pixels, along the optical axis; 0 = no object
+  /// Rectangle in the camera's image; width 0 if no object is in view.
+  PixelRect rect;
+  /// Number of sub-pixels per pixel along each axis.
+  int samples = 2;
+  /// Colours of the sub-pixels; undefined if depth_m is 0.
+  ColourImage colour;
+  /// Depth of the sub-pixels along the optical axis; 0 if there is no object.
+  DepthImage depth_m;
 };
 
 }  // namespace roomradar

@@ -9,31 +9,46 @@
 namespace roomradar {
 
 struct OcclusionConfig {
-  float tolerance_m = 0.006F;       ///< a real surface occludes only if nearer by this at 1 m
-  float tolerance_per_m2 = 0.003F;  ///< and by this more per squared metre of distance, for sensor noise
-  float softness_m = 0.004F;        ///< depth range of the fade-out, to avoid hard lines at contacts
-  /// Max distance of a measured surface's edge from the edge in colour; 0: occlusion by depth alone.
+  /// A real surface at 1 m occludes an object only if it is nearer than the object by more than this.
+  float tolerance_m = 0.006F;
+  /// Increase of the tolerance per squared metre of distance, because sensor noise grows with it.
+  float tolerance_per_m2 = 0.003F;
+  /// Range of depth differences over which occlusion fades out, to avoid hard lines at contacts.
+  float softness_m = 0.004F;
+  /// Max distance between an occluder's edge in the depth image and in the colour image, px. 0: occlusion is
+  /// decided by depth alone.
   int edge_reach_px = 5;
 };
-/// Throws Error such as "occlusion.softness_m = 0: must be in 0..1, not 0".
+/// Checks that all values are in their ranges.
+/// @throws Error naming the field, its value and the rule
 void require_valid(const OcclusionConfig& config);
 
-/// Occlusion of the objects in a rectangle of the picture, with reused buffers.
+/// Occlusion of the objects in a rectangle of the image. Its buffers are reused.
 struct Occlusion {
-  PixelRect rect;       ///< the layer's rectangle plus occlusion_margin_px(), within the picture
-  Image<float> hidden;  ///< 0: object fully visible; 1: fully occluded
-  ColourImage front;    ///< colour of the occluder, without background mixed in at its edge
+  /// The object layer's rectangle, enlarged by occlusion_margin_px(), within the image.
+  PixelRect rect;
+  /// Occluded fraction. 0: object fully visible; 1: fully occluded.
+  Image<float> hidden;
+  /// Colour of the occluder, without the background colour that mixes in at its edge.
+  ColourImage front;
 
   Image<float> object_m, unsoftened;
-  MaskImage covered;             ///< at least partly covered by an object
-  Image<std::uint8_t> by_depth;  ///< 255: occluded
+  /// Pixels at least partly covered by an object (255).
+  MaskImage covered;
+  /// 255 if the pixel is occluded by depth alone.
+  Image<std::uint8_t> by_depth;
   MaskImage edges;
-  Image<int> near_edges, near_hidden;  ///< sums over the neighbourhood
+  /// Number of edge pixels and of occluded pixels in each pixel's neighbourhood.
+  Image<int> near_edges, near_hidden;
   std::vector<int> column_sums;
+  /// A pixel in the band around an occluder's edge.
   struct EdgePixel {
-    int x, y;    ///< in the rectangle
-    float odds;  ///< log odds of occlusion, from depth and own colour
-    Rgb front;   ///< mean colour of nearby occluders
+    /// Position in the rectangle.
+    int x, y;
+    /// Log odds of occlusion, from the pixel's depth and colour.
+    float odds;
+    /// Mean colour of nearby occluders.
+    Rgb front;
   };
   std::vector<EdgePixel> band;
 };
@@ -42,17 +57,19 @@ struct Occlusion {
 int occlusion_margin_px(const OcclusionConfig& config);
 
 /// Computes how much real surfaces occlude the objects. Depth tells which surface is in front, but its edges
-/// are ragged and off by pixels. Colour has sharp edges, but does not tell which side is in front. In a band
-/// of edge_reach_px around each occluder's edge, every pixel is therefore assigned to the side whose colours
-/// match. Each side is a Gaussian of the colours beyond the band; the prior is the fraction of the
-/// neighbourhood that depth calls occluded. Where both sides look alike, and where the object dips into a
-/// surface, depth's edge is kept. Finally `hidden` is averaged over 3 x 3 pixels.
+/// are ragged and off by pixels. Colour has sharp edges, but does not tell which side is in front. Every
+/// pixel in a band of edge_reach_px around each occluder's edge is therefore assigned to the side whose
+/// colours match. Each side's colours beyond the band give a Gaussian. The prior is the fraction of the
+/// neighbourhood that is occluded by depth. If both sides have similar colours, or the object dips into a
+/// surface, the edge in depth is kept. Finally `hidden` is averaged over 3 x 3 pixels.
 ///
-/// @param background    the camera's picture, with the objects' shadows
-/// @param real_depth_m  real surfaces in that camera, of its size; 0 occludes nothing
-/// @param layer         the objects, within the picture
-/// Source: colour models and band as in Chuang et al., A Bayesian approach to digital matting, CVPR 2001,
-/// with one Gaussian per side and opaque pixels.
+/// @param background    colour image of the camera, with the objects' shadows
+/// @param real_depth_m  depth of real surfaces in that camera, of its size; pixels of 0 occlude nothing
+/// @param layer         the rendered objects, within the image
+/// @param[out] occlusion  the result
+///
+/// Source of the colour models and the band: Chuang et al., A Bayesian approach to digital matting, CVPR
+/// 2001. Here each side has one Gaussian, and pixels are opaque.
 void find_occlusion(const ColourImage& background, const DepthImage& real_depth_m, const ObjectLayer& layer,
                     const OcclusionConfig& config, Occlusion& occlusion);
 

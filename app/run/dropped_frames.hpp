@@ -6,13 +6,15 @@
 
 namespace roomradar {
 
-/// Counts gaps in the frames' indices: dropped frames have an index too.
+/// Counts gaps in the frames' indices: the source numbers dropped frames too.
+/// Number of frames dropped so far.
 struct DroppedFrames {
   std::int64_t count = 0;
   std::optional<std::int64_t> first_index;
 
-  /// @param index  index of a frame
-  /// @param read   number of frames read so far, including this one and unusable ones
+  /// Takes a frame into account.
+  /// @param index  index of the frame
+  /// @param read   number of frames read so far, including this frame and frames that were unusable
   void see(std::int64_t index, std::int64_t read) {
     if (!first_index) first_index = index - (read - 1);
     count = std::max(count, index - *first_index - (read - 1));

@@ -6,16 +6,19 @@
 
 namespace roomradar {
 
-/// Frames are given by their index in the recording.
+/// A span of frames without a camera pose. Frames are given by their index in the recording.
 struct LostSpan {
-  std::int64_t from = 0;   ///< first frame not localised
-  std::int64_t until = 0;  ///< first frame localised again; -1: none so far
+  /// First frame that was not localised.
+  std::int64_t from = 0;
+  /// First frame that was localised again; -1 if none has been so far.
+  std::int64_t until = 0;
 };
 
 struct LostSpans {
   std::vector<LostSpan> spans;
 
-  /// Call for each frame. Returns a message for the user if the state has changed, else an empty string.
+  /// Records whether a frame was localised; call for each frame. Returns a message for the user if this
+  /// differs from the frame before, otherwise an empty string.
   std::string add(std::int64_t frame_index, bool is_located);
 };
 

@@ -18,6 +18,7 @@
 
 namespace roomradar {
 
+/// Options, inputs, outputs and state of a run.
 struct OpenedRun {
   explicit OpenedRun(const RunOptions& of) : options(of) {}
 
@@ -26,24 +27,35 @@ struct OpenedRun {
   Script script;
   SavedMap map;
   bool is_live = false;
-  std::optional<SessionRecorder> recorder;  ///< for --record-session
-  std::optional<ReplayCheck> check;         ///< set if the source is a recorded session
-  std::optional<std::int64_t> last_frame;   ///< none: until the source ends or a quit event
+  /// Set for --record-session.
+  std::optional<SessionRecorder> recorder;
+  /// Set if the source is a recorded session.
+  std::optional<ReplayCheck> check;
+  /// Last frame to process; unset if the run ends with the source or with a quit event.
+  std::optional<std::int64_t> last_frame;
   std::optional<Interrupt> interrupt;
-  std::unique_ptr<FrameSource> source;     ///< also ends on Ctrl-C
-  PlaybackSource* playback = nullptr;      ///< part of source
-  std::unique_ptr<RunBudget> budget;       ///< for --budget-ms
-  std::unique_ptr<Session> session;        ///< with the script's objects loaded
-  std::unique_ptr<VideoWriter> video;      ///< for --video
-  std::optional<FrameUseFile> frames_csv;  ///< for --frames-csv
-  std::optional<PlayHost> host;            ///< for the window
+  /// Frame source; also ends on Ctrl-C.
+  std::unique_ptr<FrameSource> source;
+  /// The playback wrapper inside `source`.
+  PlaybackSource* playback = nullptr;
+  /// Set for --budget-ms.
+  std::unique_ptr<RunBudget> budget;
+  /// The AR session, with the script's objects loaded.
+  std::unique_ptr<Session> session;
+  /// Set for --video.
+  std::unique_ptr<VideoWriter> video;
+  /// Set for --frames-csv.
+  std::optional<FrameUseFile> frames_csv;
+  /// Connection to the window; unset if there is no window.
+  std::optional<PlayHost> host;
   RunTotals totals;
-  bool was_quit = false;  ///< ended by an event
+  /// True if an event ended the run.
+  bool was_quit = false;
 };
 
-/// Opens everything that the command names, reads the map and creates the session. Throws Error if any of
-/// this fails, before the first frame.
-/// @param link  to the window; null: no window
+/// Opens all inputs and outputs that the options name, reads the map and creates the session.
+/// @param link  connection to the window; null if there is no window
+/// @throws Error if any of this fails, before the first frame
 std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link);
 
 }  // namespace roomradar

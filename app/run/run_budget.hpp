@@ -1,4 +1,5 @@
-// run_budget.hpp: keeps a run within a time budget: its Pareto front of qualities, their use, and messages.
+// run_budget.hpp: keeps a run within a time budget per frame, by switching among quality settings on a Pareto
+// front.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,36 +14,41 @@
 
 namespace roomradar {
 
-/// Returns the steps that a run may use: `most`, then the steps of the presets' front that follow it. If
-/// `most` is not in the front, the steps faster than the default follow. Fixed settings are the same in all
-/// steps. Adjacent steps that become equal are merged; parts that are equal in adjacent steps get equal
-/// ratios.
+/// Returns the quality settings (steps) that a run may use: first `most`, then the steps of the presets'
+/// Pareto front that follow it. If `most` is not in the front, the steps that are faster than the default
+/// quality follow. Settings in `fixed` are the same in all steps. Adjacent steps that become equal are
+/// merged. If adjacent steps do a part of the frame in the same way, their time ratios for that part are made
+/// equal.
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed);
 
-/// Returns the time of a monotonic clock.
+/// Returns the time of a monotonic clock, ms.
 double steady_ms();
 
+/// Chooses the quality for each part of each frame, so frames stay within the budget.
 class RunBudget {
  public:
-  /// @param front        not empty; the run begins with its first step
-  /// @param has_picture  false: the run makes no pictures at all
-  /// @param now_ms       a clock
+  /// @param front  quality settings, from accurate to fast; not empty; the run begins with the first
+  /// @param budget_ms    time limit per frame
+  /// @param has_picture  false: the run never renders images
+  /// @param now_ms       clock, ms
   RunBudget(std::vector<FrontStep> front, double budget_ms, bool has_picture,
             std::function<double()> now_ms = steady_ms);
 
-  /// Callback for SessionConfig::watch.
+  /// Callback for SessionConfig::watch. Returns the new quality if it changes with this part of the frame.
   std::optional<RunQuality> before(FramePart part, const FrameLoad& load);
-  /// Call after the frame. Returns its changes of quality, in order, as events without a frame number.
+  /// Ends a frame; call after each frame. Returns the quality changes within the frame, in order, as events
+  /// without a frame number.
   std::vector<ScriptEvent> end_frame();
-  /// Returns a message for the user if the step has changed since the last one, at most once per second.
+  /// Returns a message for the user if the step differs from the one of the last message, at most once per
+  /// second; otherwise an empty string.
   std::string news();
   /// Sets this radar in all steps, after the user has chosen it.
   void keep(const RadarConfig& radar);
-  /// Returns the current differences from the run's first step, as "depth_stride 2, shadows off"; empty:
-  /// none.
+  /// Returns the settings in which the current step differs from the run's first step, for example
+  /// "depth_stride 2, shadows off". Empty if there are none.
   [[nodiscard]] std::string given_up() const;
-  /// Returns the budget, the numbers of frames over it and of changes, and the frames begun with each
-  /// setting.
+  /// Returns the report's entry: the budget, the number of frames over it, the number of quality changes, and
+  /// the number of frames that began with each setting.
   [[nodiscard]] nlohmann::json report() const;
 
  private:
@@ -50,11 +56,16 @@ class RunBudget {
   BudgetConfig config_;
   BudgetState state_;
   std::function<double()> now_ms_;
-  std::array<double, kFrameParts + 1> begun_ms_{};  ///< start times of the current frame's parts
-  std::vector<ScriptEvent> changes_;                ///< in the current frame
-  std::vector<std::int64_t> frames_at_;             ///< frames begun with each step
+  /// Start times of the current frame's parts, and its end.
+  std::array<double, kFrameParts + 1> begun_ms_{};
+  /// Quality changes in the current frame.
+  std::vector<ScriptEvent> changes_;
+  /// Number of frames that began with each step.
+  std::vector<std::int64_t> frames_at_;
   std::int64_t frames_ = 0, frames_over_ = 0, all_changes_ = 0;
+  /// Step of the last message.
   std::size_t said_step_ = 0;
+  /// Time of the last message.
   double said_ms_ = 0.0;
 };
 

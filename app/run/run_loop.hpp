@@ -4,9 +4,10 @@
 
 namespace roomradar {
 
-/// Plays until the source ends, an event says quit, the window is closed, or Ctrl-C. Throws Error if the
-/// source fails, a script event is impossible, or output cannot be written; the run then keeps the results of
-/// earlier frames. Impossible requests of the window's user are only reported in the window.
+/// Processes frames until the source ends, a quit event occurs, the window is closed, or the user presses
+/// Ctrl-C. Impossible requests of the window's user are only reported in the window.
+/// @throws Error if the source fails, a script event is impossible, or output cannot be written; the results
+/// of earlier frames are kept in `run`
 void play_to_end(OpenedRun& run);
 
 }  // namespace roomradar

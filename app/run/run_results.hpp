@@ -14,11 +14,15 @@
 
 namespace roomradar {
 
-/// Sums over the frames of a run.
+/// Sums and maxima over the frames of a run.
 struct RunTotals {
+  /// Number of frames read, unusable, localised, and localised from depth that does not constrain all six
+  /// degrees of freedom; number of contacts, of objects that left the map, and of placements refused.
   std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0,
                places_refused = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
+  /// Sums over localised frames: dynamic fraction of the pixels with depth, and number of dynamic, inferred
+  /// and drawn static triangles.
   double dynamic_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;
   double deepest_penetration_m = 0.0;
@@ -28,6 +32,7 @@ struct RunTotals {
   DroppedFrames dropped;
   RunUse use;
 
+  /// Adds the results of a frame.
   void add(const FrameResult& frame, const Session& session) {
     if (frame.status != FrameStatus::kDone) return;
     ++located;
@@ -47,18 +52,19 @@ struct RunTotals {
     static_triangles += static_cast<double>(frame.static_triangles_drawn);
     deepest_penetration_m = std::max(deepest_penetration_m, frame.deepest_penetration_m);
   }
+  /// Returns a sum divided by the number of localised frames.
   [[nodiscard]] double per_frame(double sum) const {
     return located > 0 ? sum / static_cast<double>(located) : 0.0;
   }
 };
 
-/// Returns the line that tells the user of an object that fell out of the map, and what to do.
+/// Returns the message about an object that fell out of the map, with a remedy.
 std::string sentence_of(const Departure& departure, const Session& session);
 
-/// Returns the report's keys that are specific to runs.
+/// Returns the keys that only a run's report has.
 nlohmann::json results_of(const RunTotals& totals, const Session& session);
 
-/// Prints a few lines to stdout.
+/// Prints a summary of a few lines to stdout.
 void print_summary(const RunTotals& totals, const Session& session);
 
 }  // namespace roomradar

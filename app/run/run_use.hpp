@@ -1,5 +1,5 @@
-// run_use.hpp: statistics of how much of the room and of the depth images a run's frames needed, with
-// reasons.
+// run_use.hpp: statistics of how much of the room's mesh and of the depth images the frames of a run used,
+// with reasons.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -22,48 +22,59 @@ struct VirtualObject;
 /// of their value from 0.01 up, and to 0.0001 below.
 class Shares {
  public:
+  /// Adds the fraction part / whole.
   void add(std::size_t part, std::size_t whole);
   [[nodiscard]] double mean() const;
+  /// Returns the value below which a fraction p (0 to 1) of the samples lies.
   [[nodiscard]] double percentile(double p) const;
 
  private:
-  std::array<std::uint32_t, 1001> histogram_{};  // bins are uniform in the square root
+  // Number of samples per bin; bins are uniform in the square root of the fraction.
+  std::array<std::uint32_t, 1001> histogram_{};
   double sum_ = 0.0;
   std::size_t count_ = 0;
 };
 
-/// Sums over the frames of a run.
+/// Sums and distributions over the localised frames of a run.
 struct RunUse {
-  /// Localised frames; of these, frames with views_drawn = 0 and frames with meshed_px = 0.
+  /// Number of localised frames; number of frames in which an earlier rendering of the room was reused;
+  /// number of frames in which no pixel was meshed.
   std::size_t frames = 0, frames_kept = 0, frames_still = 0;
-  std::size_t room_triangles = 0;  ///< in the last frame
-  /// Fractions of the room's triangles (drawn, asked), and of the pixels with depth (meshed).
+  /// Number of the room's triangles in the last frame.
+  std::size_t room_triangles = 0;
+  /// Distributions over the frames: fraction of the room's triangles that were drawn, fraction of the room's
+  /// triangles that the radar examined, and fraction of the pixels with depth that were meshed.
   Shares drawn, asked, meshed;
+  /// Sums over the frames: triangles of the room drawn, triangles of the room examined by the radar, pixels
+  /// meshed, and triangles of the dynamic mesh.
   double room_drawn = 0.0, room_asked = 0.0, meshed_px = 0.0, mesh_triangles = 0.0;
+  /// Sums over the frames of the dynamic mesh's cells: flat, cut by outlines, and at full resolution.
   double flat = 0.0, cut = 0.0, full = 0.0;
-  std::map<std::string, std::size_t> frames_fine;  ///< per object: frames with full-resolution cells near it
+  /// Per object, number of frames in which the dynamic mesh had full-resolution cells near the object.
+  std::map<std::string, std::size_t> frames_fine;
 
+  /// Adds the counts of a localised frame.
   void add(const FrameUse& use, std::span<const std::unique_ptr<VirtualObject>> objects);
 };
 
-/// Returns the report's key `needed`.
+/// Returns the value of the report's key `needed`.
 nlohmann::json to_json(const RunUse& use);
-/// Prints two lines to stdout.
+/// Prints the statistics to stdout, in two lines.
 void print_use(const RunUse& use);
 
-/// Returns the reasons in words, as in --frames-csv: whether the camera moved, the fraction of depth that
-/// moved, and the objects near which the mesh has full resolution.
+/// Returns the reasons for a frame's counts in words, as in --frames-csv: whether the camera moved, the
+/// fraction of the depth that was dynamic, and the objects near which the mesh has full resolution.
 std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<VirtualObject>> objects);
 
-/// Writes a CSV file with a line per localised frame.
+/// Writes a CSV file with one line per localised frame.
 class FrameUseFile {
  public:
-  /// The file is not touched before the first frame.
+  /// The file is not created or changed before the first frame is written.
   explicit FrameUseFile(std::filesystem::path path);
-  /// Throws Error if the file cannot be written.
+  /// Appends a frame. Throws Error if the file cannot be written.
   void write(std::int64_t frame, const FrameUse& use,
              std::span<const std::unique_ptr<VirtualObject>> objects);
-  /// Throws Error if the file could not be written completely.
+  /// Closes the file. Throws Error if it could not be written completely.
   void close();
 
  private:

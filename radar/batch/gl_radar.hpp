@@ -1,4 +1,5 @@
-// gl_radar.hpp: distance an object can move before contact, from two orthographic depth passes.
+// gl_radar.hpp: Cyber Radar with OpenGL: distance an object can move before contact, from two orthographic
+// depth passes.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -21,8 +22,8 @@
 
 namespace roomradar {
 
-/// Cyber Radar with OpenGL: an object that moves along a line first touches the scene where the gap ahead of
-/// its front is least.
+/// Cyber Radar with OpenGL. An object that moves along a line first touches the scene at the pixel with the
+/// least gap ahead of its front.
 ///
 ///     rear plane                                                  far plane
 ///        |<------------------------ d ------------------------------->|
@@ -30,29 +31,34 @@ namespace roomradar {
 ///        |<-------------- R ---------------------->|                  |
 ///        |                               |<--------------- M -------->|      L = R + M - d
 ///
-/// M is the object seen from the far plane, R the scene seen from the rear plane through the object's
-/// outline, and L the gap between them in each pixel. The least L is the distance to contact. L is defined
-/// only where the object covers the pixel and there is scene. R is the first surface not behind the object's
-/// front. Per pixel, a surface behind the front is ignored if it
-///   - is back-facing, as the object leaves it (such as the table that a plate is lifted from), or
+/// u is the direction of motion. M is the object's depth image (its mask) seen from the far plane. R is the
+/// scene's depth image seen from the rear plane, through the object's outline. L is the gap between them in
+/// each pixel; the least L is the distance to contact. L is defined only in pixels that both the object and
+/// the scene cover. R is the first surface not behind the object's front. A surface behind the front is
+/// ignored in a pixel if it
+///   - is back-facing, since the object moves away from it (for example the table that a plate is
+///     lifted from), or
 ///   - is behind by more than overlap_tolerance_m or the object's own length, whichever is less, or
-///   - is not certainly inside the front slab of the object's solid (it may be in a hollow, such as the
-///     hole of a handle).
+///   - is not certainly inside the front slab of the object's solid (it may be in a concavity, such
+///     as the hole of a handle).
 ///
-/// contact_distance_m is sampled. A spike or sheet thinner than a pixel may be missed, a surface in a hollow
-/// is compared with the object's front layer only, and contact_distance_m is too large by about half a
-/// pixel's diagonal times the sum of both slopes. lower_m and upper_m hold nevertheless. They come from the
-/// same two passes: each pixel also stores what may be anywhere in its square, and what is certainly on its
-/// centre line. lower_m is 0 if some scene is in the same pixel as the object and neither wholly ahead nor
-/// wholly behind: a wall passed closer than a pixel, a peg in a hollow. Such a query gets the exact test on
-/// the CPU if possible (GlRadarConfig::exact_fallback); then lower_m = upper_m.
+/// contact_distance_m is sampled, so it can be wrong in three ways. A spike or sheet thinner than a pixel may
+/// be missed. A surface in a concavity is compared with the object's front layer only. And contact_distance_m
+/// is too large by about half a pixel's diagonal times the sum of both surfaces' slopes.
 ///
-/// One-sided surfaces (is_one_sided(), such as the frontier of observed space) block from both sides here;
-/// use CyberRadar where that matters.
+/// lower_m and upper_m are guaranteed bounds. They come from the same two passes: each pixel also stores the
+/// surfaces that may touch its square, and those that certainly cross its sample line. lower_m is 0 if scene
+/// in one of the object's pixels is neither wholly ahead nor wholly behind, for example a wall passed closer
+/// than a pixel, or a peg in a hole. Such a query gets the exact test on the CPU if possible
+/// (GlRadarConfig::exact_fallback); then lower_m = upper_m.
 ///
-/// Overlap and hollow need a closed object with triangles counter-clockwise seen from outside. Masks (M) are
-/// cached: an object queried again along the same direction in its own frame is not redrawn. Source of R, M
-/// and L: the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread safe.
+/// One-sided surfaces (is_one_sided(), for example the frontier of observed space) block from both sides
+/// here; use CyberRadar if they must not.
+///
+/// Overlaps and concavities are recognised only for a closed object with triangles counter-clockwise seen
+/// from outside. Masks are cached: an object queried again along the same direction in its own frame is not
+/// redrawn. Source of R, M and L: the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread
+/// safe.
 class GlRadar {
  public:
   /// @throws Error if config is invalid or the renderer lacks a required feature
@@ -60,38 +66,39 @@ class GlRadar {
   GlRadar(const GlRadar&) = delete;
   GlRadar& operator=(const GlRadar&) = delete;
 
-  /// Computes how far `object` can move along a line until it touches the scene.
+  /// Computes how far `object` can move along a line until it touches the scene. Never throws. Allocates
+  /// nothing once queries of this size have been run.
   ///
   /// @param object           the moving object; must not be in `scene`
-  /// @param direction_world  any length but 0
+  /// @param direction_world  direction of motion; any length except 0
   /// @param distance_m       max distance to search, > 0, at most 10 km
   /// @param scene            surfaces that can be touched; instances with a null or empty mesh are skipped
-  /// @return see Contact. L within 10 um + 1e-6 d of zero counts as touching: kContact with travel 0. If
-  ///         several pixels are equally near (a face that lands flat), the point is the one nearest to
-  ///         their middle.
-  ///
-  /// Never throws; allocates nothing after the first queries of a size.
+  /// @return see Contact. A gap L within 10 um + 1e-6 d of zero counts as touching: kContact with distance 0.
+  ///         If several pixels are equally near (a face that lands flat), the point is the one nearest to the
+  ///         centre of their bounding box.
   Contact query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
                 std::span<const SceneMesh> scene);
 
-  /// Runs many queries at once, drawn into shared textures and read back together.
-  /// @param scene     surfaces that can be touched, including the objects: each is scene for the others
-  /// @param contacts  out, one per query; must have the size of `queries`
+  /// Runs many queries at once. They are drawn into shared textures and read back together.
+  /// @param scene     surfaces that can be touched, including the queried objects: each is scene for the
+  ///                  others
+  /// @param[out] contacts  one per query; must have the size of `queries`
   void query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
                  std::span<Contact> contacts);
 
-  /// Returns the images of the last call's last query that was not kInvalidInput; all empty if there is none.
-  /// If no scene reaches the volume, nothing is drawn, and R and M are depth_m everywhere.
+  /// Returns the images of the last valid query (not kInvalidInput) of the last call; all images are empty if
+  /// there is none. If no scene intersects the query's volume, nothing was drawn, and R and M equal depth_m
+  /// in all pixels.
   [[nodiscard]] RadarPictures pictures() const;
 
  private:
-  /// A query that was drawn, and its runs in runs_.
+  /// A query that was drawn, and its scene triangles: runs_[first_run] to runs_[first_run + run_count - 1].
   struct Drawn {
     std::size_t query = 0;
     RadarOutline outline;
     std::size_t first_run = 0, run_count = 0;
   };
-  /// The query that pictures() returns.
+  /// The query whose images pictures() returns.
   struct Shown {
     RadarVolume volume;
     TileQuery tile;
@@ -103,7 +110,7 @@ class GlRadar {
   MaskCache masks_;
   LeastGap least_;
 
-  // Scratch of one call; members keep their memory.
+  // Scratch memory of one call, kept between calls.
   SceneBoxes boxes_;
   std::vector<Drawn> drawn_;
   std::vector<SceneRun> runs_;

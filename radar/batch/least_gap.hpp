@@ -1,4 +1,4 @@
-// least_gap.hpp: minimum of each scene tile, found on the GPU or the CPU.
+// least_gap.hpp: minimum over each query's scene tile, computed on the GPU or the CPU.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,37 +11,44 @@
 
 namespace roomradar {
 
-/// Result of one query. Distances of at least kNothingMet mean that nothing was found.
+/// Result of one query. A distance of at least kNothingMet means that nothing was found.
 struct TileResult {
-  std::uint32_t stamp = 0;  ///< number of the call that wrote it
+  /// Number of the call that wrote this result.
+  std::uint32_t stamp = 0;
   float lower_m = 0.0F, upper_m = 0.0F, contact_distance_m = 0.0F;
-  std::int32_t x_px = -1, y_px = -1;  ///< nearest pixel in its tile; -1 if nothing was found
-  std::uint32_t key = 0;              ///< key of the triangle touched there
+  /// Nearest pixel, relative to the tile's corner; -1 if nothing was found.
+  std::int32_t x_px = -1, y_px = -1;
+  /// Key of the triangle touched in that pixel, see SceneRun.
+  std::uint32_t key = 0;
+  /// Padding.
   std::uint32_t unused = 0;
 };
 inline constexpr float kNothingMet = 1e38F;
-/// Clear value of tiles, as in tile_shaders.hpp.
+/// Value of pixels without a surface, as in tile_shaders.hpp.
 inline constexpr float kClearValue = 3e38F;
 
-/// Owns the program and the buffers, which grow to the largest call. Not thread safe.
+/// Computes, for many queries at once, the minimum over all pixels of a query's region (tile) of the scene
+/// texture. Owns its shader programs and buffers, which grow to the largest call. Not thread safe.
 class LeastGap {
  public:
-  /// @param on_renderer  true: the renderer takes the minimum. false: the tiles are read back, at no cost
-  ///                     if the renderer is this CPU. Both give the same results.
+  /// @param on_renderer  true: a compute shader takes the minimum. false: the tiles are read back and the CPU
+  ///                     takes the minimum; reading back is free if the renderer is this CPU. Both give the
+  ///                     same results.
   LeastGap(GlContext& context, bool on_renderer);
   ~LeastGap();
   LeastGap(const LeastGap&) = delete;
   LeastGap& operator=(const LeastGap&) = delete;
 
-  /// Makes room for the results of up to this many queries; earlier results become invalid.
+  /// Starts a call: makes room for the results of up to this many queries. Earlier results become invalid.
   void begin(std::size_t queries);
-  /// Computes the minima of a batch's scene tiles. `queries[i].query` is the index of the result.
+  /// Computes the minima over the scene tiles of a batch. The result of `queries[i]` has the index
+  /// `queries[i].query`.
   void reduce(std::span<const TileQuery> queries, const TileAtlas& scene_tiles);
   /// Finds the triangles touched, by repeating the draws of the scene tiles without rasterisation.
   void find_keys(const TileDraws& draws, const TileAtlas& object_tiles) const;
   /// Returns the first `count` results since begin(); empty if the renderer failed to return them.
   std::span<const TileResult> read(std::size_t count);
-  /// Makes the next call reallocate the buffers, after the renderer failed.
+  /// Makes the next call reallocate the buffers. For use after the renderer failed.
   void forget() { queries_capacity_ = results_capacity_ = 0; }
 
  private:

@@ -1,4 +1,5 @@
-// radar_volume.hpp: the volume that an object sweeps along its motion, and its pixels.
+// radar_volume.hpp: an object's outline seen along its motion, its pixels, and the volume that the object
+// sweeps.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -7,41 +8,43 @@
 
 namespace roomradar {
 
-/// An object seen along a direction, in its own mesh's frame; valid while its orientation relative to the
-/// direction is unchanged. Outline coordinates: x and y in pixels across the direction from the outline's
-/// corner, z in metres along it from the object's foremost point. The object lies in z = -length_m..0, so
-/// values near contact are small.
+/// An object's outline along a direction u, in the frame of its mesh. Valid while the object's orientation
+/// relative to u is unchanged. Defines the outline coordinates. x and y are perpendicular to u, in pixels
+/// from the outline's corner. z is along u, in metres from the object's foremost point. The object lies in z
+/// = -length_m..0, so values near contact are small.
 struct RadarOutline {
-  /// Rows: x, y and u, unit, right-handed.
+  /// Rotation from the mesh's frame. Its rows are the axes x, y and u, right-handed.
   Eigen::Matrix3d R_outline_mesh = Eigen::Matrix3d::Identity();
-  /// Origin of x, y and z: m, along the rows, relative to the mesh's origin.
+  /// Origin of the outline coordinates relative to the mesh's origin: components along x, y and u, m.
   Eigen::Vector3d corner_m = Eigen::Vector3d::Zero();
   double pixel_m = 0.0;
-  double length_m = 0.0;  ///< length of the object along u
+  /// Length of the object along u.
+  double length_m = 0.0;
   int width_px = 0;
   int height_px = 0;
 };
 
-/// Fits square pixels to the object: resolution_px along the longer side of the outline, at least 1 along the
+/// Fits square pixels to the object's outline: resolution_px along the longer side, at least 1 along the
 /// other. The mesh must have a triangle, and u_mesh must have length 1.
 RadarOutline fit_outline(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh, int resolution_px);
 
 /// Returns the affine 3 x 4 matrix from the object's local points (relative to its mesh's origin) to outline
 /// coordinates.
 Eigen::Matrix<double, 3, 4> outline_from_object(const RadarOutline& outline);
-/// Returns the matrix for any instance in the world, with `object` at its own pose. Keeps full precision far
-/// from the world's origin.
+/// Returns the matrix from any instance's local points (relative to its mesh's origin) to the outline
+/// coordinates of `object`, with `object` at its pose in the world. Keeps full precision far from the world's
+/// origin.
 Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, const MeshInstance& object,
                                                const MeshInstance& instance);
 
-/// Returns the volume that the object sweeps, in the world.
+/// Returns the box that contains the object and the volume it sweeps, in the world.
 RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m);
 
-/// Returns the max error across the direction of the object's vertices in the renderer's floats, px; same
-/// formula as kTileVertexShader.
+/// Returns the max error of the object's vertices in the renderer's floats, perpendicular to u, px. Uses the
+/// same formula as kTileVertexShader.
 double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline);
 
-/// Returns the distance from 0 within which L counts as touching, m.
+/// Returns the distance from 0 within which a gap L counts as touching, m.
 double touching_m(const RadarOutline& outline, double distance_m);
 
 }  // namespace roomradar

@@ -8,16 +8,17 @@
 
 namespace roomradar {
 
-/// A mesh that can be touched.
+/// A mesh that can be touched, its pose, and its kind.
 struct SceneMesh {
   MeshInstance instance;
   SurfaceKind kind = SurfaceKind::kStatic;
 };
+/// Returns true if the mesh is not null and has triangles.
 inline bool has_surface(const SceneMesh& s) {
   return s.instance.mesh != nullptr && s.instance.mesh->triangle_count() > 0;
 }
 
-/// Builds the tree over the boxes of a scene's meshes, as SceneBoxes::build() does.
+/// Builds the hierarchy over the boxes of a scene's meshes, as SceneBoxes::build() does.
 inline void build(SceneBoxes& boxes, std::span<const SceneMesh> scene) {
   boxes.clear();
   for (std::size_t i = 0; i < scene.size(); ++i)

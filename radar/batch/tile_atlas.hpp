@@ -1,4 +1,5 @@
-// tile_atlas.hpp: a float texture of square tiles, drawn into with minimum blending.
+// tile_atlas.hpp: a float texture divided into square tiles, one per query or mask, drawn with minimum
+// blending.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -7,7 +8,7 @@
 
 namespace roomradar {
 
-/// Owns a texture of four 32 bit floats per pixel and its framebuffer. Not thread safe.
+/// Owns a texture with four 32 bit floats per pixel, and its framebuffer. Not thread safe.
 class TileAtlas {
  public:
   explicit TileAtlas(GlContext& context);
@@ -15,26 +16,27 @@ class TileAtlas {
   TileAtlas(const TileAtlas&) = delete;
   TileAtlas& operator=(const TileAtlas&) = delete;
 
-  /// Makes columns x rows tiles of tile_px each; the contents are lost. Returns false if the renderer has no
-  /// memory; then there are no tiles.
+  /// Makes columns x rows tiles of tile_px x tile_px pixels; the contents are lost. Returns false if the
+  /// renderer has no memory; then there are no tiles.
   [[nodiscard]] bool resize(int columns, int rows, int tile_px);
   [[nodiscard]] std::size_t tile_count() const {
     return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   }
   [[nodiscard]] int width_px() const { return columns_ * tile_px_; }
   [[nodiscard]] int height_px() const { return rows_ * tile_px_; }
-  /// Least x and y of the tile's pixels.
+  /// Returns the least x and y of the tile's pixels.
   [[nodiscard]] std::array<int, 2> corner_px(std::size_t tile) const;
   [[nodiscard]] unsigned texture() const { return texture_; }
 
-  /// Binds the atlas as the draw target, with minimum blending if `least`, else overwriting.
+  /// Binds the texture as the draw target. Fragments are combined by minimum blending if `least` is true,
+  /// else they overwrite.
   void bind(bool least) const;
-  /// Restores default blending and framebuffer.
+  /// Restores default blending and the default framebuffer.
   static void unbind();
-  /// Sets every pixel of the first `tiles` tiles, and perhaps of more, to `value`. The atlas must be bound.
+  /// Sets every pixel of at least the first `tiles` tiles to `value`. The atlas must be bound.
   void clear(std::size_t tiles, float value) const;
-  /// Reads a rectangle of pixels, four floats each, row by row into `out`; writes nothing if the context is
-  /// lost.
+  /// Reads a rectangle of pixels into `out`, row by row, four floats per pixel. Writes nothing if the context
+  /// is lost.
   void read(int x_px, int y_px, int width_px, int height_px, float* out) const;
 
  private:

@@ -1,4 +1,5 @@
-// tile_contact.hpp: the contact of a query, from the least gap of its tile.
+// tile_contact.hpp: converts the result of a GlRadar query (its least gap and the triangle touched) into a
+// Contact.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,15 +13,20 @@
 
 namespace roomradar {
 
-/// A run of scene triangles that reaches a query's volume. Its triangles have keys from first_key on.
+/// A contiguous range of triangles of a scene mesh that intersects a query's volume. Keys number the scene
+/// triangles of a call: triangle first_triangle + k has the key first_key + k.
 struct SceneRun {
+  /// Index of the mesh in the scene.
   std::size_t scene_index = 0;
   std::uint32_t first_triangle = 0;
   std::uint32_t first_key = 0;
 };
 
-/// Returns the contact of a query that was drawn: status, bounds, point, normal and kind.
-/// @param runs  the query's runs, by ascending first_key
+/// Returns the contact (status, bounds, point, normal and kind) of a query that was drawn.
+/// @param outline  the object's outline along the motion
+/// @param result   least gap over the query's pixels, its pixel, and the key of the triangle touched
+/// @param runs     triangle ranges that intersect the query's volume, by ascending first_key
+/// @param scene    the scene of the call, which SceneRun::scene_index refers to
 Contact contact_of(const GlQuery& query, const RadarOutline& outline, const TileResult& result,
                    std::span<const SceneRun> runs, std::span<const SceneMesh> scene);
 

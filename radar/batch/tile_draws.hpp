@@ -1,4 +1,4 @@
-// tile_draws.hpp: draws many meshes into many tiles with few GL calls.
+// tile_draws.hpp: draws many meshes into many tiles (regions of a texture) with few GL calls.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -13,31 +13,41 @@
 
 namespace roomradar {
 
-/// Query data for the tile shaders.
+/// Per-query input of the tile shaders. Coordinates are outline coordinates, see RadarOutline.
 struct TileQuery {
-  std::array<std::int32_t, 4> corners_px{};  ///< tile corners: x, y in the object atlas, x, y in the scene's
+  /// Corners of the query's tiles: x and y in the object texture, then x and y in the scene texture.
+  std::array<std::int32_t, 4> corners_px{};
+  /// Size of the outline.
   std::int32_t width_px = 0, height_px = 0;
-  std::int32_t query = 0;       ///< index of the query in the call
-  std::uint32_t first_key = 0;  ///< the draw's triangles have keys first_key, first_key + 1, ...
+  /// Index of the query in the call.
+  std::int32_t query = 0;
+  /// Key of the draw's first triangle; following triangles have the following keys.
+  std::uint32_t first_key = 0;
+  /// Greatest z to draw; distance from 0 within which a gap counts as touching; overlap tolerance; object's
+  /// length along the motion.
   float far_m = 0.0F, touching_m = 0.0F, tolerance_m = 0.0F, length_m = 0.0F;
-  float margin_px = 0.0F;  ///< twice the error of the object's vertices across the direction
+  /// Twice the error of the object's vertices perpendicular to the motion.
+  float margin_px = 0.0F;
+  /// Padding.
   std::array<float, 3> unused{};
 };
 
-/// Returns the data of a query without query, first_key and margin_px.
+/// Returns a query's shader input, except `query`, first_key and margin_px.
 /// @param tolerance_m  see GlRadarConfig::overlap_tolerance_m
+/// @param object_corner_px, scene_corner_px  corners of the query's tiles in the two textures
 TileQuery tile_query(const RadarOutline& outline, double distance_m, double tolerance_m,
                      std::array<int, 2> object_corner_px, std::array<int, 2> scene_corner_px);
 
-/// Triangles of one mesh for one tile.
+/// A contiguous range of triangles of one mesh, to be drawn into one tile.
 struct TileDraw {
   const GpuMesh* mesh = nullptr;
   std::uint32_t first_triangle = 0, triangle_count = 0;
+  /// Matrix from the mesh's local points to outline coordinates.
   Eigen::Matrix<float, 3, 4, Eigen::RowMajor> outline_from_local;
   TileQuery query;
 };
 
-/// Owns the buffers of a pass's draws, which grow to the largest pass. Not thread safe.
+/// Owns the buffers with the draws of one pass, which grow to the largest pass. Not thread safe.
 class TileDraws {
  public:
   explicit TileDraws(GlContext& context);
@@ -45,33 +55,35 @@ class TileDraws {
   TileDraws(const TileDraws&) = delete;
   TileDraws& operator=(const TileDraws&) = delete;
 
-  /// Sorts the draws so each mesh takes one GL call, and uploads them.
+  /// Sorts the draws, so each mesh takes one GL call, and uploads them.
   void upload(std::span<TileDraw> draws);
-  /// Draws with the current program; attributes as in tile_shaders.hpp.
+  /// Draws the triangles with the current program. Vertex attributes are those of kTileVertexShader.
   void draw() const;
-  /// Makes the next call reallocate the buffers, after the renderer failed.
+  /// Makes the next call reallocate the buffers. For use after the renderer failed.
   void forget() { capacity_bytes_ = {}; }
-  /// Draws a rectangle of 4 vertices (a strip) for each draw.
+  /// Draws a rectangle (a strip of 4 vertices) for each draw.
   void draw_rectangles() const;
 
  private:
-  /// Layout read by glMultiDrawElementsIndirect.
+  /// Layout that glMultiDrawElementsIndirect reads.
   struct Command {
     std::uint32_t index_count = 0, instance_count = 0, first_index = 0;
     std::int32_t base_vertex = 0;
     std::uint32_t base_instance = 0;
   };
-  /// Layout read by the vertex shader.
+  /// Layout that the vertex shader reads.
   struct Item {
     std::array<float, 12> outline_from_local{};
     TileQuery query;
   };
+  /// One GL call: all draws of a mesh.
   struct Call {
     const GpuMesh* mesh = nullptr;
     std::size_t first_command = 0, command_count = 0;
   };
   unsigned vertex_array_ = 0;
-  std::array<unsigned, 2> buffers_{};  // items, commands
+  // GL buffers: items, commands.
+  std::array<unsigned, 2> buffers_{};
   std::array<std::size_t, 2> capacity_bytes_{};
   std::vector<Item> items_;
   std::vector<Command> commands_;

@@ -1,4 +1,5 @@
-// tile_passes.hpp: the two depth passes of GlRadar: objects into mask tiles, then the scene through them.
+// tile_passes.hpp: the two depth passes of GlRadar: first objects into mask tiles, then the scene through the
+// masks.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -15,13 +16,15 @@ namespace roomradar {
 /// Queries that are drawn together, and their draws.
 struct TileBatch {
   std::vector<TileQuery> queries;
-  std::vector<TileDraw> object_draws;  ///< masks that are not cached
+  /// Draws of the masks that are not cached.
+  std::vector<TileDraw> object_draws;
+  /// Draws of the scene.
   std::vector<TileDraw> scene_draws;
 
   void clear();
 };
 
-/// Owns the shader programs of both passes, their atlases and their buffers. Not thread safe.
+/// Owns the shader programs, textures and buffers of both passes. Not thread safe.
 class TilePasses {
  public:
   /// @throws Error if the renderer lacks a required feature
@@ -30,17 +33,17 @@ class TilePasses {
   TilePasses(const TilePasses&) = delete;
   TilePasses& operator=(const TilePasses&) = delete;
 
-  /// Tiles of M, by mask.
+  /// Returns the tiles of M (objects' masks), indexed by mask.
   TileAtlas& object_tiles() { return object_.tiles; }
   [[nodiscard]] const TileAtlas& object_tiles() const { return object_.tiles; }
-  /// Tiles of the scene, by index of the query in its batch.
+  /// Returns the tiles of the scene, indexed by the query's index in its batch.
   TileAtlas& scene_tiles() { return scene_.tiles; }
   [[nodiscard]] const TileAtlas& scene_tiles() const { return scene_.tiles; }
 
-  /// Draws both passes for the queries of the batch, and reduces their tiles into `least`. Sorts the draws.
-  /// Requires at least one query.
+  /// Draws both passes for the queries of the batch, and writes the minimum over each scene tile to `least`.
+  /// Sorts the batch's draws. Requires at least one query.
   void draw(TileBatch& batch, LeastGap& least);
-  /// Makes the next call reallocate the buffers, after the renderer failed.
+  /// Makes the next call reallocate the buffers. For use after the renderer failed.
   void forget();
 
  private:

@@ -1,34 +1,40 @@
-// tile_shaders.hpp: GLSL that draws triangles into atlas tiles, with guaranteed bounds of coverage and depth.
+// tile_shaders.hpp: GLSL that draws triangles into tiles (regions of a texture), with guaranteed bounds of
+// coverage and depth.
 #pragma once
 
 namespace roomradar {
 
-// Every triangle becomes the rectangle of its tile's pixels that it may touch. Coverage and depth of each
-// pixel are computed from the triangle's three vertices. Nothing depends on how a driver snaps vertices or
-// interpolates depth, so all renderers give the same results, within guaranteed bounds. The bounds include
-// all float errors, from the product of matrix and vertex on. Fragments of a pixel are combined by GL_MIN
-// blending, which needs no depth buffer and no order.
+// For every triangle, the geometry shader emits the rectangle of its tile's pixels that the triangle may
+// touch. The fragment shader computes coverage and depth of each pixel from the triangle's three vertices.
+// Nothing depends on how a driver snaps vertices or interpolates depth, so all renderers give the same
+// results, within guaranteed bounds. The bounds include all float errors, beginning with the product of
+// matrix and vertex. Fragments of a pixel are combined by GL_MIN blending, which needs no depth buffer and no
+// drawing order.
 //
-// A tile's coordinates are its query's outline coordinates (radar_volume.hpp). kNothing marks pixels without
-// a fragment.
+// A tile's coordinates are its query's outline coordinates (RadarOutline): x and y in pixels, z in metres
+// along the motion. The sample line of a pixel is the line along z through its sample position. kNothing
+// marks pixels without a fragment.
 //
-// Object tiles: r: -z, z an upper bound of the foremost point in the pixel's square
-//               g: -z, z a lower bound of the foremost surface on the sample line
-//               b:  z, a lower bound of the rearmost point in the square
-//               a: -z, z an upper bound of the foremost rear surface that may be near the sample line; g
-//                  and a enclose the front slab of the object's solid
-// Scene tiles:  r: lower bound of the distance until something in the square may touch
-//               g: upper bound of the distance until something on the sample line certainly touches
-//               b: distance to contact on the sample line; negative: overlap
+// Object tiles, by colour channel (z is along the motion):
+//   r: -z, z an upper bound of the foremost point in the pixel's square
+//   g: -z, z a lower bound of the foremost surface on the sample line
+//   b:  z, z a lower bound of the rearmost point in the square
+//   a: -z, z an upper bound of the foremost rear surface that may be near the sample line. g and a enclose
+//      the front slab of the object's solid.
+// Scene tiles, by colour channel:
+//   r: lower bound of the distance until a surface in the square may touch the object
+//   g: upper bound of the distance until a surface on the sample line certainly touches the object
+//   b: distance to contact on the sample line; negative for an overlap
 
-/// First piece of every shader here.
+/// First piece of every shader in this file.
 inline constexpr const char* kTilePreamble = R"(#version 450 core
 const float kNothing = 3e38, kAnything = 1e38;  // kNothing: clear value; values below kAnything are results
-const vec2 kSample = vec2(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // in a pixel; its exact middle is on too many edges
+const vec2 kSample = vec2(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // sample position in a pixel; edges often pass through its exact middle
 // Data passed from the vertices to the triangles.
 #define TILE_VERTEX Vertex { vec3 p; vec3 error; ivec4 corners; ivec4 item; vec4 limits_m; float margin; }
 )";
 
+/// Transforms vertices to outline coordinates, and bounds their rounding errors.
 inline constexpr const char* kTileVertexShader = R"(layout(location = 0) in vec3 p_local;
 layout(location = 1) in vec4 outline_x;  // rows: pixels, pixels, m
 layout(location = 2) in vec4 outline_y;
@@ -53,7 +59,7 @@ void main() {
 }
 )";
 
-/// Relation of a triangle to a pixel, from the triangle, its vertices' errors and the sample position alone.
+/// Computes the relation of a triangle to a pixel, from the triangle and its vertices' errors only.
 inline constexpr const char* kSpanSource = R"(
 struct Span {
   bool in_square;  // may touch the pixel's square
@@ -139,6 +145,7 @@ inline constexpr const char* kTileGeometryInputs = R"(layout(triangles) in;
 in TILE_VERTEX from[];
 )";
 
+/// Emits the rectangle of pixels that a triangle may touch.
 inline constexpr const char* kTileGeometryShader = R"(
 layout(triangle_strip, max_vertices = 4) out;
 layout(location = 0) uniform vec2 pixel_ndc;  // 2 / atlas size in pixels
@@ -189,6 +196,7 @@ in Corner {
 layout(location = 0) out vec4 least;
 )";
 
+/// Writes an object tile, see the channels above.
 inline constexpr const char* kObjectTileShader = R"(
 void main() {
   vec2 p = floor(gl_FragCoord.xy) - vec2(from.corners.xy) + kSample;
@@ -199,8 +207,8 @@ void main() {
 }
 )";
 
-/// The scene against the object in one pixel. A surface behind the object's front is ignored (see GlRadar)
-/// unless it is certainly inside the front slab of the object's solid.
+/// Compares a scene surface with the object in one pixel. A surface behind the object's front is ignored (see
+/// GlRadar) unless it is certainly inside the front slab of the object's solid.
 inline constexpr const char* kGapSource = R"(
 bool is_in_the_way(Span s, vec4 object, vec4 limits_m, out float gap_m) {
   gap_m = s.line + object.g;
@@ -210,6 +218,7 @@ bool is_in_the_way(Span s, vec4 object, vec4 limits_m, out float gap_m) {
 }
 )";
 
+/// Writes a scene tile, see the channels above.
 inline constexpr const char* kSceneTileShader = R"(
 layout(binding = 0) uniform sampler2D object_tiles;
 void main() {
@@ -225,8 +234,8 @@ void main() {
 }
 )";
 
-/// Minimum of each scene tile, one work group per tile. If several pixels are equally near, chooses the one
-/// nearest to the middle of their bounding box.
+/// Computes the minimum over each scene tile, one work group per tile. If several pixels are equally near,
+/// chooses the one nearest to the centre of their bounding box.
 inline constexpr const char* kLeastShader = R"(layout(local_size_x = 128) in;
 struct Query { ivec4 corners; ivec4 item; vec4 limits_m; vec4 margin_px; };
 struct Result { uint stamp; float lower_m, upper_m, travel_m; int x, y; uint key, unused; };
@@ -293,7 +302,8 @@ void main() {
 }
 )";
 
-/// Finds the triangle touched at the pixel that kLeastShader chose: the one with the least key.
+/// Finds the triangle touched at the pixel that kLeastShader chose. If there are several, chooses the one
+/// with the least key.
 inline constexpr const char* kWhichShader = R"(
 layout(points, max_vertices = 1) out;
 struct Result { uint stamp; float lower_m, upper_m, travel_m; int x, y; uint key, unused; };

@@ -8,47 +8,56 @@
 
 namespace roomradar {
 
-/// Inverse depth (1/m) of the nearest surface per pixel, 0 where there is none. The result does not depend on
-/// the drawing order.
+/// Inverse depth (1/m) of the nearest surface per pixel; 0 if there is no surface. The result does not depend
+/// on the drawing order.
 struct DepthCanvas {
-  static constexpr int kLanes = 8;  ///< pixels written at once; rows are padded by at least as many
+  /// Number of pixels written at once. Rows are padded by at least as many pixels.
+  static constexpr int kLanes = 8;
 
   int width_px = 0, height_px = 0, stride_px = 0;
+  /// Rows of stride_px values.
   std::vector<float> inverse_depth_per_m;
 
-  /// Sets the size and clears all pixels to 0; keeps the allocation if it is large enough.
+  /// Sets the size and clears all pixels to 0. Keeps the allocation if it is large enough.
   void clear(int wanted_width_px, int wanted_height_px);
   [[nodiscard]] const float* row(int y) const {
     return inverse_depth_per_m.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(stride_px);
   }
 };
 
-/// Projected vertices; pixel (0, 0) of the canvas is centred at (0, 0).
+/// Projected vertices. Pixel (0, 0) of the canvas is centred at coordinates (0, 0).
 struct ProjectedVertices {
   std::vector<float> u_px, v_px, inverse_depth_per_m;
 
   void resize(std::size_t count);
 };
 
-using PieceTriangle = std::array<std::uint16_t, 3>;  ///< indices of projected vertices
+/// Indices of a triangle's projected vertices.
+using PieceTriangle = std::array<std::uint16_t, 3>;
 
-/// Scratch buffers of draw_triangles().
+/// Scratch buffers of draw_triangles(). Each Lane has one value per triangle.
 struct TriangleSetup {
-  static constexpr std::size_t kMost = 256;  ///< triangles set up together
+  /// Number of triangles processed together.
+  static constexpr std::size_t kMost = 256;
   template <typename Value>
   using Lane = std::array<Value, kMost>;
 
-  alignas(32) std::array<Lane<float>, 3> u, v, q;  // corners relative to pixel (first_x, first_y); q: 1/m
+  // Corners of the triangles: u and v in pixels relative to pixel (first_x, first_y), q the inverse depth,
+  // 1/m.
+  alignas(32) std::array<Lane<float>, 3> u, v, q;
+  /// Twice the signed area, px^2.
   alignas(32) Lane<float> area;
-  alignas(32) Lane<int> first_x, first_y, columns, rows;  // pixels that may be covered
+  // Rectangle of pixels that a triangle may cover.
+  alignas(32) Lane<int> first_x, first_y, columns, rows;
+  /// Inverse depth, 1/m: value at pixel (first_x, first_y), slope per pixel, and range of the corners.
   alignas(32) Lane<float> q_first, q_per_x, q_per_y, least_q, most_q;
-  // Row y covers the pixels from the greatest left_slope * (y - v) + left to the least right_slope * (y - v)
-  // + right of the three edges. Measured from a corner of the edge, since a nearly horizontal edge has a huge
-  // slope.
+  // Pixels of a row that a triangle covers. Row y covers the pixels from the maximum of left_slope * (y - v)
+  // + left over the three edges to the minimum of right_slope * (y - v) + right. v is the height of a corner
+  // of the edge; offsets are measured from it, since a nearly horizontal edge has a huge slope.
   alignas(32) std::array<Lane<float>, 3> left, left_slope, right, right_slope;
 };
 
-/// Draws triangles, both sides or only those that are counter-clockwise as seen by the camera.
+/// Draws triangles: both sides, or only triangles that are counter-clockwise as seen by the camera.
 ///
 /// Inverse depth is linear over a triangle, sampled at pixel centres and clamped to the range of its corners.
 /// Triangles are enlarged by 1/1024 pixel, so neighbours leave no gap. Coordinates must be finite, and within

@@ -1,4 +1,4 @@
-// depth_pass.hpp: depth image of meshes as a depth camera would measure it, without noise.
+// depth_pass.hpp: renders the depth image that a noise-free depth camera would measure of meshes.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -15,20 +15,26 @@
 namespace roomradar {
 
 enum class DepthRenderer {
-  kAuto,       ///< OpenGL on a GPU, the CPU if OpenGL runs in software
-  kOpenGl,     ///< OpenGL, on a GPU or in software
-  kProcessor,  ///< DepthRaster, on the CPU
+  /// OpenGL on a GPU; the CPU if OpenGL would run in software.
+  kAuto,
+  /// OpenGL, on a GPU or in software.
+  kOpenGl,
+  /// DepthRaster, on the CPU.
+  kProcessor,
 };
 
 struct DepthPassConfig {
   DepthRenderer renderer = DepthRenderer::kAuto;
-  double near_m = 0.1;           ///< nearer surfaces are clipped, > 0; a Kinect measures from 0.4 m
-  bool cull_back_faces = false;  ///< true: draws only triangles counter-clockwise as seen by the camera
+  /// Near plane, > 0; nearer surfaces are clipped. A Kinect measures from 0.4 m.
+  double near_m = 0.1;
+  /// True: draws only triangles that are counter-clockwise as seen by the camera.
+  bool cull_back_faces = false;
 };
+/// Checks that all values are in their ranges.
 /// @throws Error naming the field, its value and the rule
 void require_valid(const DepthPassConfig& config);
 
-/// Owns its buffers, which grow to the largest image rendered. Not thread safe.
+/// Renders depth images. Owns its buffers, which grow to the largest image rendered. Not thread safe.
 class DepthPass {
  public:
   explicit DepthPass(GlContext& context, const DepthPassConfig& config = {});
@@ -36,17 +42,18 @@ class DepthPass {
   DepthPass(const DepthPass&) = delete;
   DepthPass& operator=(const DepthPass&) = delete;
 
-  /// Renders the nearest surface of all instances, sampled at pixel centres.
+  /// Renders the nearest surface of all instances, sampled at pixel centres. There is no far plane.
+  ///
+  /// Error against the exact ray: 1/256 pixel times the surface's slope (OpenGL snaps vertices; the CPU
+  /// enlarges triangles by less), and about 1e-7 of the depth along the ray. On the CPU, triangles that reach
+  /// near_m have an error of 4e-6 / m of inverse depth: 0.3 mm at 8 m.
   ///
   /// @param scene           meshes with their poses; instances with a null mesh are skipped
-  /// @param camera          intrinsics of the image; if invalid (require_valid), depth_m comes back empty
+  /// @param camera          intrinsics of the image; if invalid (require_valid), depth_m becomes empty
   /// @param T_world_camera  camera pose
-  /// @param depth_m         resized to the camera's size; metres along the optical axis, 0 without a surface
+  /// @param[out] depth_m    resized to the camera's size; metres along the optical axis, 0 if there is no
+  ///                        surface
   /// @return number of triangles passed to the renderer
-  ///
-  /// There is no far plane. Error against the exact ray: 1/256 pixel across the surface's slope (OpenGL snaps
-  /// vertices, the CPU widens outlines by less), and about 1e-7 of the depth along the ray. On the CPU,
-  /// triangles that reach near_m have an error of 4e-6 / m of inverse depth: 0.3 mm at 8 m.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 
@@ -57,7 +64,8 @@ class DepthPass {
 
  private:
   DepthPassConfig config_;
-  std::unique_ptr<DepthRaster> raster_;  ///< null if OpenGL renders
+  /// Null if OpenGL renders.
+  std::unique_ptr<DepthRaster> raster_;
   unsigned program_ = 0;
   unsigned framebuffer_ = 0;
   unsigned depth_texture_ = 0;
@@ -70,8 +78,9 @@ class DepthPass {
                              DepthImage& depth_m);
 };
 
-/// Returns the smallest rectangle of whole pixels that contains the instance's bounding box in the image: the
-/// whole image if part of the box is behind near_m, width and height 0 if the box is out of view.
+/// Returns the smallest rectangle of whole pixels that contains the projection of the instance's bounding box
+/// into the image. Returns the whole image if part of the box is behind near_m. Width and height are 0 if the
+/// box is out of view.
 PixelRect pixels_of(const MeshInstance& instance, const Intrinsics& camera,
                     const Eigen::Isometry3d& T_world_camera, double near_m);
 

@@ -1,4 +1,4 @@
-// depth_raster.hpp: CPU renderer of depth images of meshes, on two threads.
+// depth_raster.hpp: renders depth images of meshes on the CPU, on two threads.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -20,19 +20,23 @@
 namespace roomradar {
 
 /// Renders the images of DepthPass without OpenGL. Several times as fast as a software OpenGL, whose cost per
-/// triangle is too high for images this small. Two threads share the pieces of the meshes, each with its own
-/// canvas. The nearest surface wins, so the result does not depend on which thread drew it. Not thread safe.
+/// triangle is too high for images this small. Two threads share the pieces of the meshes; each draws on its
+/// own canvas, and the nearest surface wins, so the result does not depend on which thread drew a piece. Not
+/// thread safe.
 class DepthRaster {
  public:
-  /// Parameters as for DepthPass::render() and its config; `rect` must lie within the image and have pixels.
-  /// Allocates nothing once meshes and images as large were drawn.
+  /// Renders a rectangle of an image. Parameters are those of DepthPass::render() and DepthPassConfig. `rect`
+  /// must lie within the image and have pixels. Allocates nothing once meshes and images of this size have
+  /// been drawn.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, double near_m,
                      bool cull_back_faces, DepthImage& depth_m);
 
  private:
-  using Projection = Eigen::Matrix<double, 3, 4>;  ///< local points to (u * depth, v * depth, depth)
+  /// Matrix from local points to (u * depth, v * depth, depth).
+  using Projection = Eigen::Matrix<double, 3, 4>;
 
+  /// A mesh drawn before, cut into pieces.
   struct KnownMesh {
     const GpuMesh* mesh = nullptr;
     std::uint64_t revision = 0;
@@ -44,9 +48,11 @@ class DepthRaster {
     Projection projection;
   };
   struct VisiblePiece {
-    std::uint32_t mesh = 0;  ///< index in visible_meshes_
+    /// Index in visible_meshes_.
+    std::uint32_t mesh = 0;
     std::uint32_t piece = 0;
-    bool is_cut = false;  ///< needs clipping: may reach behind the near plane or far outside the image
+    /// True if the piece needs clipping: it may reach behind the near plane or far outside the image.
+    bool is_cut = false;
   };
   /// Buffers of one thread.
   struct Painter {

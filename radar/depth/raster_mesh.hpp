@@ -11,27 +11,33 @@
 
 namespace roomradar {
 
-/// A run of nearby triangles, and the vertices that only they use.
+/// A contiguous range of nearby triangles, and the vertices that only they use.
 struct RasterPiece {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_vertex = 0, vertex_count = 0;
-  Eigen::AlignedBox3f bounds_local;  ///< m, relative to the mesh's origin
+  /// Bounding box of the triangles, relative to the mesh's origin, m.
+  Eigen::AlignedBox3f bounds_local;
 };
 
-/// Vertices of a piece are contiguous, so each is projected once, with SIMD.
+/// A mesh as pieces. Vertices of a piece are contiguous, so each is projected once, with SIMD.
 struct RasterMesh {
+  /// Max number of triangles of a piece.
   static constexpr std::uint32_t kPieceTriangles = 256;
 
   std::vector<RasterPiece> pieces;
-  std::vector<float> x_m, y_m, z_m;      ///< vertices of all pieces, local
-  std::vector<PieceTriangle> triangles;  ///< indices into their piece's vertices
+  /// Coordinates of the vertices of all pieces, relative to the mesh's origin.
+  std::vector<float> x_m, y_m, z_m;
+  /// Triangles of all pieces, as indices into their piece's vertices.
+  std::vector<PieceTriangle> triangles;
 
-  ChunkedTriangles chunked;           // scratch
-  std::vector<std::uint32_t> places;  // scratch, by vertex of the whole mesh
+  // Scratch memory.
+  ChunkedTriangles chunked;
+  // Scratch memory, one value per vertex of the whole mesh.
+  std::vector<std::uint32_t> places;
 };
 
-/// Cuts triangles into pieces. All triangles must be usable and in an order that keeps neighbours together.
-/// Allocates nothing once `out` has had as many.
+/// Cuts triangles into pieces. All triangles must be valid and in an order that keeps neighbours together.
+/// Allocates nothing once `out` has held this many triangles.
 void cut_into_pieces(std::span<const Eigen::Vector3f> vertices, std::span<const Triangle> triangles,
                      RasterMesh& out);
 

@@ -1,4 +1,4 @@
-// object_front.hpp: M of a moving object, kept between queries, at the resolution that pays.
+// object_front.hpp: M, the height map of a moving object's leading surface, kept between queries.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -9,30 +9,35 @@
 
 namespace roomradar {
 
-/// The object's height map, kept while the object's tree and the direction in its frame are unchanged.
-/// Per query: direction_in_object(), turn(), build(), then add_work(). Not thread safe.
+/// Keeps the object's height map M while the object's tree and the direction in the object's frame are
+/// unchanged, and chooses its resolution. Each query calls direction_in_object(), turn(), build() and
+/// add_work(), in this order. Not thread safe.
 class ObjectFront {
  public:
-  /// Returns the unit direction in the object's frame. Reuses the last one if only rounding differs, so M
-  /// stays valid.
+  /// Returns the unit direction of motion in the object's frame. If it differs from the previous call's
+  /// direction only by rounding, returns the previous one, so M can be reused.
   Eigen::Vector3d direction_in_object(const RadarQuery& query);
-  /// Computes bounds(); build() must follow.
+  /// Sets the object's orientation and computes bounds(); build() must follow.
   void turn(const TurnedTree& object);
-  /// Builds a coarse M for a new direction, and a finer one once the direction has repeated so often that the
-  /// finer M would have paid by now. M's pixels then rule out nearly all of the scene, whatever the object's
-  /// triangles are. The exact result does not depend on M's resolution.
+  /// Builds a coarse M for a new direction. If the direction repeats, builds a finer M once the queries with
+  /// it have cost more than the finer M costs to build. M's resolution affects the speed of an exact query,
+  /// not its result.
   void build(const TurnedTree& object, const SceneInFrame& scene, const RadarConfig& config);
-  /// Adds the work of a query with this M, in units of ColumnScratch::work.
+  /// Adds the cost of a query with this M, in units of ColumnScratch::work.
   void add_work(std::uint64_t work) { work_ += work; }
 
   [[nodiscard]] const ObjectHeightMap& map() const { return map_; }
-  /// See ObjectHeightMap::bounds().
+  /// Returns the bounds of the whole object in the frame of the motion, margin included, m.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return map_.bounds(); }
 
  private:
   ObjectHeightMap map_;
-  bool is_kept_ = false;    // the last turn() changed nothing
-  std::uint64_t work_ = 0;  // of all queries since map_ was last turned
+  // True if the last turn() changed nothing.
+  bool is_kept_ = false;
+  // Accumulated cost of all queries since the last change of object or direction, in units of
+  // ColumnScratch::work.
+  std::uint64_t work_ = 0;
+  /// Last direction of motion, in the object's frame.
   Eigen::Vector3d u_mesh_ = Eigen::Vector3d::Zero();
 };
 

@@ -7,41 +7,45 @@
 
 namespace roomradar {
 
-/// Upper bound of an object's height (along the motion) over the area of each pixel, with a max pyramid
-/// above.
+/// Upper bound of an object's height over the area of each pixel, with a max pyramid. Height is measured
+/// along the motion. In the frame of the motion, z is the direction of motion.
 ///
 /// Conservative: every triangle is entered into all pixels that its box or its plane touches, rounding
-/// included. A node no larger than a pixel is entered as its box, so the work grows with the pixels and not
-/// with the triangles. Detail smaller than a pixel thus counts with its greatest height. A node is skipped
-/// only if all its pixels already have at least its height.
+/// included. A tree node no larger than a pixel is entered as its box, so the cost grows with the number of
+/// pixels and not of triangles. Detail smaller than a pixel therefore counts with its greatest height. A node
+/// is skipped only if all its pixels already have at least its height.
 class ObjectHeightMap {
  public:
-  /// Computes bounds(), from which callers can choose a resolution; build() must follow. No effect if tree,
-  /// rotation and margin are unchanged.
+  /// Sets the object's orientation and computes bounds(), from which callers can choose a resolution; build()
+  /// must follow. Has no effect if tree, rotation and margin are unchanged.
   void turn(const TurnedTree& object);
-  /// Builds the map; no effect if the resolution is unchanged, too.
+  /// Builds the map. Has no effect if neither the object's orientation nor the resolution changed.
+  /// @param resolution_px  number of pixels along the longer side of the object's outline
   void build(const TurnedTree& object, int resolution_px);
 
-  /// Returns true if the map is of this tree, rotation and margin, at any resolution.
+  /// Returns true if the map was built from this tree, rotation and margin, at any resolution.
   [[nodiscard]] bool holds(const TurnedTree& object) const;
 
-  /// Returns the greatest height over a rectangle, -infinity if no pixel is under it.
+  /// Returns the greatest height over a rectangle perpendicular to the motion, or -infinity if no pixel
+  /// intersects it.
   [[nodiscard]] float max_under(float x0_m, float x1_m, float y0_m, float y1_m) const;
 
-  /// Returns a lower bound of the gap to a scene triangle: the minimum, over the pixels that it touches, of
-  /// its plane's height minus M. Infinite if it touches none. Tighter than the bound from the triangle's box.
+  /// Returns a lower bound of the gap to a scene triangle: the minimum, over the pixels that the triangle
+  /// touches, of its plane's height minus M. Returns infinity if it touches no pixel. Tighter than the bound
+  /// from the triangle's box.
   [[nodiscard]] float least_gap_under(const FrameTriangle& scene) const;
 
-  /// Bounds of the whole object in the frame, margin included, m.
+  /// Returns the bounds of the whole object in the frame of the motion, margin included, m.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
-  /// Longer side across the motion, m.
+  /// Returns the longer side of the map, perpendicular to the motion, m.
   [[nodiscard]] double side_m() const { return pixel_m_ * resolution_px_; }
   [[nodiscard]] double pixel_m() const { return pixel_m_; }
 
  private:
   struct Level {
     int width = 0, height = 0;
-    std::size_t first = 0;  // index in heights_
+    // Index of the level's first pixel in heights_.
+    std::size_t first = 0;
   };
   std::uint64_t revision_ = 0;
   Eigen::Matrix3d R_frame_mesh_ = Eigen::Matrix3d::Zero();

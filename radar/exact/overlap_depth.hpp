@@ -1,4 +1,4 @@
-// overlap_depth.hpp: distance back along the motion until an object is clear of what it overlaps.
+// overlap_depth.hpp: distance an object has to move back until it no longer overlaps the scene.
 #pragma once
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// Scratch memory kept between queries.
+/// Scratch memory of overlap_depth(), kept between queries.
 struct OverlapScratch {
   struct Span {
     double low_m, high_m;
@@ -20,28 +20,33 @@ struct OverlapScratch {
   std::vector<SceneItem> items;
 };
 
-/// A scene triangle in the frame, and its kind.
+/// A scene triangle in the frame of the motion, and its kind.
 struct OverlappedTriangle {
   FrameTriangle triangle;
   SurfaceKind kind = SurfaceKind::kNothing;
 };
 
 struct Overlap {
-  double depth_m = 0.0;  ///< > 0; 0: no overlap
-  bool is_all = true;    ///< false: depth_m is a lower bound, as the search was cut short
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the frame, where they separate last
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the scene's triangle, by its winding
+  /// Distance that the object has to move back against the motion; 0 if there is no overlap.
+  double depth_m = 0.0;
+  /// False if the search was cut short; depth_m is then a lower bound.
+  bool is_all = true;
+  /// Point where object and scene separate last, in the frame of the motion, m.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  /// Unit normal of the scene's triangle at `point`, oriented by its winding.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   SurfaceKind kind = SurfaceKind::kNothing;
 };
 
-/// Work after which the search is cut short: a few milliseconds. An object that is sunk in the ground and
-/// moves along it would be clear only where the ground ends.
+/// Cost (in units of ColumnScratch::work) after which the search is cut short: a few milliseconds. An object
+/// that is sunk in the ground and moves along it would be clear only where the ground ends.
 inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 
-/// Computes how deep the object overlaps the scene. A pair of triangles crosses over an interval of travel,
-/// from its least gap to its greatest. Between these intervals, a scene triangle is inside a closed object if
-/// more exits from the solid than entries are ahead of it. The depth is how far back the union of the
-/// intervals that contains 0 reaches. Back-facing scene triangles are ignored.
+/// Computes how far the object has to move back until it no longer overlaps the scene. A pair of triangles
+/// intersects over an interval of travel, from its least gap to its greatest. Between these intervals, a
+/// scene triangle is inside a closed object if more exits from the solid than entries are ahead of it. The
+/// union of all intervals that contains 0 gives the depth: the distance from 0 back to its lower end.
+/// Back-facing scene triangles are ignored.
 /// @param known  an overlapped triangle, reported if the search is cut short before it finds one
 Overlap overlap_depth(const TurnedTree& object, const ObjectHeightMap& front, SceneInFrame& scene,
                       const OverlappedTriangle& known, OverlapScratch& scratch);

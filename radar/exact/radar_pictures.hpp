@@ -1,4 +1,4 @@
-// radar_pictures.hpp: the radar's R, M and L as images, for display.
+// radar_pictures.hpp: the radar's R (scene), M (object) and L (gap) as images, for display.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -9,41 +9,51 @@ namespace roomradar {
 
 struct RadarQuery;
 
-/// Placement of one query's images. Pixel (i, j) is centred at origin_world + (i + 0.5) * pixel_m * x_world +
-/// (j + 0.5) * pixel_m * y_world. Depth is measured along u_world.
+/// Box swept by the object, and the pixel grid of one query's images. Pixel (i, j) is centred at origin_world
+/// + (i + 0.5) * pixel_m * x_world + (j + 0.5) * pixel_m * y_world. Depth is measured along u_world.
 struct RadarVolume {
-  /// Corner of the rear plane, just behind the object.
+  /// Corner of the rear plane, which lies just behind the object.
   Eigen::Vector3d origin_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d x_world = Eigen::Vector3d::UnitX();
   Eigen::Vector3d y_world = Eigen::Vector3d::UnitY();
-  Eigen::Vector3d u_world = Eigen::Vector3d::UnitZ();  ///< unit direction of motion; x cross y = u
+  /// Unit direction of motion; x_world cross y_world = u_world.
+  Eigen::Vector3d u_world = Eigen::Vector3d::UnitZ();
+  /// Side of a pixel.
   double pixel_m = 0.0;
-  double length_m = 0.0;  ///< length of the object along u
-  double depth_m = 0.0;   ///< d: the object's length plus the queried distance
+  /// Length of the object along u_world.
+  double length_m = 0.0;
+  /// Depth of the box, d: the object's length plus the queried distance.
+  double depth_m = 0.0;
   int width_px = 0;
   int height_px = 0;
 
-  /// Bounding box in the world.
+  /// Returns the axis-aligned bounding box in the world, m.
   [[nodiscard]] Eigen::AlignedBox3d bounds_world() const;
 };
-/// R, M and L of one query, row by row, volume.width_px x height_px.
+/// Images R, M and L of one query, row by row, volume.width_px x height_px.
 struct RadarPictures {
   RadarVolume volume;
-  Image<float> range_m;   ///< R; volume.depth_m if there is no surface or L is undefined
-  Image<float> mask_m;    ///< M; volume.depth_m if the object does not cover the pixel
-  Image<float> lookat_m;  ///< L, NaN where undefined
+  /// R, m: distance from the rear plane to the scene. volume.depth_m if there is no surface or L is
+  /// undefined.
+  Image<float> range_m;
+  /// M, m: distance from the far plane back to the object. volume.depth_m if the object does not cover the
+  /// pixel.
+  Image<float> mask_m;
+  /// L = R + M - d, m: gap between object and scene; NaN where undefined.
+  Image<float> lookat_m;
 };
 
-/// Computes the images of a CyberRadar query, sampled just off the middle of each pixel as GlRadar samples
-/// them. Depths equal GlRadar's except for its renderer's rounding, overlaps (L is not negative here) and
-/// one-sided surfaces (which GlRadar does not know). R is the first surface not behind the object's front.
-/// Everything is drawn in double; neither CyberRadar nor its results need these images.
+/// Computes the images of a CyberRadar query. Samples each pixel slightly off its centre, as GlRadar does.
+/// Depths equal GlRadar's except for its renderer's rounding, overlaps (L is not negative here) and one-sided
+/// surfaces (GlRadar treats them as two-sided). R is the first surface not behind the object's leading
+/// surface. Everything is computed in double. CyberRadar does not use these images.
 ///
 /// @param resolution_px  pixels along the longer side of the object's outline, 1 to 4096
-/// @return all images empty for a query that CyberRadar rejects with kInvalidInput
+/// @return the images; all empty if CyberRadar rejects the query with kInvalidInput
 RadarPictures radar_pictures(const RadarQuery& query, const RadarScene& scene, int resolution_px);
 
-/// Sample position in a pixel: slightly off its middle, so edges along pixels do not fall onto samples.
+/// Sample position in a pixel: slightly off its centre, so edges along pixel centres do not coincide with
+/// samples.
 inline constexpr double kSampleX_px = 0.5 + 1.0 / 64.0, kSampleY_px = 0.5 + 1.0 / 97.0;
 
 }  // namespace roomradar

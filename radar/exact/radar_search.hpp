@@ -12,25 +12,34 @@
 
 namespace roomradar {
 
-/// One query of CyberRadar in its frame, and what its exact tests have found so far. The frame has its origin
-/// at the object's middle and z along the direction. It is fixed to the object, so M stays valid while the
-/// direction is unchanged in the object's own frame.
+/// One query of CyberRadar in the frame of its motion, and the results of its exact tests so far. The frame
+/// has its origin at the object's centre and z along the direction. It depends only on the direction in the
+/// object's frame, so the object's height map M can be reused while that direction is unchanged.
 struct RadarSearch {
   const RadarQuery& query;
   const TriangleTree& tree;
   TurnedTree object;
   Eigen::Matrix3d R_frame_world;
   Eigen::Vector3d origin_world;
+  /// True if the object is inflated (RadarQuery::margin_m > 0).
   bool is_thick;
 
-  double best_m = kInfinity<double>;  ///< least distance from an exact test
-  bool overlaps = false;              ///< found by an exact test; nothing else matters then
-  OverlappedTriangle overlapped;      ///< if overlaps
-  bool leaves_something = false;      ///< a back-facing surface crosses the object now
-  bool met_a_back = false;            ///< contact with a back-facing surface
-  bool collects_backs = false;        ///< instead of treating them as contacts
-  bool is_cut_short = false;          ///< not all scene that may be behind the front was tested
+  /// Least distance to contact found by an exact test, m.
+  double best_m = kInfinity<double>;
+  /// True if an exact test found an overlap; the search for contacts then ends.
+  bool overlaps = false;
+  /// The overlapped triangle; set if `overlaps`.
+  OverlappedTriangle overlapped;
+  /// True if the object intersects a back-facing surface now.
+  bool leaves_something = false;
+  /// True if a contact with a back-facing surface was found.
+  bool met_a_back = false;
+  /// True if back-facing surfaces are collected instead of treated as contacts.
+  bool collects_backs = false;
+  /// True if some scene that may be behind M was not tested.
+  bool is_cut_short = false;
 
+  /// @param q       the query; must outlive the search
   /// @param u_mesh  unit direction of motion in the object's frame
   RadarSearch(const RadarQuery& q, const Eigen::Vector3d& u_mesh)
       : query(q), tree(*q.object.tree), is_thick(q.margin_m > 0.0) {
@@ -41,15 +50,16 @@ struct RadarSearch {
     R_frame_world = object.R_frame_mesh * q.object.T_world_mesh.linear().transpose();
     origin_world = q.object.T_world_mesh * (tree.origin() + tree.centre());
   }
-  /// Contacts at most this much farther than the nearest count as equally near.
+  /// Returns by how much a contact may be farther than the nearest one and still count as equally near.
   [[nodiscard]] double equally_m() const { return object.touching_m; }
+  /// Returns true if an object triangle faces against the motion and belongs to a closed object.
   [[nodiscard]] bool is_rear(const FrameTriangle& o) const {
     return tree.is_closed() && o.normal.z() < -kEdgeOn;
   }
 };
 
-/// Sets the contact's point, normal and kind from a point in the search's frame. The normal faces against the
-/// motion; a zero normal gives the direction against the motion.
+/// Sets the contact's point, normal and kind from a point in the search's frame. The normal is turned to face
+/// against the motion; a zero normal is replaced by the direction opposite to the motion.
 inline void touch(const RadarSearch& search, const PatchPoint& at, Contact& contact) {
   const Eigen::Matrix3d R_world_frame = search.R_frame_world.transpose();
   contact.point_world = search.origin_world + R_world_frame * at.point;

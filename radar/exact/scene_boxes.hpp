@@ -1,4 +1,4 @@
-// scene_boxes.hpp: finds the meshes of a scene that reach a box, without testing each.
+// scene_boxes.hpp: finds the meshes of a scene that intersect a box, without testing each.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -12,25 +12,29 @@
 
 namespace roomradar {
 
-/// Boxes around the meshes of a scene, in a spatial hierarchy. Rebuilt for every frame; allocates nothing
-/// once as many meshes were stored.
+/// A bounding volume hierarchy over the bounding boxes of a scene's meshes. Rebuilt for every frame.
+/// Allocates nothing once this many meshes have been stored.
 class SceneBoxes {
  public:
-  /// Builds the hierarchy over a scene's meshes. Skips meshes that are null or empty, and poses that are not
-  /// finite.
+  /// Builds the hierarchy over a scene's meshes. Skips meshes that are null or empty, and meshes whose poses
+  /// are not finite.
   void build(std::span<const SceneTree> scene);
 
-  /// The same in three steps for a scene of another type: clear(), add() per mesh with a surface, finish().
-  /// @param index        index in scene, passed on by visit(); ascending
-  /// @param bounds_mesh  bounding box in the mesh's frame, m
+  /// Starts building a hierarchy for a scene of another type: call clear(), then add() for each mesh with a
+  /// surface, then finish().
   void clear();
+  /// Adds a mesh.
+  /// @param index        index in the scene, passed on by visit(); must increase from call to call
+  /// @param bounds_mesh  bounding box in the mesh's frame, m
   void add(std::size_t index, const Eigen::AlignedBox3d& bounds_mesh, const Eigen::Isometry3d& T_world_mesh);
+  /// Builds the hierarchy over the meshes added since clear().
   void finish();
 
   /// Returns true if all poses were finite.
   [[nodiscard]] bool are_finite() const { return are_finite_; }
 
-  /// Calls work(index in scene) for each mesh whose box intersects `around_world`, always in the same order.
+  /// Calls work(index in the scene) for each mesh whose box intersects `around_world`, always in the same
+  /// order.
   template <typename Work>
   void visit(const Eigen::AlignedBox3d& around_world, const Work& work) const {
     tree_.visit([&](const Eigen::AlignedBox3d& box) { return box.intersects(around_world); },
@@ -38,8 +42,10 @@ class SceneBoxes {
   }
 
  private:
-  std::vector<std::pair<std::size_t, Eigen::AlignedBox3d>> added_;  // index in scene, box in the world
-  std::vector<std::pair<std::uint64_t, std::size_t>> by_code_;      // Morton code, index in added_
+  // Per mesh: its index in the scene, and its bounding box in the world.
+  std::vector<std::pair<std::size_t, Eigen::AlignedBox3d>> added_;
+  // Morton code of each box's centre, and index in added_; sorted.
+  std::vector<std::pair<std::uint64_t, std::size_t>> by_code_;
   std::vector<Eigen::AlignedBox3d> boxes_;
   BoxTree tree_;
   bool are_finite_ = true;

@@ -1,4 +1,4 @@
-// scene_queue.hpp: parts of the scene that are left to examine, least bound first.
+// scene_queue.hpp: priority queue of the parts of the scene that are left to examine.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -7,13 +7,14 @@
 
 namespace roomradar {
 
-/// A heap of scene items by SceneItem::low_m. Keeps its memory when cleared.
+/// A binary heap of scene items, ordered by SceneItem::low_m. Keeps its memory when cleared.
 class SceneQueue {
  public:
   void clear() { items_.clear(); }
   [[nodiscard]] bool empty() const { return items_.empty(); }
-  /// The items, for appending many at once; arrange() must follow.
+  /// Returns the items, so callers can append many at once; arrange() must follow.
   [[nodiscard]] std::vector<SceneItem>& items() { return items_; }
+  /// Restores the heap order.
   void arrange() { std::make_heap(items_.begin(), items_.end(), is_farther); }
 
   /// Returns the item with the least bound. Requires at least one item.
@@ -28,7 +29,7 @@ class SceneQueue {
     items_.push_back(item);
     std::push_heap(items_.begin(), items_.end(), is_farther);
   }
-  /// Removes all items that may be behind the object's front.
+  /// Removes all items that may be behind the object's leading surface (negative bound).
   void drop_below_zero() {
     std::erase_if(items_, [](const SceneItem& item) { return item.low_m < 0.0F; });
     arrange();

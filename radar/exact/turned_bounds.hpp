@@ -8,11 +8,11 @@
 
 namespace roomradar {
 
-/// Max relative rounding error of a linear function of a point in float, with margin.
+/// Max relative rounding error of a linear function of a point in float, with a safety factor.
 inline constexpr float kHeightRounding = 16.0F * std::numeric_limits<float>::epsilon();
 
-/// Returns the bounds of the tree's triangles in the rotated frame, rounding and margin included, at most
-/// tolerance_m too large. Runs one search per side.
+/// Returns the bounds of the object in the rotated frame, including rounding and margin. They are at most
+/// tolerance_m too large. Runs one search per side of the box.
 /// @param pending  scratch memory
 Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, double tolerance_m,
                                   std::vector<PendingNode>& pending);

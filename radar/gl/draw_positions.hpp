@@ -1,4 +1,4 @@
-// draw_positions.hpp: draws meshes with positions only, as all depth passes do.
+// draw_positions.hpp: draws meshes with positions only, for depth passes.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// Vertex shader of programs used with draw_positions(): attribute 0 is the local position, uniform 0 the
-/// matrix to clip space.
+/// Vertex shader of programs used with draw_positions(). Attribute 0 is the local position; uniform 0 is the
+/// matrix from local to clip space.
 inline constexpr const char* kPositionShader = R"(#version 450 core
 layout(location = 0) in vec3 p_local;
 layout(location = 0) uniform mat4 clip_from_local;

@@ -5,21 +5,24 @@
 namespace roomradar {
 
 enum class RendererChoice {
-  kAuto,      ///< a working GPU if there is one, else software
-  kGpu,       ///< a GPU, else Error
-  kSoftware,  ///< Mesa's llvmpipe, else Error
+  /// Uses a working GPU if there is one, else software.
+  kAuto,
+  /// Requires a GPU; throws Error if there is none.
+  kGpu,
+  /// Requires Mesa's llvmpipe; throws Error if it is missing.
+  kSoftware,
 };
 
-/// Returns the choice in the environment variable ROOMRADAR_RENDERER: "gpu", "software" or "auto" (same as
-/// unset).
+/// Returns the choice that the environment variable ROOMRADAR_RENDERER names: "gpu", "software" or "auto".
+/// Unset means "auto".
 /// @throws Error for any other value
 RendererChoice renderer_choice_from_environment();
 
 /// Owns an off-screen EGL display connection and an OpenGL core context of version 4.5 or later (reversed
 /// depth needs glClipControl). The context is current on the thread that made it, and any code on that thread
-/// may call GL. It has no default framebuffer, so everything draws into framebuffer objects. Clip space is
-/// set here once (depth 0 to 1, lower left origin); code that changes it must restore it. Not thread safe.
-/// Must outlive everything made with it (GpuMesh, DepthPass, GlRadar).
+/// may call GL. It has no default framebuffer, so everything is drawn into framebuffer objects. The
+/// constructor sets the clip-space convention (depth 0 to 1, lower left origin); code that changes it must
+/// restore it. Not thread safe. Must outlive everything made with it (GpuMesh, DepthPass, GlRadar).
 class GlContext {
  public:
   /// @throws Error listing the devices tried and why each failed (no EGL, no GPU, a version below 4.5)
@@ -28,30 +31,32 @@ class GlContext {
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// Returns the driver's own name and GL version: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5".
+  /// Returns the driver's name and GL version, for example "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5".
   [[nodiscard]] const std::string& renderer() const { return renderer_; }
   [[nodiscard]] bool is_software() const { return is_software_; }
 
-  /// Makes the context current on the calling thread: after a window's context was current, or on another
-  /// thread after release() on the first.
+  /// Makes the context current on the calling thread. Needed after a window's context was current, or on
+  /// another thread after release() on the first.
   /// @throws Error if the driver refuses
   void make_current() const;
   /// Releases the context from the calling thread.
   void release() const;
 
  private:
-  void* display_ = nullptr;  // EGLDisplay
-  void* context_ = nullptr;  // EGLContext
+  // EGLDisplay.
+  void* display_ = nullptr;
+  // EGLContext.
+  void* context_ = nullptr;
   std::string renderer_;
   bool is_software_ = true;
 };
 
-/// Discards pending GL errors, so require_drawn() reports later errors only.
+/// Discards pending GL errors, so require_drawn() reports only later ones.
 void forget_gl_errors();
 
-/// Throws Error "WHAT: the renderer ..." if a GL error has occurred since forget_gl_errors(), the context is
-/// lost (a GPU that was reset or suspended), or no context is current on this thread. Data read from the
-/// renderer is then invalid.
+/// Throws Error if a GL error has occurred since forget_gl_errors(), the context is lost (the GPU was reset
+/// or suspended), or no context is current on this thread. Data read from the renderer is then invalid.
+/// @param what  name of the failed task, which begins the message
 void require_drawn(const char* what);
 
 }  // namespace roomradar

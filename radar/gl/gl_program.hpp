@@ -6,13 +6,15 @@ namespace roomradar {
 
 /// One shader stage of a program.
 struct ShaderSource {
-  unsigned stage = 0;  ///< GL_VERTEX_SHADER, ...
-  /// GLSL in pieces, which are concatenated.
+  /// Stage, for example GL_VERTEX_SHADER.
+  unsigned stage = 0;
+  /// Pieces of GLSL source, concatenated in this order.
   std::initializer_list<const char*> pieces;
 };
 
-/// @param name  for error messages
-/// @return GL name of the program, to be freed with glDeleteProgram; the context must be current
+/// Compiles and links a program. The context must be current.
+/// @param name  name of the program for error messages
+/// @return GL name of the program; the caller frees it with glDeleteProgram
 /// @throws Error with the compiler's log
 unsigned make_program(const char* name, std::initializer_list<ShaderSource> shaders);
 /// Makes a program of one vertex and one fragment shader.

@@ -1,4 +1,5 @@
-// mesh_chunks.hpp: triangles in runs with bounding boxes, so passes can skip invisible runs.
+// mesh_chunks.hpp: a mesh's triangles in contiguous ranges (chunks) with bounding boxes, so passes can skip
+// invisible chunks.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -10,29 +11,33 @@
 
 namespace roomradar {
 
-/// A run of consecutive triangles.
+/// A contiguous range of triangles.
 struct MeshChunk {
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
-  Eigen::AlignedBox3f bounds_local;  ///< m, relative to the mesh's origin
+  /// Bounding box of the triangles, relative to the mesh's origin, m.
+  Eigen::AlignedBox3f bounds_local;
 };
 
 struct ChunkedTriangles {
   std::vector<Triangle> triangles;
   std::vector<MeshChunk> chunks;
-  Eigen::AlignedBox3f bounds_local;   ///< of all triangles; empty if there are none
-  std::size_t dropped_triangles = 0;  ///< skipped: a vertex not finite or an index past the last vertex
+  /// Bounding box of all triangles, relative to the mesh's origin, m; empty if there are none.
+  Eigen::AlignedBox3f bounds_local;
+  /// Number of triangles skipped because a vertex is not finite or an index is past the last vertex.
+  std::size_t dropped_triangles = 0;
 };
 
-/// Groups nearby triangles: Morton order of their centres, then runs of `max_triangles`. For meshes that
-/// persist. O(n log n).
+/// Sorts the triangles by the Morton codes of their centres and cuts them into chunks of `max_triangles`, so
+/// each chunk holds nearby triangles. For meshes that persist. O(n log n).
 void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out);
 
-/// Cuts the triangles into runs of `max_triangles` in their given order. For meshes of a single frame: the
-/// rows of a depth image are already spatially ordered. O(n); allocates nothing once `out` has had as many.
+/// Cuts the triangles into chunks of `max_triangles` in their given order. For meshes of a single frame,
+/// since the rows of a depth image are already spatially ordered. O(n). Allocates nothing once `out` has held
+/// this many triangles.
 void chunk_in_order(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out);
 
-/// Sets out.chunks and out.bounds_local for triangles stored elsewhere; all must be usable.
+/// Sets out.chunks and out.bounds_local for triangles stored elsewhere. All triangles must be valid.
 void cut_into_chunks(std::span<const Eigen::Vector3f> vertices, std::span<const Triangle> triangles,
                      std::uint32_t max_triangles, ChunkedTriangles& out);
 

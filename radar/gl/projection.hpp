@@ -1,4 +1,5 @@
-// projection.hpp: pinhole camera as a clip-space matrix, boxes as pixels, depth-buffer values as metres.
+// projection.hpp: projection of a pinhole camera as a clip-space matrix, of boxes to pixels, and of
+// depth-buffer values to metres.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -12,30 +13,32 @@ struct PixelRect {
   friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
-/// Returns the part of `rect` within an image of this size; width or height 0 if there is none.
+/// Returns the part of `rect` inside an image of this size; width or height is 0 if there is none.
 PixelRect clamped(const PixelRect& rect, int width_px, int height_px);
 
 /// Returns the smallest rectangle that contains both; a rectangle without pixels is ignored.
 PixelRect united(const PixelRect& a, const PixelRect& b);
 
-/// Returns the smallest rectangle of whole pixels that contains a box in the image: the whole image if part
-/// of the box is behind near_m, width and height 0 if the box is empty or out of view.
+/// Returns the smallest rectangle of whole pixels that contains the projection of a box into the image.
+/// Returns the whole image if part of the box is behind near_m. Width and height are 0 if the box is empty or
+/// out of view.
 PixelRect pixels_of(const Eigen::AlignedBox3d& box, const Intrinsics& camera,
                     const Eigen::Isometry3d& T_camera_box, double near_m);
 
-/// Returns the matrix from camera points (x right, y down, z forward) to clip space (x, y in -w..w, z in
-/// 0..w). The viewport has the size of `rect` and shows those pixels of the camera's image. Pixel (0, 0) of
-/// the image is centred at image coordinates (0, 0). Image row y is framebuffer row y, so images read back
-/// need no flip. Triangles that are counter-clockwise seen from outside are clockwise on the framebuffer:
-/// glFrontFace(GL_CW).
+/// Returns the matrix from camera points (x right, y down, z forward) to clip space (x and y in -w..w, z in
+/// 0..w). The viewport must have the size of `rect` and shows those pixels of the camera's image. Pixel (0,
+/// 0) of the image is centred at image coordinates (0, 0). Image row y is framebuffer row y, so images read
+/// back need no flip. Triangles that are counter-clockwise seen from outside are clockwise on the
+/// framebuffer, so culling needs glFrontFace(GL_CW).
 ///
-/// Depth is reversed and has no far plane: depth_buffer01 = near_m / depth_m, 1 at near_m, 0 at infinity.
-/// Clear to 0 and test GL_GREATER. With 32 bit float one step is 6e-8 of the depth: 0.5 um at 8 m.
+/// Depth is reversed and has no far plane: depth_buffer01 = near_m / depth_m, which is 1 at near_m and 0 at
+/// infinity. Clear to 0 and test with GL_GREATER. One step of a 32 bit float is 6e-8 of the depth: 0.5 um at
+/// 8 m.
 Eigen::Matrix4d clip_from_camera(const Intrinsics& camera, double near_m, const PixelRect& rect);
 /// Returns the matrix for the whole image.
 Eigen::Matrix4d clip_from_camera(const Intrinsics& camera, double near_m);
 
-/// Returns metres along the optical axis from a depth-buffer value; 0 where nothing was drawn.
+/// Converts a depth-buffer value to metres along the optical axis; returns 0 if nothing was drawn.
 inline float depth_from_buffer(float depth_buffer01, float near_m) {
   return depth_buffer01 > 0.0F ? near_m / depth_buffer01 : 0.0F;
 }

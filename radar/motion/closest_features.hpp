@@ -1,5 +1,5 @@
-// closest_features.hpp: closest features of two triangles, and selection of those that support an object
-// most.
+// closest_features.hpp: closest features of two triangles, and selection of the contact points that support
+// an object best.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -11,24 +11,27 @@
 
 namespace roomradar {
 
-/// A triangle with precomputed edges.
+/// A triangle with precomputed edges. Edge i runs from corner i to the next corner.
 struct Face : FrameTriangle {
-  std::array<Eigen::Vector3d, 3> edge, inward;  ///< edge from corner i, and the direction across it towards
-                                                ///< the third corner
+  /// edge: vector from corner i to the next corner. inward: vector in the triangle's plane, perpendicular to
+  /// edge i, towards the third corner. Not normalised.
+  std::array<Eigen::Vector3d, 3> edge, inward;
 };
 
+/// Computes the edges of a triangle.
 Face face_of(const FrameTriangle& triangle);
-/// Returns true if an edge of one triangle passes through the other.
+/// Returns true if an edge of one triangle passes through the other triangle.
 bool cross(const Face& a, const Face& b);
 
-/// Returns true if a unit direction leaves a triangle on its outside, within 60 degrees of its normal. At an
-/// edge between faces whose normals are up to 120 degrees apart, every direction between the normals is
-/// outside of at least one face. The margin keeps rounding from taking a direction along the inside for
-/// outside.
+/// Returns true if a unit direction points away from the triangle's outside, at most 60 degrees from its
+/// normal. At an edge between two faces whose normals are up to 120 degrees apart, every direction between
+/// the normals is outside at least one face. The limit of 60 degrees keeps rounding from accepting directions
+/// parallel to the face.
 inline bool is_outside(const Eigen::Vector3d& direction, const FrameTriangle& t) {
   return direction.dot(t.normal) > 0.5 - 1e-9;
 }
 
+/// Interval on an axis; empty at first.
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
 
@@ -37,43 +40,54 @@ struct Range {
     high = std::max(high, at);
   }
 };
+/// Returns the range of a triangle's corners along a direction.
 inline Range range_along(const Eigen::Vector3d& direction, const std::array<Eigen::Vector3d, 3>& corners) {
   Range range;
   for (const Eigen::Vector3d& corner : corners) range.include(direction.dot(corner));
   return range;
 }
 
-/// Collects the closest features of one pair of triangles.
+/// Collects the closest features of pairs of triangles: one of an object, one of the scene.
 struct FeatureCollector {
+  /// Max distance between closest features, m.
   double reach_m;
   bool object_is_closed;
   bool scene_is_one_sided;
+  /// Kind of the scene's surface, copied into the points.
   SurfaceKind kind;
+  /// Pose of the frame in which the triangles are given.
   const Eigen::Isometry3d& T_world_frame;
+  /// Output: points are appended.
   std::vector<ClosestPoint>& found;
 
-  /// Adds the pair's closest features. Returns true if the triangles cross and the scene's is not one-sided.
+  /// Appends the closest features of one pair of triangles. Returns true if the triangles intersect and the
+  /// scene's is not one-sided.
   bool look(const FrameTriangle& object, const FrameTriangle& scene) const;
 
  private:
-  /// Adds a point unless it is beyond reach_m, its normal is zero, or it is on the inside of a one-sided
-  /// surface.
+  /// Appends a point unless it is farther than reach_m, its normal is zero, or it is on the inside of a
+  /// one-sided surface.
   void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m, const Face& s) const;
-  /// Returns the scene's normal on the side of an object corner at this height above it.
-  /// @param heights  of all corners of the object's triangle
+  /// Returns the scene triangle's normal, turned to the side of an object corner that has this height above
+  /// the triangle's plane. If the corner touches the plane, its triangle's other corners decide the side.
+  /// @param heights  range of the heights of all corners of the object's triangle
   [[nodiscard]] Eigen::Vector3d off_scene(double height_m, const Face& o, const Face& s,
                                           const Range& heights) const;
-  /// Returns the object's normal, turned from a scene corner at this height towards the object; zero if the
-  /// side cannot be decided.
-  /// @param heights  of all corners of the scene's triangle
+  /// Returns the object triangle's normal, turned to point from a scene corner at this height towards the
+  /// object. Returns zero if the side cannot be decided.
+  /// @param heights  range of the heights of all corners of the scene's triangle
   [[nodiscard]] Eigen::Vector3d off_object(double height_m, const Eigen::Vector3d& corner, const Face& o,
                                            const Range& heights) const;
+  /// Appends the shortest segment between edge i of the object's triangle and edge j of the scene's, if it is
+  /// perpendicular to both.
   void look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const;
 };
 
-/// Selects the points that support an object most. For each of up to four normals: the nearest point, and the
-/// outermost point in each of eight directions across the normal. A more distant point has to be farther out.
-/// Consumes `all`.
+/// Selects the contact points that support an object best. For each of up to four normals, keeps the nearest
+/// point, and the outermost point in each of eight directions perpendicular to the normal. A point that is 1
+/// mm more distant from the surface must be 2 cm farther out to be preferred.
+/// @param all   candidates; the function empties or reorders this vector
+/// @param[out] kept  the selected points, at most kMaxClosestPoints
 void keep_the_outermost(std::vector<ClosestPoint>& all, std::vector<ClosestPoint>& kept);
 
 }  // namespace roomradar

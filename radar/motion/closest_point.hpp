@@ -1,4 +1,4 @@
-// closest_point.hpp: closest features of two meshes, and masks of surface kinds.
+// closest_point.hpp: a pair of closest features of two meshes, and masks of surface kinds.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -8,19 +8,24 @@
 
 namespace roomradar {
 
-/// Closest features of scene and object: a corner and its foot on a face, or two edges that pass each other.
+/// Closest features of scene and object: a vertex and its projection onto a face, or the nearest points of
+/// two edges.
 struct ClosestPoint {
-  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();   ///< on the scene
-  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from point_world to the object
-  double gap_m = 0.0;                                      ///< >= 0; 0: touching
+  /// Point on the scene, m.
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
+  /// Unit vector from point_world to the object.
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
+  /// Distance between the features, m, >= 0; 0 if they touch.
+  double gap_m = 0.0;
   SurfaceKind kind = SurfaceKind::kNothing;
-  std::uint32_t tree = 0;  ///< index of the scene's tree
+  /// Index of the scene's tree.
+  std::uint32_t tree = 0;
 };
 
-/// Max points that one proximity query returns.
+/// Max number of points that one proximity query returns.
 inline constexpr std::size_t kMaxClosestPoints = 24;
 
-/// Bit mask of surface kinds.
+/// Bit mask of surface kinds, see bit_of().
 using SurfaceKindMask = std::uint32_t;
 constexpr SurfaceKindMask bit_of(SurfaceKind kind) {
   return SurfaceKindMask{1} << static_cast<unsigned>(kind);

@@ -1,4 +1,5 @@
-// proximity.hpp: closest features of an object and the scene, and contact-free time of a rigid motion.
+// proximity.hpp: closest features of an object and the scene, and how long a rigid motion stays free of
+// contact.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -14,25 +15,27 @@
 
 namespace roomradar {
 
-/// Proximity queries between an object and the scene's trees; the scene's depth images are ignored.
-/// CyberRadar looks along one direction; near a contact, where an object turns over an edge, every direction
-/// matters. Traverses both trees together and tests pairs of triangles exactly, in double. No GL. Not thread
-/// safe: use one per thread. Allocates nothing after queries as large.
+/// Proximity queries between an object and the scene's triangle trees. CyberRadar searches along one
+/// direction; this class searches all directions, which matters for an object that turns over an edge near a
+/// contact. Traverses both trees together and tests pairs of triangles exactly, in double. Ignores the
+/// scene's depth images. No GL. Not thread safe: use one instance per thread. Allocates nothing once queries
+/// of this size have been run.
 ///
-/// A surface that crosses the object has no near side; use CyberRadar's overlaps for it. A one-sided surface
-/// (is_one_sided()) counts only on its outside and is never reported as crossing.
+/// Surfaces that intersect the object have no closest features; use CyberRadar's overlaps for them. One-sided
+/// surfaces (is_one_sided()) count only on their outside and are never reported as intersecting.
 class ProximityQuery {
  public:
-  /// Finds corners over faces and edges across edges within reach_m, at most kMaxPoints. For up to four
-  /// normal directions, returns the points that support the object most, nearest first. For a closed object
-  /// only features outside it count.
-  /// @param left_out  kinds to ignore
-  /// @param points    out
-  /// @return kinds of surfaces that cross the object; a tree that crosses it gives no points
+  /// Finds the vertex-face and edge-edge pairs within reach_m. For up to four normal directions, returns the
+  /// points that support the object best, nearest first. For a closed object, only features outside it count.
+  /// A tree that intersects the object gives no points.
+  /// @param reach_m   max distance, m
+  /// @param left_out  kinds of surfaces to ignore
+  /// @param[out] points  the closest features, at most kMaxPoints
+  /// @return kinds of the surfaces that intersect the object
   SurfaceKindMask near(const TreeInstance& object, const RadarScene& scene, double reach_m,
                        SurfaceKindMask left_out, std::vector<ClosestPoint>& points);
 
-  /// See free_time() in free_time.hpp.
+  /// Computes how long a motion stays free of contact; see free_time() in free_time.hpp.
   FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
                      const RadarScene& scene, SurfaceKindMask left_out = 0);
 

@@ -13,12 +13,18 @@ class App;
 namespace roomradar {
 
 struct CalibrateOptions {
-  std::string source;                ///< as for open_source()
-  std::string calibration;           ///< file to write
-  Board board;                       ///< checkerboard in the recording
-  std::optional<FrameRange> frames;  ///< unset: all
-  std::string plot;                  ///< PNG file to write; empty: not written
-  std::string report;                ///< JSON file to write; empty: not written
+  /// Source of the frames, in the form that open_source() accepts.
+  std::string source;
+  /// Calibration file to write.
+  std::string calibration;
+  /// Checkerboard in the recording.
+  Board board;
+  /// Range of frames to use; unset: all.
+  std::optional<FrameRange> frames;
+  /// PNG file to write; empty: not written.
+  std::string plot;
+  /// JSON file to write; empty: not written.
+  std::string report;
 };
 
 /// Adds the options with their help texts and checks.

@@ -14,28 +14,46 @@ class App;
 namespace roomradar {
 
 struct FallthroughOptions {
-  // Recorded room only:
-  std::string source;     ///< recording of the room; empty: simulated rooms
-  std::string map;        ///< folder of the room's map
-  std::string reference;  ///< folder of the map whose surface is the ground truth; empty: `map` itself
-  PoseOrigin poses = PoseOrigin::kTracked;  ///< origin of the frame's pose in the map
-  std::optional<FrameRange> frames;         ///< the first frame of the range is used; unset: frame 0
-  std::string calibration;  ///< file with the cameras and their errors; empty: as the source says
-  double cell_m = 0.1;      ///< edge of the grid's cells
-  std::string picture;      ///< PNG file with a plan of the room; empty: not written
+  // Options for a recorded room only.
+  /// Recording of the room; empty: simulated rooms are used.
+  std::string source;
+  /// Folder of the room's map.
+  std::string map;
+  /// Folder of the map whose surface is the ground truth; empty: the same as `map`.
+  std::string reference;
+  /// Origin of the frame's pose in the map: estimated, or the recording's.
+  PoseOrigin poses = PoseOrigin::kTracked;
+  /// Range whose first frame is used; unset: frame 0.
+  std::optional<FrameRange> frames;
+  /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
+  std::string calibration;
+  /// Side of the cells of the grid of drop positions.
+  double cell_m = 0.1;
+  /// PNG file with a plan of the room; empty: not written.
+  std::string picture;
 
-  // Simulated rooms only:
-  int scenarios = 200;                   ///< number of scenarios
-  std::uint64_t seed = 1;                ///< seed of the scenarios
-  int random_rooms = 3;                  ///< number of random rooms, in addition to the named ones
-  int threads = 0;                       ///< 0: one per processor
-  std::optional<std::int64_t> scenario;  ///< only this scenario, as a video
-  std::string video;                     ///< file for `scenario`
-  std::string maps;                      ///< folder in which the rooms' maps are stored and reused
-  std::string csv;                       ///< file with a line per scenario and policy; empty: not written
-  std::string html;                      ///< file for tables, plots and pictures; empty: not written
+  // Options for simulated rooms only.
+  /// Number of scenarios.
+  int scenarios = 200;
+  /// Seed of the scenarios.
+  std::uint64_t seed = 1;
+  /// Number of random rooms, in addition to the named ones.
+  int random_rooms = 3;
+  /// Number of threads; 0: one per processor.
+  int threads = 0;
+  /// Number of the only scenario to run and to show as a video; unset: all scenarios.
+  std::optional<std::int64_t> scenario;
+  /// Video file to write; used with `scenario`.
+  std::string video;
+  /// Folder in which the rooms' maps are stored and reused.
+  std::string maps;
+  /// CSV file with a line per scenario and policy; empty: not written.
+  std::string csv;
+  /// HTML file for tables, plots and images; empty: not written.
+  std::string html;
 
-  std::string report;  ///< JSON file to write; empty: not written
+  /// JSON file to write; empty: not written.
+  std::string report;
 };
 
 /// Adds the options with their help texts and checks.

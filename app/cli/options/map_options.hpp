@@ -10,40 +10,58 @@ class App;
 namespace roomradar {
 
 struct MapInfoOptions {
-  std::string map;  ///< folder
+  /// Map folder to read.
+  std::string map;
 };
 
 struct MapVerifyOptions {
-  std::string map;  ///< folder
+  /// Map folder to check.
+  std::string map;
 };
 
 struct MapExportOptions {
-  std::string map;       ///< folder
-  std::string path;      ///< file to write; its extension selects the format
-  bool unknown = false;  ///< export the border of unknown space instead of the mesh
+  /// Map folder to read.
+  std::string map;
+  /// File to write; its extension selects the format.
+  std::string path;
+  /// True: exports the border of unknown space instead of the mesh.
+  bool unknown = false;
 };
 
 struct MapMergeOptions {
-  std::string a;                      ///< folder of the map whose world frame is kept
-  std::string b;                      ///< folder of the map to add
-  std::string map;                    ///< folder to write
-  std::optional<double> deviation_m;  ///< max deviation of the merged surface; unset: as in map a
-  std::string report;                 ///< JSON file to write; empty: not written
+  /// Folder of the map whose world frame is kept.
+  std::string a;
+  /// Folder of the map to add.
+  std::string b;
+  /// Map folder to write.
+  std::string map;
+  /// Max deviation of the merged surface; unset: as in map `a`.
+  std::optional<double> deviation_m;
+  /// JSON file to write; empty: not written.
+  std::string report;
 };
 
 struct MapDiffOptions {
-  std::string a;        ///< folder of the earlier map
-  std::string b;        ///< folder of the later map
-  std::string report;   ///< JSON file to write; empty: not written
-  std::string picture;  ///< PNG file to write; empty: not written
+  /// Folder of the earlier map.
+  std::string a;
+  /// Folder of the later map.
+  std::string b;
+  /// JSON file to write; empty: not written.
+  std::string report;
+  /// PNG file to write; empty: not written.
+  std::string picture;
 };
 
-/// Each adds the options of one command with their help texts and checks.
-/// @param options  receives the values; must outlive the parsing
+/// Adds the options of `map info` with their help texts and checks. The options must outlive the parsing,
+/// here and in the functions below.
 void add_options(CLI::App& command, MapInfoOptions& options);
+/// Adds the options of `map verify`.
 void add_options(CLI::App& command, MapVerifyOptions& options);
+/// Adds the options of `map export`.
 void add_options(CLI::App& command, MapExportOptions& options);
+/// Adds the options of `map merge`.
 void add_options(CLI::App& command, MapMergeOptions& options);
+/// Adds the options of `map diff`.
 void add_options(CLI::App& command, MapDiffOptions& options);
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// option_checks.hpp: checks of option values that CLI11 lacks: ranges without "nan", words, decimal numbers.
+// option_checks.hpp: checks of option values that CLI11 lacks: ranges that reject "nan", named values,
+// decimal integers.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <map>
@@ -6,17 +7,18 @@
 
 namespace roomradar {
 
-/// Returns a range check, inclusive at both ends. Unlike CLI11's own Range, it rejects "nan".
-/// @param unit  plural, for the message
+/// Returns a range check; both ends are allowed. Unlike CLI11's own Range, it rejects "nan".
+/// @param unit  unit in the plural, for the message
 CLI::Validator within(double low, double high, const std::string& unit);
 
 /// Rejects numbers that CLI11 would misread: 010 as 8, and -1 for a seed as 18446744073709551615. Checks all
-/// options of type "N" of the program and its commands; call after all of them were added.
+/// options of type "N" of the program and its commands. Call after all options were added.
 void refuse_other_bases(CLI::App& app);
 
-/// Adds an option with one of several words as its value. CLI11's own transformer would list the values as
+/// Adds an option whose value is one of several words. CLI11's own transformer would list the values as
 /// numbers.
 /// @param value  must outlive the parsing
+/// @param choices  value of each word
 template <typename Value>
 void add_choice(CLI::App& command, const std::string& name, Value& value,
                 const std::map<std::string, Value>& choices, const std::string& help) {

@@ -15,28 +15,42 @@ class App;
 namespace roomradar {
 
 struct PrescanOptions {
-  std::string source;                       ///< as for open_source()
-  std::string map;                          ///< folder to write
-  ScanQuality quality;                      ///< the preset's, with the fields of `fixed`
-  FieldWords fixed;                         ///< settings given as options; no preset changes them
-  std::string preset;                       ///< name; empty: none
-  std::string presets;                      ///< file; empty: the program's own
-  PoseOrigin poses = PoseOrigin::kTracked;  ///< estimated, or the recording's
-  std::optional<FrameRange> frames;         ///< unset: all
-  std::string calibration;          ///< file with the cameras and their errors; empty: as the source says
-  std::int64_t hold_out = 0;        ///< N > 0: every Nth frame scores the map instead of being fused
-  bool resume = false;              ///< continue an interrupted scan, or extend an existing map
-  double checkpoint_every_s = 2.5;  ///< 0: no checkpoints
-  double max_memory_mb = 0.0;       ///< memory cap of the process, 10^6 bytes; 0: no cap
-  std::string report;               ///< JSON file to write; empty: not written
+  /// Source of the frames, in the form that open_source() accepts.
+  std::string source;
+  /// Map folder to write.
+  std::string map;
+  /// Quality: the preset's, with the fields of `fixed` replaced.
+  ScanQuality quality;
+  /// Settings given as options; no preset changes them.
+  FieldWords fixed;
+  /// Name of the preset; empty: none.
+  std::string preset;
+  /// Presets file; empty: the program's own.
+  std::string presets;
+  /// Origin of the camera poses: estimated, or the recording's.
+  PoseOrigin poses = PoseOrigin::kTracked;
+  /// Range of frames to use; unset: all.
+  std::optional<FrameRange> frames;
+  /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
+  std::string calibration;
+  /// N > 0: every Nth frame is used to evaluate the map instead of being fused into it.
+  std::int64_t hold_out = 0;
+  /// True: continues an interrupted scan, or extends an existing map.
+  bool resume = false;
+  /// Time between checkpoints; 0: no checkpoints.
+  double checkpoint_every_s = 2.5;
+  /// Memory cap of the process, 10^6 bytes; 0: no cap.
+  double max_memory_mb = 0.0;
+  /// JSON file to write; empty: not written.
+  std::string report;
 };
 
 /// Adds the options with their help texts and checks.
 /// @param options  receives the values; must outlive the parsing
 void add_options(CLI::App& command, PrescanOptions& options);
 
-/// Checks the options against each other and sets the quality; call after parsing. Throws CLI::ParseError
-/// for wrong usage, and Error if the preset cannot be read.
+/// Checks the options against each other and sets `quality`. Call after parsing. Throws CLI::ParseError for
+/// wrong usage, and Error if the preset cannot be read.
 void complete_options(const CLI::App& command, PrescanOptions& options);
 
 }  // namespace roomradar

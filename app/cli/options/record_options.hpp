@@ -13,11 +13,16 @@ class App;
 namespace roomradar {
 
 struct RecordOptions {
-  std::string source;                ///< as for open_source()
-  std::string folder;                ///< folder to write
-  std::optional<FrameRange> frames;  ///< unset: all
-  std::string calibration;           ///< file with the cameras and their errors; empty: as the source says
-  RecordingFormat format = RecordingFormat::kTum;  ///< format of the folder's files
+  /// Source of the frames, in the form that open_source() accepts.
+  std::string source;
+  /// Folder to write.
+  std::string folder;
+  /// Range of frames to record; unset: all.
+  std::optional<FrameRange> frames;
+  /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
+  std::string calibration;
+  /// Format of the recording.
+  RecordingFormat format = RecordingFormat::kTum;
 };
 
 /// Adds the options with their help texts and checks.

@@ -1,4 +1,4 @@
-// shared_options.hpp: options that several commands have.
+// shared_options.hpp: options that several commands share.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,10 +16,10 @@ namespace roomradar {
 // Each function adds one option to a command. The value must outlive the parsing.
 
 /// Adds the required argument SOURCE.
-/// @param more  text before the general help on sources
+/// @param more  text placed before the general help on sources
 void add_source_argument(CLI::App& command, std::string& source, const std::string& more = {});
 
-/// Adds --poses; its help ends with the default.
+/// Adds --poses. The help text ends with the default value.
 void add_poses_option(CLI::App& command, PoseOrigin& poses, const std::string& help);
 
 void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames);

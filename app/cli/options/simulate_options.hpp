@@ -12,13 +12,20 @@ class App;
 namespace roomradar {
 
 struct SimulateOptions {
-  std::string folder;          ///< folder to write
-  std::string room = "table";  ///< name, as in `sim:`
-  std::uint64_t seed = 1;      ///< seed of the path, the noise and a random room's furniture
-  std::int64_t frames = 300;   ///< number of frames
-  std::string path = "scan";   ///< camera path: scan, view or swing
-  std::string moving;          ///< such as "hand,ball,person"; empty: nothing moves
-  RecordingFormat format = RecordingFormat::kTum;  ///< format of the folder's files
+  /// Folder to write.
+  std::string folder;
+  /// Name of the room, as in `sim:`.
+  std::string room = "table";
+  /// Seed of the camera path, the noise and a random room's furniture.
+  std::uint64_t seed = 1;
+  /// Number of frames.
+  std::int64_t frames = 300;
+  /// Name of the camera path: scan, view or swing.
+  std::string path = "scan";
+  /// Moving objects, for example "hand,ball,person"; empty: nothing moves.
+  std::string moving;
+  /// Format of the recording.
+  RecordingFormat format = RecordingFormat::kTum;
 };
 
 /// Adds the options with their help texts and checks.

@@ -11,20 +11,34 @@ class App;
 namespace roomradar {
 
 struct TradeOptions {
-  std::vector<std::string> recordings;  ///< folders with poses, in addition to the rooms
-  std::vector<std::string> rooms = {"table", "random?seed=2"};  ///< in the form of `sim:`
-  std::string only;                                             ///< prescan or run; empty: both
-  std::size_t settings = 30;       ///< number of settings per command, in addition to the default
-  int repeats = 2;                 ///< measurements per setting and scene
-  std::uint64_t seed = 1;          ///< seed of the settings and of their order
-  std::string time = "wall";       ///< time by which settings are compared: wall or cpu
-  int objects = 1;                 ///< default number of virtual objects in a run
-  bool quick = false;              ///< few frames of small images
-  bool compare_published = false;  ///< only compare with the published radar's table
-  std::string csv;                 ///< file with a line per measurement; empty: not written
-  std::string html;                ///< file for plots and tables; empty: not written
-  std::string presets;             ///< presets file to write; empty: not written
-  std::string report;              ///< JSON file to write; empty: not written
+  /// Folders of recordings with poses, in addition to `rooms`.
+  std::vector<std::string> recordings;
+  /// Simulated rooms, in the form that `sim:` takes.
+  std::vector<std::string> rooms = {"table", "random?seed=2"};
+  /// Command to measure, prescan or run; empty: both.
+  std::string only;
+  /// Number of random settings per command, in addition to the default.
+  std::size_t settings = 30;
+  /// Number of measurements per setting and scene.
+  int repeats = 2;
+  /// Seed of the settings and of their order.
+  std::uint64_t seed = 1;
+  /// Time by which settings are compared: wall or cpu.
+  std::string time = "wall";
+  /// Default number of virtual objects in a run.
+  int objects = 1;
+  /// True: uses few frames of small images.
+  bool quick = false;
+  /// True: only compares with the table of the published radar.
+  bool compare_published = false;
+  /// CSV file with one line per measurement; empty: not written.
+  std::string csv;
+  /// HTML file for plots and tables; empty: not written.
+  std::string html;
+  /// Presets file to write; empty: not written.
+  std::string presets;
+  /// JSON file to write; empty: not written.
+  std::string report;
 };
 
 /// Adds the options with their help texts and checks.

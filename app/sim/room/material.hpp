@@ -8,20 +8,32 @@
 namespace roomradar {
 
 enum class Pattern {
-  kPortable,   ///< one colour with fine speckle
-  kPlaster,    ///< wall paint: speckle, faint blotches
-  kWood,       ///< grain along u
-  kPlanks,     ///< floor boards along u, each with its own grain
-  kTiles,      ///< square tiles with joints
-  kCarpet,     ///< woven border and ornaments
-  kPoster,     ///< shapes on a ground, different for each seed
-  kLandscape,  ///< sky, hills and meadow
-  kSpine,      ///< book: bands and letters
-  kFabric,     ///< weave with stripes
-  kStone,      ///< speckled stone
-  kSkin,       ///< for hands and faces
-  kChecker,    ///< checkerboard with squares of kCheckerSquare_m, centred, with a margin at least half a
-               ///< square wide
+  /// One colour with fine speckle.
+  kPortable,
+  /// Wall paint: speckle and faint blotches.
+  kPlaster,
+  /// Wood with grain along u.
+  kWood,
+  /// Floor boards along u, each with its own grain.
+  kPlanks,
+  /// Square tiles with joints.
+  kTiles,
+  /// Carpet with a woven border and ornaments.
+  kCarpet,
+  /// Poster: shapes on a ground, different for each seed.
+  kPoster,
+  /// Landscape: sky, hills and meadow.
+  kLandscape,
+  /// Back of a book: bands and letters.
+  kSpine,
+  /// Weave with stripes.
+  kFabric,
+  /// Speckled stone.
+  kStone,
+  /// Skin of hands and faces.
+  kSkin,
+  /// Checkerboard with squares of kCheckerSquare_m, centred, with a margin at least half a square wide.
+  kChecker,
 };
 
 inline constexpr float kCheckerSquare_m = 0.06F;
@@ -31,11 +43,12 @@ struct Material {
   Rgb first{200, 200, 200};
   Rgb second{120, 120, 120};
   std::uint32_t seed = 0;
-  float infrared = 0.6F;  ///< reflected fraction of the projector's light; low for dark or glossy surfaces
+  /// Reflected fraction of the projector's infrared light; low for dark or glossy surfaces.
+  float infrared = 0.6F;
 };
 
-/// Returns the colour (gamma-encoded, 0 to 1) of a point on a face of the given size. (u, v) is in metres
-/// from the face's centre; v is up on upright faces.
+/// Returns the colour (gamma-encoded red, green, blue, 0 to 1) of a point on a face of the given size. (u_m,
+/// v_m) is relative to the face's centre; v points up on upright faces.
 std::array<float, 3> pattern_colour(const Material& material, float u_m, float v_m, float width_m,
                                     float height_m);
 

@@ -9,20 +9,24 @@
 namespace roomradar {
 
 /// Textures with mip levels, and lighting on a coarse grid, for every face of every solid that is visible
-/// inside the room. Lighting consists of the lamps' shadows, by ray casting, and ambient occlusion, by
-/// distances to the room.
+/// inside the room. Lighting consists of the lamps' shadows (by ray casting) and ambient occlusion (by
+/// distances to the room).
 class SurfaceAppearance {
  public:
-  /// For the room's own solids.
-  /// @param texel_m  finest texture detail; detail below pixel size is wasted
+  /// Prepares the room's own solids.
+  /// @param texel_m  finest texture detail; should not be finer than a pixel's width on the surface
   SurfaceAppearance(const Room& room, double texel_m);
-  /// For solids that move through the room: only textures are precomputed; lighting is computed per pixel.
+  /// Prepares solids that move through the room. Only textures are precomputed; lighting is computed per
+  /// pixel.
   SurfaceAppearance(const Room& room, std::span<const Solid> solids, std::span<const Material> materials,
                     double texel_m);
 
-  /// Returns the colour of a surface point given in the frame of solid `index`.
+  /// Returns the colour of a surface point.
+  /// @param index           index of the solid
+  /// @param p_solid         the point in the solid's frame, m
+  /// @param normal_solid    surface normal in the solid's frame
   /// @param footprint_m     width of one pixel on the surface, which selects the mip level
-  /// @param T_world_solid   current pose of the solid (used for moving solids)
+  /// @param T_world_solid   current pose of the solid; used for moving solids
   [[nodiscard]] Rgb shade(std::size_t index, const Eigen::Vector3d& p_solid,
                           const Eigen::Vector3d& normal_solid, double footprint_m,
                           const Eigen::Isometry3d& T_world_solid) const;
@@ -36,12 +40,14 @@ class SurfaceAppearance {
   struct Face {
     float width_m = 0.0F, height_m = 0.0F;
     float texel_m = 0.0F;
-    std::vector<Level> levels;  ///< each half the size of the previous one; empty: the face is hidden
+    /// Mip levels, each half the size of the previous one; empty if the face is hidden.
+    std::vector<Level> levels;
     int light_columns = 0, light_rows = 0;
-    /// Factors on the colour at the nodes of a grid over the face; empty for moving solids.
+    /// Factors on the colour at the nodes of a grid over the face, row by row; empty for moving solids.
     std::vector<float> light;
   };
-  static constexpr int kFaces = 7;  ///< +x, -x, +y, -y, +z, -z, and a cylinder's side
+  /// Faces of a solid: +x, -x, +y, -y, +z, -z, and a cylinder's side.
+  static constexpr int kFaces = 7;
 
   void add_solid(const Solid& solid, const Material& material, double texel_m, bool lit);
   void light_face(const Solid& solid, int face_index, Face& face) const;
@@ -50,7 +56,8 @@ class SurfaceAppearance {
 
   const Room& room_;
   std::vector<Solid> solids_;
-  std::vector<Face> faces_;  ///< kFaces per solid
+  /// Faces, kFaces per solid.
+  std::vector<Face> faces_;
 };
 
 }  // namespace roomradar

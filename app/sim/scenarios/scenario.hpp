@@ -1,4 +1,4 @@
-// scenario.hpp: a test case: an object that moves towards a surface hidden by an occluder.
+// scenario.hpp: a test case: an object moves in a straight line towards a surface that an occluder hides.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -13,54 +13,70 @@
 
 namespace roomradar {
 
-/// Object that hides the surface on which the drop or push should end.
+/// Kind of object that hides the surface on which the drop or push should end.
 enum class Occluder {
-  kFurniture,  ///< the room's own furniture, from the camera's present pose
-  kBox,        ///< a box carried between the camera and the surface
-  kHand,       ///< a hand and arm, moving in every other scenario of this kind
-  kPerson,     ///< a person standing between
+  /// The room's own furniture, as seen from the camera's present pose.
+  kFurniture,
+  /// A box carried between the camera and the surface.
+  kBox,
+  /// A hand and arm, which move in every other scenario of this kind.
+  kHand,
+  /// A person standing between the camera and the surface.
+  kPerson,
 };
 std::string_view to_string(Occluder occluder);
 
-/// Length of a walk once around a room.
+/// Number of prescan frames of a room: one walk around it.
 inline constexpr std::int64_t kScenarioPrescanFrames = 720;
 
-/// A room with its prescan path, shared by all its scenarios, so one map per room suffices.
+/// A room with its prescan path. All scenarios of a room share it, so one map per room suffices.
 struct ScenarioRoom {
   Room room;
-  SimOptions prescan;  ///< the frames to map the room from, without moving objects
-  std::vector<Eigen::Isometry3d> T_world_prescan;  ///< every tenth prescan pose
+  /// Options that produce the prescan frames, without moving objects.
+  SimOptions prescan;
+  /// Camera poses of every tenth prescan frame.
+  std::vector<Eigen::Isometry3d> T_world_prescan;
 };
-/// Time between two frames of the camera.
+/// Time between two camera frames.
 inline constexpr double kScenarioFrame_s = 1.0 / 30.0;
 
-/// An object that moves in a straight line until contact.
+/// A test case.
 struct Scenario {
   std::uint64_t seed = 0;
   std::int64_t number = 0;
   std::string room;
   Occluder occluder = Occluder::kFurniture;
-  std::vector<Solid> occluder_solids;  ///< not in the prescan; poses at frame 0
+  /// Solids of the occluder at frame 0; they are absent in the prescan.
+  std::vector<Solid> occluder_solids;
+  /// Materials of the occluder, one per solid.
   std::vector<Material> occluder_materials;
-  Eigen::Vector3d occluder_velocity_world = Eigen::Vector3d::Zero();  ///< m/s
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();   ///< while the object moves
-  /// Camera pose estimated by tracking, off by some millimetres and tenths of a degree.
+  /// Velocity of the occluder, m/s.
+  Eigen::Vector3d occluder_velocity_world = Eigen::Vector3d::Zero();
+  /// True camera pose while the object moves.
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  /// Camera pose as tracking would estimate it: the true pose with errors of 1.5 mm and 0.1 degrees standard
+  /// deviation.
   Eigen::Isometry3d T_world_believed = Eigen::Isometry3d::Identity();
   Intrinsics depth_camera = kKinectDepthCamera;
 
   ScenarioObject object;
   Mesh object_mesh;
-  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< start pose, collision free
-  Eigen::Vector3d direction_world = -Eigen::Vector3d::UnitZ();       ///< unit
+  /// Start pose of the object, free of collisions.
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+  /// Unit direction of motion.
+  Eigen::Vector3d direction_world = -Eigen::Vector3d::UnitZ();
   double speed_m_s = 0.0;
-  double limit_m = 0.0;        ///< travel without contact: 0.4 m beyond the true contact
-  double true_travel_m = 0.0;  ///< distance to the first contact with the room
-  Eigen::Vector3d contact_world = Eigen::Vector3d::Zero();  ///< point of that contact
+  /// Distance after which an object without contact stops: 0.4 m beyond the true contact.
+  double limit_m = 0.0;
+  /// True distance to the first contact with the room.
+  double true_travel_m = 0.0;
+  /// Point of the true contact.
+  Eigen::Vector3d contact_world = Eigen::Vector3d::Zero();
 };
 
-/// Returns the object's travel per frame, m; up to 33 cm.
+/// Returns the object's travel per frame, m; at most 33 cm.
 inline double step_m(const Scenario& scenario) { return scenario.speed_m_s * kScenarioFrame_s; }
-/// Returns the last frame before contact: the frame at the start of the step in which the object reaches the
+/// Returns the last frame before contact: the frame at the start of the step in which the object touches the
 /// true surface.
 inline int contact_frame(const Scenario& scenario) {
   return static_cast<int>(scenario.true_travel_m / step_m(scenario));

@@ -10,8 +10,8 @@ namespace roomradar {
 /// Returns the occluder's solids at the time of frame `frame`.
 std::vector<Solid> occluder_at(const Scenario& scenario, int frame);
 
-/// Renders the camera's depth frame of room and occluder, without colour.
-/// @param noise_scale  as in SimOptions; 0: exact
+/// Renders the camera's depth frame of the room and the occluder, without colour.
+/// @param noise_scale  factor on the Kinect's noise as in SimOptions; 0: exact depth
 void render_scenario(const Scenario& scenario, const Room& room, int frame_number, double noise_scale,
                      Frame& frame);
 

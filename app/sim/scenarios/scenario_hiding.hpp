@@ -1,5 +1,4 @@
-// scenario_hiding.hpp: visibility of room surfaces in the prescan, and placement of occluders in front of
-// them.
+// scenario_hiding.hpp: tests which room surfaces the prescan observed, and places occluders that hide them.
 #pragma once
 #include <optional>
 #include <vector>
@@ -9,33 +8,38 @@
 
 namespace roomradar {
 
-/// Surfaces that could stop the object up to this far behind the true contact must be hidden too.
+/// Surfaces that could stop the object must be hidden up to this distance behind the true contact.
 inline constexpr double kBeyond_m = 0.05;
 
-/// A surface point and its normal.
+/// A surface point and its unit normal.
 struct Patch {
   Eigen::Vector3d point_world, normal_world;
 };
 
+/// Returns a random unit vector.
 Eigen::Vector3d random_unit(CounterRandom& random);
 
-/// Returns the surface point seen by a random pixel of a random prescan frame; nothing if the ray hits
+/// Returns the surface point at a random pixel of a random prescan frame, or nothing if the pixel's ray hits
 /// nothing.
 std::optional<Patch> draw_patch(const ScenarioRoom& from, CounterRandom& random);
 
-/// Returns true if three prescan views saw the patch, from 0.6 to 3.5 m, not grazing and unoccluded.
+/// Returns true if at least three prescan views observed the patch, unoccluded, at 0.6 to 3.5 m and not at a
+/// grazing angle.
 bool was_seen(const ScenarioRoom& from, const Patch& patch);
 
 /// Returns true if the prescan observed the space that the object sweeps from its start to the true contact:
-/// each of some hundred sample points was seen by three views. The object then never enters unknown space.
+/// at least three views observed each of several hundred sample points. The object then never enters unknown
+/// space.
 bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario);
 
-/// Returns the room points that the object's front hits within the limit, by casting some hundred rays from
-/// it.
+/// Returns the points of the room that could stop the object within the limit. They are found by casting
+/// several hundred rays from the object's front.
 std::vector<Patch> stopping_patches(const Room& room, const Scenario& scenario, double limit_m);
 
-/// Draws a camera, an occluder and its motion for a placed object until the surface that stops it is hidden.
-/// Returns false if a dozen draws fail.
+/// Draws a camera pose, an occluder and its motion for a placed object, until the surface that stops the
+/// object is hidden.
+/// @param patches  points that could stop the object
+/// @return false if 12 draws fail
 bool hide(const ScenarioRoom& from, const std::vector<Patch>& patches, CounterRandom& random,
           Scenario& scenario);
 

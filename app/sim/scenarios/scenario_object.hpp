@@ -1,4 +1,5 @@
-// scenario_object.hpp: objects to drop and push, from a needle to a table, built of solids with exact travel.
+// scenario_object.hpp: objects to drop and push, from a needle to a table, built of solids so their distance
+// to contact is exact.
 #pragma once
 #include <string_view>
 #include <vector>
@@ -10,29 +11,41 @@
 namespace roomradar {
 
 enum class ObjectShape {
-  kBall,  ///< ball, box and cylinder are 4 to 30 cm in size
+  /// Ball, 4 to 30 cm in size.
+  kBall,
+  /// Box, 4 to 30 cm in size.
   kBox,
+  /// Cylinder, 4 to 30 cm in size.
   kCylinder,
-  kNeedle,  ///< 2 mm thick, 5 to 40 cm long
-  kSheet,   ///< 2 mm thick, 8 to 60 cm wide
-  kCup,     ///< open at the top, 6 to 14 cm high
-  kTorus,   ///< 8 to 40 cm across
-  kChair,   ///< seat, back and legs, 0.5 to 1 m high
-  kTable,   ///< board and four legs, 0.5 to 1.3 m wide
+  /// Needle, 2 mm thick, 5 to 40 cm long.
+  kNeedle,
+  /// Sheet, 2 mm thick, 8 to 60 cm wide.
+  kSheet,
+  /// Cup, open at the top, 6 to 14 cm high.
+  kCup,
+  /// Torus, 8 to 40 cm in diameter.
+  kTorus,
+  /// Chair with seat, back and legs, 0.5 to 1 m high.
+  kChair,
+  /// Table with a board and four legs, 0.5 to 1.3 m wide.
+  kTable,
 };
 std::string_view to_string(ObjectShape shape);
 
-/// An object in its own frame, whose origin is the centre of its bounds.
+/// An object in its own frame. The origin is the centre of its bounding box.
 struct ScenarioObject {
   ObjectShape shape = ObjectShape::kBall;
-  std::vector<Solid> parts;  ///< convex; the object, which may be concave, is their union
-  double reach_m = 0.0;      ///< radius of a bounding sphere about the origin
+  /// Convex solids whose union is the object, which may be concave.
+  std::vector<Solid> parts;
+  /// Radius of a bounding sphere about the origin.
+  double reach_m = 0.0;
 };
 
 /// Draws an object of this shape with random size and proportions.
 ScenarioObject draw_object(ObjectShape shape, CounterRandom& random);
 
-/// Meshes all parts, each closed, at most kMeshDeviation_m inside the true surface.
+/// Returns a mesh of all parts. Each part's surface is closed and at most kMeshDeviation_m inside the true
+/// surface.
 Mesh object_mesh(const ScenarioObject& object);
 
 }  // namespace roomradar

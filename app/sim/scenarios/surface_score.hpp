@@ -13,17 +13,17 @@
 
 namespace roomradar {
 
-/// Max distance at which a surface counts as found.
+/// Max distance between mesh and true surface at which the surface counts as found.
 inline constexpr double kSurfaceFound_m = 0.02;
 
-/// The part of a room's true surface that the frames measured within 5 m: one point per cube of
+/// The part of a room's true surface that depth frames measured within 5 m, as one point per cube of side
 /// kSurfaceFound_m.
 class SeenSurface {
  public:
-  /// Adds a frame of a simulated source with its truth. Pixels of moving objects are ignored.
+  /// Adds a frame of a simulated source, with its ground truth. Pixels of moving objects are ignored.
   void add(const Frame& frame, const SimTruth& truth);
 
-  /// Returns the points measured by at least three frames, in the room's frame.
+  /// Returns the points that at least three frames measured, in the room's frame.
   [[nodiscard]] std::vector<Eigen::Vector3d> points() const;
 
  private:
@@ -36,16 +36,20 @@ class SeenSurface {
 };
 
 struct SurfaceScore {
-  double error_median_m = 0.0;  ///< distance to the room's surface, of points spread evenly over the mesh
+  /// Median distance from points sampled uniformly on the mesh to the room's surface, m.
+  double error_median_m = 0.0;
+  /// 95th percentile of the same distances, m.
   double error_p95_m = 0.0;
-  double precision = 0.0;  ///< fraction of the mesh within kSurfaceFound_m of the room's surface
-  double cover = 0.0;      ///< fraction of the seen surface with mesh within kSurfaceFound_m
+  /// Fraction of the mesh within kSurfaceFound_m of the room's surface.
+  double precision = 0.0;
+  /// Fraction of the measured surface points with mesh within kSurfaceFound_m.
+  double cover = 0.0;
 };
 
-/// Scores a mesh; all results are 0 for a mesh without triangles.
-/// @param T_room_map  pose of the mesh's world in the room's frame
-/// @param seen        SeenSurface::points()
-/// @param spacing_m   between sample points on the mesh, > 0 and well below kSurfaceFound_m
+/// Compares a mesh with the true surface. All results are 0 for a mesh without triangles.
+/// @param T_room_map  pose of the mesh's world frame in the room's frame
+/// @param seen        points of SeenSurface::points()
+/// @param spacing_m   distance between sample points on the mesh, > 0 and well below kSurfaceFound_m
 SurfaceScore score_surface(const Mesh& mesh, const Eigen::Isometry3d& T_room_map, const Room& room,
                            const std::vector<Eigen::Vector3d>& seen, double spacing_m);
 

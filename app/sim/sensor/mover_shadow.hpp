@@ -1,4 +1,4 @@
-// mover_shadow.hpp: shadows cast by moving solids, which the precomputed lighting lacks.
+// mover_shadow.hpp: shadows cast by moving objects, which the precomputed lighting lacks.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace roomradar {
 
-/// Shadows of one frame's moving solids from the room's first and strongest lamp.
+/// Shadows that one frame's moving solids cast from the room's first and strongest lamp.
 class MoverShadow {
  public:
   void prepare(std::span<const Solid> movers);
 
-  /// Returns the factor on the colour of a point on the room's surface: about 0.75 where movers block the
-  /// lamp, 1 if the point is lit or already in the room's own shadow.
+  /// Returns the factor on the colour of a point on the room's surface: about 0.75 if a moving solid blocks
+  /// the lamp; 1 if the point is lit, or already in the room's own shadow.
   [[nodiscard]] float factor(const Room& room, const Eigen::Vector3d& p_world,
                              const Eigen::Vector3d& normal_world) const;
 

@@ -1,4 +1,4 @@
-// movers.hpp: moving objects of a simulated room: a hand, a ball, a person.
+// movers.hpp: shapes and motion of the moving objects in a simulated room: a hand, a ball, a person.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -9,30 +9,37 @@
 
 namespace roomradar {
 
-/// Motion of one object, which determines its shape at any time.
+/// A moving object. Its motion determines its solids at any time.
 struct Mover {
   MoverKind kind = MoverKind::kHand;
-  /// Withdrawn position of the hand; one end of the path of the ball or person.
+  /// Hand: position when withdrawn. Ball, person: one end of the path.
   Eigen::Vector3d from_world = Eigen::Vector3d::Zero();
-  Eigen::Vector3d to_world = Eigen::Vector3d::Zero();  ///< hand over the focus; other end of the path
-  /// Hand: unit direction from the fingers to the elbow.
+  /// Hand: position over the room's focus. Ball, person: other end of the path.
+  Eigen::Vector3d to_world = Eigen::Vector3d::Zero();
+  /// Hand only: unit direction from the fingers to the elbow.
   Eigen::Vector3d arm_world = Eigen::Vector3d::UnitX();
-  double radius_m = 0.0;  ///< ball
-  double period_s = 1.0;  ///< time there and back
+  /// Ball only: radius.
+  double radius_m = 0.0;
+  /// Time for moving there and back.
+  double period_s = 1.0;
   double phase_rad = 0.0;
   Pace pace = Pace::kSteady;
-  double leaves_at_s = 0.0;                              ///< Pace::kLeaves only
-  Eigen::Vector3d out_world = Eigen::Vector3d::UnitX();  ///< unit, horizontal: direction out of the room
-  std::vector<Material> materials;                       ///< one per solid
+  /// Pace::kLeaves only: time at which the object begins to leave.
+  double leaves_at_s = 0.0;
+  /// Pace::kLeaves only: unit, horizontal direction out of the room.
+  Eigen::Vector3d out_world = Eigen::Vector3d::UnitX();
+  /// Materials, one per solid.
+  std::vector<Material> materials;
 };
 
-/// @param viewer_world  camera position: the hand passes between it and the room's focus
-/// @param duration_s    of the recording: with Pace::kLeaves the mover leaves at half of it
+/// Plans the motion of a moving object.
+/// @param viewer_world  camera position; a hand passes between it and the room's focus
+/// @param duration_s    duration of the recording; with Pace::kLeaves the object leaves at half of it
 Mover plan_mover(MoverKind kind, const Room& room, const Eigen::Vector3d& viewer_world, std::uint64_t seed,
                  Pace pace = Pace::kSteady, double duration_s = 0.0);
 
-/// Appends the mover's solids at time t_s; their number and order never change. All positions have continuous
-/// derivatives in time.
+/// Appends the object's solids at time t_s. Their number and order never change, and their positions have
+/// continuous derivatives in time.
 void append_solids(const Mover& mover, double t_s, std::vector<Solid>& solids);
 
 }  // namespace roomradar

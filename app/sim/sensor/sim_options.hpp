@@ -1,4 +1,4 @@
-// sim_options.hpp: options of the simulation, and their command-line syntax.
+// sim_options.hpp: options of the simulated Kinect, and their command-line syntax.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,33 +10,47 @@
 namespace roomradar {
 
 enum class CameraPathKind {
-  kScan,   ///< walks around the room and back to the start, looking across it
-  kView,   ///< hand-held at one place, looking at the room's focus
-  kSwing,  ///< swings in front of the focus, near, far and tilted, to calibrate
+  /// Walks around the room and back to the start, looking across it.
+  kScan,
+  /// Stays at one place, hand-held, and looks at the room's focus.
+  kView,
+  /// Swings in front of the focus, near, far and tilted, for calibration.
+  kSwing,
 };
 enum class MoverKind {
-  kHand,    ///< a hand and forearm that reach over the focus and withdraw
-  kBall,    ///< a ball that rolls back and forth
-  kPerson,  ///< a person-sized body that walks through the room
+  /// A hand and forearm that reach over the focus and withdraw.
+  kHand,
+  /// A ball that rolls back and forth.
+  kBall,
+  /// A person-sized body that walks through the room.
+  kPerson,
 };
-/// Timing of the movers.
+/// Timing of the moving objects.
 enum class Pace {
-  kSteady,  ///< continuous
-  kSlow,    ///< a third of that speed
-  kWaits,   ///< alternates between 2 s still and 2 s moving
-  kLeaves,  ///< still from the first frame on; leaves the room after half of the frames
+  /// Moves continuously.
+  kSteady,
+  /// Moves continuously at a third of that speed.
+  kSlow,
+  /// Alternates between 2 s still and 2 s moving.
+  kWaits,
+  /// Stays still from the first frame on, and leaves the room after half of the frames.
+  kLeaves,
 };
 /// An additional crate on the ball's path.
 enum class CrateKind {
   kNone,
-  kStays,  ///< part of the room
-  kComes,  ///< appears between two frames, after half of the frames
-  kGoes,   ///< disappears between two frames, after half of the frames
+  /// The crate is part of the room.
+  kStays,
+  /// The crate appears between two frames, after half of the frames.
+  kComes,
+  /// The crate disappears between two frames, after half of the frames.
+  kGoes,
 };
 std::string_view to_string(CameraPathKind kind);
 std::string_view to_string(MoverKind kind);
 std::string_view to_string(Pace pace);
-std::string_view to_string(CrateKind kind);  ///< as in a spec: 0, 1, comes, goes
+/// Returns the value as in a spec: 0, 1, comes or goes.
+std::string_view to_string(CrateKind kind);
 
 /// The Kinect's depth camera at full resolution.
 inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 240.0};
@@ -45,33 +59,43 @@ inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 24
 Intrinsics kinect_of_width(int width_px);
 
 struct SimOptions {
-  std::string room = "table";  ///< one of room_names(), kRandomRoom or kBoardRoom
-  std::uint64_t seed = 1;      ///< of camera path, movers' phase, noise, and a random room
-  std::int64_t frames = 300;   ///< >= 1
-  double rate_hz = 30.0;       ///< frames per second, > 0
+  /// Name of the room: one of room_names(), kRandomRoom or kBoardRoom.
+  std::string room = "table";
+  /// Seed of the camera path, the phase of moving objects, the noise, and a random room's furniture.
+  std::uint64_t seed = 1;
+  /// Number of frames, >= 1.
+  std::int64_t frames = 300;
+  /// Frames per second, > 0.
+  double rate_hz = 30.0;
   CameraPathKind path = CameraPathKind::kScan;
-  std::vector<MoverKind> movers;  ///< each at most once
-  Pace pace = Pace::kSteady;      ///< of all movers
+  /// Moving objects, each kind at most once.
+  std::vector<MoverKind> movers;
+  /// Timing of all moving objects.
+  Pace pace = Pace::kSteady;
   CrateKind crate = CrateKind::kNone;
-  double noise_scale = 1.0;  ///< factor on the Kinect's noise; 0: exact depth, without shadow or dropouts
+  /// Factor on the Kinect's noise; 0: exact depth, without shadow or dropouts.
+  double noise_scale = 1.0;
   Intrinsics depth_camera = kKinectDepthCamera;
-  bool faults = false;  ///< the true cameras differ from those the frames declare; see sensor_faults.hpp
-  bool registered_colour = true;  ///< false: a separate colour camera 2.5 cm beside the depth camera
-  bool with_colour = true;        ///< false: depth only, several times as fast
+  /// True: the true cameras differ from those that the frames declare; see sensor_faults.hpp.
+  bool faults = false;
+  /// False: the colour camera is separate, 2.5 cm beside the depth camera.
+  bool registered_colour = true;
+  /// False: frames have depth only, which is several times as fast.
+  bool with_colour = true;
 };
 
 /// Parses `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
 ///   seed, frames, rate, path (scan, view, swing), moving (hand, ball, person; several with commas), pace
-///   (steady, slow, waits, leaves), noise (0 = off, 1 = Kinect), crate (0, 1: an additional crate; comes,
-///   goes: at half time), width (of the image, 4:3, 64 to 1920 pixels), colour (registered, separate, none),
-///   faults (0, 1: the true cameras differ from those the frames declare).
-/// Throws Error naming a key or value that is unknown or out of range, and listing the valid ones.
+///   (steady, slow, waits, leaves), noise (0: none, 1: as a Kinect), crate (0, 1: an additional crate; comes,
+///   goes: after half of the frames), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
+///   separate, none), faults (0, 1: the true cameras differ from those the frames declare).
+/// @throws Error naming a key or value that is unknown or out of range, and listing the valid ones
 SimOptions parse_sim_spec(std::string_view spec);
 
-/// Returns the shortest spec that parses to `options`; the depth camera must be a scaled Kinect.
+/// Returns the shortest spec that gives `options` when parsed. The depth camera must be a scaled Kinect.
 std::string sim_spec(const SimOptions& options);
 
-/// Throws Error naming the field and the rule.
+/// Throws Error naming the field and the rule if a value is out of range.
 void require_valid(const SimOptions& options);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// simulated_source.hpp: a simulated Kinect in a room made in code, with ground truth for every frame.
+// simulated_source.hpp: a simulated Kinect in a procedurally made room, with ground truth for every frame.
 #pragma once
 #include <memory>
 #include <optional>
@@ -11,21 +11,23 @@ namespace roomradar {
 
 struct Room;
 
-/// Ground truth of the frame filled last.
+/// Ground truth of the last frame.
 struct SimTruth {
-  /// Exact depth along the pixel's centre ray; 0 = outside the sensor's range.
+  /// Exact depth along the pixel's centre ray, m; 0 if outside the sensor's range.
   DepthImage depth_m;
-  MaskImage moved;  ///< 255 where the nearest surface is a moving object
-  /// 0 = the room, else 1 + index in SimOptions::movers; a crate that appears has the next number after the
-  /// movers.
+  /// 255 if the nearest surface is a moving object.
+  MaskImage moved;
+  /// 0 for the room, otherwise 1 + index in SimOptions::movers. A crate that appears has the next number
+  /// after the moving objects.
   MaskImage mover;
-  MaskImage revealed;  ///< 255 where a crate that disappeared would be the nearest surface
+  /// 255 if a crate that disappeared would be the nearest surface.
+  MaskImage revealed;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Frames of a simulated Kinect. Frame i depends only on the options and i: rereading it gives identical
-/// pixels. World coordinates are the room's: +z up, metres, floor at z = 0. A crate that appears or
-/// disappears is not in room()'s solids.
+/// Frames of a simulated Kinect. Frame i depends only on the options and on i, so rereading it gives
+/// identical pixels. World coordinates are the room's: z up, metres, floor at z = 0. A crate that appears or
+/// disappears is not among room()'s solids.
 class SimulatedSource final : public FrameSource {
  public:
   /// Throws Error if the options are not valid.
@@ -33,15 +35,14 @@ class SimulatedSource final : public FrameSource {
   ~SimulatedSource() override;
 
   ReadResult next(Frame& frame) override;
-  /// Renders the frame of any index, at time index / rate, from another camera pose. next() continues
-  /// unaffected.
+  /// Renders the frame of any index, at time index / rate, from another camera pose. Does not affect next().
   void look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame);
   bool rewind() override;
   bool seek(std::int64_t index) override;
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override;
   [[nodiscard]] std::string name() const override;
 
-  [[nodiscard]] const SimTruth& truth() const;  ///< of the frame filled last
+  [[nodiscard]] const SimTruth& truth() const;  ///< Returns the ground truth of the last frame.
   [[nodiscard]] const Room& room() const;
 
  private:

@@ -1,4 +1,4 @@
-// angles.hpp: a full turn.
+// angles.hpp: the angle of a full turn.
 #pragma once
 #include <numbers>
 

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// splitmix64's finaliser: flipping any input bit flips about half of the output bits. Source: Steele, Lea,
+/// Finaliser of splitmix64: flipping any input bit flips about half of the output bits. Source: Steele, Lea,
 /// Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014.
 inline std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
@@ -17,19 +17,20 @@ inline std::uint64_t hash_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) 
   return mixed(hash_of(a, b) ^ c);
 }
 
-/// Maps a hash to 0 <= value < 1.
+/// Maps a hash to a number in [0, 1).
 inline double unit_interval(std::uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1.0p-53; }
 
-/// Approximates a normal distribution by the sum of the hash's four 16-bit parts: mean 0, variance 1,
-/// magnitude at most 3.47.
+/// Approximates a standard normal distribution by the sum of the hash's four 16-bit parts. Mean 0, variance
+/// 1, magnitude at most 3.47.
 inline float gaussian(std::uint64_t hash) {
   const auto part = [hash](int i) { return static_cast<float>((hash >> (16 * i)) & 0xffffU); };
   constexpr float kMean = 4.0F * 32767.5F;
-  constexpr float kDeviation = 37837.227F;  // sqrt(4 / 12) * 65536
+  // Standard deviation of the sum: sqrt(4 / 12) * 65536.
+  constexpr float kDeviation = 37837.227F;
   return (part(0) + part(1) + part(2) + part(3) - kMean) / kDeviation;
 }
 
-/// A short sequence of numbers for one (seed, position).
+/// Generates a short sequence of random numbers for one (seed, position).
 class CounterRandom {
  public:
   CounterRandom(std::uint64_t seed, std::uint64_t position) : state_(hash_of(seed, position)) {}

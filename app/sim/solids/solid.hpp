@@ -5,36 +5,42 @@
 namespace roomradar {
 
 enum class SolidShape {
-  kBox,       ///< half_m along x, y and z of the solid's frame
-  kCylinder,  ///< about z: radius half_m.x() (= half_m.y()), half height half_m.z()
+  /// Box: half_m has its half sizes along x, y and z of the solid's frame.
+  kBox,
+  /// Cylinder about z: radius half_m.x() (= half_m.y()), half height half_m.z().
+  kCylinder,
 };
 
-/// A box or cylinder inflated by a ball of radius round_m: an inflated point is a sphere, an inflated line a
-/// capsule.
+/// A box or cylinder, inflated by a ball of radius round_m. An inflated point is a sphere, and an inflated
+/// line segment is a capsule.
 struct Solid {
   SolidShape shape = SolidShape::kBox;
   Eigen::Isometry3d T_world_solid = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d half_m = Eigen::Vector3d::Zero();  ///< half extents before inflation
+  /// Half extents before inflation, m.
+  Eigen::Vector3d half_m = Eigen::Vector3d::Zero();
+  /// Radius of the ball.
   double round_m = 0.0;
 };
 
 Solid box(const Eigen::Vector3d& centre_world, const Eigen::Vector3d& size_m, double yaw_rad = 0.0);
 Solid rounded_box(const Eigen::Vector3d& centre_world, const Eigen::Vector3d& size_m, double round_m,
                   double yaw_rad = 0.0);
-Solid cylinder(const Eigen::Vector3d& foot_world, double radius_m, double height_m);  ///< upright
+/// Returns an upright cylinder whose base is centred at foot_world.
+Solid cylinder(const Eigen::Vector3d& foot_world, double radius_m, double height_m);
 Solid sphere(const Eigen::Vector3d& centre_world, double radius_m);
 Solid capsule(const Eigen::Vector3d& a_world, const Eigen::Vector3d& b_world, double radius_m);
 
-/// Returns the exact distance (m) from a point in the solid's frame to its surface, negative inside.
+/// Returns the exact distance (m) from a point in the solid's frame to the solid's surface, negative inside.
 double signed_distance_local_m(const Solid& solid, const Eigen::Vector3d& p_solid);
+/// Returns the exact distance (m) from a point in the world to the solid's surface, negative inside.
 double signed_distance_m(const Solid& solid, const Eigen::Vector3d& p_world);
 
 /// Returns the unit outward normal, in the solid's frame, of the surface point nearest to p_solid.
 Eigen::Vector3d normal_local(const Solid& solid, const Eigen::Vector3d& p_solid);
 
-/// Returns the smallest t > 0 at which the ray origin + t * direction enters the solid from outside; negative
-/// if it misses or starts inside. Both arguments are in the solid's frame; the direction need not be a unit
-/// vector.
+/// Returns the smallest t > 0 at which the ray origin + t * direction enters the solid from outside. Returns
+/// a negative number if the ray misses the solid or starts inside. Both arguments are in the solid's frame;
+/// the direction may have any length.
 double ray_entry_local(const Solid& solid, const Eigen::Vector3d& origin_solid,
                        const Eigen::Vector3d& direction_solid);
 

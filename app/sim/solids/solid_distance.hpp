@@ -7,18 +7,22 @@
 
 namespace roomradar {
 
-/// Distance, direction and nearest point between two solids a and b.
+/// Distance between two solids a and b, with direction and nearest point.
 struct Separation {
-  double distance_m = 0.0;  ///< between the surfaces; 0 if the solids touch or overlap
-  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();   ///< unit, from b towards a; zero if cores overlap
-  Eigen::Vector3d point_b_world = Eigen::Vector3d::Zero();  ///< point of b's surface nearest to a
+  /// Distance between the surfaces, m; 0 if the solids touch or overlap.
+  double distance_m = 0.0;
+  /// Unit vector from b towards a; zero if the solids overlap even without their inflation (Solid::round_m).
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
+  /// Point of b's surface nearest to a.
+  Eigen::Vector3d point_b_world = Eigen::Vector3d::Zero();
 };
 
-/// Computes the distance between a and b to 1e-9 m, never too large. Source: Gilbert, Johnson, Keerthi, IEEE
-/// Journal of Robotics and Automation 1988.
+/// Computes the distance between a and b, with an error of at most 1e-9 m and never too large. Source:
+/// Gilbert, Johnson, Keerthi, IEEE Journal of Robotics and Automation 1988.
 Separation separation(const Solid& a, const Solid& b);
 
-/// Returns the least distance between `parts`, moved by T_world_object, and `obstacles`; at most `enough_m`.
+/// Returns the least distance between `obstacles` and an object that consists of `parts`, at pose
+/// T_world_object. Returns enough_m if the distance is larger.
 double clearance_m(std::span<const Solid> obstacles, std::span<const Solid> parts,
                    const Eigen::Isometry3d& T_world_object, double enough_m);
 

@@ -9,22 +9,25 @@
 namespace roomradar {
 
 struct RayHit {
-  double range_m = 0.0;  ///< in units of the direction's length
-  int solid = -1;        ///< index of the solid
+  /// Distance to the hit, in units of the direction's length.
+  double range_m = 0.0;
+  /// Index of the solid.
+  int solid = -1;
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
 };
 
-/// Stores indices only, so a copy of the tree works with a copy of the solids. All calls must pass the solids
-/// the tree was built from, unchanged.
+/// A bounding volume hierarchy over solids. Stores only indices, so a copy of the tree works with a copy of
+/// the solids. All calls must pass the solids from which the tree was built, unchanged.
 class SolidTree {
  public:
   SolidTree() = default;
   explicit SolidTree(const std::vector<Solid>& solids);
 
-  /// Returns the least signed distance over the solids; infinite if there are none.
+  /// Returns the least signed distance over the solids, m; infinity if there are none.
   [[nodiscard]] double signed_distance_m(const std::vector<Solid>& solids,
                                          const Eigen::Vector3d& p_world) const;
-  /// Returns the first surface that the ray enters, within `farthest` lengths of the direction.
+  /// Returns the first surface that the ray enters.
+  /// @param farthest  max distance, in units of the direction's length
   [[nodiscard]] std::optional<RayHit> cast(const std::vector<Solid>& solids,
                                            const Eigen::Vector3d& origin_world,
                                            const Eigen::Vector3d& direction_world, double farthest) const;
@@ -35,7 +38,8 @@ class SolidTree {
  private:
   struct Node {
     Eigen::AlignedBox3d bounds_world;
-    int solid = -1;  ///< index of a leaf's solid; -1: inner node, its children are the next node and `second`
+    /// Index of a leaf's solid. -1 for an inner node; its children are the next node and node `second`.
+    int solid = -1;
     int second = -1;
   };
   int build(const std::vector<Solid>& solids, std::vector<int>& order, int begin, int end);

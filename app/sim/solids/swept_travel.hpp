@@ -8,17 +8,23 @@
 namespace roomradar {
 
 struct SweptTravel {
-  double contact_distance_m = 0.0;  ///< distance to the first contact; the limit if there is none
+  /// Distance to the first contact; equal to the limit if there is none.
+  double contact_distance_m = 0.0;
+  /// True if there is a contact within the limit.
   bool touches = false;
-  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();   ///< contact point on the obstacle
-  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from the obstacle towards the object
+  /// Contact point on the obstacle, m.
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
+  /// Unit normal from the obstacle towards the object.
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
 };
 
-/// Advances each part against each obstacle by conservative advancement, until they touch or separate for
-/// good. The error is below 1e-7 m, never too far.
-/// @param parts            of the object, in its own frame; they may overlap
-/// @param direction_world  unit
-/// Source: Mirtich, PhD thesis, Berkeley 1996, section 2.3.
+/// Moves each part towards each obstacle by conservative advancement, until they touch or cannot touch any
+/// more. The error is below 1e-7 m, and the distance is never too large. Source: Mirtich, PhD thesis,
+/// Berkeley 1996, section 2.3.
+/// @param parts            solids of the object, in its own frame; they may overlap
+/// @param T_world_object   start pose
+/// @param direction_world  unit direction of motion
+/// @param limit_m          max distance
 SweptTravel swept_travel(std::span<const Solid> obstacles, std::span<const Solid> parts,
                          const Eigen::Isometry3d& T_world_object, const Eigen::Vector3d& direction_world,
                          double limit_m);

@@ -1,4 +1,4 @@
-// view_caster.hpp: ray casts solids from one camera, fast enough for every pixel.
+// view_caster.hpp: casts rays from one camera at solids, fast enough for every pixel.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,34 +9,40 @@
 namespace roomradar {
 
 struct PixelHit {
-  double depth_m = 0.0;  ///< along the optical axis; 0 = no hit
-  int solid = -1;        ///< index of the solid hit; -1 = no hit
+  /// Depth along the optical axis; 0 if nothing was hit.
+  double depth_m = 0.0;
+  /// Index of the solid hit; -1 if nothing was hit.
+  int solid = -1;
 };
 
-/// Bins solids into image tiles once per frame; a ray then tests only the solids of its tile, nearest first.
-/// A point outside the image is tested against all solids in front of the camera.
+/// Bins solids into image tiles once per frame. A ray then tests only the solids of its tile, nearest first.
+/// A ray through a point outside the image tests all solids in front of the camera.
 class ViewCaster {
  public:
-  /// Bins the solids for this view. Drops solids behind the camera; reuses memory from earlier frames.
+  /// Bins the solids for this view. Ignores solids behind the camera. Reuses memory from earlier frames.
   void prepare(std::span<const Solid> solids, const Intrinsics& camera,
                const Eigen::Isometry3d& T_world_camera);
 
-  /// Returns the first surface along the ray through image point (u, v).
+  /// Returns the first surface on the ray through image point (u, v).
   [[nodiscard]] PixelHit cast(double u_px, double v_px) const;
-  /// Returns the depth of one solid along the ray, ignoring all others; 0 if the ray misses it.
+  /// Returns the depth of one solid on the ray, ignoring all others; 0 if the ray misses it.
   [[nodiscard]] double depth_of(int solid, double u_px, double v_px) const;
-  /// Returns true if any solid along the ray is nearer than depth_m.
+  /// Returns true if any solid on the ray is nearer than depth_m.
   [[nodiscard]] bool is_blocked(double u_px, double v_px, double depth_m) const;
-  /// Returns the point at depth_m on the ray through (u, v), in the frame of a solid.
+  /// Returns the point at depth_m on the ray through (u, v), in the frame of a solid, m.
   [[nodiscard]] Eigen::Vector3d local_point(int solid, double u_px, double v_px, double depth_m) const;
 
  private:
   struct Prepared {
     Solid solid;
     Eigen::Matrix3d R_solid_camera;
-    Eigen::Vector3d camera_solid;  ///< the camera's centre in the solid's frame
-    double nearest_m;              ///< lower bound of the depth of the solid's points
-    int column_begin, column_end;  ///< tiles that the solid may appear in
+    /// Camera centre in the solid's frame, m.
+    Eigen::Vector3d camera_solid;
+    /// Lower bound of the depth of the solid's points.
+    double nearest_m;
+    /// Range of columns of tiles in which the solid may appear.
+    int column_begin, column_end;
+    /// Range of rows of tiles in which the solid may appear.
     int row_begin, row_end;
   };
   [[nodiscard]] double entry(const Prepared& prepared, double x, double y) const;
@@ -45,9 +51,12 @@ class ViewCaster {
   Intrinsics camera_;
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<Prepared> prepared_;       ///< one per solid, in the order given
-  std::vector<int> nearest_first_;       ///< all solids in front of the camera
-  std::vector<std::vector<int>> tiles_;  ///< row by row; the solids of each, nearest first
+  /// One entry per solid, in the order given.
+  std::vector<Prepared> prepared_;
+  /// Indices of all solids in front of the camera, nearest first.
+  std::vector<int> nearest_first_;
+  /// Tiles, row by row: indices of each tile's solids, nearest first.
+  std::vector<std::vector<int>> tiles_;
 };
 
 }  // namespace roomradar
