@@ -10,14 +10,15 @@ namespace roomradar {
 
 struct CameraRig {
   Intrinsics depth_camera;
-  std::optional<Intrinsics> colour_camera;  ///< nothing if there is no colour
-  /// Transforms points from the depth camera's frame to the colour camera's.
+  /// Intrinsics of the colour camera; unset if there is no colour.
+  std::optional<Intrinsics> colour_camera;
+  /// Transform of points from the depth camera's frame to the colour camera's.
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
-  /// Lens and depth errors were removed from the frames before recording.
+  /// True if lens and depth errors were removed from the frames before recording.
   bool was_calibrated = false;
 };
 
-/// Reads and writes camera.json:
+/// Reads camera.json:
 ///   {"format": "roomradar camera", "version": 1,
 ///    "depth":  {"width_px": 640, "height_px": 480, "fx_px": 585, "fy_px": 585, "cx_px": 320, "cy_px": 240},
 ///    "colour": {... the same fields; absent if there is no colour},
@@ -25,15 +26,18 @@ struct CameraRig {
 ///    "calibrated": true}                           (absent if frames are as the device delivered them)
 /// Throws Error naming the file, and the field if a field is missing, of the wrong type or impossible.
 CameraRig read_camera_file(const std::filesystem::path& path);
+/// Writes camera.json. Throws Error naming the file if it cannot be written.
 void write_camera_file(const CameraRig& rig, const std::filesystem::path& path);
 
 /// Reads camera-intrinsics.txt, the 3 x 3 matrix fx 0 cx / 0 fy cy / 0 0 1, for images of the given size. The
-/// file does not contain the image size: a principal point farther than a fifth of the image from its centre
-/// is rejected as belonging to another size. Throws Error naming the file and the fault.
+/// file does not contain the image size. A principal point farther than a fifth of the image from the image
+/// centre is rejected, since the file then belongs to another size. Throws Error naming the file and the
+/// problem.
 Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_px, int height_px);
 
 /// Returns the rotation nearest to `almost` (Frobenius norm, by SVD). Returns nothing if `almost` has an
-/// entry that is not finite, differs from that rotation by more than 0.01 in any entry, or mirrors.
+/// entry that is not finite, differs from that rotation by more than 0.01 in any entry, or contains a
+/// reflection.
 std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& almost);
 
 }  // namespace roomradar

@@ -12,17 +12,21 @@ struct ImageHeader {
   ImageKind kind = ImageKind::kPng;
   int width_px = 0;
   int height_px = 0;
-  int channels = 0;  ///< 1 grey, 3 colour (including palette images), 2 and 4 the same with transparency
-  int bits = 0;      ///< per channel
-  std::size_t pixels_at = 0;  ///< PGM and PPM: byte offset of the pixels
+  /// Number of channels: 1 grey, 3 colour (including palette images); 2 and 4 are the same with transparency.
+  int channels = 0;
+  /// Bits per channel.
+  int bits = 0;
+  /// PGM and PPM only: byte offset of the pixels.
+  std::size_t pixels_at = 0;
 };
 
-/// Recognises a PNG, JPEG, binary PGM (P5) or PPM (P6) by its content. Checks completeness as far as possible
-/// without decoding: PNG and JPEG by their end marks, PGM and PPM by their length.
+/// Recognises a PNG, JPEG, binary PGM (P5) or PPM (P6) by its content. Checks as far as possible without
+/// decoding that the file is complete: PNG and JPEG by their end marks, PGM and PPM by their length.
 /// @param name  file name for messages
 /// @throws Error if the file is empty, none of these types, truncated, or wider or higher than 16384 px
 ImageHeader read_image_header(std::span<const std::uint8_t> bytes, const std::string& name);
 
-std::string to_string(const ImageHeader& header);  ///< such as "640 x 480 16 bit grey PNG"
+/// Returns a description, for example "640 x 480 16 bit grey PNG".
+std::string to_string(const ImageHeader& header);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// kinect_units.hpp: conversion of a Kinect v1's raw values to metres, seconds and directions.
+// kinect_units.hpp: converts a Kinect v1's raw values to metres, seconds and directions.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
@@ -7,51 +7,60 @@
 
 namespace roomradar {
 
+/// Raw value of a pixel without depth.
 constexpr std::uint16_t kRawNoDepth = 2047;
 /// Clock rate of the 32 bit image stamps, which wrap after 71.6 s.
 constexpr double kKinectTicksPerSecond = 60e6;
-constexpr double kKinectCountsPerG = 819.0;        ///< accelerometer scale (KXSD9 data sheet; libfreenect.h)
-constexpr double kStandardGravity_m_s2 = 9.80665;  ///< 1 g
-constexpr std::uint16_t kRawFarthest = 1057;       ///< 9.88 m; beyond it one raw step is more than 0.5 m
+/// Accelerometer scale (KXSD9 data sheet; libfreenect.h).
+constexpr double kKinectCountsPerG = 819.0;
+/// Magnitude of 1 g.
+constexpr double kStandardGravity_m_s2 = 9.80665;
+/// Greatest valid raw value: 9.88 m. Beyond it one raw step is more than 0.5 m.
+constexpr std::uint16_t kRawFarthest = 1057;
 
-/// Returns the depth (m) along the optical axis of a raw 11 bit disparity: 0.1236 tan(raw / 2842.5 + 1.1863).
+/// Converts a raw 11 bit disparity to depth along the optical axis, m: 0.1236 tan(raw / 2842.5 + 1.1863).
 /// Depth increases with raw from 0.31 m at 0 to 9.88 m at 1057; above 1057 the result is 0 (invalid). Source:
-/// Stephane Magnenat's fit, OpenKinect wiki, "Imaging Information". The other common formula, Nicolas Burrus'
-/// 1 / (3.331 - 0.003071 raw), was compared on our test recordings with the cameras of nominal_rig.cpp. It
-/// renders the corner of two concrete walls as 94 to 95 degrees; this formula gives 89 to 90 and flatter
-/// walls.
+/// Stephane Magnenat's fit, OpenKinect wiki, "Imaging Information". Nicolas Burrus' formula, 1 / (3.331 -
+/// 0.003071 raw), is also common. We compared both on our test recordings with the cameras of
+/// nominal_rig.cpp. His formula gives 94 to 95 degrees for the corner of two concrete walls; this formula
+/// gives 89 to 90 degrees and flatter walls.
 float raw_depth_m(std::uint16_t raw);
 
-/// Returns the raw disparity of the nearest depth; kRawNoDepth for 0 and for depth more than half a step
-/// outside the range. raw_from_depth_m(raw_depth_m(raw)) == raw for raw <= kRawFarthest.
+/// Returns the raw disparity with the nearest depth. Returns kRawNoDepth for 0 and for depth more than half a
+/// step outside the range. raw_from_depth_m(raw_depth_m(raw)) == raw for raw <= kRawFarthest.
 std::uint16_t raw_from_depth_m(float depth_m);
 
-/// Factory calibration of a Kinect's depth measurement, with lengths in centimetres as the device stores
+/// Factory calibration of a Kinect's depth measurement. Lengths are in centimetres, as the device stores
 /// them.
 struct KinectZeroPlane {
-  double distance_cm = 120.0;  ///< depth of the reference plane, at which the disparity is const_shift_px
-  double pixel_cm = 0.1042;    ///< width on that plane of one of the camera's 1280 columns
-  double emitter_cm = 7.5;     ///< baseline from the depth camera to the projector
+  /// Depth of the reference plane, at which the disparity is const_shift_px.
+  double distance_cm = 120.0;
+  /// Width, on the reference plane, of one of the camera's 1280 columns.
+  double pixel_cm = 0.1042;
+  /// Baseline from the depth camera to the projector.
+  double emitter_cm = 7.5;
+  /// Disparity at the reference plane.
   double const_shift_px = 200.0;
 };
 
-/// Returns the depth (m) of a raw 11 bit disparity by the device's own constants; 0 if it is invalid or
-/// outside 0.2 to 10 m. Source: libfreenect, registration.c, freenect_raw_to_mm, without its rounding to
+/// Converts a raw 11 bit disparity to depth (m) with the device's own constants. Returns 0 if it is invalid
+/// or outside 0.2 to 10 m. Source: libfreenect, registration.c, freenect_raw_to_mm, without its rounding to
 /// millimetres.
 float raw_depth_m(std::uint16_t raw, const KinectZeroPlane& zero_plane);
 
 /// Computes the unit direction of gravity in the depth camera's frame (x right, y down, z forward) from an
 /// accelerometer reading in g. The accelerometer's axes are x left, y up, z forward; at rest it measures the
-/// support force, opposite to gravity, so down = (x, y, -z). Returns nothing if the magnitude is outside 0.8
-/// to 1.2 g: the device is moving, or there was no measurement.
+/// support force, opposite to gravity, so the direction is (x, y, -z), normalised. Returns nothing if the
+/// magnitude is outside 0.8 to 1.2 g, since the device then moves or there was no measurement.
 std::optional<Eigen::Vector3d> down_from_acceleration(const Eigen::Vector3d& acceleration_g);
 
-/// Returns the accelerometer reading at rest for this gravity direction; inverse of down_from_acceleration().
+/// Returns the accelerometer reading at rest for this gravity direction, g; the inverse of
+/// down_from_acceleration().
 Eigen::Vector3d acceleration_at_rest_g(const Eigen::Vector3d& down_camera);
 
-/// Converts the device's wrapping stamps to seconds. Successive stamps must be less than 35 s apart. Depth
-/// and colour share one clock: pass both to the same object in order of arrival. The clock starts over when
-/// the device is unplugged and plugged in again; see restart().
+/// Converts the device's stamps, which wrap, to seconds. Successive stamps must be less than 35 s apart.
+/// Depth and colour share one clock: pass the stamps of both to the same object, in order of arrival. The
+/// device's clock starts over when it is unplugged and plugged in again; see restart().
 class KinectClock {
  public:
   double seconds(std::uint32_t ticks) {
@@ -62,7 +71,7 @@ class KinectClock {
     last_ticks_ = ticks;
     return static_cast<double>(total_ticks_) / kKinectTicksPerSecond;
   }
-  /// Makes the next stamp, whatever its value, correspond to `at_s`.
+  /// Makes the next stamp correspond to the time at_s, whatever its value.
   void restart(double at_s) {
     last_ticks_.reset();
     restart_ticks_ = std::llround(at_s * kKinectTicksPerSecond);

@@ -8,10 +8,14 @@
 namespace roomradar {
 
 enum class NominalRig {
-  kSevenScenes,  ///< a Kinect v1 as published by 7-Scenes; depth is not registered to colour
-  kTum,          ///< a Kinect v1 with depth registered to colour
-  kNumbered,     ///< another, unknown sensor
-  kKinect,       ///< a Kinect v1 through libfreenect, depth not registered
+  /// A Kinect v1 as published by 7-Scenes; depth is not registered to colour.
+  kSevenScenes,
+  /// A Kinect v1 with depth registered to colour.
+  kTum,
+  /// An unknown sensor.
+  kNumbered,
+  /// A Kinect v1 through libfreenect; depth is not registered to colour.
+  kKinect,
 };
 
 struct ImageSize {
@@ -20,13 +24,15 @@ struct ImageSize {
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// Returns the kind's published or measured intrinsics, scaled to the images' width. If their aspect ratio
-/// differs from the published images', rows are assumed cropped equally at top and bottom.
+/// Returns published or measured intrinsics for a kind of recording, scaled to the images' width. If the
+/// images' aspect ratio differs from that of the published images, rows are assumed to be cropped equally at
+/// top and bottom.
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour);
 
-/// Returns the cameras of the recording in `folder`. Precedence of the depth camera: `chosen_depth`, the
-/// folder's camera.json, its camera-intrinsics.txt (depth camera only), nominal_rig(). Throws Error with both
-/// sizes and a remedy if the cameras do not match the images' sizes, or if a file is invalid.
+/// Returns the cameras of the recording in `folder`. The depth camera is the first that exists of
+/// `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt (depth camera only), and
+/// nominal_rig(). Throws Error with both sizes and a remedy if the cameras do not match the images' sizes, or
+/// if a file is invalid.
 CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
                            const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
                            std::optional<ImageSize> colour);

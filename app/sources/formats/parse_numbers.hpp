@@ -1,4 +1,4 @@
-// parse_numbers.hpp: locale-independent parsing of words and numbers in text files.
+// parse_numbers.hpp: parses words and numbers of text files, independent of the locale.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -7,14 +7,14 @@
 
 namespace roomradar {
 
-/// Splits `line` at blanks, tabs and carriage returns.
+/// Splits `line` at spaces, tabs and carriage returns.
 std::vector<std::string_view> split_words(std::string_view line);
 
-/// Parses all of `word` as a number, or returns nothing. NaN and infinities are accepted, in C's and in
-/// Microsoft's spelling (nan, inf, `-1.#IND`, `1.#QNAN`, `1.#INF`).
+/// Parses `word` as a number; returns nothing unless all of it is a number. Accepts NaN and infinities in the
+/// spelling of C and of Microsoft (nan, inf, `-1.#IND`, `1.#QNAN`, `1.#INF`).
 std::optional<double> parse_number(std::string_view word);
 
-/// Parses all of `word` as a whole number, or returns nothing.
+/// Parses `word` as an integer; returns nothing unless all of it is an integer.
 std::optional<std::int64_t> parse_whole_number(std::string_view word);
 
 }  // namespace roomradar

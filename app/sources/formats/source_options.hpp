@@ -11,30 +11,35 @@ namespace roomradar {
 
 /// Depth mode of a Kinect.
 enum class KinectDepth {
-  kRaw,          ///< 11 bit disparity, converted to metres by roomradar
-  kMillimetres,  ///< converted to millimetres by libfreenect
-  kRegistered,   ///< millimetres, registered to the colour camera
+  /// 11 bit disparity, which roomradar converts to metres.
+  kRaw,
+  /// Millimetres, converted by libfreenect.
+  kMillimetres,
+  /// Millimetres, registered to the colour camera by libfreenect.
+  kRegistered,
 };
 
-/// Prints a line on stderr; the leading newline keeps it below a progress bar.
+/// Prints a line on stderr, preceded by a newline, so it does not continue a progress bar's line.
 inline void say_on_stderr(const std::string& sentence) {
   std::fprintf(stderr, "\nroomradar: %s\n", sentence.c_str());
 }
 
 struct SourceOptions {
-  /// Overrides the recording's files and the format's published intrinsics. Must match the depth image's
-  /// size. If colour is registered to depth (TUM, numbered folders without camera.json), the colour camera is
-  /// derived from this.
+  /// Intrinsics of the depth camera. Override those in the recording's files and the published ones of its
+  /// format. Must match the depth image's size. If colour is registered to depth (TUM, numbered folders
+  /// without camera.json), the colour camera is derived from them.
   std::optional<Intrinsics> depth_camera;
+  /// Depth mode of a live Kinect.
   KinectDepth kinect_depth = KinectDepth::kRaw;
-  /// true: frames of a live device are queued until fetched, as far as memory allows; for a scan, which needs
-  /// every frame. false: only the newest frame is kept, for live display.
+  /// True: frames of a live device are queued until fetched, as far as memory allows; for a scan, which needs
+  /// every frame. False: only the newest frame is kept, for live display.
   bool keep_all = false;
-  /// Ignores a calibration.json beside a recording: frames stay as the device delivered them.
+  /// True: ignores a calibration.json beside a recording, so frames stay as the device delivered them.
   bool as_recorded = false;
-  /// A live device that has sent no depth for this long, despite repeated restarts, is given up.
+  /// Time limit, s: a live device that has sent no depth for this long, despite repeated restarts, is given
+  /// up.
   double device_timeout_s = 60.0;
-  /// Receives status messages about a live device while it is read; called from another thread.
+  /// Receives status messages about a live device. Called from another thread while the device is read.
   std::function<void(const std::string&)> say = say_on_stderr;
 };
 

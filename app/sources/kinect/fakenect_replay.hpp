@@ -1,4 +1,5 @@
-// fakenect_replay.hpp: prepares a recording for replay by fakenect, which does not check its files.
+// fakenect_replay.hpp: prepares a recording for replay by fakenect (libfreenect's replay library), which does
+// not check its files.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -8,13 +9,16 @@
 
 namespace roomradar {
 
+/// Environment variable that names the recording to replay.
 inline constexpr const char* kFakenectPath = "FAKENECT_PATH";
-/// Returns the folder named by FAKENECT_PATH if fakenect's library is loaded instead of libfreenect: fakenect
-/// replays that recording in place of a device. Returns nothing otherwise, even if the variable is set.
+/// Returns the folder that FAKENECT_PATH names if fakenect's library is loaded instead of libfreenect;
+/// fakenect then replays that recording in place of a device. Returns nothing otherwise, even if the variable
+/// is set.
 std::optional<std::filesystem::path> replayed_folder();
 
-/// fakenect reads past the end of a truncated image and ends the process if a file is missing. During this
-/// object's life a recording with such images is replayed from a folder of links to the intact ones.
+/// Protects fakenect from broken files: it reads past the end of a truncated image, and ends the process if a
+/// file is missing. While this object exists, a recording with broken files is replayed from a folder of
+/// links to the intact ones.
 class FakenectReplay {
  public:
   /// Throws Error if INDEX.txt cannot be read or lists no intact depth image.
@@ -23,12 +27,13 @@ class FakenectReplay {
   FakenectReplay(const FakenectReplay&) = delete;
   FakenectReplay& operator=(const FakenectReplay&) = delete;
 
-  /// Faults of the depth images left out, by index among all depth images, from 0.
+  /// Returns the problem of each omitted depth image, by the image's index among all depth images, from 0.
   [[nodiscard]] const std::map<std::int64_t, std::string>& broken() const { return broken_; }
 
  private:
   std::filesystem::path folder_;
-  std::filesystem::path links_;  ///< empty if all files are intact
+  /// Folder of links; empty if all files are intact.
+  std::filesystem::path links_;
   std::map<std::int64_t, std::string> broken_;
 };
 

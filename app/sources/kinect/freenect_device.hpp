@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// A KinectOpener. Throws Error naming the cause: no such device, no permission, device used by another
-/// program, or a build without Kinect support.
+/// Opens a Kinect with libfreenect; a KinectOpener. Throws Error naming the cause: no such device, no
+/// permission, a device used by another program, or a build without Kinect support.
 std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& wish);
 
 }  // namespace roomradar

@@ -13,12 +13,13 @@
 
 namespace roomradar {
 
-/// Callbacks invoked within KinectDevice::serve(), with images in the device's own memory and the 32 bit
+/// Callbacks that KinectDevice::serve() invokes. Images are in the device's own memory; stamps are the 32 bit
 /// stamps of its clock.
 struct KinectListener {
-  /// 640 x 480 values in the chosen KinectDepth mode; any other size is a broken image.
+  /// Called per depth image: 640 x 480 values in the chosen KinectDepth mode. Any other size is a broken
+  /// image.
   std::function<void(std::span<const std::uint16_t> pixels, std::uint32_t ticks)> on_depth;
-  /// 640 x 480 pixels of red, green, blue.
+  /// Called per colour image: 640 x 480 pixels of red, green and blue.
   std::function<void(std::span<const std::uint8_t> bytes, std::uint32_t ticks)> on_colour;
 };
 
@@ -31,27 +32,30 @@ class KinectDevice {
   KinectDevice& operator=(const KinectDevice&) = delete;
   virtual ~KinectDevice() = default;
 
-  /// Passes arrived images to the listener; waits up to `patience_s` if there are none. Returns false if the
-  /// device has gone or its replay has ended.
+  /// Passes images that have arrived to the listener. Waits up to `patience_s` if there are none. Returns
+  /// false if the device has gone or its replay has ended.
   virtual bool serve(double patience_s) = 0;
   /// Reads the device's accelerometer. Must not be called by the listener.
   virtual void ask_acceleration() = 0;
-  /// Returns the last accelerometer reading, g; nothing if there is none.
+  /// Returns the last accelerometer reading, g, or nothing if there is none.
   [[nodiscard]] virtual std::optional<Eigen::Vector3d> acceleration_g() const = 0;
-  /// Returns the camera's serial, or an empty string if unknown. The serial stays the same after the device
+  /// Returns the camera's serial number, or an empty string if unknown. It stays the same after the device
   /// was unplugged and plugged in again.
   [[nodiscard]] virtual std::string serial() const = 0;
+  /// Returns the device's constants, or nothing if unknown.
   [[nodiscard]] virtual std::optional<KinectConstants> constants() const = 0;
 };
 
 struct KinectRequest {
-  int number = 0;      ///< index among the connected devices, from 0
-  std::string serial;  ///< if not empty: selects the device with this serial, whatever its index
+  /// Index among the connected devices, from 0.
+  int number = 0;
+  /// Serial number; if not empty, selects the device with this number, whatever its index.
+  std::string serial;
   KinectDepth depth = KinectDepth::kRaw;
   KinectListener listener;
 };
 
-/// Opens and starts a device. Throws Error with the cause and a remedy.
+/// Function that opens and starts a device. Throws Error with the cause and a remedy.
 using KinectOpener = std::function<std::unique_ptr<KinectDevice>(const KinectRequest&)>;
 
 }  // namespace roomradar

@@ -10,29 +10,30 @@
 
 namespace roomradar {
 
-/// Serves the device in a thread for as long as the object lives. A device that sends no depth image for
-/// silence_s, or disappears, is reported through config.say and reopened until it is back. Frame numbers and
-/// stamps continue across the gap; stamps advance by the elapsed host time. A device that sends depth but no
-/// colour is reopened once, then used without colour.
+/// Reads the device in a thread for as long as the object exists. If the device sends no depth image for
+/// silence_s, or disappears, the feed reports that through config.say and reopens the device until it
+/// responds. Frame numbers and stamps continue across the gap; stamps advance by the elapsed host time. A
+/// device that sends depth but no colour is reopened once, then used without colour.
 class KinectFeed {
  public:
   using Take = KinectQueue::Take;
 
-  /// Throws Error as the opener does, or if the device does not respond within config.patience_s.
+  /// Throws Error if the opener does, or if the device does not respond within config.patience_s.
   KinectFeed(KinectOpener opener, KinectFeedConfig config);
   /// Returns within config.stop_s even if the device or its driver hangs.
   ~KinectFeed();
   KinectFeed(const KinectFeed&) = delete;
   KinectFeed& operator=(const KinectFeed&) = delete;
 
-  /// Moves the next frame into `frame`, whose memory is reused; waits up to `wait_s` for one.
+  /// Moves the next frame into `frame`, whose memory is reused. Waits up to `wait_s` for a frame.
   Take take(KinectFrame& frame, double wait_s);
 
-  /// Constants of the device as first opened.
+  /// Returns the constants of the device as first opened.
   [[nodiscard]] const std::optional<KinectConstants>& constants() const { return constants_; }
 
  private:
-  class Work;  // state of the device's thread, which may outlive this object
+  // State of the device's thread, which may outlive this object.
+  class Work;
   std::shared_ptr<Work> work_;
   std::optional<KinectConstants> constants_;
   std::thread thread_;

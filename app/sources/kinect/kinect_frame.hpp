@@ -13,32 +13,46 @@
 
 namespace roomradar {
 
-/// A depth image with its colour image, or the fault that makes it unusable.
+/// A depth image with its colour image, or a problem that makes the frame unusable.
 struct KinectFrame {
-  std::int64_t number = 0;  ///< index of the depth image, from 0; broken and dropped images count too
+  /// Index of the depth image, from 0; broken and dropped images count too.
+  std::int64_t number = 0;
   double stamp_s = 0.0;
-  std::vector<std::uint16_t> depth{};  ///< 640 x 480
-  std::vector<std::uint8_t> colour{};  ///< 640 x 480 x 3, or empty
-  double colour_after_depth_s = 0.0;   ///< colour stamp minus depth stamp, by the device's clock
+  /// Raw values, 640 x 480.
+  std::vector<std::uint16_t> depth{};
+  /// Red, green and blue, 640 x 480 x 3; empty without colour.
+  std::vector<std::uint8_t> colour{};
+  /// Colour stamp minus depth stamp, by the device's clock.
+  double colour_after_depth_s = 0.0;
+  /// Unit direction of gravity in the depth camera's frame, if known.
   std::optional<Eigen::Vector3d> down_camera{};
-  std::string fault{};  ///< if not empty: error message; then only `number` is valid besides
+  /// Error message if the frame is unusable; then only `number` is valid besides. Empty otherwise.
+  std::string fault{};
 };
 
 struct KinectFeedConfig {
-  std::string name;  ///< for messages
+  /// Name of the source, for messages.
+  std::string name;
+  /// Index among the connected devices.
   int number = 0;
   KinectDepth depth = KinectDepth::kRaw;
-  /// Max frames queued for fetching; when full, the oldest is dropped. A replay waits for the reader instead.
+  /// Max number of queued frames; if the queue is full, the oldest frame is dropped. A replay waits for the
+  /// reader instead.
   std::size_t most_waiting = 1;
-  /// Replayed by fakenect: the feed ends with the replay, never treats a pause as silence, and waits for its
-  /// reader.
+  /// True if fakenect replays a recording: the feed ends with the replay, never treats a pause as silence,
+  /// and waits for its reader.
   bool is_replay = false;
-  /// Depth images that the device does not send but that count as frames: fault by index.
+  /// Depth images that the replayed device does not send but that count as frames: error message by index.
   std::map<std::int64_t, std::string> broken{};
-  double silence_s = 1.0;    ///< time without a depth image after which the device is closed and opened again
-  double retry_s = 0.5;      ///< between attempts to open the device
-  double patience_s = 10.0;  ///< time limit of the first opening
-  double stop_s = 2.0;       ///< time limit of closing the device; a device that hangs longer is abandoned
+  /// Time without a depth image after which the device is closed and opened again.
+  double silence_s = 1.0;
+  /// Time between attempts to open the device.
+  double retry_s = 0.5;
+  /// Time limit of the first opening.
+  double patience_s = 10.0;
+  /// Time limit of closing the device; a device that hangs longer is abandoned.
+  double stop_s = 2.0;
+  /// Receives status messages.
   std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 

@@ -1,4 +1,4 @@
-// kinect_pairing.hpp: stamps a Kinect's images and pairs depth with colour.
+// kinect_pairing.hpp: assigns time stamps to a Kinect's images and pairs depth with colour.
 #pragma once
 #include <Eigen/Core>
 #include <chrono>
@@ -16,32 +16,33 @@
 
 namespace roomradar {
 
-/// Turns the images of a device into frames, in the order of the depth images. An unusable image becomes a
-/// frame with a fault. Used by the device's thread only.
+/// Makes frames from the images of a device, in the order of the depth images. An unusable image becomes a
+/// frame with an error message. Used by the device's thread only.
 class KinectPairing {
  public:
   /// @param config  must outlive the pairing
-  /// @param put     receives the frames
+  /// @param put     called with each frame
   KinectPairing(const KinectFeedConfig& config, std::function<void(KinectFrame)> put)
       : config_(config), put_(std::move(put)) {}
 
-  /// Continues the stamps with the host's time after a gap. Call before the device is opened again, since its
-  /// first images may arrive during the opening.
+  /// Makes the stamps continue after a gap, by the host's time. Call before the device is opened again, since
+  /// its first images may arrive during the opening.
   void restart_clock();
-  /// Adds a depth image; returns false if its size is wrong.
-  /// @param pixels          640 x 480
-  /// @param ticks           the device's stamp
+  /// Adds a depth image. Returns false if its size is wrong.
+  /// @param pixels          640 x 480 values
+  /// @param ticks           stamp of the device's clock
   /// @param memory          returns a frame whose memory is reused
   /// @param acceleration_g  latest reading of the accelerometer, g, camera axes
   bool add_depth(std::span<const std::uint16_t> pixels, std::uint32_t ticks,
                  const std::function<KinectFrame()>& memory,
                  const std::optional<Eigen::Vector3d>& acceleration_g);
-  /// Adds a colour image; returns false if its size is wrong. The depth image then has no colour.
-  /// @param bytes  640 x 480 x 3
+  /// Adds a colour image. Returns false if its size is wrong; the depth image then has no colour.
+  /// @param bytes  640 x 480 x 3 values
+  /// @param ticks  stamp of the device's clock
   bool add_colour(std::span<const std::uint8_t> bytes, std::uint32_t ticks);
-  /// Passes on the frames whose colour is decided.
+  /// Passes on the frames whose pairs are decided.
   void hand_over();
-  /// Passes on all frames: no image follows from this opening of the device.
+  /// Passes on all remaining frames. Call when the device has been closed, so no image follows.
   void finish();
 
  private:
@@ -53,7 +54,7 @@ class KinectPairing {
 
   double stamp_of(std::uint32_t ticks);
   void pass_over_broken();
-  /// Queues the fault among the depth images that wait for colour, to keep their order.
+  /// Queues an error among the depth images that wait for colour, so the frames keep their order.
   void fail(std::int64_t number, const std::string& what);
   [[nodiscard]] KinectFrame broken_frame(std::int64_t number, const std::string& what) const;
   void put_broken();

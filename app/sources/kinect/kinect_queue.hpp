@@ -1,4 +1,4 @@
-// kinect_queue.hpp: hands frames from a Kinect's thread to the reader's thread.
+// kinect_queue.hpp: passes frames from a Kinect's thread to the reader's thread.
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -12,7 +12,7 @@
 
 namespace roomradar {
 
-/// Queue of frames, and the state that the device's thread shares with the reader's. Thread safe.
+/// Queue of frames, and the state that both threads share. Thread safe.
 class KinectQueue {
  public:
   enum class Take { kFrame, kNothing, kEnd };
@@ -30,28 +30,31 @@ class KinectQueue {
   void end();
   /// Queues a frame. Returns true if the queue was full, so its oldest frame was dropped.
   bool put(KinectFrame frame);
-  /// Returns a frame, with reused memory if available.
+  /// Returns an empty frame, with reused memory if available.
   KinectFrame empty_frame();
-  /// Returns true if the reader has stopped the feed. Blocks a replay while its frames are not fetched.
+  /// Returns true if the reader has stopped the feed. During a replay, first waits until the reader has
+  /// fetched the queued frames.
   bool must_stop();
-  /// Waits for wait_s; returns true, at once, if the reader stops the feed.
+  /// Waits for wait_s and returns false. Returns true immediately if the reader stops the feed.
   bool stopped_within(double wait_s);
 
   // ---- called by the reader's thread ----
 
-  /// Waits for the first opening, up to config.patience_s. Throws Error if it failed.
+  /// Waits for the first opening, up to config.patience_s, and returns the device's constants. Throws Error
+  /// if the opening failed.
   std::optional<KinectConstants> wait_for_opening();
-  /// Moves the next frame into `frame`; waits up to wait_s for one.
+  /// Moves the next frame into `frame`. Waits up to wait_s for a frame.
   Take take(KinectFrame& frame, double wait_s);
-  /// Returns true if the device's thread ended within config.stop_s.
+  /// Stops the feed. Returns true if the device's thread ended within config.stop_s.
   bool stop();
 
  private:
-  /// Frames with a fault have no memory to reuse.
+  /// Stores a fetched frame's memory for reuse, unless the frame has an error message and thus no memory.
   void keep_memory(KinectFrame frame);
 
   const KinectFeedConfig& config_;
-  std::mutex mutex_;  ///< guards the members below
+  /// Guards the members below.
+  std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<KinectFrame> ready_;
   std::vector<KinectFrame> spare_;

@@ -10,8 +10,8 @@
 
 namespace roomradar {
 
-/// A correspondence: the depth camera sees a point at `depth_px`, `depth_m` along its axis; the colour camera
-/// sees the same point at `colour_px`.
+/// A correspondence between the cameras: the depth camera sees a point at `depth_px`, `depth_m` along its
+/// optical axis; the colour camera sees the same point at `colour_px`.
 struct SeenByBoth {
   Eigen::Vector2d depth_px;
   double depth_m = 0.0;
@@ -20,13 +20,15 @@ struct SeenByBoth {
 
 struct KinectConstants {
   KinectZeroPlane zero_plane;
-  std::vector<SeenByBoth> seen_by_both;  ///< spread over the image and the depth range
+  /// Correspondences, distributed over the image and the depth range.
+  std::vector<SeenByBoth> seen_by_both;
 };
 
-/// Fits the colour camera to the device's own registration by least squares; `nominal`'s depth camera is
-/// kept. Fitted are the focal length (one for both axes), principal point, rotation, and shift along x. A
-/// weak prior pulls each to its nominal value, since they partly compensate for one another. Returns nothing
-/// if the RMS error is above 3 px: the constants then do not mean what is assumed.
+/// Fits the colour camera to the device's own registration by least squares; keeps `nominal`'s depth camera.
+/// Fits the focal length (one for both axes), the principal point, the rotation, and the translation along x.
+/// A weak prior pulls each parameter to its nominal value, since the parameters partly compensate for one
+/// another. Returns nothing if the RMS error is above 3 px, since the device's constants then have another
+/// meaning than assumed.
 std::optional<CameraRig> fit_kinect_rig(const std::vector<SeenByBoth>& seen_by_both,
                                         const CameraRig& nominal);
 

@@ -13,51 +13,59 @@
 
 namespace roomradar {
 
-/// Max size of a text file that lists images; enough for weeks of frames.
+/// Max size of a text file that lists images; it suffices for weeks of frames.
 inline constexpr std::uintmax_t kLargestList_bytes = std::uintmax_t{1} << 30;
 
-/// A frame that has not been read yet.
+/// A frame of a recording before its images are read.
 struct RecordedFrame {
   double stamp_s = 0.0;
   std::filesystem::path depth_file{};
-  std::filesystem::path colour_file{};  ///< empty: no colour
-  double colour_after_depth_s = 0.0;    ///< colour stamp minus depth stamp
-  std::filesystem::path pose_file{};    ///< empty: T_world_camera holds the pose, if there is one
+  /// Colour image; empty if there is none.
+  std::filesystem::path colour_file{};
+  /// Colour stamp minus depth stamp.
+  double colour_after_depth_s = 0.0;
+  /// Pose file; if empty, the pose, if any, is in T_world_camera.
+  std::filesystem::path pose_file{};
   std::optional<Eigen::Isometry3d> T_world_camera{};
+  /// Unit direction of gravity in the depth camera's frame, if known.
   std::optional<Eigen::Vector3d> down_camera{};
-  std::string fault{};  ///< if not empty: reason why the frame cannot be used
+  /// Reason why the frame cannot be used; empty if it can.
+  std::string fault{};
 };
 
 struct RecordingIndex {
   DepthEncoding depth_encoding = DepthEncoding::kMillimetres;
   NominalRig nominal = NominalRig::kSevenScenes;
-  std::vector<RecordedFrame> frames;  ///< stamps increase, except for frames with a fault
+  /// Frames with increasing stamps, except for frames that cannot be used.
+  std::vector<RecordedFrame> frames;
 };
 
-/// Recognises the format of a recording and lists its frames; reads only its text files (and 12 byte
-/// accelerometer dumps). Throws Error as open_folder() does.
+/// Recognises the format of a recording and lists its frames. Reads only its text files (and accelerometer
+/// dumps of 12 bytes). Throws Error as open_folder() does.
 RecordingIndex index_recording(const std::filesystem::path& folder);
 
-/// One function per format; the folder must be of that format. index_tum() and index_fakenect() are in
+/// Lists the frames of a folder in 7-Scenes format. index_tum() and index_fakenect() are in
 /// recording_index_tum.hpp and recording_index_fakenect.hpp.
 RecordingIndex index_seven_scenes(const std::filesystem::path& folder);
+/// Lists the frames of a numbered folder.
 RecordingIndex index_numbered(const std::filesystem::path& folder);
 
-/// A line of a list of images.
+/// A line of a file that lists images.
 struct ListedImage {
   double stamp_s = 0.0;
   std::filesystem::path file{};
-  std::string fault{};  ///< if not empty: reason why the line cannot be used; `file` is then empty
+  /// Reason why the line cannot be used; `file` is then empty. Empty if the line is valid.
+  std::string fault{};
 };
 
-/// Assigns the decided pairs' colour images to `frames`, by number, or the colour images' faults. A frame
-/// whose stamp does not advance gets a fault.
+/// Assigns colour images to `frames`, by the decided pairs. If the colour image's line cannot be used, the
+/// frame cannot be used either. A frame whose stamp does not advance becomes unusable too.
 void pair_up(StampPairing& pairing, const std::vector<ListedImage>& colours,
              std::vector<RecordedFrame>& frames);
 
-/// Reads a 7-Scenes pose, 4 x 4, camera to world, and projects its rotation to the nearest exact one
-/// (recordings are off by some 1e-4). Returns nothing if an entry is not finite: tracking was lost while
-/// recording. Throws Error naming the file if it is missing or not a pose.
+/// Reads a 7-Scenes pose: a 4 x 4 matrix, camera to world. Projects its rotation to the nearest exact
+/// rotation, since recordings are off by about 1e-4. Returns nothing if an entry is not finite, which means
+/// that tracking was lost while recording. Throws Error naming the file if it is missing or not a pose.
 std::optional<Eigen::Isometry3d> read_pose_file(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// recording_index_fakenect.hpp: lists the frames of a recording by libfreenect.
+// recording_index_fakenect.hpp: lists the frames of a recording made by libfreenect.
 #pragma once
 #include <filesystem>
 

@@ -13,31 +13,31 @@ namespace roomradar {
 
 enum class RecordingFormat { kTum, kSevenScenes, kFakenect };
 
-/// "tum", "7scenes" or "fakenect".
+/// Returns "tum", "7scenes" or "fakenect".
 std::string_view to_string(RecordingFormat format);
 
 /// Writes a recording frame by frame. Precision after reading it back with open_folder():
 ///   kTum          stamps to 1 us, depth to 0.1 mm (invalid beyond 13.1 m), colour, poses, gravity
-///   kSevenScenes  depth to 0.5 mm (invalid beyond 65.5 m), colour, poses; stamps are frame / 30 s; no
-///   gravity;
-///                 an empty file frame-N.color.none for a frame without colour
-///   kFakenect     stamps to 1/60 us plus a common offset (gaps over 30 s become 30 s, since the device's
-///   clock
-///                 wraps after 72 s), depth quantised as by the Kinect (invalid beyond 10 m), colour, gravity
-///                 to 1/819 g; no poses; 640 x 480 only, the one size that fakenect replays
+///   kSevenScenes  depth to 0.5 mm (invalid beyond 65.5 m), colour, poses; no gravity. Stamps are
+///                 frame / 30 s. A frame without colour gets an empty file frame-N.color.none.
+///   kFakenect     stamps to 1/60 us plus a common offset, depth quantised as by the Kinect (invalid
+///                 beyond 10 m), colour, gravity to 1/819 g; no poses. Gaps over 30 s become 30 s, since
+///                 the device's clock wraps after 72 s. 640 x 480 only, the one size that fakenect
+///                 replays.
 /// Colour is lossless. All frames must have the first frame's cameras, which are written to camera.json.
 class RecordingWriter {
  public:
   /// Creates the folder, or uses an empty one. Throws Error if it is not empty or cannot be written.
-  /// @param are_calibrated  frames are free of lens and depth errors; recorded in camera.json
+  /// @param are_calibrated  true if lens and depth errors of the frames are already corrected; recorded in
+  ///                        camera.json
   RecordingWriter(std::filesystem::path folder, RecordingFormat format, bool are_calibrated = false);
 
-  /// Throws Error if a file cannot be written, the cameras change, the stamp does not advance, or the images
-  /// do not match the cameras' size.
+  /// Appends a frame. Throws Error if a file cannot be written, the cameras change, the stamp does not
+  /// advance, or the images do not match the cameras' size.
   void write(const Frame& frame);
 
-  /// Completes the lists; throws Error if they are not on disk. No write() may follow. Without close(), the
-  /// recording so far is usually still readable.
+  /// Completes the lists. Throws Error if they are not on disk. No write() may follow. If close() is never
+  /// called, the recording so far is usually still readable.
   void close();
 
   [[nodiscard]] std::int64_t frames_written() const { return frames_written_; }
@@ -52,8 +52,10 @@ class RecordingWriter {
   bool are_calibrated_;
   std::optional<CameraRig> rig_;
   double last_stamp_s_ = 0.0;
-  double left_out_s_ = 0.0;     // total time cut from long gaps by kFakenect
-  bool wrote_gravity_ = false;  // the last gravity entry written is a known direction
+  // Total time that kFakenect cut from long gaps.
+  double left_out_s_ = 0.0;
+  // True if the last gravity entry written is a known direction.
+  bool wrote_gravity_ = false;
   std::int64_t frames_written_ = 0;
   std::ofstream depth_list_, colour_list_, pose_list_, gravity_list_;
 };

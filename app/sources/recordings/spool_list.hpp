@@ -1,7 +1,7 @@
-// spool_list.hpp: the files of a spool: the list of its frames, and their images.
+// spool_list.hpp: files of a frame cache on disk (spool): a list of the frames, and their images.
 //
-// list.bin: "RRSPOOL1", the source's name, then for each frame the size of its entry in bytes (u32) and the
-// entry; a size of 0 marks the end of the source.
+// The list, list.bin, has a header: "RRSPOOL1" and the source's name. For each frame follows the size of its
+// entry in bytes (u32) and the entry. A size of 0 marks the end of the source.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -14,43 +14,51 @@
 
 namespace roomradar {
 
-/// A frame without its images, or the fault that replaced it.
+/// A frame without its images, or the problem that replaced it.
 struct SpoolEntry {
   Frame frame;
+  /// Error message if the frame is unreadable; empty otherwise.
   std::string fault;
 };
 
-/// List left in a folder by an earlier process.
+/// The list that an earlier process left in a folder.
+/// Name of the source.
 struct SpoolList {
   std::string name;
+  /// True if the source had ended.
   std::vector<SpoolEntry> entries;
   bool at_end = false;
-  std::uintmax_t sound_bytes = 0;  ///< length of the list's valid part; an incomplete entry may follow
+  /// Length of the list's valid part; an incomplete entry may follow.
+  std::uintmax_t sound_bytes = 0;
 };
 
+/// Returns the path of the folder's list.
 std::filesystem::path spool_list_file(const std::filesystem::path& folder);
 
-/// Returns false for a list without a complete header: a full disk or a kill cut it off before the first
-/// frame.
+/// Returns true if the folder has a list with a complete header. The header is incomplete if the disk was
+/// full or the process was killed before the first frame.
 bool has_spool_list(const std::filesystem::path& folder);
 
-/// Reads the list of a folder. A damaged entry becomes an unreadable frame. Throws Error if the list is
-/// unreadable or not a spool's.
+/// Reads the list of a folder. A damaged entry becomes an unreadable frame. Throws Error if the file is
+/// unreadable or not such a list.
 SpoolList read_spool_list(const std::filesystem::path& folder);
 
 /// Creates the list of a folder, without frames. Throws Error if it cannot be written.
-/// @param name  of the source
-/// @param list  opened at the list's end
+/// @param name  the source's name
+/// @param[out] list  stream, opened at the list's end
 void begin_spool_list(const std::filesystem::path& folder, const std::string& name, std::ofstream& list);
 
-/// Appends an entry; null marks the end of the source. Throws Error if the list cannot be written.
+/// Appends an entry to the list; null marks the end of the source. Throws Error if the list cannot be
+/// written.
 void append_to_spool_list(SpoolEntry* entry, const std::filesystem::path& folder, std::ofstream& list);
 
 /// Writes the images of a frame to the folder, and returns its entry. Throws Error if they cannot be written.
+/// @param position  index of the frame in the list, which names the image files
 SpoolEntry write_spooled(const Frame& frame, const std::filesystem::path& folder, std::size_t position);
 
 /// Reads the frame of an entry, bit-identical to the frame written. Throws Error if its images are missing or
 /// damaged.
+/// @param position  index of the frame in the list
 ReadResult read_spooled(const SpoolEntry& entry, const std::filesystem::path& folder, std::size_t position,
                         Frame& frame);
 

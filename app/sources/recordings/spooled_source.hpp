@@ -1,4 +1,5 @@
-// spooled_source.hpp: records a live source to disk, so that it can be reread from its first frame.
+// spooled_source.hpp: caches the frames of a live source on disk, so the source can be read again from its
+// first frame.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -18,37 +19,37 @@
 
 namespace roomradar {
 
-/// Reads an inner source in a background thread, from the first next() on, and writes each frame to a folder.
-/// next() reads frames from the folder, bit-identical, however far behind it is: a slow reader loses no frame
-/// of a live source. Costs about 0.7 MB and 14 ms of the background thread per 640 x 480 frame.
+/// A frame cache on disk. From the first next() on, a background thread reads an inner source and writes each
+/// frame to a folder. next() reads the frames from the folder, bit-identical. A slow reader thus loses no
+/// frame of a live source. Costs about 0.7 MB and 14 ms of the background thread per 640 x 480 frame.
 class SpooledSource final : public FrameSource {
  public:
-  /// Spools to a temporary folder that the destructor removes.
-  /// @param parent_folder  where the temporary folder is created; the system's temporary folder if empty
-  /// @throws Error if the folder cannot be created. After the last good frame, next() throws Error if the
-  /// folder cannot be written (disk full), and rethrows exceptions of the inner source.
+  /// Caches frames in a temporary folder that the destructor removes.
+  /// @param parent_folder  folder in which the temporary folder is created; empty: the system's temporary
+  ///                       folder
+  /// @throws Error if the folder cannot be created. If the folder cannot be written later (disk full) or the
+  ///         inner source throws, next() throws that error after the last good frame.
   explicit SpooledSource(std::unique_ptr<FrameSource> source,
                          const std::filesystem::path& parent_folder = {});
 
-  /// Spools to `folder`, which is kept. Frames left there by an earlier process come first. The source's
-  /// frames continue the same recording: indices and stamps go on from the last.
+  /// Caches frames in `folder`, which is kept. Frames that an earlier process left there are delivered first.
+  /// The source's frames continue the same recording: indices and stamps continue from the last frame.
   /// @param source      may be null if has_end(folder)
-  /// @param most_ahead  the source is not read while this many frames are unread; frames of a live source
-  /// that
-  ///                    arrive meanwhile are lost, as without a spool
-  /// @throws Error if the folder cannot be created, or its list is not a spool's
+  /// @param most_ahead  max number of unread frames; while there are this many, the source is not read, and
+  ///                    frames of a live source that arrive then are lost
+  /// @throws Error if the folder cannot be created, or its list is not a frame cache's
   static std::unique_ptr<SpooledSource> kept(std::unique_ptr<FrameSource> source,
                                              const std::filesystem::path& folder,
                                              std::size_t most_ahead = kEveryFrame);
   static constexpr std::size_t kEveryFrame = std::numeric_limits<std::size_t>::max();
-  /// Returns true if the folder contains a spool whose source had ended.
+  /// Returns true if the folder contains a frame cache whose source had ended.
   static bool has_end(const std::filesystem::path& folder);
-  /// Returns true if the folder contains a frame. Throws Error as has_end() does.
+  /// Returns true if the folder contains a cached frame. Throws Error as has_end() does.
   static bool has_frames(const std::filesystem::path& folder);
 
-  /// Reads what was spooled to `folder`, up to the source's end or the point where the spooling process was
+  /// Reads the frames cached in `folder`, up to the source's end or the point where the writing process was
   /// killed. Never writes to the folder.
-  /// @throws Error if the folder contains no spool
+  /// @throws Error if the folder contains no frame cache
   static std::unique_ptr<SpooledSource> again(const std::filesystem::path& folder);
 
   ~SpooledSource() override;
@@ -64,21 +65,25 @@ class SpooledSource final : public FrameSource {
   void take(SpoolList left);
   void stop_capture();
   bool wait_for_reader();
-  // Run in the background thread.
+  // The following two run in the background thread.
   void capture();
   bool capture_one(Frame& frame);
 
-  /// Where the frames are kept.
+  /// Location of the cached frames.
   struct Spool {
     std::filesystem::path folder;
     bool kept = false;
-    std::ofstream list{};  ///< only if kept
+    /// Open only if the folder is kept.
+    std::ofstream list{};
   };
-  /// Continues the recording of an earlier process in the same folder.
+  /// State for continuing the recording of an earlier process in the same folder.
   struct Continuation {
-    std::int64_t index_offset = 0;               ///< added to the source's own index
-    std::optional<double> stamp_offset_s = 0.0;  ///< nothing: set at the source's next frame
-    std::size_t left = 0;                        ///< number of entries from an earlier process
+    /// Offset added to the source's own index.
+    std::int64_t index_offset = 0;
+    /// Offset added to the source's own stamps; unset: determined at the source's next frame.
+    std::optional<double> stamp_offset_s = 0.0;
+    /// Number of entries from an earlier process.
+    std::size_t left = 0;
   };
 
   std::unique_ptr<FrameSource> source_;
@@ -87,19 +92,23 @@ class SpooledSource final : public FrameSource {
   Continuation continued_;
   std::size_t most_ahead_ = kEveryFrame;
 
-  mutable std::mutex mutex_;  ///< guards the members below
+  /// Guards the members below.
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::size_t position_ = 0;
-  std::deque<SpoolEntry> entries_;  ///< existing entries never move
+  /// List of the frames; existing entries never move.
+  std::deque<SpoolEntry> entries_;
   bool at_end_ = false;
   bool stop_ = false;
-  std::optional<ReadResult> waiting_;  ///< latest result of the source if it had no frame yet
+  /// Latest result of the source if it had no frame available.
+  std::optional<ReadResult> waiting_;
   std::exception_ptr failure_;
 
   std::thread thread_;
 };
 
-/// Returns `source` itself if it can rewind (tested before anything is read), else a SpooledSource around it.
+/// Returns `source` itself if it can rewind (tested before anything is read), otherwise a SpooledSource
+/// around it.
 std::unique_ptr<FrameSource> make_rewindable(std::unique_ptr<FrameSource> source);
 
 }  // namespace roomradar
