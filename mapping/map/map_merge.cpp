@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "mapping/coverage/coverage.hpp"
+#include "mapping/map/surface_points.hpp"
+#include "mapping/map/tsdf_interpolation.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 

@@ -1,7 +1,6 @@
 // registration.hpp: registers map b to map a of the same room, or a new scan b to a map a.
 #pragma once
 #include <Eigen/Geometry>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,7 +8,6 @@
 
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/octree/static_map.hpp"
-#include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
@@ -51,7 +49,7 @@ std::string describe(const Registration& registration);
 /// directions keep the keyframes' value. The result must then agree with a's surface and free space.
 /// Deterministic.
 ///
-/// @param surface_b  points sampled uniformly on the surface of b, in the world of b (see sample_surface())
+/// @param surface_b  points sampled uniformly on the surface of b, in the world of b (see surface_points.hpp)
 Registration register_to(const StaticMap& octree_a, const KeyframeDatabase& database_a,
                          const KeyframeDatabase& database_b, std::span<const Eigen::Vector3d> surface_b,
                          const RegistrationConfig& config = {});
@@ -60,21 +58,5 @@ Registration register_to(const StaticMap& octree_a, const KeyframeDatabase& data
 /// or kContradicted, and sets overlap and agreement.
 Registration verify_registration(const StaticMap& octree_a, std::span<const Eigen::Vector3d> surface_b,
                                  const Eigen::Isometry3d& T_a_b, const RegistrationConfig& config = {});
-
-/// Returns `count` points sampled uniformly on a mesh. Deterministic. Empty for a mesh without area.
-std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count);
-
-/// Returns about `count` surface points from the keyframes' depth previews, at most 3 m from their camera, in
-/// the keyframes' world.
-std::vector<Eigen::Vector3d> surface_of(const KeyframeDatabase& keyframe_database, std::size_t count);
-
-/// Signed distance and its gradient at a point, interpolated trilinearly from the eight samples around it.
-/// distance_at() returns nullopt if one of them is unknown.
-struct DistanceAt {
-  double distance_m = 0.0;                             ///< m, along the viewing rays, as in SurfaceSample
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< direction in which the distance grows: towards the
-                                                       ///< free side
-};
-std::optional<DistanceAt> distance_at(const StaticMap& map, const Eigen::Vector3d& p_world);
 
 }  // namespace roomradar

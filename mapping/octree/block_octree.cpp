@@ -16,6 +16,16 @@ BlockUnits::BlockUnits(double resolution_m, const FusionConfig& config)
 BlockOctree::BlockOctree(double resolution_m, const FusionConfig& config)
     : resolution_m_(resolution_m), units_(resolution_m, config) {}
 
+KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m) {
+  if (box_world.isEmpty()) return {.first = Eigen::Array3i::Constant(1), .last = Eigen::Array3i::Zero()};
+  const auto to_key = [](const Eigen::Array3d& voxel) -> Eigen::Array3i {
+    return voxel.max(-1.0).min(65536.0).cast<int>();
+  };
+  const Eigen::Array3d low = box_world.min().array() / resolution_m + kKeyOrigin - 0.5;
+  const Eigen::Array3d high = box_world.max().array() / resolution_m + kKeyOrigin - 0.5;
+  return {.first = to_key(low.ceil()), .last = to_key(high.floor())};
+}
+
 SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth) {
   if (node.is_unknown()) return {};
   SubtreeSize size{.nodes = 1};

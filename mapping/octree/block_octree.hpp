@@ -3,7 +3,7 @@
 // one block of one cache line; in OctoMap they are nine separately allocated nodes. Memory access dominates
 // the time of a frame, which changes about 50,000 groups of eight voxels.
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -99,6 +99,21 @@ struct NodePlace {
     return digit(0) | digit(1) << 1U | digit(2) << 2U;
   }
 };
+
+/// Keys of the voxels whose centres are in a box.
+struct KeyRange {
+  Eigen::Array3i first = Eigen::Array3i::Zero();
+  Eigen::Array3i last = Eigen::Array3i::Constant(65535);
+
+  [[nodiscard]] bool holds(const Eigen::Array3i& key) const {
+    return (key >= first).all() && (key <= last).all();
+  }
+  [[nodiscard]] bool meets(const NodePlace& place) const {
+    return (place.key <= last).all() && (place.key + (place.edge_voxels() - 1) >= first).all();
+  }
+};
+/// Returns the range for a box in the world, m; a range without keys if the box is empty.
+KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m);
 
 class BlockOctree {
  public:

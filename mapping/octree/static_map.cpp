@@ -16,14 +16,12 @@
 namespace roomradar {
 namespace {
 
-using Key = Eigen::Array3i;
-
 Occupancy occupancy_of(LogOdds log_odds) {
   if (log_odds == 0) return Occupancy::kUnknown;
   return log_odds > 0 ? Occupancy::kOccupied : Occupancy::kFree;
 }
 
-SurfaceSample sample_of(const BlockOctree& tree, const LeafBlock& block, unsigned i, const Key& key) {
+SurfaceSample sample_of(const BlockOctree& tree, const LeafBlock& block, unsigned i, const Eigen::Array3i& key) {
   return {.voxel = (key - kKeyOrigin).matrix(),
           .occupancy = occupancy_of(block.log_odds[i]),
           .distance_m = block.distance[i] * tree.units().distance_m,
@@ -34,7 +32,7 @@ SurfaceSample sample_of(const BlockOctree& tree, const LeafBlock& block, unsigne
 
 // Node that contains a voxel: a leaf block and the voxel's index in it, or a node that is not a block.
 struct Found {
-  Key key = Key::Zero();
+  Eigen::Array3i key = Eigen::Array3i::Zero();
   Slot node;
   const LeafBlock* block = nullptr;
   unsigned i = 0;
@@ -53,26 +51,6 @@ Found find(const BlockOctree& tree, const Eigen::Vector3d& p_world) {
   found.block = &tree.leaves(found.node);
   found.i = place.towards(found.key);
   return found;
-}
-
-// Keys of the voxels whose centres are in a box.
-struct KeyRange {
-  Key first = Key::Zero();
-  Key last = Key::Constant(65535);
-
-  [[nodiscard]] bool holds(const Key& key) const { return (key >= first).all() && (key <= last).all(); }
-  [[nodiscard]] bool meets(const NodePlace& place) const {
-    return (place.key <= last).all() && (place.key + (place.edge_voxels() - 1) >= first).all();
-  }
-};
-KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m) {
-  if (box_world.isEmpty()) return {.first = Key::Constant(1), .last = Key::Zero()};
-  const auto to_key = [](const Eigen::Array3d& voxel) -> Key {
-    return voxel.max(-1.0).min(65536.0).cast<int>();
-  };
-  const Eigen::Array3d low = box_world.min().array() / resolution_m + kKeyOrigin - 0.5;
-  const Eigen::Array3d high = box_world.max().array() / resolution_m + kKeyOrigin - 0.5;
-  return {.first = to_key(low.ceil()), .last = to_key(high.floor())};
 }
 
 // Calls `decide` on every sample of the subtree that is in the range. Returns the node's new state.

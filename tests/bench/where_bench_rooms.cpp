@@ -9,7 +9,7 @@
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/solids/counter_random.hpp"
 #include "bench_times.hpp"
-#include "mapping/map/registration.hpp"
+#include "mapping/map/surface_points.hpp"
 #include "mapping/mesh/mesh_distance.hpp"
 
 namespace roomradar {

@@ -48,7 +48,7 @@ until_true has_frames 3
 echo "== a click drops the object where it points"
 xdotool mousemove 494 330
 xdotool click 1
-until_true has_event '^frame [0-9]+ drop object at '
+until_true has_event '^frame [0-9]+ drop object near '
 shot dropped
 
 echo "== keys change policies, hold the camera, add and remove"
@@ -173,7 +173,7 @@ settle
 has_dropped() {  # keys act at the mouse position again
   xdotool key d
   sleep 0.3
-  tail -n "+$((before + 1))" "$work/session/events.txt" | grep -q ' drop object at '
+  tail -n "+$((before + 1))" "$work/session/events.txt" | grep -q ' drop object near '
 }
 until_true has_dropped
 
@@ -208,7 +208,7 @@ if command -v fakenect > /dev/null; then
   until_true has_focus
   until_true has_frames 3
   xdotool mousemove 590 390 click 1  # on the table, beside the object
-  until_true has_event '^frame [0-9]+ drop object at '
+  until_true has_event '^frame [0-9]+ drop object near '
   settle
   shot kinect
   xdotool key ctrl+q

@@ -7,6 +7,8 @@
 #include "mapping/map/map_diff.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/map/registration.hpp"
+#include "mapping/map/surface_points.hpp"
+#include "mapping/map/tsdf_interpolation.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/error_of.hpp"

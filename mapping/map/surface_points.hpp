@@ -1,0 +1,19 @@
+// surface_points.hpp: points on the surface of a map, from its mesh or from its keyframes.
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "mapping/localization/keyframe_database.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// Returns `count` points sampled uniformly on a mesh. Deterministic. Empty for a mesh without area.
+std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count);
+
+/// Returns about `count` surface points from the keyframes' depth previews, at most 3 m from their camera, in
+/// the keyframes' world.
+std::vector<Eigen::Vector3d> surface_of(const KeyframeDatabase& keyframe_database, std::size_t count);
+
+}  // namespace roomradar

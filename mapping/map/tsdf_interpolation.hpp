@@ -1,0 +1,19 @@
+// tsdf_interpolation.hpp: signed distance between the voxels' centres.
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+#include "mapping/octree/static_map.hpp"
+
+namespace roomradar {
+
+/// Signed distance and its gradient at a point, interpolated trilinearly from the eight samples around it.
+/// distance_at() returns nullopt if one of them is unknown.
+struct DistanceAt {
+  double distance_m = 0.0;                             ///< m, along the viewing rays, as in SurfaceSample
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< direction in which the distance grows: towards the
+                                                       ///< free side
+};
+std::optional<DistanceAt> distance_at(const StaticMap& map, const Eigen::Vector3d& p_world);
+
+}  // namespace roomradar
