@@ -47,12 +47,12 @@ struct PixelBits {
   }
 };
 
-/// Smooths an outline: sets a pixel if most of the 3 x 3 pixels around it are set, pixels beyond the image
-/// being unset. `smooth` gets the size of `bits`.
+/// Smooths an outline: sets a pixel if most of the 3 x 3 pixels around it are set, with pixels outside the
+/// image unset. `smooth` is resized.
 void take_majority(const PixelBits& bits, PixelBits& smooth);
 
-/// Selects the pixels of `bits` that are not in `near` and have no neighbour in it. These are details that a
-/// 3 x 3 majority removes as a whole, such as lines one pixel wide.
+/// Selects the pixels of `bits` that are not in `near` and have no neighbour in `near`. If `near` is the 3 x
+/// 3 majority, these are details that the majority removes entirely, such as lines one pixel wide.
 void take_far_from(const PixelBits& bits, const PixelBits& near, PixelBits& far);
 
 }  // namespace roomradar
