@@ -20,7 +20,7 @@ struct TrackingPass {
   PrescanCounts counts;  ///< over the frames read so far
   Odometry odometry;
   UpEstimator up;
-  std::vector<TimedPose> recorded;
+  std::vector<TimedPose> recorded;  ///< recorded camera poses, if any
 };
 
 /// Result of the first pass: camera poses, keyframe database and up direction.

@@ -81,7 +81,7 @@ struct BlockUnits {
   float weight;
 };
 
-/// Position of a node in the tree: its depth and the key of its lowest voxel (kKeyOrigin + voxel index).
+/// Location of a node in the tree: its depth, and the key (kKeyOrigin + voxel index) of its lowest voxel.
 struct NodePlace {
   unsigned depth = 0;
   Eigen::Array3i key = Eigen::Array3i::Zero();
@@ -180,6 +180,7 @@ struct SubtreeSize {
 /// Returns the size of a node with all its descendants.
 SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth);
 
+/// Erases the signed distance and colour of voxel i.
 inline void erase_sample(LeafBlock& block, unsigned i) {
   block.weight[i] = 0;
   block.distance[i] = 0;
