@@ -30,12 +30,13 @@ class AtomicFolder {
   std::filesystem::path partial_;
 };
 
-/// Returns the old version of `target` (target.before-PID) if a process was killed while replacing it by two
-/// renames, on a file system that cannot exchange names. Empty if `target` exists or nothing was set aside.
+/// On a file system that cannot exchange two names, commit() needs two renames. If a process was killed
+/// between them, returns the old version of `target` (target.before-PID). Empty if `target` exists or there
+/// is none.
 std::filesystem::path interrupted_replacement_of(const std::filesystem::path& target);
 
-/// Returns an identifier that changes when another folder is put in place under this name. Empty if there is
-/// no folder.
+/// Returns an identifier that changes when the folder is replaced by another of the same name. Empty if there
+/// is no folder.
 std::string folder_version(const std::filesystem::path& folder);
 
 /// Throws Error: the folder is replaced faster than it can be read.
