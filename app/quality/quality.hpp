@@ -49,8 +49,8 @@ struct QualityField {
   const char* old_option = "";   ///< former name on the command line; empty: none
 };
 
-/// Calls visit(QualityField, field) for each field, in the order of files and help. One function per quality:
-/// the list of its fields.
+/// Calls visit(QualityField, field) for each field, in the order of files and help. The only list of the
+/// fields.
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, ScanQuality>
 void visit_fields(Quality& quality, Visit&& visit) {

@@ -22,11 +22,11 @@ struct SpoolEntry {
 };
 
 /// The list that an earlier process left in a folder.
-/// Name of the source.
 struct SpoolList {
+  /// Name of the source.
   std::string name;
-  /// True if the source had ended.
   std::vector<SpoolEntry> entries;
+  /// True if the source had ended.
   bool at_end = false;
   /// Length of the list's valid part; an incomplete entry may follow.
   std::uintmax_t sound_bytes = 0;
