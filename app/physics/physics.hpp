@@ -28,9 +28,8 @@ namespace roomradar {
 /// rotation, by radar queries along its path.
 ///
 /// @param dt_s   seconds since the last call, >= 0; 0 changes nothing
-/// @param depenetration_directions_world  unit directions from the body to moving surfaces
-/// (depenetration_directions()),
-///               tried for the shortest depenetration; may be empty
+/// @param depenetration_directions_world  see depenetration_directions(); tried for the shortest
+///                                        depenetration; may be empty
 /// A sleeping body is tested only along gravity and depenetration_directions_world, and noise does not move
 /// it. A body that fell asleep in contact with another body wakes when the other moves or disappears: it
 /// follows, or tips if its support is withdrawn. A sleeping body with a non-zero velocity wakes. At most

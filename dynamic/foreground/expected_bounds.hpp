@@ -1,5 +1,4 @@
-// expected_bounds.hpp: per block of pixels, the depths at which the static model can appear, given its
-// errors.
+// expected_bounds.hpp: per block of pixels, bounds of the static model's depth, given its errors.
 #pragma once
 #include <cmath>
 #include <vector>

@@ -51,8 +51,9 @@ struct PixelBits {
 /// image unset. `smooth` is resized.
 void take_majority(const PixelBits& bits, PixelBits& smooth);
 
-/// Selects the pixels of `bits` that are not in `near` and have no neighbour in `near`. If `near` is the 3 x
-/// 3 majority, these are details that the majority removes entirely, such as lines one pixel wide.
+/// Selects the pixels of `bits` that are not in `near` and have no neighbour in `near`. With a smoothed
+/// outline from take_majority() as `near`, these are the details that smoothing removed entirely, such as
+/// lines one pixel wide.
 void take_far_from(const PixelBits& bits, const PixelBits& near, PixelBits& far);
 
 }  // namespace roomradar
