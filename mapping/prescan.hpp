@@ -1,5 +1,4 @@
-// prescan.hpp: turns a recording of a room into a map: tracks, levels, fuses, removes ghosts and extracts the
-// surface.
+// prescan.hpp: turns a recording of a room into a map: tracking, fusion, ghost removal, surface extraction.
 #pragma once
 #include <cstdint>
 #include <functional>

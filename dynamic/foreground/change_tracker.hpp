@@ -13,11 +13,12 @@
 
 namespace roomradar {
 
-/// Keeps points on dynamic and on removed surfaces in the world, and looks up each in every depth image.
+/// Stores points, in the world, on dynamic and on removed surfaces, and projects them into every depth image.
 /// A frame confirms a point if its surface is still there or, for a removed surface, is still seen through;
-/// only then does the point's steady_s grow. A frame may also contradict a point; after a few such frames the
-/// point is dropped. Hidden points and points out of view do not change, so the result does not depend on the
-/// camera's motion. Allocates nothing after the first frame except the changes it returns. Not thread safe.
+/// only then does the point's steady_s grow. A frame that shows the opposite contradicts the point; after a
+/// few such frames the point is dropped. Hidden points and points out of view do not change, so the result
+/// does not depend on the camera's motion. Allocates nothing after the first frame except the changes it
+/// returns. Not thread safe.
 class ChangeTracker {
  public:
   explicit ChangeTracker(const ChangeTrackerConfig& config = {});

@@ -4,10 +4,10 @@
 
 namespace roomradar {
 
-/// "Sigmas" combine sensor noise at that depth with pose and model error, added as variances.
+/// "Sigmas" combine, as variances, sensor noise at the point's depth with pose and model error.
 struct ChangeTrackerConfig {
   float spacing_m = 0.02F;          ///< distance between the points that represent a surface
-  float agree_sigmas = 2.5F;        ///< a surface that is off by up to this has not moved
+  float agree_sigmas = 2.5F;        ///< a surface displaced by up to this has not moved
   float pose_sigma_m = 0.003F;      ///< apparent displacement of static surfaces between frames
   float pose_sigma_per_m = 0.001F;  ///< growth of pose_sigma_m per metre of depth
   /// A surface in front of a point, by more than agree_sigmas and less than this, contradicts the point: its

@@ -1,4 +1,4 @@
-// pixel_evidence.hpp: how strongly each pixel differs from the static model.
+// pixel_evidence.hpp: evidence, per pixel, of a difference from the static model.
 #pragma once
 #include <cstddef>
 #include <cstdint>

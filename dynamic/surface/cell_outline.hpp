@@ -40,9 +40,9 @@ struct RingArc {
 };
 
 /// Returns true if a convex polygon can represent the pixels of one surface in a cell. Those on the ring must
-/// be consecutive: `arc`. The line between the ends of the arc may cut off pixels, or include empty ones,
-/// only up to about one pixel from the line. If all of the ring is set, the polygon is the whole cell, with
-/// any empty pixels inside.
+/// be consecutive, and are returned in `arc`. The line between the ends of the arc may cut off pixels, or
+/// include empty ones, only up to about one pixel from the line. If all of the ring is set, the polygon is
+/// the whole cell, with any empty pixels inside.
 bool find_outline(CellBits pixels, RingArc& arc);
 
 /// Triangles of a polygon, as indices into its list of corners.

@@ -22,8 +22,8 @@ class DepthDiscontinuity {
         slope_(std::tan(incidence_deg * std::numbers::pi_v<float> / 180.0F) * apart_px /
                static_cast<float>(std::min(camera.fx_px, camera.fy_px))) {}
 
-  /// For pixels apart_px apart along a row or column; the diagonal version: along both. Depths, > 0, are in
-  /// metres.
+  /// For two pixels that are apart_px apart along a row or a column (is_one_surface_diagonally(): along
+  /// both). Depths, > 0, are in metres.
   [[nodiscard]] bool is_one_surface(float a_m, float b_m) const { return is_one_surface(a_m, b_m, slope_); }
   [[nodiscard]] bool is_one_surface_diagonally(float a_m, float b_m) const {
     return is_one_surface(a_m, b_m, slope_ * std::numbers::sqrt2_v<float>);

@@ -1,4 +1,4 @@
-// dynamic_lattice.hpp: the dynamic surface at every fourth pixel, with its noise averaged away.
+// dynamic_lattice.hpp: the dynamic surface at every fourth pixel, with its noise reduced by averaging.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +40,7 @@ float inverse_depth_sigma(float inverse_depth, float tangent2);
 /// 3 sigmas.
 float smoothed_inverse_depth(const DynamicPixels& pixels, int x, int y);
 
+/// Computes the lattice of a frame.
 /// @param flat_sigmas  5 x 5 pixels are flat if their RMS distance from a plane is at most this
 void make_lattice(const DynamicPixels& pixels, const Intrinsics& camera, float flat_sigmas,
                   DynamicLattice& lattice);

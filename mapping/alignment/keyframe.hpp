@@ -1,5 +1,5 @@
-// keyframe.hpp: keyframes, in a compact form, with which later frames are aligned; averaging of further
-// depth.
+// keyframe.hpp: keyframes in compact form, with which later frames are aligned and into which depth is
+// averaged.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>

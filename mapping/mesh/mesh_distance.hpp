@@ -35,7 +35,8 @@ class MeshDistanceQuery {
   void for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                      const Visit& visit) const;
 
-  /// Calls visit(triangle) for each candidate within reach of the point, until visit returns true.
+  /// Calls visit(triangle) for each triangle that may be within reach_m of the point, until visit returns
+  /// true.
   template <typename Visit>
   void visit_near(const Eigen::Vector3f& p, const Visit& visit) const;
 
@@ -50,7 +51,7 @@ class MeshDistanceQuery {
   std::vector<Entry> entries_;                ///< sorted by the hash of their cubes
 };
 
-/// A point of one mesh that is too far from the surface of another.
+/// A point of one mesh that is farther than a limit from the surface of another.
 struct FarPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the mesh's origin
   float distance_m = 0.0F;                             ///< infinity if beyond the reach of `other`

@@ -24,11 +24,11 @@ struct AbsenceVotes {
   std::uint16_t last_look = 0;      ///< index of the frame that last measured it or found it gone
   std::uint16_t turn_change = 0;    ///< sum over `turns` of the largest change of a colour channel
   std::uint16_t steady_change = 0;  ///< sum over `steadies` of the largest change of a colour channel
-  /// Switches between measured and gone, each between consecutive looks from one place.
+  /// Switches between measured and gone, each between consecutive observations from one place.
   std::uint8_t turns = 0;
-  std::uint8_t steadies = 0;      ///< pairs of consecutive looks from one place that both measured it
-  State state = State::kUnknown;  ///< at last_look
-  Rgb colour{};                   ///< at last_look
+  std::uint8_t steadies = 0;      ///< pairs of consecutive observations from one place, both measured
+  State state = State::kUnknown;  ///< state in frame last_look
+  Rgb colour{};                   ///< colour in frame last_look
 };
 
 /// Converts frames into votes. Use one instance per map, and pass frames in the order of the recording.

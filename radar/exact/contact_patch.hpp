@@ -11,7 +11,8 @@
 namespace roomradar {
 
 /// Intersection of two projected triangles (object and scene), restricted to the points that are equally
-/// near. The frame of the motion has the direction of motion as its z axis.
+/// near: at most a tolerance farther than the nearest point of the query. The frame of the motion has the
+/// direction of motion as its z axis.
 struct PatchPiece {
   double contact_distance_m = 0.0;
   // Points on the scene's triangle before the motion, in the frame of the motion, m. Only the first `count`

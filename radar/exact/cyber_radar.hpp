@@ -26,9 +26,10 @@ struct RadarSearch;
 ///   2. R: the scene's bounding boxes, from large to small, nearest first (SceneInFrame). A box's least
 ///      height minus the greatest M under the box is a lower bound of the distance to every contact in it.
 ///      For a triangle, the bound is computed from its plane over each pixel of M.
-///   3. L: the triangle with the least bound gets the exact test, in double, against all object triangles in
-///      its column (search_column, find_gap, classify_pair). The least distance found is an upper bound of
-///      the result, and the least untested bound a lower one. Once they agree, both are exact.
+///   3. L: the triangle with the least bound gets the exact test, in double, against all object triangles
+///      that overlap it in projection (search_column, find_gap, classify_pair). The least distance found is
+///      an upper bound of the result, and the least untested bound a lower one. Once they agree, both are
+///      exact.
 ///
 /// Triangles thinner than a pixel enter M and R with their whole bounding boxes, so the bounds include them.
 /// Scene inside a concavity of the object is behind M, and a negative gap to M is not a contact there. The
@@ -62,7 +63,7 @@ struct RadarSearch;
 /// always ignored.
 ///
 /// Contact point: the one nearest to the centroid of all equally near points, for example those of a face
-/// that lands flat. At most ContactPatch::kMaxPieces pairs of triangles are counted.
+/// that lands flat. At most ContactPatch::kMaxPieces pairs of triangles contribute.
 ///
 /// No GL. Not thread safe: use one radar per thread; trees and images may be shared.
 class CyberRadar {

@@ -27,7 +27,7 @@ struct PendingPair {
 };
 /// Order in which pairs of boxes are visited.
 enum class PairOrder {
-  kAny,  ///< last in, first out: keeps the number of pending pairs smallest
+  kAny,  ///< last in, first out: keeps the number of pending pairs small
   /// Smallest key first: once a leaf has lowered the bound, pairs with larger keys are never opened.
   kLeastFirst,
 };

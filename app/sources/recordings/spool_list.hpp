@@ -1,7 +1,7 @@
 // spool_list.hpp: files of a frame cache on disk (spool): a list of the frames, and their images.
 //
-// The list, list.bin, has a header: "RRSPOOL1" and the source's name. For each frame follows the size of its
-// entry in bytes (u32) and the entry. A size of 0 marks the end of the source.
+// The list, list.bin, has a header: "RRSPOOL1" and the source's name. Then, for each frame: the size of its
+// entry in bytes (u32), and the entry. A size of 0 marks the end of the source.
 #pragma once
 #include <cstdint>
 #include <filesystem>
