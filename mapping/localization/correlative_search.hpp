@@ -34,7 +34,7 @@ ShapeIndex shape_index(const KeyframeDatabase& keyframe_database);
 
 struct ShapeCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  double nearness = 0.0;  ///< mean over the image's points, 0..1; 1: all points are on surfaces
+  double nearness = 0.0;  ///< mean nearness of the image's points, 0..1; 1: all are on surfaces
 };
 
 /// Returns at most `most` distinct poses at which the most points of the depth image are on known surfaces,

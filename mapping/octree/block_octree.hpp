@@ -1,7 +1,7 @@
 // block_octree.hpp: octree into which depth frames are fused. Private to StaticMap. Keys, depth, log-odds and
 // pruning are OctoMap's, and static_map_file.cpp writes it in OctoMap's file formats. Eight siblings share
-// one block of one cache line; in OctoMap they are nine separately allocated nodes. Memory access dominates
-// the time of a frame, which changes about 50,000 groups of eight voxels.
+// one block of one cache line; in OctoMap they take nine separate allocations. Memory access dominates the
+// time of a frame, which changes about 50,000 groups of eight voxels.
 #pragma once
 #include <Eigen/Core>
 #include <array>

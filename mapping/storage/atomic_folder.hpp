@@ -9,11 +9,11 @@ namespace roomradar {
 /// Waits until a file's content, or a folder's list of names, is on disk. Throws Error on failure.
 void sync_to_disk(const std::filesystem::path& path);
 
-/// New folder beside `target` (target.partial-PID); the destructor removes it unless it was put in place.
+/// New folder beside `target` (target.partial-PID); the destructor removes it unless commit() succeeded.
 class AtomicFolder {
  public:
-  /// Creates the folder and its parents. Removes partial folders that killed processes left beside `target`,
-  /// but restores the folder that interrupted_replacement_of() returns as `target`. Throws Error on failure.
+  /// Creates the folder and its parents. Removes partial folders that killed processes left beside `target`.
+  /// If interrupted_replacement_of() returns a folder, renames it back to `target`. Throws Error on failure.
   explicit AtomicFolder(const std::filesystem::path& target);
   ~AtomicFolder();
   AtomicFolder(const AtomicFolder&) = delete;

@@ -10,9 +10,9 @@
 namespace roomradar {
 
 struct UnknownSurfaceConfig {
-  /// Edge of a cube, voxels, 1 to 16. Unknown space counts only where such a cube of it fits. Thinner unknown
-  /// space (gaps between rays, slivers beside depth edges, single voxels) can be passed through. The search
-  /// for reachable unknown space starts in free space where such a cube fits.
+  /// Edge of a cube, voxels, 1 to 16. Unknown space counts only where such a cube of it fits. Objects can
+  /// pass through thinner unknown space (gaps between rays, slivers beside depth edges, single voxels). The
+  /// search for reachable unknown space starts in free space where such a cube fits.
   int least_voxels = 3;
   /// Edge, voxels, 1 to 6, of the wholly unknown cubes whose faces form the surface. The surface is less than
   /// one such cube behind the border of the unknown space that counts.

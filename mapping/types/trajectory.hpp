@@ -19,7 +19,7 @@ struct TimedPose {
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory);
 
 /// Reads a file of this format; lines starting with # are comments. frame_index counts the poses, from 0.
-/// Throws Error naming file and line if a line has not 8 finite numbers or its quaternion is not a unit
+/// Throws Error naming file and line if a line does not have 8 finite numbers or its quaternion is not a unit
 /// quaternion.
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& path);
 
