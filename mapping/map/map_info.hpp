@@ -40,8 +40,8 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
-  /// By file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt, and coverage.png if there is
-  /// one.
+  /// By file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt; coverage.png and unknown.bin
+  /// if present.
   std::map<std::string, MapFile> files;
 };
 
