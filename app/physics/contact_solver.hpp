@@ -27,7 +27,7 @@ struct SolverContact {
   Eigen::Vector3d contact_offset_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the contact
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();           ///< unit, towards the body
   /// Min separating speed along the normal after the solve, relative to the other side; < 0: may approach at
-  /// this speed.
+  /// up to -leaves_mps.
   double leaves_mps = 0.0;
   std::size_t other = kNoOther;  ///< index of the other body; kNoOther: static
   /// From the other body's centre of mass to the contact.

@@ -19,8 +19,8 @@ namespace roomradar {
 struct DropRequest {
   std::string name{};
   std::optional<Eigen::Vector3d> position_world{};  ///< unset: over a level surface in view
-  /// Without position_world: the surface nearest to this point, at most 25 cm away; unset: the one nearest to
-  /// the picture's middle.
+  /// Without position_world: the surface nearest to this point, at most 25 cm away; unset: the surface
+  /// nearest to the picture's centre.
   std::optional<Eigen::Vector3d> near_world{};
   double height_m = 0.3;  ///< height of the object's lowest point above the position or surface
   std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation

@@ -52,10 +52,10 @@ struct ChangedRoom {
   TriangleTree unknown_tree;
 };
 
-/// Watches the dynamic foreground of a session's frames for lasting changes. A settled change is measured
-/// from a few more frames. A worker thread then fuses it into the octree and extracts the surface near it
-/// again; frames see the old room until then. Handles one change, or several that settled together, at a
-/// time. Not thread safe: make all calls from one thread.
+/// Watches the dynamic foreground of a session's frames for lasting changes. A change that was unchanged for
+/// long enough (settled) is measured from a few more frames. A worker thread then fuses it into the octree
+/// and extracts the surface near it again; frames see the old room until then. Handles one change, or several
+/// that settled together, at a time. Not thread safe: make all calls from one thread.
 class MapUpdater {
  public:
   /// @param octree  the room's octree; modified in place, by the worker thread during a commit

@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// Frames of a scenario, rendered on first use. If nothing moves, all frames are the same object.
+/// Frames of a scenario, rendered on first use. If nothing moves, the first rendering serves for all frames.
 class ScenarioFrames {
  public:
   ScenarioFrames(const Scenario& scenario, const Room& room) : scenario_(scenario), room_(room) {}
