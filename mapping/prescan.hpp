@@ -62,8 +62,8 @@ struct PrescanInput {
 /// Scans a room. Reads the source once to track the camera and again to fuse with the final poses; if
 /// something moved, reads parts of it twice more to remove ghosts. Without start.map, the map's world is the
 /// recording's (recorded poses) or the first camera's (tracked), rotated so +z is up. Stages timed: read,
-/// track, optimise, fuse, ghosts, surface, coverage, checkpoint (time for which the prescan is held up), and
-/// frame (track plus fuse of one frame, without reading).
+/// track, optimise, fuse, ghosts, surface, coverage, checkpoint (time the work is blocked), and frame (track
+/// plus fuse of one frame, without reading).
 ///
 /// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface; also
 ///         if start.map shows another room, or overlaps the source too little for a reliable registration
