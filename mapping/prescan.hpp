@@ -1,5 +1,4 @@
-// prescan.hpp: turns a recording of a room into a map: tracks, levels, fuses, removes ghosts and extracts the
-// surface.
+// prescan.hpp: turns a recording of a room into a map: tracking, fusion, ghost removal, surface extraction.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -45,16 +44,16 @@ struct PrescanResult {
   SurfaceStats surface;
 };
 
-/// Called after each frame of a pass with the stage ("track", "fuse" or "ghosts") and the frame's outcome.
-/// While tracking, the note also says how much surface was observed in total and in the last second.
+/// Called after each frame with the stage ("track", "fuse" or "ghosts") and a note on the frame's outcome.
+/// While tracking, the note also gives the surface area observed in total and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
 class Checkpoints;
 
-/// Earlier work that a prescan continues, if any.
+/// Optional inputs: a checkpoint to resume from, a map to extend.
 struct PrescanInput {
-  /// Receives the state at intervals during both passes. If it already holds a checkpoint, the prescan
-  /// resumes from it, and the source must deliver the same frames again. Null: no checkpoints.
+  /// Receives the prescan's state at intervals. If it already holds a checkpoint, the prescan resumes from
+  /// it, and the source must deliver the same frames again. Null: no checkpoints.
   Checkpoints* checkpoints = nullptr;
   /// Map to extend with the source's frames. Its world frame and resolution are kept.
   std::optional<SavedMap> map;
@@ -66,8 +65,8 @@ struct PrescanInput {
 /// track, optimise, fuse, ghosts, surface, coverage, checkpoint (time the work is blocked), and frame (track
 /// plus fuse of one frame, without reading).
 ///
-/// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface; if
-/// start.map shows another room, or overlaps the source too little for a reliable registration
+/// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface; also
+///         if start.map shows another room, or overlaps the source too little for a reliable registration
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress = {}, PrescanInput start = {});
 

@@ -1,4 +1,4 @@
-// prescan_counts.hpp: what happened to the frames of a prescan.
+// prescan_counts.hpp: counts of a prescan's frames by outcome.
 #pragma once
 #include <cstdint>
 #include <optional>

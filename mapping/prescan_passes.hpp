@@ -18,9 +18,9 @@ struct PrescanWork {
   StageTimes& times;
   const PrescanProgress& progress;
   Checkpoints* checkpoints = nullptr;
-  double reach_m = 0.0;                          ///< max distance from the octree's origin along each axis
-  bool maps_recorded_world = false;              ///< recorded poses share the octree's origin
-  std::map<std::int64_t, double> track_ms = {};  ///< by frame index
+  double reach_m = 0.0;                          ///< half the edge of the octree's cube, m
+  bool maps_recorded_world = false;              ///< the world of recorded poses is the octree's world
+  std::map<std::int64_t, double> track_ms = {};  ///< tracking time by frame index
   std::optional<FuseStatus> last_fused = {};     ///< status of the last frame passed to fuse()
 
   void show(const std::string& stage, const std::string& note) const {
@@ -28,8 +28,8 @@ struct PrescanWork {
   }
 };
 
-/// Runs the first pass, from its start or from a checkpoint. Returns the state of the second pass if the
-/// checkpoint is of that stage.
+/// Runs the first pass, from its start or from a checkpoint. Returns the initial state of the second pass, or
+/// its stored state if the checkpoint is of that pass.
 /// @param map  map to extend; its octree moves into the result
 /// @throws Error as prescan() does
 FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map);

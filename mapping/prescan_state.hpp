@@ -20,7 +20,7 @@ struct TrackingPass {
   PrescanCounts counts;  ///< over the frames read so far
   Odometry odometry;
   UpEstimator up;
-  std::vector<TimedPose> recorded;
+  std::vector<TimedPose> recorded;  ///< recorded camera poses, if any
 };
 
 /// Result of the first pass: camera poses, keyframe database and up direction.
@@ -33,10 +33,11 @@ struct TrajectoryEstimate {
 
 /// Second pass: fuses the frames, then removes ghosts.
 struct FusionPass {
-  PrescanCounts counts;  ///< from the first pass
+  PrescanCounts counts;  ///< counts of the first pass
   TrajectoryEstimate found;
-  Eigen::Isometry3d T_world_found = Eigen::Isometry3d::Identity();  ///< from the tracker's world to the map's
-  std::int64_t frames_read = 0;                                     ///< in this pass
+  /// Maps points from the tracker's to the map's world.
+  Eigen::Isometry3d T_world_found = Eigen::Isometry3d::Identity();
+  std::int64_t frames_read = 0;  ///< frames read in this pass
   StaticMap octree{0.01};
   std::vector<FusedFrame> fused;
   bool stopped_for_memory = false;           ///< memory cap reached in this pass

@@ -17,7 +17,7 @@ void require_valid(const Board& board);
 
 struct DepthSample {
   double x_px, y_px;  ///< in the distorted depth image
-  double reported_m;
+  double reported_m;  ///< depth as reported by the sensor
 };
 
 struct BoardView {
@@ -28,11 +28,12 @@ struct BoardView {
 
 struct BoardViews {
   std::vector<BoardView> views;
-  Frame first;                  ///< first frame with colour; gives image sizes and nominal cameras
+  Frame first;                  ///< first frame with colour; provides image sizes and nominal cameras
   std::int64_t frames = 0;      ///< number of frames read
   std::int64_t with_board = 0;  ///< number of frames in which the board was found
-  /// Median ratio of measured depth to the depth expected from corners and square size, one per frame that
-  /// was rejected for this ratio alone. A common ratio other than 1 indicates a wrong square_m.
+  /// One entry per frame that was rejected only because the depth does not fit the board: median ratio of
+  /// measured depth to the depth expected from corners and square size. A common ratio other than 1 indicates
+  /// a wrong square_m.
   std::vector<double> off_plane_ratios;
 };
 
@@ -40,9 +41,9 @@ struct BoardViews {
 std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colour, const Board& board);
 
 /// Reads the source to its end, or until `most` views are found. A frame becomes a view if it meets all of
-/// these: the whole board is in the colour image, it hardly moves (colour and depth are not taken at the same
-/// instant), its pose differs from all earlier views, and the depth image measures it. Throws Error if the
-/// source has no colour.
+/// these: the whole board is in the colour image, the board hardly moves (colour and depth are not taken at
+/// the same instant), its pose differs from those in all earlier views, and the depth image measures it.
+/// Throws Error if the source has no colour.
 /// @param progress  called after every frame with the number of views so far
 BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
                             const std::function<void(std::size_t)>& progress);

@@ -9,10 +9,10 @@
 
 namespace roomradar {
 
-/// Depth correction 1 / depth = inverse_scale / reported depth + offset(x, y), an error in disparity, which a
-/// structured-light sensor measures. The offset (1/m) is interpolated bilinearly between nodes, stored row by
-/// row. The nodes span the image from the centre of its first pixel to the centre of its last; without nodes
-/// the offset is 0.
+/// Depth correction: 1 / depth = inverse_scale / reported depth + offset(x, y). It is linear in disparity,
+/// which is the quantity that a structured-light sensor measures. The offset (1/m) is interpolated bilinearly
+/// between nodes, stored row by row. The nodes span the image from the centre of its first pixel to the
+/// centre of its last; without nodes the offset is 0.
 struct DepthCorrection {
   double inverse_scale = 1.0;
   int columns = 0, rows = 0;  ///< both 0, or both 2 to 256
@@ -30,8 +30,8 @@ GridPlace grid_place(int columns, int rows, int width_px, int height_px, double 
 /// Returns the offset (1/m) at a pixel of an image of the given size.
 double offset_per_m(const DepthCorrection& correction, int width_px, int height_px, double x_px, double y_px);
 
-/// Returns the corrected depth (m); 0 if the reported depth is 0, or if the result is not in front of the
-/// camera or beyond 1 km.
+/// Returns the corrected depth (m); 0 if the reported depth is 0, or if the result is behind the camera or
+/// beyond 1 km.
 inline float corrected_depth_m(float reported_m, double inverse_scale, double offset_per_m) {
   if (!(reported_m > 0.0F)) return 0.0F;
   const double inverse = inverse_scale / reported_m + offset_per_m;
@@ -49,7 +49,8 @@ struct Calibration {
 ///   "depth_lens", "colour_lens": {"k1", "k2", "p1", "p2", "k3"},
 ///   "depth_correction": {"inverse_scale", "columns", "rows", "offset_per_m": [columns * rows numbers]}}
 /// Throws Error naming the file, and the field that is missing, of the wrong type or impossible (a lens that
-/// moves a corner of the image by more than half its distance from the centre; an offset beyond 0.2 / m).
+/// moves a corner of the image by more than half the corner's distance from the centre; an offset beyond 0.2
+/// / m).
 Calibration read_calibration(const std::filesystem::path& path);
 /// Throws Error "WHERE, depth_lens: ..." if read_calibration() would reject these numbers.
 void require_valid(const Calibration& calibration, const std::string& where);

@@ -1,4 +1,4 @@
-// calibration_plot.hpp: a plot that shows where a calibration is supported by data.
+// calibration_plot.hpp: plots the measurements behind a calibration, and its residuals.
 #pragma once
 #include "app/calibration/calibrate.hpp"
 #include "mapping/types/image.hpp"
@@ -6,8 +6,8 @@
 namespace roomradar {
 
 /// Draws four panels: corner positions in the colour image; board pixels in the depth image; each view's
-/// depth error over distance before and after, with held-out views as rings; the depth correction over the
-/// image, in mm at 2 m.
+/// depth error over distance, before and after calibration, with held-out views as rings; the depth
+/// correction over the image, in mm at 2 m.
 ColourImage calibration_plot(const BoardViews& views, const CalibrationFit& fit);
 
 }  // namespace roomradar

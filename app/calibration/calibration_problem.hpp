@@ -38,7 +38,7 @@ struct CalibrationUnknowns {
   PoseBlock T_colour_depth;
   std::vector<PoseBlock> T_colour_board;  ///< one per view
   double inverse_scale = 1.0;
-  std::vector<double> nodes;  ///< of the depth correction, row by row
+  std::vector<double> nodes;  ///< offsets of the depth correction (1/m), row by row
 };
 
 /// Nodes of the depth correction, and the size of the depth images that it covers.
@@ -49,7 +49,7 @@ struct CorrectionGrid {
 
 /// Adds the residuals of one view: corner positions, weighted by a sigma of 0.15 px, and depth against the
 /// board's plane, weighted by the sensor's noise. Both are robust (Huber).
-/// @param T_colour_board  the board's pose in this view; an element of unknowns
+/// @param T_colour_board  the board's pose in this view; an element of unknowns.T_colour_board
 /// `unknowns` must outlive the problem and must not move.
 void add_view(const BoardView& view, const Board& board, const CorrectionGrid& grid,
               PoseBlock& T_colour_board, CalibrationUnknowns& unknowns, ceres::Problem& problem);

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// A printed checkerboard, measured by its inner corners.
+/// A printed checkerboard, described by its inner corners (where four squares meet).
 struct Board {
   int columns = 8, rows = 6;  ///< inner corners, 3 to 30 each, not equal
   double square_m = 0.03;

@@ -13,8 +13,8 @@ struct ViewResidual {
   double distance_m = 0.0;  ///< depth of the board's centre
 };
 
-/// Computes a view's residuals: the board's pose is estimated from its corners, then depth is compared with
-/// its plane.
+/// Computes a view's residuals: estimates the board's pose from its corners, then compares the depth with the
+/// board's plane.
 ViewResidual residual_of(const BoardView& view, const Board& board, const Calibration& calibration);
 
 }  // namespace roomradar

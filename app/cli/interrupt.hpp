@@ -1,4 +1,4 @@
-// interrupt.hpp: handles Ctrl-C: the first ends the work in an orderly way, the second kills the process.
+// interrupt.hpp: handles Ctrl-C: the first ends the work cleanly, the second kills the process.
 #pragma once
 #include <memory>
 

@@ -1,4 +1,4 @@
-// manual_page.hpp: generates the manual page from the commands' own help, so the two cannot differ.
+// manual_page.hpp: generates the manual page from the commands' own help.
 #pragma once
 #include <string>
 

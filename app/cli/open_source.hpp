@@ -32,8 +32,8 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
                                          const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});
 
-/// Throws Error if the map was scanned from frames without recorded poses, since a recording's poses then do
-/// not refer to the map's world frame.
+/// Throws Error if the map was scanned from frames without recorded poses: the map's world is then unrelated
+/// to a recording's poses.
 /// @param map     name of the map, for the message
 /// @param source  name of the source, for the message
 void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source);

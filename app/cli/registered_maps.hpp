@@ -9,8 +9,7 @@ namespace roomradar {
 
 /// Registers map b to map a (register_maps()), prints the result and adds it to the report. Throws Error if
 /// the registration is not reliable.
-/// @param name_a  name of map a, for messages
-/// @param name_b  name of map b, for messages
+/// @param name_a, name_b  for messages
 Registration require_registered(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                                 const std::string& name_b, Report& report);
 

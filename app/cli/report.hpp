@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-/// Content common to all commands' reports. `results` has the keys specific to the command; they are merged
+/// Content of a report. All fields but `results` are common to all commands; the keys of `results` are merged
 /// into the top level.
 struct Report {
   std::string command;
@@ -33,7 +33,7 @@ nlohmann::json to_json(const Eigen::Vector3d& v);
 /// finite become null.
 nlohmann::json to_json(const Report& report);
 
-/// Throws Error if a file cannot be written at this path, or the path is inside a map's folder. Callers check
+/// Throws Error if a file cannot be written at this path, or the path is inside a map's folder. For use
 /// before long work. An empty path is allowed.
 void require_writable(const std::filesystem::path& path);
 

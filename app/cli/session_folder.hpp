@@ -39,7 +39,7 @@ class SessionRecorder {
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
   /// Copies the mesh file that a kAdd event names into the folder, and returns the event with the copy's
   /// name. Call before applying the event. Throws Error if the copy fails; the caller must then not add the
-  /// object, so every object in the run is also in the recording.
+  /// object, since the recording would lack it.
   ScriptEvent with_mesh_kept(ScriptEvent event);
   /// Records an event that with_mesh_kept() returned and that is applied before frame `run_frame`. Throws
   /// Error if the event cannot be written.

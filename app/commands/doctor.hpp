@@ -1,4 +1,4 @@
-// doctor.hpp: checks the set-up and says how to repair it.
+// doctor.hpp: checks Kinects, renderer and fakenect, with advice on repairs.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,14 +10,14 @@ namespace roomradar {
 
 enum class Health {
   kGood,
-  kMissing,  ///< optional, not needed by all users
+  kMissing,  ///< absent, but optional
   kBad,      ///< must be repaired
 };
 
 struct Finding {
   Health health = Health::kGood;
-  std::string what;        ///< a sentence
-  std::string what_to_do;  ///< empty if good
+  std::string what;        ///< what was found, a sentence
+  std::string what_to_do;  ///< advice, a sentence; empty if good
 };
 
 /// Checks the Kinects on the USB bus against the number that libfreenect sees (negative: this program was

@@ -1,4 +1,4 @@
-// doctor_command.hpp: roomradar doctor: checks the set-up and says how to repair it.
+// doctor_command.hpp: roomradar doctor: checks the installation, with advice on repairs.
 #pragma once
 
 namespace roomradar {

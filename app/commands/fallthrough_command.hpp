@@ -6,8 +6,7 @@ namespace roomradar {
 
 /// Runs the scenarios in simulated rooms, or run_grid() if a source is given. Prints a table and writes the
 /// requested files. Returns the exit status 0.
-/// @throws Error if a room cannot be scanned or a file cannot be written; earlier results are written all the
-/// same
+/// @throws Error if a room cannot be scanned or a file cannot be written; earlier results are still written
 int run(const FallthroughOptions& options);
 
 }  // namespace roomradar

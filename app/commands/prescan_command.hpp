@@ -5,7 +5,7 @@
 namespace roomradar {
 
 /// Scans the room, saves the map, and prints its facts and largest holes. Returns the exit status: 0, or 1 if
-/// the map is saved but could not be compared with its held-out frames.
+/// the map was saved but could not be compared with its held-out frames.
 /// @throws Error if the scan fails or is stopped; the message says how to continue, if that is possible
 int run(const PrescanOptions& options);
 

@@ -22,7 +22,7 @@ nlohmann::json held_out_json(const HeldOutScore& score);
 void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
                    const std::optional<HeldOutScore>& held_out);
 
-/// Prints the largest holes that a scan from more positions would close to stdout.
+/// Prints, to stdout, the largest holes that a scan from more positions could close.
 void print_holes(const std::vector<Hole>& holes);
 
 }  // namespace roomradar

@@ -5,9 +5,9 @@
 namespace roomradar {
 
 /// Measures the settings, prints the chosen presets and writes the requested files. Ctrl-C ends the
-/// measurements; those so far are the result. Returns the exit status 0.
+/// measurements; the result then covers those made so far. Returns the exit status 0.
 /// @throws Error if a scene is not suitable, if nothing was measured, or if a file cannot be written; earlier
-/// measurements are written all the same
+///         measurements are still written
 int run(const TradeOptions& options);
 
 }  // namespace roomradar

@@ -13,9 +13,9 @@ struct HeldOutScore {
   std::int64_t frames = 0;  ///< held-out frames with a pose
   std::int64_t pixels = 0;  ///< pixels compared: every 4th in both directions with 0 < depth <= 4 m
   double cover = 0.0;       ///< fraction of these pixels that show the mesh, at any depth
-  double median_m = 0.0;  ///< median |mesh - measured| along the optical axis over covered pixels; to 0.05 mm
-  double bias_m = 0.0;    ///< median of mesh - measured, same pixels and precision
-  double outliers = 0.0;  ///< fraction of covered pixels that differ by more than 0.1 m
+  double median_m = 0.0;    ///< median |mesh - measured| depth over covered pixels; resolution 0.05 mm
+  double bias_m = 0.0;      ///< median of mesh - measured; same pixels and resolution
+  double outliers = 0.0;    ///< fraction of covered pixels that differ by more than 0.1 m
 };
 
 /// Renders the mesh's depth for each held-out frame's camera and compares it with the measured depth. Reads

@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Throws Error if a file name is not empty and does not end in .png, which would suggest another format.
+/// Throws Error if the path is not empty and does not end in .png.
 void require_png_name(const std::filesystem::path& path);
 
 /// 8-bit RGB. Both overloads throw Error naming the path if the image is empty or the file cannot be written

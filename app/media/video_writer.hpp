@@ -20,18 +20,18 @@ class VideoWriter {
   VideoWriter& operator=(const VideoWriter&) = delete;
   ~VideoWriter();  ///< calls close(), ignoring errors
 
-  /// Writes a picture as the next frame, scaled to the first picture's size if different (depth is shown
-  /// until colour comes). Throws Error if the file cannot be created, or the disk is full.
+  /// Writes a picture as the next frame, scaled to the first picture's size if different (e.g. if a run shows
+  /// depth until it has colour). Throws Error if the file cannot be created, or the disk is full.
   void write(const ColourImage& picture);
 
-  /// Writes a picture zero, one or more times, so that the video runs at the speed of the stamps: twice if
-  /// the source has half the video's rate, zero times if two pictures coincide. After stamps that jump
-  /// backwards or by more than a second, the picture is written as the next frame.
+  /// Writes a picture as often as keeps the video at the speed of the stamps: twice if the source has half
+  /// the video's rate, not at all if two pictures coincide. After stamps that jump backwards or by more than
+  /// a second, the picture is written as the next frame.
   void write_at(const ColourImage& picture, double stamp_s);
 
-  /// Finishes the file, reads it back and moves it to its final name. Throws Error with its actual location
-  /// if it has fewer frames than were written (disk full) or cannot be moved. A second call, or a call before
-  /// any write, does nothing.
+  /// Finishes the file, reads it back and moves it to its final name. If the file has fewer frames than were
+  /// written (disk full) or cannot be moved, throws Error with its actual location. A second call, or a call
+  /// before any write, does nothing.
   void close();
 
   [[nodiscard]] std::int64_t frames_written() const;

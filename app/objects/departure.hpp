@@ -1,4 +1,4 @@
-// departure.hpp: sets back an object that fell out of the map.
+// departure.hpp: puts an object that fell out of the map back.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -12,13 +12,13 @@ namespace roomradar {
 struct Departure {
   std::string name;
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();  ///< position of its origin when noticed, m
-  bool is_back = false;  ///< true: back where it last rested; false: it has not rested, and left the room
+  bool is_back = false;  ///< true: put back where it last rested; false: removed from the room
 };
 
-/// Sets an object that is half a metre below everything known back to where it last rested, asleep. Takes it
-/// out of the room if it has not rested, or if nothing supports it there any more. Carried objects stay. Call
-/// once per frame, after physics.
-/// @param lowest_known_m  least height in the world that the map knows
+/// Puts an object that is half a metre below lowest_known_m back where it last rested, asleep. Removes it
+/// from the room if it has not rested so far, or if it has fallen out from that position before. Carried
+/// objects are left alone. Call once per frame, after physics.
+/// @param lowest_known_m  least height of the map's surface and observed space, in the world
 /// @return unset: the object has not departed
 std::optional<Departure> end_departure(VirtualObject& object, double lowest_known_m);
 

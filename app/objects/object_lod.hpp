@@ -1,4 +1,4 @@
-// object_lod.hpp: levels of detail of a virtual object's mesh, chosen by pixel size.
+// object_lod.hpp: levels of detail of a virtual object's mesh.
 #pragma once
 #include <vector>
 
@@ -12,14 +12,14 @@ struct LevelOfDetail {
   float deviation_m = 0.0F;
 };
 
-/// Computes levels from the full mesh down to about a hundred triangles, finest first; none for a mesh with
-/// fewer than 1,000. The max deviation starts at 1/1,024 of the mesh's size and grows by a factor of 1.4 per
-/// level. Levels have normals that reproduce the full mesh's shading (fit_normals.hpp). A full mesh without
-/// normals is taken as shaded by vertex normals averaged over the adjacent faces. At faces that deviate from
-/// that mean by more than 25 degrees (sharp edges), the face normal is used.
+/// Computes simplified meshes down to about a hundred triangles, finest first; none for a mesh with fewer
+/// than 1,000 triangles. The max deviation starts at 1/1,024 of the mesh's size and grows by a factor of 1.4
+/// per level. Levels have normals that reproduce the full mesh's shading (fit_normals.hpp). A full mesh
+/// without normals is taken as shaded by vertex normals averaged over the adjacent faces. At faces that
+/// deviate from that mean by more than 25 degrees (sharp edges), the face normal is used.
 std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh);
 
-/// Returns true if a level's deviation is at most error_px pixels of the given size.
+/// Returns true if a level's deviation is at most error_px pixels; pixel_m is a pixel's size at the object.
 inline bool is_fine_enough(float deviation_m, double pixel_m, double error_px) {
   return static_cast<double>(deviation_m) <= error_px * pixel_m;
 }

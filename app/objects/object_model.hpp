@@ -24,7 +24,7 @@ struct ObjectParts {
   std::vector<LevelOfDetail> levels;  ///< finest first
 };
 
-/// Makes the parts. Levels of a mesh with many triangles take some tenths of a second.
+/// Makes the parts. Levels of a mesh with many triangles take a few tenths of a second.
 /// @param name  object name for messages
 /// Throws Error if the mesh has no valid triangles.
 ObjectParts object_parts(const std::string& name, Mesh mesh);
@@ -35,9 +35,9 @@ struct DrawnLevel {
   std::unique_ptr<GpuMesh> mesh;
 };
 
-/// Made once per mesh and then read only, shared by any number of objects.
+/// Made once per mesh and immutable afterwards; shared by any number of objects.
 struct ObjectModel {
-  Mesh mesh;  ///< source of the model
+  Mesh mesh;  ///< mesh from which the model was made
   Shape shape;
   /// Vertices used by triangles, each once, in the mesh's frame.
   std::vector<Eigen::Vector3d> corners;

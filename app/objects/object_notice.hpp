@@ -1,13 +1,13 @@
-// object_notice.hpp: news of a virtual object for the user.
+// object_notice.hpp: a message to the user about a virtual object.
 #pragma once
 #include <string>
 
 namespace roomradar {
 
-/// A sentence about an object that its user did not ask for: it was lifted out of a surface, is stuck, or
-/// cannot be dropped.
+/// A sentence about an event that the user did not request: the object was moved out of a surface, is stuck,
+/// or cannot be dropped.
 struct ObjectNotice {
-  std::string name;  ///< the object's
+  std::string name;  ///< name of the object
   std::string text;  ///< the rest of the sentence after the name, without a full stop
 };
 

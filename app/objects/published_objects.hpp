@@ -7,13 +7,13 @@
 
 namespace roomradar {
 
-/// A closed, centred box of 12 triangles.
+/// Returns a closed box of 12 triangles, centred at the origin.
 Mesh box_mesh(const Eigen::Vector3f& size_m);
-/// A closed, centred torus, 25 cm across, of 2 * around * across triangles.
+/// Returns a closed torus, centred at the origin, 25 cm in diameter, of 2 * around * across triangles.
 Mesh bumpy_torus(int around, int across);
 
-/// Objects of 12, 6,256 and 181,412 triangles: a box as large as the torus, then the torus coarse and fine.
-/// The published count of 6 for a box counts rectangles.
+/// Returns objects of 12, 6,256 and 181,412 triangles: a box of the torus's size, a coarse and a fine torus.
+/// The published benchmarks give 6 polygons for the box, since they count rectangles.
 std::vector<Mesh> published_objects();
 
 }  // namespace roomradar

@@ -15,7 +15,7 @@ struct Shape {
 
   /// Replaces both. Throws Error as GpuMesh::upload() does; both are then unusable.
   void set(const Mesh& mesh, MeshUsage usage);
-  /// Same, with a tree already built from this mesh by build_by_place().
+  /// The same, with a tree already built from this mesh by build_by_place().
   void set(const Mesh& mesh, TriangleTree tree);
 };
 

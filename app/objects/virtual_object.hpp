@@ -22,10 +22,11 @@ struct VirtualObject {
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< orientation when last placed
   /// While carried by a user's hand: target position of its origin. Gravity does not act meanwhile.
   std::optional<Eigen::Vector3d> carried_to_world;
-  /// Pose when it last fell asleep; unset: not so far, or it fell out of the map from there.
+  /// Pose when it last fell asleep; unset: it has not slept so far, or has fallen out of the map from there.
   std::optional<Eigen::Isometry3d> T_world_rested;
   int departures = 0;  ///< number of times that it fell out of the map
-  /// Awake without moving for 1 s, since a surface crosses it and no free pose is near. Ends when it moves.
+  /// True: it has been awake without moving for 1 s, a surface intersects it, and no free pose is near. Reset
+  /// when it moves.
   bool stuck = false;
   double still_s = 0.0;  ///< time awake within 2 mm of T_world_still
   Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
@@ -33,16 +34,16 @@ struct VirtualObject {
   /// Cells of the last frame's dynamic mesh refined to full resolution because of this object.
   std::size_t fine_cells = 0;
   std::shared_ptr<const ObjectModel> model;  ///< not null
-  ContactShadow shadow;                      ///< for the orientation at which it was last computed
+  ContactShadow shadow;                      ///< valid for ContactShadow::R_world_object
 
   VirtualObject(std::string name, std::shared_ptr<const ObjectModel> its_model);
 };
 
-/// Makes an object of this mesh; shares the model of another object if that was made from the same mesh.
-/// Throws Error as object_parts() and ObjectModel do.
+/// Makes an object of this mesh; shares the model of another object with the same mesh. Throws Error as
+/// object_parts() and ObjectModel do.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
-/// Same, with the model's parts already made; they are discarded if a model can be shared.
+/// The same, with the model's parts already made; they are discarded if a model can be shared.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
@@ -65,8 +66,8 @@ Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix
 const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
                           const Eigen::Isometry3d& T_world_camera, double error_px);
 
-/// Loads the mesh that a user names: `teapot`, the built-in one, 0.15 m high, or a file that read_mesh()
-/// reads. If size_m > 0, the mesh is scaled to that longest side. Throws Error naming the file and the fault.
+/// Loads the mesh that a user names: `teapot` (built in, 0.15 m high), or a file that read_mesh() reads. If
+/// size_m > 0, the mesh is scaled to that longest side. Throws Error naming the file and the fault.
 Mesh object_mesh(const std::string& name_or_path, double size_m = 0.0);
 
 }  // namespace roomradar

@@ -17,12 +17,11 @@ struct Body {
   MassProperties mass;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();            ///< of the centre of mass
-  Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< angular velocity, right-handed
+  Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< right-handed
   bool asleep = false;
-  double sleep_timer_s =
-      0.0;  ///< sleep timer: time supported while within sleep_drift_m of sleep_pose_candidate
+  double sleep_timer_s = 0.0;  ///< time supported and within sleep_drift_m of sleep_pose_candidate
   Eigen::Isometry3d sleep_pose_candidate = Eigen::Isometry3d::Identity();
-  SurfaceKind rests_on = SurfaceKind::kNothing;  ///< surface kind that supported it when last moved
+  SurfaceKind rests_on = SurfaceKind::kNothing;  ///< surface kind that supported it in its last motion
   /// Bodies in contact when this one fell asleep, and their poses then.
   struct SupportingBody {
     const Body* on;
@@ -32,23 +31,23 @@ struct Body {
 };
 
 enum class StepStatus {
-  kMoved,    ///< or free to move, whether asleep or not
-  kHeld,     ///< the radar returned no usable result: stays in place with zero velocity
+  kMoved,    ///< moved, or was free to move; also if asleep
+  kHeld,     ///< the radar returned no usable result: body stopped in place
   kInvalid,  ///< dt or the body is not finite: nothing changed
 };
 
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
-  int contacts = 0;  ///< number of surface kinds touched, summed over all stops
+  int contacts = 0;  ///< number of surface kinds touched, summed over the step's stops at contacts
   std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< the same, by kind of surface
   int queries = 0;                                    ///< number of radar queries along a direction
-  /// Deepest overlap before it was resolved, along the shortest depenetration direction, >= 0.
+  /// Deepest overlap before depenetration, along the shortest depenetration direction, >= 0.
   double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only
-  bool woke = false;                      ///< was asleep before, and is awake now
+  bool woke = false;                      ///< was asleep before this step, and is awake now
 };
 
-/// Counts a contact with a surface of this kind.
+/// Counts a contact with a surface of this kind in `report`.
 void note_contact(SurfaceKind touched, StepReport& report);
 
 /// Makes the rotation orthonormal again after accumulated rounding.

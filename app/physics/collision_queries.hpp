@@ -18,10 +18,10 @@ namespace roomradar {
 using DistanceQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
                                             const Eigen::Vector3d& direction_world, double distance_m)>;
 
-/// The body that one of the scene's trees belongs to.
+/// The body of one of the scene's trees.
 struct SceneBody {
   Body* body = nullptr;     ///< null: the tree is not a body
-  double mass_ratio = 0.0;  ///< mass ratio as SolverBody::gives; 0: constrained, such as in a user's hand
+  double mass_ratio = 0.0;  ///< as SolverBody::mass_ratio; 0: the body is held, such as in a user's hand
 };
 
 /// Collision queries of a moving body: its own mesh against the frame's scene.
@@ -34,11 +34,11 @@ struct CollisionQueries {
   std::function<FreeTime(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
                          double duration_s, double keep_m, SurfaceKindMask left_out)>
       free_time;
-  /// For the scene's first trees, by index; later trees are static.
+  /// One entry per tree of the scene, in its order; trees beyond the last entry are static.
   std::span<const SceneBody> others = {};
 };
 
-/// Binds the queries to an object's tree. All references must outlive the returned probe.
+/// Binds the queries to an object's tree. All references must outlive the returned queries.
 /// @param spent_ms  accumulates the time of all queries; may be null
 CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
                                         const RadarScene& scene, double* spent_ms = nullptr);

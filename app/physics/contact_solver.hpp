@@ -13,11 +13,11 @@ struct Velocity {
   Eigen::Vector3d angular_rad_s = Eigen::Vector3d::Zero();
 };
 
-/// Solver state of another body in contact.
+/// Solver state of another body that the solved body touches.
 struct SolverBody {
   Velocity velocity;
   Eigen::Matrix3d inverse_inertia_m2 = Eigen::Matrix3d::Zero();  ///< per kg, 1/m^2, in world axes
-  /// Mass ratio: the solved body's mass over this one's, >= 0; 0: impulses do not affect this one.
+  /// Solved body's mass divided by this body's mass, >= 0; 0: impulses do not affect this body.
   double mass_ratio = 0.0;
 };
 
@@ -26,11 +26,13 @@ constexpr std::size_t kNoOther = std::numeric_limits<std::size_t>::max();
 struct SolverContact {
   Eigen::Vector3d contact_offset_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the contact
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();           ///< unit, towards the body
-  /// Min separating speed along the normal after the solve, relative to the other side; < 0 allows approach.
+  /// Min separating speed along the normal after the solve, relative to the other side; < 0: may approach at
+  /// up to -leaves_mps.
   double leaves_mps = 0.0;
-  std::size_t other = kNoOther;                              ///< index of the other body; kNoOther: static
-  Eigen::Vector3d other_offset_m = Eigen::Vector3d::Zero();  ///< from the other body's centre of mass
-  double impulse_mps = 0.0;                                  ///< out: normal impulse per kg, >= 0
+  std::size_t other = kNoOther;  ///< index of the other body; kNoOther: static
+  /// From the other body's centre of mass to the contact.
+  Eigen::Vector3d other_offset_m = Eigen::Vector3d::Zero();
+  double impulse_mps = 0.0;  ///< out: normal impulse per kg, >= 0
   Eigen::Vector3d friction_impulse_mps =
       Eigen::Vector3d::Zero();  ///< out: friction impulse per kg, tangential
 };
@@ -41,7 +43,7 @@ Eigen::Vector3d slip_at(const SolverContact& contact, const Velocity& velocity,
 
 struct FrictionConfig {
   double friction = 0.0;  ///< Coulomb's coefficient
-  /// Rolling resistance: the max torque is this times the normal force times its contact offset.
+  /// Rolling resistance: max torque = this factor x normal force x length of the contact offset.
   double rolling = 0.0;
 };
 
@@ -53,12 +55,11 @@ inline Eigen::Vector3d velocity_at(const Velocity& velocity, const Eigen::Vector
 /// Returns the kinetic energy of 1 kg, m^2/s^2.
 double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2);
 
-/// Applies impulses by projected Gauss-Seidel until every contact has its min separating speed and obeys
+/// Applies impulses by projected Gauss-Seidel so that every contact has its min separating speed and obeys
 /// Coulomb's law. Other bodies receive opposite impulses, so total momentum is conserved. If no contact
 /// demands separation (leaves_mps <= 0), impulses add no energy. Contacts beyond the first 32 are ignored.
 /// @param inertia_m2  about the centre of mass, in world axes
-/// @param others      indexed by SolverContact::other; contacts with an index out of range are with static
-///                    surfaces
+/// @param others      indexed by SolverContact::other; an index out of range means a static surface
 /// Source: Catto, Iterative dynamics with temporal coherence, GDC 2005.
 void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& inertia_m2,
                     const FrictionConfig& rubbing, Velocity& velocity, std::span<SolverBody> others = {});

@@ -1,4 +1,4 @@
-// depenetration.hpp: directions in which moving surfaces push a body, and bodies engulfed by inferred backs.
+// depenetration.hpp: directions for depenetration from moving surfaces, and a test for engulfed bodies.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -13,9 +13,9 @@
 
 namespace roomradar {
 
-/// Returns true if the inferred backs of dynamic surfaces, queried by `back`, engulf the body instead of
-/// pushing it: they overlap it, in every direction deeper than a pushing surface can enter in one step.
-/// Engulfing must not throw a body: leave the backs out of the scene until it ends.
+/// Returns true if the inferred backs of dynamic surfaces, queried by `back`, engulf the body: they overlap
+/// it, along gravity and all depenetration directions by more than a pushing surface can enter in one step.
+/// Callers then leave the backs out of the scene, since resolving such an overlap would throw the body.
 bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
                  std::span<const Eigen::Vector3d> depenetration_directions_world);
 

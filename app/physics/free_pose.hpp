@@ -1,4 +1,4 @@
-// free_pose.hpp: moves an object out of surfaces that cross it, by the shortest translation found.
+// free_pose.hpp: moves an object out of surfaces that intersect it, by the shortest translation found.
 #pragma once
 #include <Eigen/Geometry>
 #include <functional>
@@ -11,7 +11,8 @@
 
 namespace roomradar {
 
-/// Returns true if a surface crosses the object. One-sided surfaces (is_one_sided()) never count.
+/// Returns true if a surface intersects the object's surface. One-sided surfaces (is_one_sided()) never
+/// count.
 bool is_crossed(const TreeInstance& object, std::span<const SceneTree> surfaces, ProximityQuery& proximity);
 
 struct FreePose {
@@ -19,14 +20,15 @@ struct FreePose {
   double moved_m = 0.0;  ///< length of the translation
 };
 
-/// Translates an object until no surface crosses it, in the direction of 26 that needs the shortest way. Each
-/// way leads through the front of a surface: an object in a floor rises and does not fall through. The way
-/// may cross other surfaces.
-/// @param gap_m       kept to all surfaces, > 0
-/// @param max_m       max length of the way, > 0; the ways are sampled in steps of max_m / 20, then bisected
+/// Finds the shortest translation, among 26 directions, after which no surface intersects the object. The
+/// object ends on the front of a surface that it left: an object in a floor rises and does not fall through.
+/// On the way, the object may pass through other surfaces.
+/// @param gap_m       min distance from all surfaces after the translation, > 0
+/// @param max_m       max length of the translation, > 0; lengths are sampled in steps of max_m / 20, then
+///                    bisected
 /// @param is_allowed  returns false for poses that must not be chosen, such as in unknown space; null: all
-/// allowed
-/// @return unset if no way ends free
+///                    are allowed
+/// @return unset if no such translation is found
 /// Takes 1 to 100 ms: call it for an event, not in each frame.
 std::optional<FreePose> nearest_free_pose(const TreeInstance& object, std::span<const SceneTree> surfaces,
                                           double gap_m, double max_m,

@@ -6,14 +6,14 @@
 
 namespace roomradar {
 
-/// Inertia is per kg, since falling, sliding and rolling do not depend on mass. Mass matters only in contact
-/// with other bodies.
+/// Inertia is per kg, since falling, sliding and rolling do not depend on mass. mass_kg matters only in
+/// contact with other bodies.
 struct MassProperties {
   Eigen::Vector3d centre_object = Eigen::Vector3d::Zero();  ///< centre of mass in the mesh's frame, m
   /// About the centre of mass, in the mesh's axes, m^2 (per kg). Positive definite.
   Eigen::Matrix3d inertia_m2 = 0.0025 * Eigen::Matrix3d::Identity();
-  double radius_m = 0.1;  ///< from the centre of mass to the farthest vertex
-  double mass_kg = 1.0;   ///< density of water if the mesh is closed, else a shell of 5 kg/m^2; > 0
+  double radius_m = 0.1;  ///< distance from the centre of mass to the farthest vertex
+  double mass_kg = 1.0;   ///< > 0; closed mesh: density of water; open: shell of 5 kg/m^2
 };
 
 /// Computes the properties of a solid if the mesh is closed (TriangleTree::is_closed()), else of a thin shell

@@ -10,10 +10,10 @@
 namespace roomradar {
 
 struct PlacementConfig {
-  double cell_m = 0.02;       ///< cell size of the height map made from the view, 0.005 to 0.1
-  double max_tilt_deg = 8.0;  ///< max angle between the surface and the horizontal
-  double flatness_m = 0.015;  ///< max deviation of heights under the footprint from a plane
-  double min_seen = 0.9;      ///< min measured fraction of the footprint; within 6 cm of its centre all of it
+  double cell_m = 0.02;           ///< cell size of the height map made from the view, 0.005 to 0.1
+  double max_tilt_deg = 8.0;      ///< max angle between the surface and the horizontal
+  double flatness_m = 0.015;      ///< max deviation of heights under the footprint from a plane
+  double min_seen = 0.9;          ///< min measured fraction of the footprint; within 6 cm of its centre: 1
   double room_to_spare_m = 0.05;  ///< free and level margin around the footprint
   double min_range_m = 0.4;       ///< min depth of the surface along the camera's axis
   double max_range_m = 4.0;       ///< max depth of the surface along the camera's axis
@@ -26,9 +26,10 @@ inline constexpr double kMostFootprint_m = 1.0;
 
 struct SupportQuery {
   double footprint_radius_m = 0.0;  ///< > 0, at most kMostFootprint_m
-  /// The place nearest to this point is searched; unset: the place nearest to the picture's middle.
+  /// Searches for the place nearest to this point; unset: nearest to the picture's centre.
   std::optional<Eigen::Vector3d> near_world{};
-  /// Returns false if something is in the way at a place that is level and large enough. Null: not asked.
+  /// Callback for a place that is level and large enough: returns false if the object does not fit there.
+  /// Null: every place is free.
   std::function<bool(const Eigen::Vector3d& point_world)> is_free{};
 };
 
@@ -36,9 +37,9 @@ enum class SupportStatus {
   kInvalidInput,
   kFound,
   kNothingMeasured,  ///< no depth within range
-  kNotLevel,         ///< no level surface, not even for the margin alone
+  kNotLevel,         ///< no level surface, not even one as small as the margin
   kTooSmall,         ///< level surfaces, but none as large as footprint and margin
-  kTooFar,           ///< places, but none within max_away_m of near_world
+  kTooFar,           ///< places found, but none within max_away_m of near_world
   kBlocked,          ///< is_free rejected the places tried
 };
 
@@ -49,13 +50,13 @@ struct [[nodiscard]] Support {
   explicit operator bool() const { return status == SupportStatus::kFound; }
 };
 
-/// Finds the place nearest to the picture's middle, or to a point, where an object can stand: footprint and
-/// margin on measured, level, flat surface, and is_free() returns true. Places within 6 cm, or 3/4 of the
-/// footprint's radius, of a rejected one are skipped, and at most 48 are tried.
+/// Finds the place nearest to the picture's centre, or to a point, where an object can stand: footprint and
+/// margin are on measured, level, flat surface, and is_free() returns true. Skips places within 6 cm, or 3/4
+/// of the footprint's radius, of a place that is_free() rejected; tries at most 48.
 ///
 /// @param depth_m         live or expected depth, of the camera's size
 /// @param T_world_camera  world with +z up
-/// Takes some 10 ms: call it when an object is dropped, not in each frame.
+/// Takes about 10 ms: call it when an object is dropped, not in each frame.
 Support find_support(const DepthImage& depth_m, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, const SupportQuery& query,
                      const PlacementConfig& config = {});

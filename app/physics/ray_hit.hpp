@@ -1,4 +1,4 @@
-// ray_hit.hpp: ray casting against a mesh, to find the point a user points at.
+// ray_hit.hpp: ray casting against a mesh, e.g. to find the surface under the mouse pointer.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>

@@ -9,12 +9,12 @@
 
 namespace roomradar {
 
-/// A moving surface that pushes the body throughout a step. Other contacts with moving surfaces are ignored
-/// meanwhile, since these surfaces are still inside the body.
+/// A contact through which a moving surface pushes the body throughout a step. Other contacts with moving
+/// surfaces are ignored in this step, since these surfaces still intersect the body.
 struct Push {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, towards the body
-  double speed_mps = 0.0;                                  ///< min speed along the normal
+  double speed_mps = 0.0;                                  ///< min speed of the body's point along the normal
   SurfaceKind touched = SurfaceKind::kDynamic;
 };
 
@@ -25,25 +25,25 @@ constexpr bool is_moving_surface(SurfaceKind kind) {
 inline constexpr double kSupportCosine = 0.5;  ///< surfaces within 60 degrees of horizontal support a body
 
 struct [[nodiscard]] SubstepResult {
-  /// A surface other than the pushing one crosses the body: the rest of the substep was not simulated.
+  /// A surface other than the pushing one intersects the body, so the rest of the substep was not simulated.
   bool crosses = false;
-  double left_s = 0.0;       ///< time not simulated, if crosses
-  bool is_held_up = false;   ///< by a contact with its normal within 60 degrees of up
+  double left_s = 0.0;       ///< time that was not simulated; > 0 only if `crosses`
+  bool is_held_up = false;   ///< supported: a contact's normal is within 60 degrees of up
   bool is_balanced = false;  ///< supported, and would not start to move from rest
   SurfaceKind rests_on = SurfaceKind::kNothing;
 };
 
-/// Contacts of a moving body; buffers reused between the substeps of a step.
+/// Scratch: contacts of a moving body, reused between the substeps of a step.
 struct RigidScratch {
   std::vector<ClosestPoint> near;
   std::vector<SolverContact> contacts;
   std::vector<SurfaceKind> kinds;
   std::vector<SolverBody> others;  ///< solver state of the bodies in contact
-  std::vector<Body*> bodies;       ///< these bodies, by the same index
+  std::vector<Body*> bodies;       ///< the bodies of `others`, by the same index
 };
 
 /// Simulates one substep of advance().
-/// @param report  contacts and queries are added to it
+/// @param report  the substep's contacts and queries are added
 SubstepResult simulate_substep(Body& body, double dt_s, const CollisionQueries& probe,
                                const PhysicsConfig& config, const std::optional<Push>& push,
                                RigidScratch& scratch, StepReport& report);

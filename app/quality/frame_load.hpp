@@ -1,4 +1,4 @@
-// frame_load.hpp: the parts of a frame that take time, and the size of their work as known in advance.
+// frame_load.hpp: the parts of a frame, and quantities, known in advance, that predict their times.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -33,8 +33,7 @@ constexpr std::string_view to_string(FramePart part) {
 }
 
 struct FrameLoad {
-  double dynamic_fraction = 0.0;  ///< fraction of dynamic pixels in the depth image; before kMesh, in the
-                                  ///< previous one
+  double dynamic_fraction = 0.0;  ///< dynamic part of the depth pixels; before kMesh: previous frame's
   int moving = 0;                 ///< virtual objects in the room that are not asleep
   int resting = 0;
 };

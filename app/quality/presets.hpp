@@ -12,7 +12,7 @@
 
 namespace roomradar {
 
-/// Measured values; each name says the quantity and its unit.
+/// Measured values by name; the name includes the unit.
 using Figures = std::map<std::string, double>;
 
 struct Preset {
@@ -24,7 +24,7 @@ struct Preset {
 /// Pareto-optimal setting of a run: no other setting is both faster and more accurate.
 struct FrontStep {
   RunQuality run;
-  /// Median time of each FramePart relative to the default quality, measured beside it; > 0.
+  /// Median time of each FramePart relative to the default quality in the same measurement; > 0.
   std::array<double, kFrameParts> part_ratios{1.0, 1.0, 1.0, 1.0};
   /// Number of objects in the room during the measurement, for settings with move_every_n_frames; 0: unknown.
   int objects = 0;
@@ -53,8 +53,8 @@ Presets presets_of(std::string_view text, const std::string& where);
 /// Writes all presets, with every setting. Throws Error if the file cannot be written.
 void write_presets(const Presets& presets, const std::filesystem::path& path);
 
-/// Returns `given`, or if empty the program's own file: presets.json beside the executable, or where it is
-/// installed. Throws Error if there is none.
+/// Returns `given`; if empty, the program's own presets.json: beside the executable, or in its installed
+/// location. Throws Error if there is none.
 std::filesystem::path presets_file(const std::string& given);
 
 /// Throws Error listing the existing names if there is no such preset.

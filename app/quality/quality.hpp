@@ -49,8 +49,8 @@ struct QualityField {
   const char* old_option = "";   ///< former name on the command line; empty: none
 };
 
-/// Calls visit(QualityField, field) for each field, in the order of files and help. One function per quality:
-/// the list of its fields.
+/// Calls visit(QualityField, field) for each field, in the order of files and help. The only list of the
+/// fields.
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, ScanQuality>
 void visit_fields(Quality& quality, Visit&& visit) {
@@ -131,7 +131,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
       quality.picture_every_n_frames);
 }
 
-/// Throws Error "depth_stride = 3: must be 1, 2 or 4" and the like.
+/// Throws Error such as "depth_stride = 3: must be 1, 2 or 4".
 void require_valid(const ScanQuality& quality);
 void require_valid(const RunQuality& quality);
 

@@ -11,8 +11,8 @@ namespace roomradar {
 nlohmann::ordered_json to_json(const ScanQuality& quality);
 nlohmann::ordered_json to_json(const RunQuality& quality);
 
-/// Fields not named have their defaults; former names of fields are accepted. Throws Error "WHERE: ..." if
-/// this is not an object, a name is unknown, or a value has the wrong type or is out of range.
+/// Missing fields have their defaults; former names of fields are accepted. Throws Error "WHERE: ..." if
+/// `json` is not an object, a name is unknown, or a value has the wrong type or is out of range.
 ScanQuality scan_quality_of(const nlohmann::ordered_json& json, const std::string& where);
 RunQuality run_quality_of(const nlohmann::ordered_json& json, const std::string& where);
 

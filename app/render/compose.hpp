@@ -20,8 +20,7 @@ struct ComposeConfig {
 /// @throws Error naming the field, its value and the rule
 void require_valid(const ComposeConfig& config);
 
-/// An object that casts a shadow on surfaces below it.
-/// Shadow of the object, made for about its present orientation.
+/// An object that casts a shadow on surfaces below it. The shadow was made for about its present orientation.
 struct ShadowCaster {
   const ContactShadow* shadow = nullptr;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
@@ -40,7 +39,7 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 /// @param camera           colour camera
 /// @param T_world_camera   camera pose
 /// @param real_depth_m     depth of real surfaces in this camera, of its size; pixels of 0 get no shadow
-/// @param casters          objects that cast a soft shadow on real surfaces
+/// @param casters          objects that cast a shadow
 /// @param strength         0: no shadows; 1: black where an object occludes the whole sky
 /// @param[out] picture     resized to the camera's size; must not be `background`
 /// @throws Error if sizes differ

@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// Points sampled uniformly on an object's surface, in the object's frame. A contact shadow is computed from
-/// these points alone.
+/// Points sampled uniformly on an object's surface, in the object's frame, from which its contact shadow is
+/// computed.
 struct SurfacePoints {
   std::vector<Eigen::Vector3f> p_object_m;
   /// Centre of the object's bounding box.
@@ -45,11 +45,11 @@ struct ContactShadow {
   std::vector<float> covered;
 };
 
-/// Computes the lookup table. The underside is divided into patches. A horizontal surface point at distance H
-/// below a patch and horizontal distance r from it has the differential form factor dF = H^2 dA / (pi (r^2 +
-/// H^2)^2), where dA is the patch's area element; the factors of all patches are summed. Source: Cohen,
-/// Wallace, Radiosity and Realistic Image Synthesis 1993, section 4. An object without points gives an empty
-/// table. Reuses the shadow's memory. Takes a few milliseconds.
+/// Computes the lookup table. The object's underside is divided into patches. A horizontal surface point at
+/// distance H below a patch and horizontal distance r from it has the differential form factor dF = H^2 dA /
+/// (pi (r^2 + H^2)^2), where dA is the patch's area element; the factors of all patches are summed. Source:
+/// Cohen, Wallace, Radiosity and Realistic Image Synthesis 1993, section 4. An object without points gives an
+/// empty table. Reuses the shadow's memory. Takes a few milliseconds.
 /// @param cells_across  number of cells along the longer side of the object's bounding box; the time grows
 ///                      with its fourth power. 16 gives cells of 1.5 cm for a 25 cm teapot, which is fine
 ///                      enough for a soft shadow.

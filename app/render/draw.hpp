@@ -37,9 +37,9 @@ class ObjectDrawer {
   ObjectDrawer& operator=(const ObjectDrawer&) = delete;
   ~ObjectDrawer();
 
-  /// Starts rendering the objects into `layer`. Sets the layer's rectangle, which is just large enough for
-  /// the objects and empty if none is in view, and its number of samples at once. finish() sets colour and
-  /// depth; the GPU renders meanwhile. Uses 2 x 2 samples per pixel, or one if the rectangle has more than
+  /// Starts rendering the objects into `layer`. Sets the layer's rectangle (the smallest that contains the
+  /// objects; empty if none is in view) and number of samples. The GPU then renders in the background until
+  /// finish() sets colour and depth. Uses 2 x 2 samples per pixel, or one if the rectangle has more than
   /// 80,000 pixels. The near plane is at 0.05 m; there is no far plane. The depth resolution is 6e-8 of the
   /// depth. Objects with a null mesh are skipped. Reuses the layer's memory.
   void begin(std::span<const DrawnObject> objects, const Intrinsics& camera,

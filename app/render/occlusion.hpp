@@ -11,7 +11,7 @@ namespace roomradar {
 struct OcclusionConfig {
   /// A real surface at 1 m occludes an object only if it is nearer than the object by more than this.
   float tolerance_m = 0.006F;
-  /// Increase of the tolerance per squared metre of distance, because sensor noise grows with it.
+  /// Increase of the tolerance, m, per squared metre of distance, like the sensor's noise.
   float tolerance_per_m2 = 0.003F;
   /// Range of depth differences over which occlusion fades out, to avoid hard lines at contacts.
   float softness_m = 0.004F;
@@ -56,12 +56,12 @@ struct Occlusion {
 /// Returns the number of pixels beyond the layer's rectangle that find_occlusion() reads.
 int occlusion_margin_px(const OcclusionConfig& config);
 
-/// Computes how much real surfaces occlude the objects. Depth tells which surface is in front, but its edges
-/// are ragged and off by pixels. Colour has sharp edges, but does not tell which side is in front. Every
-/// pixel in a band of edge_reach_px around each occluder's edge is therefore assigned to the side whose
-/// colours match. Each side's colours beyond the band give a Gaussian. The prior is the fraction of the
-/// neighbourhood that is occluded by depth. If both sides have similar colours, or the object dips into a
-/// surface, the edge in depth is kept. Finally `hidden` is averaged over 3 x 3 pixels.
+/// Computes how much real surfaces occlude the objects. Depth determines which surface is in front, but its
+/// edges are ragged and displaced by pixels. Colour has sharp edges, but does not determine which side is in
+/// front. Every pixel in a band of edge_reach_px around each occluder's edge is therefore assigned to the
+/// side whose colours match. Each side's colours beyond the band are modelled by a Gaussian. The prior is the
+/// fraction of the neighbourhood that is occluded by depth. If both sides have similar colours, or the object
+/// intersects a surface, the edge in depth is kept. Finally `hidden` is averaged over 3 x 3 pixels.
 ///
 /// @param background    colour image of the camera, with the objects' shadows
 /// @param real_depth_m  depth of real surfaces in that camera, of its size; pixels of 0 occlude nothing

@@ -7,12 +7,11 @@
 namespace roomradar {
 
 /// Counts gaps in the frames' indices: the source numbers dropped frames too.
-/// Number of frames dropped so far.
 struct DroppedFrames {
-  std::int64_t count = 0;
-  std::optional<std::int64_t> first_index;
+  std::int64_t count = 0;                   ///< number of frames dropped so far
+  std::optional<std::int64_t> first_index;  ///< index of the first frame seen, less the frames read before
 
-  /// Takes a frame into account.
+  /// Updates the count with a frame.
   /// @param index  index of the frame
   /// @param read   number of frames read so far, including this frame and frames that were unusable
   void see(std::int64_t index, std::int64_t read) {

@@ -18,7 +18,7 @@ struct LostSpans {
   std::vector<LostSpan> spans;
 
   /// Records whether a frame was localised; call for each frame. Returns a message for the user if this
-  /// differs from the frame before, otherwise an empty string.
+  /// differs from the previous frame, otherwise an empty string.
   std::string add(std::int64_t frame_index, bool is_located);
 };
 

@@ -1,4 +1,4 @@
-// opened_run.hpp: everything that a run keeps open from its first frame to its last.
+// opened_run.hpp: inputs, outputs and state of a run, opened before its first frame.
 #pragma once
 #include <memory>
 #include <optional>

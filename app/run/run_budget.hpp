@@ -17,8 +17,8 @@ namespace roomradar {
 /// Returns the quality settings (steps) that a run may use: first `most`, then the steps of the presets'
 /// Pareto front that follow it. If `most` is not in the front, the steps that are faster than the default
 /// quality follow. Settings in `fixed` are the same in all steps. Adjacent steps that become equal are
-/// merged. If adjacent steps do a part of the frame in the same way, their time ratios for that part are made
-/// equal.
+/// merged. Adjacent steps whose settings for a part of the frame are equal get equal time ratios for that
+/// part.
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed);
 
 /// Returns the time of a monotonic clock, ms.
@@ -34,15 +34,15 @@ class RunBudget {
   RunBudget(std::vector<FrontStep> front, double budget_ms, bool has_picture,
             std::function<double()> now_ms = steady_ms);
 
-  /// Callback for SessionConfig::watch. Returns the new quality if it changes with this part of the frame.
+  /// Callback for SessionConfig::watch. Returns the new quality if it changes before this part of the frame.
   std::optional<RunQuality> before(FramePart part, const FrameLoad& load);
   /// Ends a frame; call after each frame. Returns the quality changes within the frame, in order, as events
   /// without a frame number.
   std::vector<ScriptEvent> end_frame();
-  /// Returns a message for the user if the step differs from the one of the last message, at most once per
-  /// second; otherwise an empty string.
+  /// Returns a message for the user if the step has changed since the last message, at most once per second;
+  /// otherwise an empty string.
   std::string news();
-  /// Sets this radar in all steps, after the user has chosen it.
+  /// Sets the radar's mode and resolution in all steps; call after the user has chosen them.
   void keep(const RadarConfig& radar);
   /// Returns the settings in which the current step differs from the run's first step, for example
   /// "depth_stride 2, shadows off". Empty if there are none.

@@ -1,5 +1,4 @@
-// run_use.hpp: statistics of how much of the room's mesh and of the depth images the frames of a run used,
-// with reasons.
+// run_use.hpp: statistics over a run: fractions of the room's mesh and of the depth images that frames used.
 #pragma once
 #include <array>
 #include <cstddef>

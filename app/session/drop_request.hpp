@@ -1,4 +1,4 @@
-// drop_request.hpp: an object to drop, and where it falls if it is dropped over a surface in view.
+// drop_request.hpp: requests to drop an object, and the search for a surface in view to drop it on.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -19,18 +19,19 @@ namespace roomradar {
 struct DropRequest {
   std::string name{};
   std::optional<Eigen::Vector3d> position_world{};  ///< unset: over a level surface in view
-  /// Without position_world: the surface nearest to this point, at most 25 cm away; unset: the one nearest to
-  /// the picture's middle.
+  /// Without position_world: the surface nearest to this point, at most 25 cm away; unset: the surface
+  /// nearest to the picture's centre.
   std::optional<Eigen::Vector3d> near_world{};
-  double height_m = 0.3;  ///< height of its lowest point above the position or surface
+  double height_m = 0.3;  ///< height of the object's lowest point above the position or surface
   std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation
 };
 
-/// A drop over a surface in view that has not found a surface.
+/// A drop over a surface in view for which no surface has been found so far.
 struct WaitingDrop {
   DropRequest drop;
   std::int64_t try_at_frame = 0;  ///< earliest localised frame for the next search
-  std::string why{};  ///< why the last search found no place, as the end of a sentence; empty: none so far
+  /// Reason why the last search failed, as the end of a sentence; empty: no search so far.
+  std::string why{};
 };
 
 /// Throws Error if the object is too large for any place in view.
@@ -50,8 +51,8 @@ struct [[nodiscard]] DropPosition {
   std::string why;     ///< if there is no position: the end of a sentence
 };
 
-/// Searches a level surface of the room in view on which the object can stand, with the space above it free;
-/// dynamic surfaces do not count.
+/// Searches for a level surface of the room in view on which the object can stand, with free space above.
+/// Dynamic surfaces do not count.
 /// @param camera                the depth camera
 /// @param expected, foreground  of this frame
 DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,

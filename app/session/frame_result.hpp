@@ -1,4 +1,4 @@
-// frame_result.hpp: what a session reports of one frame.
+// frame_result.hpp: result of a session's work on one frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -28,13 +28,13 @@ struct FrameResult {
   TrackStatus tracking = TrackStatus::kDiverged;
   ForegroundCounts foreground;
   std::size_t dynamic_triangles = 0;
-  std::size_t static_triangles_drawn = 0;  ///< for the expected depth
+  std::size_t static_triangles_drawn = 0;  ///< drawn for the expected depth
   std::size_t inferred_triangles = 0;      ///< of the inferred backs of dynamic surfaces
   int contacts = 0;
   std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< contacts per kind of surface touched
-  double deepest_penetration_m = 0.0;                 ///< >= 0; only if measured
+  double deepest_penetration_m = 0.0;                 ///< m, >= 0; only if config.measure_penetration
   std::vector<Departure> departures;                  ///< objects that fell out of the map
-  std::vector<ObjectNotice> notices;                  ///< since the frame before
+  std::vector<ObjectNotice> notices;                  ///< notices since the previous frame
   FrameUse use;                                       ///< kDone only
   bool picture_is_new = false;                        ///< false: picture() is that of an earlier frame
 };

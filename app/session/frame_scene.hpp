@@ -43,17 +43,19 @@ struct FrameForeground {
   ForegroundCounts counts;
 };
 
-/// Rebuilt from each frame: each step takes the result of the step before. Results are references to the
-/// scene's buffers, valid until the next call of the same function. Not thread safe.
+/// The touchable surfaces, rebuilt from each frame in steps; each step takes the previous step's result.
+/// Results are references to the scene's buffers, valid until the next call of the same function. Not thread
+/// safe.
 class FrameScene {
  public:
   /// @param room     static mesh in the world
   /// @param unknown  border of unknown space, which can be touched but is not drawn; null: unknown space is
-  /// free Context, room and unknown must outlive the scene. Throws Error if the config is invalid.
+  ///                 free
+  /// Context, room and unknown must outlive the scene. Throws Error if the config is invalid.
   FrameScene(GlContext& context, const Shape& room, const FrameSceneConfig& config,
              const TriangleTree* unknown = nullptr);
 
-  /// Renders the room's depth at a pose. The rendering is reused while the view is the same within a fraction
+  /// Renders the room's depth at a pose. Reuses the last rendering if the view has changed by only a fraction
   /// of a pixel.
   const ExpectedView& render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
   /// Replaces all of the config except `surfaces`, from the next frame on. The config must be valid (not
@@ -65,12 +67,12 @@ class FrameScene {
   }
   /// Changes which surfaces can be touched, from the next frame on.
   void set_surfaces(SurfacePolicy surfaces);
-  /// Null: unknown space is free.
+  /// Replaces the border of unknown space; null: unknown space is free.
   void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
   /// Discards the expected depth after the room's shape has changed.
   void room_changed() { expected_.camera = {}; }
-  /// Returns the previous frame's mask of dynamic pixels, resized to this camera's image by nearest pixel; or
-  /// an empty image.
+  /// Returns the previous frame's mask of dynamic pixels, resized to this camera's image by nearest pixel;
+  /// empty if there is none.
   const MaskImage& previous_dynamic_mask(const Intrinsics& camera);
   /// Labels the frame's pixels by the expected depth and the previous frame's labels.
   const FrameForeground& find_dynamic(const Frame& frame, const ExpectedView& expected);
@@ -91,7 +93,7 @@ class FrameScene {
   void render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                        const PixelRect& rect, DepthImage& depth_m);
 
-  /// Number of views rendered by render_expected() so far, and the room's triangles drawn in them.
+  /// Number of views that render_expected() has rendered so far, and of room triangles drawn in them.
   struct RoomDrawn {
     std::size_t views = 0, triangles = 0;
   };

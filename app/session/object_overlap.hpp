@@ -1,4 +1,4 @@
-// object_overlap.hpp: overlaps of objects with others and with the room, and ways out of them.
+// object_overlap.hpp: detects overlaps of objects with others and with the room, and resolves them.
 #pragma once
 #include <memory>
 #include <span>
@@ -14,45 +14,46 @@
 
 namespace roomradar {
 
-/// Lifts an object that overlaps other objects until it is on top of them. Leaves it in place if the room is
-/// in the way.
-/// @param room      everything that the object can touch, without objects
+/// Lifts an object that overlaps other objects onto them. Leaves it in place if the room is in the way.
+/// @param room      everything that the object can touch except objects
 /// @param margin_m  gap kept to the objects below, m; smaller overlaps are ignored
 void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
                        std::span<const SceneTree> room, double margin_m, CyberRadar& radar,
                        ProximityQuery& proximity);
 
-/// An object cannot be placed since surfaces are in the way.
+/// Thrown if an object cannot be placed because surfaces are in the way.
 class PlaceRefused : public Error {
   using Error::Error;
 };
 
-/// Surroundings of an object, and queries, for its way out of surfaces that cross it.
+/// Surroundings of an object, and the queries for moving it out of surfaces that intersect it.
 struct WayOut {
   const SessionRoom& room;
-  std::vector<SceneTree> surfaces;  ///< everything that the object can touch, without other objects
+  std::vector<SceneTree> surfaces;  ///< everything that the object can touch except other objects
   std::vector<SceneTree> all;       ///< the same, with other objects
-  double gap_m;                     ///< gap kept to surfaces after the way out, m
+  double gap_m;                     ///< gap to surfaces after the move, m
   CyberRadar& radar;
   ProximityQuery& proximity;
 };
 
-/// Moves an object that a surface of the room crosses, or whose middle is in solid unknown space, to the
-/// nearest free pose within 10 cm. Throws PlaceRefused, with the nearest free place found within 1 m, if a
-/// surface crosses it and there is no such pose.
+/// Moves an object to the nearest free pose within 10 cm if a surface of the room intersects it, or its
+/// centre is in solid unknown space. Throws PlaceRefused if a surface intersects it and there is no such
+/// pose; the message names the nearest free place found within 1 m.
 /// @return the end of a sentence for the user; empty if the object has moved by less than 5 mm
 std::string leave_surfaces(VirtualObject& object, const WayOut& way);
 
-/// Advances the time for which an object has been awake without moving by 2 mm. Returns true when the time
-/// reaches 1 s, then begins again.
+/// Measures the time for which an object has been awake and has moved by less than 2 mm. Returns true when
+/// this time reaches 1 s, and restarts it.
 bool is_still_too_long(VirtualObject& object, double waited_s);
 
-/// If a lasting surface crosses the object, moves it out as leave_surfaces(), or marks it as stuck.
-/// @return the end of a sentence for the user; empty if nothing crosses it, or it was stuck before
+/// If a surface that does not move (static, or another object's) intersects the object, moves the object to
+/// the nearest free pose within 10 cm, or else marks it as stuck.
+/// @return the end of a sentence for the user; empty if no surface intersects it, or it was stuck before
 std::string free_or_stuck(VirtualObject& object, const WayOut& way);
 
 /// Returns the depth by which a surface of the scene overlaps the object along a direction, m, >= 0. A
-/// surface that crosses no part of the object, since it is in a hollow such as a handle, does not count.
+/// surface in a hollow of the object, such as in a cup's handle, does not count if it does not intersect the
+/// object.
 double penetration_m(const VirtualObject& object, std::span<const SceneTree> scene,
                      const Eigen::Vector3d& direction_world, CyberRadar& radar, ProximityQuery& proximity);
 

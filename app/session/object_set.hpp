@@ -1,4 +1,4 @@
-// object_set.hpp: the virtual objects of a session: placed, moved by physics, and kept apart by the radar.
+// object_set.hpp: the virtual objects of a session: placing, dropping, carrying, and motion by physics.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -48,13 +48,13 @@ class ObjectSet {
   void add(const std::string& name, const Mesh& mesh);
   /// Adds an object from parts that were prepared earlier, such as on another thread.
   void add(const std::string& name, ObjectParts parts);
-  /// Puts an object into the room. If it would overlap other objects, it begins on top of them where the room
-  /// leaves space. If a surface of the room crosses it, or it is in solid unknown space, it begins at the
-  /// nearest free pose within 10 cm, with a notice. Throws PlaceRefused if a surface crosses it and no free
-  /// pose is that near; nothing has changed then.
+  /// Puts an object into the room. If it would overlap other objects, it starts on top of them if the room
+  /// leaves space there. If a surface of the room intersects it, or it is in solid unknown space, it starts
+  /// at the nearest free pose within 10 cm, with a notice. Throws PlaceRefused, and changes nothing, if a
+  /// surface intersects it and no free pose is that near.
   void place(const std::string& name, const ObjectState& state);
-  /// Drops an object; at a position as place(). Without a position the drop waits for release_waiting(); then
-  /// throws Error if the object is too large for any place in view.
+  /// Drops an object. With a position, places it as place() does. Without one, the drop waits for
+  /// release_waiting(); throws Error if the object is too large for any place in view.
   void drop(const DropRequest& drop, std::int64_t frame_number);
   /// Carries an object towards a position until something is in the way; lasts until release().
   void carry(const std::string& name, const Eigen::Vector3d& position_world);
@@ -63,8 +63,8 @@ class ObjectSet {
   void turn(const std::string& name, const Eigen::Vector3d& turn_world_deg);
   void remove(const std::string& name);
 
-  /// Searches surfaces in view for drops that wait. A drop near a point is searched once; if there is no
-  /// place, the drop ends with a notice. Other drops are searched again in later frames.
+  /// Searches surfaces in view for the waiting drops. For a drop near a point, searches once; if there is no
+  /// place, the drop ends with a notice. For other drops, searches again in later frames.
   /// @param expected, foreground  of this frame
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                        const ExpectedView& expected, const FrameForeground& foreground,
@@ -72,14 +72,14 @@ class ObjectSet {
 
   /// Moves all objects that are due in this frame by dt_s of physics. Stage timed: radar.
   ContactCounts move(double dt_s, std::int64_t frame_number, StageTimes& times);
-  /// Sets back objects that fell out of the map; call after move(). Returns them.
+  /// Puts objects that fell out of the map back, and returns them; call after move().
   std::vector<Departure> end_departures();
   /// Returns the notices since the last call.
   std::vector<ObjectNotice> take_notices() { return std::exchange(notices_, {}); }
   /// Returns the greatest overlap of an object with the room or another object along gravity, m, >= 0.
   double penetration_m();
 
-  /// Returns everything that an object can touch, without the object itself; null: with all objects.
+  /// Returns everything that `object` can touch, so all but itself; null: everything.
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
   /// Returns balls around the objects in which the dynamic mesh has full resolution; none unless
   /// config.fine_mesh.
@@ -92,7 +92,7 @@ class ObjectSet {
   [[nodiscard]] std::uint64_t static_triangles_tested() const {
     return tested_before_ + radar_.static_triangles_tested();
   }
-  /// Determines which objects are in unknown space, after the room's unknown space became solid or free.
+  /// Updates which objects are in unknown space; call after unknown space became solid or free.
   void unknown_changed();
 
  private:
@@ -103,17 +103,17 @@ class ObjectSet {
   std::vector<std::unique_ptr<VirtualObject>> objects_;
   std::vector<WaitingDrop> waiting_;
   CyberRadar radar_;
-  std::uint64_t tested_before_ = 0;  ///< static triangles examined by earlier radars
+  std::uint64_t tested_before_ = 0;  ///< static triangles examined before set_radar() replaced radar_
   ProximityQuery proximity_;
   std::vector<ObjectNotice> notices_;
   std::vector<SceneBody> bodies_;  ///< bodies in the scene of the object being moved
-  CyberRadar exact_radar_;         ///< for drops, ways out of surfaces and penetration
+  CyberRadar exact_radar_;         ///< for drops, moves out of surfaces, and penetration
 
   VirtualObject& named(const std::string& name);
   void require_new(const std::string& name) const;
   /// Removes the object's waiting drop.
   void cancel_drop(const std::string& name);
-  /// Returns the object for an event that replaces its waiting drop and ends carrying.
+  /// Returns the object after cancelling its waiting drop and ending its carrying.
   VirtualObject& take_over(const std::string& name);
   void put(VirtualObject& object, const ObjectState& state);
   [[nodiscard]] WayOut way_out_of(const VirtualObject& object);

@@ -29,23 +29,22 @@ class PictureComposer {
   PictureComposer(GlContext& context, FrameScene& scene,
                   const std::vector<std::unique_ptr<VirtualObject>>& objects, const SessionConfig& config);
 
-  /// Notes whether a frame has colour; the first call for each frame. Without colour for half a second,
-  /// pictures show the depth.
+  /// First call for each frame. If no frame has had colour for half a second, pictures show the depth.
   void begin_frame(const Frame& frame);
   /// Keeps the colour of a localised frame, with the pose at the time of the colour image. dt_s is the time
   /// since the previous frame.
   void keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
-  /// Composes the picture of a localised frame. At most one shadow is recomputed, in full resolution only if
+  /// Composes the picture of a localised frame. Recomputes at most one shadow, at full resolution only if
   /// may_refine_shadow.
   void compose(const Frame& frame, const Eigen::Isometry3d& T_world_camera, bool may_refine_shadow);
-  /// Makes the camera's own picture, without objects, the picture of a frame that is not localised.
+  /// For a frame that is not localised: the picture is the camera's own image, without objects.
   void show_camera_alone(const Frame& frame);
-  /// Sets the pose that the next frame's motion starts from; unset if the frame is not localised. The last
-  /// call for each frame.
+  /// Last call for each frame. Stores the pose, from which the motion to the next frame is computed; unset if
+  /// the frame is not localised.
   void end_frame(const std::optional<Eigen::Isometry3d>& T_world_camera) { T_world_before_ = T_world_camera; }
 
   [[nodiscard]] const ColourImage& picture() const { return picture_; }
-  /// Unset before the first localised frame with a picture.
+  /// Camera and pose of the picture; unset before the first localised frame with a picture.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return shown_view_; }
 
  private:
@@ -55,11 +54,11 @@ class PictureComposer {
   ObjectDrawer drawer_;
   ObjectLayer layer_;
   Occlusion occlusion_;
-  DepthImage real_depth_m_;  ///< as seen by the colour camera, in the rectangle around objects
+  DepthImage real_depth_m_;  ///< depth of the real surfaces in the shown view, around objects
   std::optional<Eigen::Isometry3d> T_world_before_;  ///< the previous frame's pose, if localised
   std::optional<ShownView> shown_view_;
-  std::optional<ShownView> colour_view_;          ///< view of the last colour image, while that is recent
-  static constexpr int kColourLasts_frames = 15;  ///< half a second of a Kinect's frames
+  std::optional<ShownView> colour_view_;                 ///< view of the last colour image, if recent
+  static constexpr int kColourLasts_frames = 15;         ///< half a second of a Kinect's frames
   int frames_without_colour_ = kColourLasts_frames + 1;  ///< since the last colour image
   std::size_t last_shadow_ = 0;  ///< index of the object whose shadow was renewed last
   ColourImage background_;

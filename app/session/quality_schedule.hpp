@@ -1,4 +1,4 @@
-// quality_schedule.hpp: changes of quality that wait for a part of the next frame.
+// quality_schedule.hpp: changes of quality, each due at a part of the next frame.
 #pragma once
 #include <array>
 #include <optional>
@@ -11,11 +11,11 @@ namespace roomradar {
 
 class QualitySchedule {
  public:
-  /// Replaces a change that waits for the same part.
+  /// Schedules a change; replaces one that is due at the same part.
   void set(FramePart part, const RunQuality& quality) { due_[index_of(part)] = quality; }
-  /// Returns the change that waits for this part and removes it.
+  /// Returns the change that is due at this part, and removes it.
   std::optional<RunQuality> take(FramePart part) { return std::exchange(due_[index_of(part)], std::nullopt); }
-  /// Calls apply(quality) with all changes that wait, in the order of the parts, and removes them.
+  /// Calls apply(quality) with all scheduled changes, in the order of the parts, and removes them.
   template <typename Apply>
   void take_all(const Apply& apply) {
     for (std::optional<RunQuality>& due : due_)

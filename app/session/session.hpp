@@ -23,13 +23,13 @@
 
 namespace roomradar {
 
-/// The state of a run from frame to frame. The saved map is only read. Not thread safe; GL calls are made on
-/// the constructing thread. Objects, policies and quality change between frames; a call that is impossible
+/// The state of an AR run from frame to frame. The saved map is only read. Not thread safe; GL calls are made
+/// on the constructing thread. Objects, policies and quality change between frames; a call that is impossible
 /// throws Error and changes nothing.
 class Session {
  public:
   /// `map` must outlive the session. Throws Error if GL is not available or a config is invalid.
-  /// @param octree  the map's; required with config.map_updates, and modified by them
+  /// @param octree  the map's octree; required with config.map_updates, which modify it
   Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree = nullptr);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -43,14 +43,14 @@ class Session {
   void add_object(const std::string& name, const Mesh& mesh) { objects_.add(name, mesh); }
   /// Adds an object from parts that were prepared earlier, such as on another thread.
   void add_object(const std::string& name, ObjectParts parts) { objects_.add(name, std::move(parts)); }
-  /// Puts an object into the room. Where it would overlap other objects, it begins on top of them if the room
-  /// leaves space. These calls throw Error if there is no object of that name.
+  /// Puts an object into the room; see ObjectSet::place(). This call and those below throw Error if there is
+  /// no object of that name.
   void place(const std::string& name, const ObjectState& state) { objects_.place(name, state); }
   /// Puts an object into the room with the velocities of `state`.
   void throw_object(const std::string& name, const ObjectState& state) { objects_.place(name, state); }
-  /// Drops an object from above a position, or from above a level surface in view. The latter waits for a
-  /// frame that shows one; the object's next event replaces a waiting drop. Throws Error if the object is too
-  /// large for any place in view.
+  /// Drops an object from above a position, or from above a level surface in view. Without a position, the
+  /// drop waits for a frame that shows such a surface, or until another call for the object replaces it.
+  /// Throws Error if the object is too large for any place in view.
   void drop(const DropRequest& drop) { objects_.drop(drop, frames_); }
   /// Moves an object towards a position until something is in the way; lasts until release().
   void carry(const std::string& name, const Eigen::Vector3d& position_world) {
@@ -69,13 +69,13 @@ class Session {
   void remove(const std::string& name) { objects_.remove(name); }
 
   /// From now on objects cannot enter space that the map's scan has not observed. An object placed in such
-  /// space can leave it. Stage timed: unknown. Throws Error unless the surfaces are the map's; also on a
-  /// first call after a frame if config().map_updates is set.
+  /// space can leave it. Stage timed: unknown. Throws Error unless the surface policy is kMap. With
+  /// config().map_updates, the first call must come before the first frame; otherwise throws Error.
   void make_unknown_solid(StageTimes& times);
   /// From now on unknown space is free; all objects count as placed in observed space.
   void make_unknown_free();
-  /// Takes effect in the next frame. While the surfaces are not the map's, unknown space is free. Throws
-  /// Error for surfaces other than the map's if config().map_updates is set.
+  /// Takes effect in the next frame. With policies other than kMap, unknown space is free. Throws Error for
+  /// these policies if config().map_updates is set.
   void set_surfaces(SurfacePolicy surfaces);
   /// Takes effect in the next frame. Throws Error if the config is invalid.
   void set_radar(const RadarConfig& config);
@@ -97,7 +97,7 @@ class Session {
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_.all(); }
   [[nodiscard]] const std::vector<WaitingDrop>& waiting_drops() const { return objects_.waiting_drops(); }
-  /// Returns everything that an object can touch, without the object itself; null: with all objects.
+  /// Returns everything that `object` can touch, so all but itself; null: everything.
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const {
     return objects_.scene_without(object);
   }
@@ -105,7 +105,7 @@ class Session {
   /// Camera and pose of the picture; unset before the first localised frame with a picture.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return composer_.shown_view(); }
   [[nodiscard]] const FrameScene& scene() const { return scene_; }
-  /// Current shape, with all committed changes.
+  /// The room's current shape, with all committed changes.
   [[nodiscard]] const Shape& room() const { return room_.shape; }
   /// Null until unknown space is made solid for the first time.
   [[nodiscard]] const UnknownSurface* unknown() const { return room_.unknown.get(); }
@@ -130,7 +130,7 @@ class Session {
   std::optional<double> last_stamp_s_;
 
   FrameResult pass_through(const Frame& frame, StageTimes& times);
-  /// Returns the time since the previous frame, s, >= 0; 0 for the first. Keeps the stamp.
+  /// Returns the time since the previous frame, s, >= 0; 0 for the first. Stores the stamp.
   double seconds_since_last(double stamp_s);
   /// Begins a part of the frame: applies a quality that is due and calls config.watch.
   void begin(FramePart part);
@@ -139,7 +139,7 @@ class Session {
   [[nodiscard]] bool is_due_every(int n_frames) const { return frames_ % n_frames == 0; }
   /// Returns the frame, or reduced_ if the depth stride is not 1.
   const Frame& with_depth_reduced(const Frame& frame);
-  /// Takes over the room that the map updater has changed.
+  /// Replaces the room by the map updater's changed room.
   void renew_room();
   Tracking locate_camera(const Frame& frame);
   /// Ends a frame without a camera pose.

@@ -20,13 +20,13 @@ struct SessionConfig {
   RadarConfig radar;
   PhysicsConfig physics;
   ComposeConfig picture;
-  std::optional<MapUpdateConfig> map_updates;  ///< none: the room stays as saved
+  std::optional<MapUpdateConfig> map_updates;  ///< unset: the room stays as saved
   /// Settings that trade accuracy for time; users set them through RunQuality.
   int depth_stride = 1;           ///< 1, 2 or 4: factor by which depth images are reduced (reduce_depth)
   int tracking_px = 160;          ///< max width of the images used for localisation
-  bool fine_mesh = false;         ///< near objects, the dynamic mesh has the image's full resolution
-  int move_every_n_frames = 1;    ///< each object is moved every this many frames, objects in turns
-  double object_error_px = 0.7;   ///< max deviation of an object's drawn mesh from the file's
+  bool fine_mesh = false;         ///< true: the dynamic mesh has the image's full resolution near objects
+  int move_every_n_frames = 1;    ///< each object is moved every n-th frame; objects take turns
+  double object_error_px = 0.7;   ///< max deviation of an object's drawn mesh from its file's mesh
   int shadow_every_n_frames = 1;  ///< frames between full recomputations of a shadow
   /// Frames between pictures. If > 1, objects move only in the frames without a picture.
   int picture_every_n_frames = 1;
@@ -34,7 +34,7 @@ struct SessionConfig {
   /// Called before each part of a frame, and with kDone after the last. A returned quality applies from that
   /// part on; with kDone it is ignored. Null: not called.
   std::function<std::optional<RunQuality>(FramePart, const FrameLoad&)> watch;
-  /// After each frame the exact radar measures how deep objects overlap the room and each other, along
+  /// true: after each frame, the exact radar measures how deep objects overlap the room and each other, along
   /// gravity.
   bool measure_penetration = false;
 };

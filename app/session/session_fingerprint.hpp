@@ -1,4 +1,4 @@
-// session_fingerprint.hpp: hashes of a frame's result, small enough to keep for every frame.
+// session_fingerprint.hpp: hashes of a frame's result, to compare runs.
 #pragma once
 #include <cstdint>
 
@@ -6,7 +6,7 @@ namespace roomradar {
 
 class Session;
 
-/// Hashes of a frame's result, to compare two runs.
+/// Hashes of a frame's result; equal hashes in two runs show that the runs agree.
 struct FrameFingerprint {
   std::int64_t run_frame = 0;
   std::uint64_t objects = 0;  ///< names and poses of the objects in the room, bit by bit

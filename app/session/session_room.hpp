@@ -16,12 +16,12 @@ struct SessionRoom {
   /// Null until unknown space is made solid for the first time.
   std::shared_ptr<const UnknownSurface> unknown{};
   TriangleTree unknown_tree{};
-  bool unknown_is_solid = false;  ///< takes effect while the surfaces are the map's
+  bool unknown_is_solid = false;  ///< effective only with SurfacePolicy::kMap
 };
 
 /// Returns true if unknown space is solid and a corner or the centre of a triangle of the object is in it.
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object);
-/// Same, with the object at another pose.
+/// The same, with the object at another pose.
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object,
                          const Eigen::Isometry3d& T_world_object);
 

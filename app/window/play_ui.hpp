@@ -1,4 +1,4 @@
-// play_ui.hpp: content of the window, and actions of its keys.
+// play_ui.hpp: content of the window, and the actions of its keys.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -43,7 +43,7 @@ class PlayUi {
   };
   struct FrameRate {
     double from_s = 0.0;  ///< start of the current interval
-    int frames = 0;       ///< since then
+    int frames = 0;       ///< frames since from_s
     double frames_per_s = 0.0;
   };
 
@@ -66,7 +66,7 @@ class PlayUi {
   void ask_at_mouse(UserCommandKind kind);
   void add_object();
   void choose_next();
-  // Each returns false if the key is not its own.
+  // Each handles one group of keys; returns false for other keys.
   bool press_run_key(int key);
   bool press_object_key(int key);
   bool press_scene_key(int key);

@@ -16,9 +16,7 @@ namespace roomradar {
 /// @param meshes     files that can be added besides the built-in teapot, readable by read_mesh
 /// @param budget_ms  the run's time limit per frame, if it has one
 /// @return the value returned by `work`; rethrows what `work` throws
-/// @throws Error with advice if this build has no window, there is no display, or the display does not
-/// support
-///         OpenGL 3.3
+/// @throws Error with advice if this build has no window, or there is no display with OpenGL 3.3
 int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
                   std::optional<double> budget_ms, const std::function<int(UiChannel&)>& work);
 

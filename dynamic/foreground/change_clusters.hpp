@@ -15,38 +15,39 @@ enum class LastingKind : std::uint8_t {
   kCame,  ///< present where the static model has nothing
   kWent,  ///< in the static model, but the sensor sees through it
 };
-/// Returns the name used in reports.
+/// Returns the kind's name in reports.
 std::string_view to_string(LastingKind kind);
 
 /// An object that came or went, as points of its surface about spacing_m apart.
 struct LastingChange {
   LastingKind kind = LastingKind::kCame;
   std::vector<Eigen::Vector3d> points_world;
-  std::vector<std::uint32_t> ids;  ///< of the points, ascending: the tracker's keys
+  std::vector<std::uint32_t> ids;  ///< ids of the points, ascending
   [[nodiscard]] Eigen::AlignedBox3d box_world() const;
 };
 
 /// A point on a surface that came or went, and how long it was observed.
 struct ChangePoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the tracker's origin, world axes
-  float steady_s = 0.0F;                               ///< total time confirmed
+  float steady_s = 0.0F;                               ///< total time in frames that confirmed the point
   float unseen_s = 0.0F;                               ///< time since it was last seen
   std::uint32_t id = 0;
-  std::uint16_t sightings = 1;
-  std::uint8_t doubt = 0;
-  bool as_it_was = true;  ///< confirmed by the last frame
+  std::uint16_t sightings = 1;  ///< number of frames averaged into position
+  std::uint8_t doubt = 0;       ///< score of contradicting frames; the point is dropped above a limit
+  bool as_it_was = true;        ///< confirmed by the last frame
   LastingKind kind = LastingKind::kCame;
 };
 
-/// A cube of edge link_m that holds points.
+/// A cube of edge link_m that contains points.
 struct ChangeCell {
-  std::uint64_t code = 0;
+  std::uint64_t code = 0;       ///< voxel_key() of the cube
   std::uint32_t joined_to = 0;  ///< parent in a union-find forest; a root is its own parent
-  bool steady = false;          ///< one of its points stayed for long enough
-  std::uint8_t neighbours = 0;  ///< number of cells that touch it
+  bool steady = false;          ///< contains a point that was confirmed for long enough
+  std::uint8_t neighbours = 0;  ///< number of touching cells, corners included
 };
 
-/// Sums over the connected cells of one object.
+/// Sums over the connected cells of one object. Steady cells have ChangeCell::steady, core cells have at
+/// least 7 neighbours, seen points were confirmed by the last frame.
 struct ChangeObject {
   int cells = 0, steady_cells = 0, core_cells = 0;
   std::size_t points = 0, seen_points = 0;
@@ -61,17 +62,17 @@ struct ChangeClusters {
   std::vector<std::uint32_t> table;    ///< hash table of cells by code; 0xFFFFFFFF: empty slot
 };
 
-/// Reserves memory for this many points, so later calls do not allocate.
+/// Reserves memory for max_points points, so later calls do not allocate.
 void reserve(std::size_t max_points, ChangeClusters& clusters);
 
-/// Fills cells and cell_of from the points of a kind, and connects touching cells, corners included.
+/// Fills `cells` and `cell_of` from the points of one kind, and connects touching cells, corners included.
 /// @param seconds  a cell with a point confirmed for this long is steady
 /// @param link_m   edge of the cells
 void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, float seconds, float link_m,
                      ChangeClusters& clusters);
 
-/// Appends the objects among connected cells that are large, steady, interior and visible enough, with the
-/// points in world coordinates. Call after sort_into_cells() with the same points and kind.
+/// Appends the objects that have enough cells, and large enough fractions of steady cells, core cells (kWent
+/// only) and seen points. Call after sort_into_cells() with the same points and kind.
 void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Eigen::Vector3d& origin_world,
                  const ChangeTrackerConfig& config, ChangeClusters& clusters,
                  std::vector<LastingChange>& changes);

@@ -13,11 +13,12 @@
 
 namespace roomradar {
 
-/// Keeps points on dynamic and on removed surfaces in the world, and looks up each in every depth image.
-/// While its surface is where it was (for a removed surface, while it is seen through), a point's time grows.
-/// A contradicted point is dropped after a few frames. While a point is hidden or out of view, its time
-/// stands still, so the result does not depend on the camera's motion. Allocates nothing after the first
-/// frame except the changes it returns. Not thread safe.
+/// Stores points, in the world, on dynamic and on removed surfaces, and projects them into every depth image.
+/// A frame confirms a point if its surface is still there or, for a removed surface, is still seen through;
+/// only then does the point's steady_s grow. A frame that shows the opposite contradicts the point; after a
+/// few such frames the point is dropped. Hidden points and points out of view do not change, so the result
+/// does not depend on the camera's motion. Allocates nothing after the first frame except the changes it
+/// returns. Not thread safe.
 class ChangeTracker {
  public:
   explicit ChangeTracker(const ChangeTrackerConfig& config = {});
@@ -27,8 +28,8 @@ class ChangeTracker {
   void update(const DepthImage& depth_m, const DepthImage& expected_depth_m, const LabelImage& labels,
               const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, double stamp_s);
 
-  /// Returns the objects that were unchanged for this many seconds of observation and are seen now. Every
-  /// call returns the same object again until it is forgotten, moves, or agrees with the expected depth.
+  /// Returns the objects that were unchanged for this many seconds of observation and are seen now. Later
+  /// calls return the same object again, until it is forgotten, moves, or agrees with the expected depth.
   [[nodiscard]] std::vector<LastingChange> settled(double seconds);
 
   /// Returns the fraction of a change's points that have not been dropped.
@@ -41,7 +42,7 @@ class ChangeTracker {
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }
 
  private:
-  struct View;  // data of one frame
+  struct View;  // images, camera and pose of one frame
 
   /// Updates a point from the frame; returns false if it is to be dropped.
   bool review(const View& view, float dt_s, ChangePoint& point);
@@ -49,12 +50,13 @@ class ChangeTracker {
   void cover(const View& view, LastingKind kind, float u_px, float v_px, float depth_m);
 
   ChangeTrackerConfig config_;
-  Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();  ///< first position of the camera
+  Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();  ///< camera position in the first frame
   bool has_origin_ = false;
   double last_stamp_s_ = 0.0;
   std::uint32_t next_id_ = 1;
-  std::vector<ChangePoint> points_;    ///< sorted by id
-  std::vector<std::uint8_t> covered_;  ///< per sampling grid point; bit 1 << kind: a point represents it
+  std::vector<ChangePoint> points_;  ///< sorted by id
+  /// Per pixel of the sampling grid; bit 1 << kind: a point of that kind covers it.
+  std::vector<std::uint8_t> covered_;
   ChangeClusters clusters_;
 };
 

@@ -1,4 +1,4 @@
-// foreground_history.hpp: history of where the previous frame differed from the static model.
+// foreground_history.hpp: blocks in which the previous frame differed from the static model.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -10,27 +10,28 @@
 
 namespace roomradar {
 
-/// Bits of a block of pixels.
+/// Bits of a block of 4 x 4 pixels: an accepted dynamic or revealed region covers part of it.
 inline constexpr std::uint8_t kBlockMoved = 1, kBlockRevealed = 2;
-/// The same for regions too small or too new to be accepted at once.
+/// The same for regions so small that they are accepted only if they persist for a second frame.
 inline constexpr std::uint8_t kBlockMaybeMoved = 4, kBlockMaybeRevealed = 8;
 
-/// History of one camera. It is ignored for other intrinsics.
+/// History of one camera; ignored if the intrinsics change.
 struct ForegroundHistory {
   BlockGrid grid;
-  Intrinsics camera;  ///< without size: no history
+  Intrinsics camera;  ///< size 0 x 0: no history
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  bool is_empty = true;              ///< no block has a bit set
-  std::vector<std::uint8_t> blocks;  ///< as seen by that camera, dilated by one block
-  std::vector<std::uint8_t> along_rows;
+  bool is_empty = true;                  ///< no block has a bit set
+  std::vector<std::uint8_t> blocks;      ///< bits per block of the previous frame, dilated by one block
+  std::vector<std::uint8_t> along_rows;  ///< scratch
 };
 
-/// Looks up the history of the places that this frame's blocks show, by the live depth in their middle.
-/// @param before  bits per block, resized and set
+/// Warps the history into this frame: back-projects each block's centre by its live depth, projects it into
+/// the previous frame and copies the bits of the block there.
+/// @param before  bits per block, resized and set; 0 without depth or history
 void warp_history(const ForegroundHistory& memory, const DepthImage& depth_m, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, std::vector<std::uint8_t>& before);
 
-/// Stores `memory.blocks`, as filled by the caller, as the new history. Dilates them by one block, since
+/// Stores camera and pose, and dilates `memory.blocks`, which the caller has filled, by one block, since
 /// things move between frames.
 void store_history(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                    ForegroundHistory& memory);

@@ -11,7 +11,7 @@ inline constexpr int kBlock_px = 4;
 /// Returns the number of blocks that cover this many pixels.
 inline int blocks_along(int size_px) { return (size_px + kBlock_px - 1) / kBlock_px; }
 
-/// columns x rows blocks, row by row; the last of a row or column may extend beyond the image.
+/// columns x rows blocks, row by row; the last block of a row or column may extend beyond the image.
 struct BlockGrid {
   int columns = 0;
   int rows = 0;
@@ -21,7 +21,7 @@ struct BlockGrid {
   }
 };
 
-/// Expands a row of blocks to one value per pixel.
+/// Repeats each block's value for its pixels in one row.
 template <typename Value>
 void stretch(const Value* blocks, int width_px, Value* pixels) {
   const int whole = width_px / kBlock_px;
@@ -32,8 +32,9 @@ void stretch(const Value* blocks, int width_px, Value* pixels) {
 }
 
 /// Sets each block to the best of itself and the eight blocks `step` away along rows, columns and diagonals.
-/// If every block already is the best within a radius r, the result is the best within r + step, provided
-/// step <= 2 r + 1. `better(a, b)` selects one of two values; `along_rows` is scratch. `from` may be `to`.
+/// If every block already holds the best within a radius of r blocks, the result is the best within r + step,
+/// provided step <= 2 r + 1. `better(a, b)` selects one of two values; `along_rows` is scratch. `from` may be
+/// `to`.
 template <typename Value, typename Better>
 void spread(const BlockGrid& grid, const std::vector<Value>& from, int step, const Better& better,
             std::vector<Value>& along_rows, std::vector<Value>& to) {

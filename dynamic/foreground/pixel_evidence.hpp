@@ -1,4 +1,4 @@
-// pixel_evidence.hpp: how strongly each pixel differs from the static model.
+// pixel_evidence.hpp: evidence, per pixel, of a difference from the static model.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,33 +19,37 @@ enum class PixelLabel : std::uint8_t {
 };
 using LabelImage = Image<PixelLabel>;
 
-/// Evidence bits of one pixel.
+/// Bits of one pixel. Weak, strong: differs from the model by more than RowBounds::weak_m, strong_m.
+/// Ambiguous: the difference is strong, but an edge of the model displaced by its error could explain it.
+/// Before: the previous frame had a region of that kind here.
 inline constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kAmbiguousMoved = 4, kWeakRevealed = 8,
                               kStrongRevealed = 16, kAmbiguousRevealed = 32, kMovedBefore = 64,
                               kRevealedBefore = 128;
 
-/// In a hole of the model, together with kWeakMoved. Shares a bit, since nothing is revealed in a hole.
+/// Set with kWeakMoved: the pixel is in a hole of the model. Shares a bit, since nothing is revealed in a
+/// hole.
 inline constexpr std::uint8_t kInHole = kAmbiguousRevealed;
 
-/// Revealed pixels that are surrounded by revealed pixels for longer than an edge error. Shares a bit.
+/// Set on revealed pixels by mark_revealed_cores(). Shares a bit, since a revealed pixel is not nearer than
+/// the model.
 inline constexpr std::uint8_t kRevealedCore = kAmbiguousMoved;
 
-/// Bounds of one row of pixels; one value per pixel.
+/// Thresholds, depth bounds and scratch for one row of pixels; one value per pixel.
 struct RowBounds {
   std::vector<float> weak_m, strong_m;  ///< min differences from the model for weak and strong evidence
-  std::vector<float> nearest_m, farthest_m, around_hole_m;
-  std::vector<std::uint8_t> keep, bits;
+  std::vector<float> nearest_m, farthest_m, around_hole_m;  ///< from ExpectedBounds, of the pixel's block
+  std::vector<std::uint8_t> keep, bits;                     ///< scratch
 };
 
-/// Evidence bits per block of pixels.
+/// Evidence bits per block of 4 x 4 pixels.
 struct BlockEvidence {
-  std::vector<std::uint8_t> evidence;     ///< union of a block's pixels
-  std::vector<std::uint8_t> near_strong;  ///< evidence bits to keep
-  std::vector<std::uint8_t> along_rows;
-  std::vector<std::uint8_t> revealed_for;  ///< see mark_revealed_cores()
+  std::vector<std::uint8_t> evidence;      ///< union of the bits of a block's pixels
+  std::vector<std::uint8_t> near_strong;   ///< scratch
+  std::vector<std::uint8_t> along_rows;    ///< scratch
+  std::vector<std::uint8_t> revealed_for;  ///< scratch
 };
 
-/// Evidence of one frame, and the buffers of its computation, reused from frame to frame.
+/// Evidence of one frame, and scratch buffers, reused from frame to frame.
 struct PixelEvidence {
   std::vector<std::uint8_t> bits;  ///< evidence bits, one byte per pixel
   BlockEvidence blocks;
@@ -55,23 +59,24 @@ struct PixelEvidence {
   void resize(int width_px, int height_px);
 };
 
-/// Computes the evidence of all pixels, and labels them kStatic where live depth and model are known, else
+/// Computes the evidence of all pixels. Labels them kStatic where live depth and model are known, else
 /// kNotKnown.
 /// @param depth_m, expected_m  live depth and the model's depth, m, height x width, 0 = unknown
 /// @param bounds       depth range of the static room per block, for expected_m
-/// @param misfit_per_m  misfit between model and live depth where nothing moves
-/// @param before       bits per block of the previous frame's regions
+/// @param misfit_per_m  1 sigma of live minus expected inverse depth where nothing moves
+/// @param before       the previous frame's history bits per block, see warp_history()
 void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& settings,
                   const ExpectedBounds& bounds, float misfit_per_m, const std::vector<std::uint8_t>& before,
                   PixelEvidence& evidence, LabelImage& labels);
 
-/// Marks revealed pixels far enough from the rim of what is revealed. A model edge displaced by an error
-/// reveals a strip of background as wide as the error; a removed object was wider. Marks the blocks that have
-/// revealed blocks to all sides for half an edge's error.
+/// Sets kRevealedCore in blocks that are surrounded by revealed blocks for more than half the max edge error,
+/// rounded up to blocks. A model edge displaced by an error reveals a strip of background only as wide as the
+/// error; a removed object is wider.
 void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m,
                          const ExpectedBounds& bounds, PixelEvidence& evidence);
 
-/// Drops weak evidence that is farther than reach_px from strong evidence.
+/// Clears the weak bits of pixels farther than reach_px, rounded up to blocks, from strong evidence of that
+/// kind.
 void drop_far_weak(const DepthImage& depth_m, int reach_px, const BlockGrid& grid, PixelEvidence& evidence);
 
 }  // namespace roomradar

@@ -6,18 +6,20 @@
 
 namespace roomradar {
 
-/// Drift of the map, a pose error and distorted sensor depth are all errors of inverse depth that hardly
-/// change with depth. For a Kinect recording against its own map, the 1 sigma error is 0.003 / m from 0.9 m
-/// to 3.5 m, one step of the sensor's disparity. Against an exact model it is 0.0005 / m.
+/// Typical 1 sigma difference of inverse depth between model and live depth. Drift of the map, pose errors
+/// and sensor distortion cause errors of inverse depth that hardly change with depth. A Kinect recording
+/// against its own map has 0.003 / m from 0.9 m to 3.5 m, one step of the sensor's disparity; against an
+/// exact model it has 0.0005 / m.
 inline constexpr float kUsualMisfit_per_m = 0.003F;
 
 struct StaticResidual {
-  float misfit_per_m = kUsualMisfit_per_m;  ///< 1 sigma of inverse depth, without sensor noise
-  std::array<int, 256> histogram{};
+  /// 1 sigma of live minus expected inverse depth, without sensor noise.
+  float misfit_per_m = kUsualMisfit_per_m;
+  std::array<int, 256> histogram{};  ///< scratch: differences from 0 to 0.03 / m
 };
 
-/// Updates the misfit: at once where it grows, over some frames where it shrinks; between 0.0006 and 0.007
-/// per metre. Pixels that differ by more than 0.03 / m count as dynamic, not as misfit.
+/// Updates the misfit from one frame; it grows at once, shrinks over some frames, and stays within 0.0006 to
+/// 0.007 per metre. Pixels that differ by 0.03 / m or more are left out as dynamic.
 void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, StaticResidual& fit);
 
 }  // namespace roomradar

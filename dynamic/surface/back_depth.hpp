@@ -9,8 +9,9 @@
 
 namespace roomradar {
 
+/// Limits on the back; for the last four see DynamicSurfaceConfig.
 struct BackRules {
-  DepthDiscontinuity jump;  ///< between neighbouring lattice points
+  DepthDiscontinuity jump;  ///< test between neighbouring lattice points
   float least_thickness_m, most_thickness_m, least_roundness, clearance_m;
 };
 
@@ -21,23 +22,26 @@ struct BackLattice {
   std::vector<float> tolerance;      ///< 1/m: max deviation of the back's mesh
 
   std::vector<std::uint8_t> joined;  // bit k: same surface as the neighbour in direction k
-  std::vector<float> rim_px;         // distance to the object's outline in the image
+  std::vector<float> rim_px;         // distance to the object's outline in the image; very large: none
   std::vector<std::size_t> rim_at;   // index of that outline point
-  std::vector<float> width_px;       // half width: greatest rim_px uphill from here
-  std::vector<std::uint32_t> part;   // connected component; 0: none
-  std::vector<std::size_t> stack;
+  std::vector<float> width_px;       // half width: greatest rim_px reached by ascending rim_px from here
+  std::vector<std::uint32_t> part;   // connected component, an index into parts; 0: none
+  std::vector<std::size_t> stack;    // scratch
+  /// Sums of the least-squares fit of a component's roundness: products of front bulge and round bulge, and
+  /// squared round bulges, m2.
   struct Part {
     double bulge_by_round = 0.0, round2 = 0.0;
   };
   std::vector<Part> parts;
 };
 
-/// Computes a back that mirrors the shape of the visible front at the outline, as for a ball or a finger. A
-/// round object of half width r bulges by sqrt(d (2 r - d)) at a distance d inside its outline. Roundness is
-/// the ratio of the front's bulge to that of a round object (1: round, 0: flat), fitted per connected
-/// component and limited to least_roundness..1. The thickness is least_thickness_m plus twice the round bulge
-/// times the roundness, at most most_thickness_m. The back stays clearance_m in front of the static model,
-/// but behind the front. There is no outline where a nearer surface or the image's edge cuts the object off.
+/// Computes a back that bulges away as the visible front bulges towards the camera, as for a ball or a
+/// finger. A round object of half width r bulges by sqrt(d (2 r - d)) at a distance d inside its outline.
+/// Roundness is the ratio of the front's bulge to that of a round object (1: round, 0: flat), fitted per
+/// connected component and limited to least_roundness..1. The thickness is least_thickness_m plus twice the
+/// round bulge times the roundness, at most most_thickness_m. The back stays clearance_m in front of the
+/// static model, but behind the front. Where a nearer surface or the image's edge cuts the object off, there
+/// is no outline, and the thickness does not decrease.
 ///
 /// @param depth_m           live depth of all pixels, dynamic or not
 /// @param expected_depth_m  depth of the static model; 0: unknown, no limit
@@ -45,7 +49,8 @@ void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const
                const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
                BackLattice& back);
 
-/// Returns the inverse depth of the back at any dynamic pixel.
+/// Returns the inverse depth of the back, 1/m, at the dynamic pixel (x, y) whose front has the given inverse
+/// depth.
 float back_at(int x, int y, float front_inverse_depth, const DynamicLattice& lattice,
               const DepthImage& expected_depth_m, const BackRules& rules, const BackLattice& back);
 

@@ -1,4 +1,4 @@
-// cell_jumps.hpp: depth discontinuities within a cell of 4 x 4 pixels, and the surfaces that they separate.
+// cell_jumps.hpp: depth discontinuities within a cell, and the surfaces that they separate.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,19 +14,19 @@ using CellValues = std::array<float, 25>;
 /// Returns a pixel's index in CellValues and its bit in CellBits.
 constexpr int place(CellPixel p) { return 5 * p.y + p.x; }
 
-/// Discontinuities between dynamic neighbours. Bit k of right: between pixel k and its right neighbour; of
-/// down: between pixel k and the one below.
+/// Discontinuities between adjacent dynamic pixels. Bit k of `right`: between pixel k and its right
+/// neighbour. Bit k of `down`: between pixel k and the pixel below.
 struct CellJumps {
   CellBits right = 0, down = 0;
   [[nodiscard]] bool any() const { return (right | down) != 0; }
-  /// Returns true if there is one between two neighbours along the ring.
+  /// Returns true if a discontinuity separates two pixels that are adjacent in a row or column.
   [[nodiscard]] bool between(CellPixel a, CellPixel b) const {
     const int first = std::min(place(a), place(b));
     return ((a.y == b.y ? right : down) >> first & 1U) != 0;
   }
 };
 
-/// Returns the discontinuities between neighbours among the pixels `in`.
+/// Returns the discontinuities between adjacent pixels of `in`.
 CellJumps find_jumps(CellBits in, const CellValues& values, const DepthDiscontinuity& rule);
 
 /// Returns all pixels connected to the lowest bit of `in` without crossing a discontinuity.

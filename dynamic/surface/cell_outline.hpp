@@ -5,7 +5,8 @@
 
 namespace roomradar {
 
-/// The 5 x 5 pixels of a cell, corners and sides included: bit 5 * y + x.
+/// A set of pixels of a cell: bit 5 * y + x. A cell is 4 pixels wide but has 5 x 5 pixels, as neighbouring
+/// cells share those on their sides.
 using CellBits = std::uint32_t;
 constexpr int kCell_px = 4;
 constexpr CellBits kWholeCell = (CellBits{1} << 25) - 1;
@@ -14,8 +15,8 @@ constexpr CellBits kWholeCell = (CellBits{1} << 25) - 1;
 struct CellPixel {
   std::int8_t x, y;
 };
-/// The 16 pixels on a cell's sides, counter-clockwise as seen by the camera (x right, y down), from the top
-/// left: down the left side (0 to 4), along the bottom, up the right side, back along the top.
+/// The ring: the 16 pixels on a cell's sides, counter-clockwise as seen by the camera (x right, y down), from
+/// the top left: down the left side (0 to 4), along the bottom, up the right side, back along the top.
 constexpr std::array<CellPixel, 16> kRing{{{0, 0},
                                            {0, 1},
                                            {0, 2},
@@ -38,13 +39,13 @@ struct RingArc {
   int first = 0, count = 0;
 };
 
-/// Returns true if a convex polygon can represent the pixels of one surface in a cell. The pixels on the ring
-/// must be one run. The line between the run's ends must leave no pixel more than about one pixel outside and
-/// include no empty pixel deeper than that. If the ring is complete, the polygon is the whole cell, including
-/// unmeasured specks in it.
+/// Returns true if a convex polygon can represent the pixels of one surface in a cell. Those on the ring must
+/// be consecutive, and are returned in `arc`. The line between the ends of the arc may cut off pixels, or
+/// include empty ones, only up to about one pixel from the line. If all of the ring is set, the polygon is
+/// the whole cell, with any empty pixels inside.
 bool find_outline(CellBits pixels, RingArc& arc);
 
-/// Triangles of a polygon on the ring, as indices into its list of corners.
+/// Triangles of a polygon, as indices into its list of corners.
 struct CellTriangles {
   std::array<std::array<std::uint8_t, 3>, 14> triangles;
   int count = 0;

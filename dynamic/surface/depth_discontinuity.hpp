@@ -10,19 +10,20 @@
 
 namespace roomradar {
 
-/// Two pixels are on one surface if their depths differ by no more than the noise of both and a plane's slope
-/// explain.
+/// Two pixels are on one surface if their depths differ by no more than the noise of both plus a plane's
+/// slope.
 class DepthDiscontinuity {
  public:
-  /// @param sigmas         max difference, in sigmas of its noise
-  /// @param incidence_deg  between the view ray and the normal of the steepest plane that is one surface
+  /// @param sigmas         max noise in the difference, in sigmas
+  /// @param incidence_deg  angle between view ray and normal of the steepest plane that counts as one surface
   /// @param apart_px       distance of the two pixels along a row or a column
   DepthDiscontinuity(float sigmas, float incidence_deg, float apart_px, const Intrinsics& camera)
       : sigmas_(sigmas * std::numbers::sqrt2_v<float>),
         slope_(std::tan(incidence_deg * std::numbers::pi_v<float> / 180.0F) * apart_px /
                static_cast<float>(std::min(camera.fx_px, camera.fy_px))) {}
 
-  /// For pixels apart_px apart along a row or column, or diagonally so. Depths in metres, > 0.
+  /// For two pixels that are apart_px apart along a row or a column (is_one_surface_diagonally(): along
+  /// both). Depths, > 0, are in metres.
   [[nodiscard]] bool is_one_surface(float a_m, float b_m) const { return is_one_surface(a_m, b_m, slope_); }
   [[nodiscard]] bool is_one_surface_diagonally(float a_m, float b_m) const {
     return is_one_surface(a_m, b_m, slope_ * std::numbers::sqrt2_v<float>);

@@ -14,9 +14,9 @@ namespace roomradar {
 struct DepthMeshConfig {
   int stride_px = 2;  ///< every stride-th pixel becomes a vertex; silhouettes lose up to stride - 1 pixels
   float jump_sigmas = 4.0F;          ///< depths that differ by up to this much noise are one surface
-  float jump_incidence_deg = 80.0F;  ///< and so is a plane seen at up to this angle from its normal
+  float jump_incidence_deg = 80.0F;  ///< planes seen at up to this angle from their normal are one surface
   int skirt_gap_px = 64;             ///< max width of unmeasured gaps (projector shadow) that a skirt closes
-  /// kBorder: distance by which vertices on the image's border are moved outwards, and nearer.
+  /// Policy kBorder: distance by which vertices on the image's border are moved outwards and also nearer.
   float border_push_m = 0.5F;
 };
 /// Throws Error naming the field, its value and the rule.
@@ -24,7 +24,7 @@ void require_valid(const DepthMeshConfig& config);
 
 /// Buffers that the meshers reuse from frame to frame; their content is meaningless between calls.
 struct DepthMeshScratch {
-  std::vector<std::uint32_t> vertex_above, vertex_here;  // of two grid rows
+  std::vector<std::uint32_t> vertex_above, vertex_here;  // vertex index per grid column, in two rows
   std::vector<float> filled_m;                           // image with its gaps filled, for skirts
 };
 
@@ -43,10 +43,10 @@ void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const
 
 /// Meshes the whole frame, as a system without a map would. kHoles and kMap leave depth discontinuities open.
 /// kSkirt connects both sides of each discontinuity, and of each unmeasured gap within a row, by polygons.
-/// kBorder does so too and extends each row's first and last depth over unmeasured pixels beside them. It
-/// also moves vertices on the image's border by border_push_m outwards in the image plane and as much nearer,
-/// so nothing that leaves the view falls. Otherwise as mesh_masked(). Source of kBorder: the depth collider
-/// of Google's ARCore Depth Lab (2020).
+/// kBorder also adds these polygons, and extends each row's first and last depth over unmeasured pixels
+/// beside them. It also moves vertices on the image's border by border_push_m outwards in the image plane and
+/// by the same distance nearer, so objects that leave the view do not fall. Parameters as for mesh_masked().
+/// Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
 void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);
 

@@ -1,4 +1,4 @@
-// dynamic_cells.hpp: classifies cells between lattice points as flat, cut by an outline, or full.
+// dynamic_cells.hpp: classifies cells of 4 x 4 pixels as flat, cut by an outline, or full.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -24,7 +24,7 @@ enum class CellKind : std::uint8_t {
 struct FineBall {
   Eigen::Vector3f centre_camera;
   float radius_m;
-  std::size_t region;  ///< index of the region that requested it
+  std::size_t region;  ///< index of the ball's FineRegion
 };
 
 /// Number of cells of each kind.
@@ -35,6 +35,7 @@ struct CellCounts {
 /// Vertices are pixels, as indices into the image. Counter-clockwise as seen by the camera.
 using PixelTriangle = std::array<std::uint32_t, 3>;
 
+/// A square below is a block of 8 x 8 cells (kSquareCells).
 struct DynamicCells {
   std::vector<CellKind> kinds;                 ///< one per cell, between four lattice points
   std::vector<std::uint8_t> is_flat;           ///< 1 if the kind is kFlat
@@ -42,10 +43,11 @@ struct DynamicCells {
   std::vector<std::uint8_t> must_be_vertex;    ///< one per lattice point; 1 at all corners of cut and full
                                                ///< cells
   CellCounts counts;
-  std::vector<std::uint32_t> fine_of_region;  ///< full cells, by the first region that requests them
+  /// Full cells per region; counted for the first ball that reaches the cell.
+  std::vector<std::uint32_t> fine_of_region;
   std::vector<PixelTriangle> triangles;       ///< of cut and full cells, square by square
-  std::vector<std::uint8_t> has_flat;         ///< one per square; 1: has flat cells
-  std::vector<std::uint32_t> first_triangle;  ///< of each square, row by row, and one past the last
+  std::vector<std::uint8_t> has_flat;         ///< one per square; 1: contains flat cells
+  std::vector<std::uint32_t> first_triangle;  ///< per square: index into triangles; one extra entry: end
 };
 
 struct CellRules {
@@ -55,7 +57,8 @@ struct CellRules {
 };
 
 /// Classifies the cells and makes the triangles of cut and full cells.
-/// @param regions  number of regions, greater than the region of any ball
+/// @param fine     cells that a ball reaches become full
+/// @param regions  number of regions; FineBall::region is less
 void make_cells(const DynamicPixels& pixels, const DynamicLattice& lattice, const Intrinsics& camera,
                 std::span<const FineBall> fine, std::size_t regions, const CellRules& rules,
                 DynamicCells& cells);

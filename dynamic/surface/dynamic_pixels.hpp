@@ -19,10 +19,9 @@ struct DynamicPixels {
   std::vector<float> inverse_depth;
 };
 
-/// @param depth_m     metres; 0, not finite or beyond 10 km: not measured
+/// Converts a frame's dynamic pixels. Allocates only when the size grows.
+/// @param depth_m       metres; 0, not finite or beyond 10 km: not measured
 /// @param dynamic_mask  same size; not 0: dynamic
-///
-/// Allocates only when the size grows.
 void take_dynamic_pixels(const DepthImage& depth_m, const MaskImage& dynamic_mask, DynamicPixels& pixels);
 
 }  // namespace roomradar

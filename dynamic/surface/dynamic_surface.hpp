@@ -17,7 +17,8 @@
 namespace roomradar {
 
 /// Both meshes have their origin at the camera's position, world axes and no colours; both are empty if
-/// nothing is dynamic. Together they are closed: every edge is used equally often in both directions.
+/// nothing is dynamic. If has_back, they are closed together: every edge is used equally often in both
+/// directions.
 struct DynamicSurface {
   Mesh seen_world;  ///< counter-clockwise towards the camera, unit normals
   /// Back and side walls, counter-clockwise from outside, no normals. Assumed, never observed.
@@ -33,44 +34,46 @@ struct DynamicSurfaceScratch {
   std::vector<FineBall> fine;
   std::vector<float> values, tolerances;       // one per lattice point
   std::vector<std::uint8_t> needed;            // one per lattice point
-  std::vector<float> smoothed;                 // 1/m, of seen vertices that are not lattice points
-  std::vector<std::uint32_t> vertex_of_pixel;  // 0xFFFFFFFF between uses
-  std::vector<std::uint32_t> pixel_of_vertex;  // of the mesh being assembled
-  std::vector<std::uint32_t> seen_pixels;      // of the seen mesh's vertices
-  std::vector<std::uint32_t> rim_of_seen;      // copies of seen vertices in the inferred mesh
+  std::vector<float> smoothed;                 // per pixel, 1/m; set for seen vertices off the lattice
+  std::vector<std::uint32_t> vertex_of_pixel;  // vertex index per pixel; 0xFFFFFFFF: none
+  std::vector<std::uint32_t> pixel_of_vertex;  // pixel of each vertex of the mesh being assembled
+  std::vector<std::uint32_t> seen_pixels;      // pixel of each vertex of the seen mesh
+  std::vector<std::uint32_t> rim_of_seen;      // per seen vertex: its copy in the inferred mesh
   struct Edge {
     std::uint32_t from, to, next;
   };
   std::vector<Edge> edges;
-  std::vector<std::uint32_t> first_edge;  // per vertex
+  std::vector<std::uint32_t> first_edge;  // per vertex: head of its list of edges
 };
 
 /// Meshes the dynamic pixels and adds an assumed back.
 ///
-///   1. Pixels of the mask with depth, outline smoothed by a 3 x 3 majority. Lines and specks lost by
-///      the majority become slabs one pixel wide.
-///   2. Every fourth pixel: inverse depth averaged over 5 x 5 pixels, then over flat neighbours; noise
-///      from depth and angle. Pixels at a bend or an outline are averaged only over opposite pixels
-///      that deviate from a line by noise only; so are vertices that are not lattice points.
-///   3. Cells of 4 x 4 pixels, each flat, cut or full. In cut cells straight lines follow outlines and
-///      discontinuities within a pixel. In full cells every pixel is a vertex; full are the cells in the
-///      regions, and those that are neither flat nor well cut.
-///   4. RTIN: right triangles over flat cells, up to 32 pixels, bisected until no lattice point is
-///      farther than deviation_sigmas from them. No cracks, as adjacent triangles share whole edges.
-///   5. The back: the same outline, farther away (make_back). Walls connect it to the front.
+///   1. Selects the mask's pixels with depth; smooths the outline by a 3 x 3 majority. Lines and specks that
+///      the majority removes become slabs one pixel wide.
+///   2. Makes a lattice of every fourth pixel. At flat points, inverse depth is averaged over 5 x 5 pixels,
+///      then with flat neighbours. At bends and outlines, and at vertices off the lattice, it is averaged
+///      with those pairs of opposite pixels that are on a line with the point, within noise.
+///   3. Classifies cells of 4 x 4 pixels as flat, cut or full. In cut cells, straight lines follow outlines
+///      and discontinuities to about a pixel. In full cells, every pixel is a vertex. Cells in `regions` are
+///      full, and so are cells that lines do not cut well enough.
+///   4. Meshes flat cells as an RTIN: right triangles with legs of up to 32 pixels, bisected until every
+///      lattice point is within deviation_sigmas of them. Adjacent triangles share whole edges, so there are
+///      no cracks.
+///   5. Makes the back: the same outline, farther away (make_back). Walls connect it to the front.
 ///
 /// Error bound: over flat cells no averaged point is farther than deviation_sigmas from the mesh. Averaging
-/// rounds off bends by at most 0.7 sigmas more (1.5 sigmas of bend in each of 4 of 9 places). The pixels of a
-/// cut cell have an RMS distance of at most cut_sigmas. A pixel of the mask is at most a pixel beside the
-/// mesh, except specks whose neighbours are at other depths.
+/// with neighbours adds at most 0.7 sigmas at bends: four pairs, each off a line by up to 1.5 sigmas, over
+/// nine values. The pixels of a cut cell have an RMS distance from the mesh of at most cut_sigmas. In the
+/// image, the mesh comes within a pixel of every pixel of the mask, except specks whose neighbours are at
+/// other depths.
 ///
 /// @param depth_m           height x width, metres along the axis, 0 = no measurement
 /// @param dynamic_mask        same size; not 0: dynamic
 /// @param expected_depth_m  same size; depth of the static model, which limits the back; 0: unknown
 /// @param T_world_camera    pose of the depth camera
-/// @param regions           may be empty; regions that are not finite are skipped
+/// @param regions           balls to mesh at full resolution; may be empty; non-finite regions are skipped
 /// @param surface           overwritten, allocations kept
-/// Sizes must agree (asserted). Throws only if memory runs out; allocates in the first frame of a size only.
+/// Sizes must agree (asserted). Only the first frame of a size allocates.
 void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
                   const DepthImage& expected_depth_m, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, std::span<const FineRegion> regions,

@@ -47,12 +47,13 @@ struct PixelBits {
   }
 };
 
-/// Smooths an outline: sets a pixel if most of the 3 x 3 pixels around it are set, pixels beyond the image
-/// being unset. `smooth` gets the size of `bits`.
+/// Smooths an outline: sets a pixel if most of the 3 x 3 pixels around it are set, with pixels outside the
+/// image unset. `smooth` is resized.
 void take_majority(const PixelBits& bits, PixelBits& smooth);
 
-/// Selects the pixels of `bits` that are not in `near` and have no neighbour in it. These are details that a
-/// 3 x 3 majority removes as a whole, such as lines one pixel wide.
+/// Selects the pixels of `bits` that are not in `near` and have no neighbour in `near`. With a smoothed
+/// outline from take_majority() as `near`, these are the details that smoothing removed entirely, such as
+/// lines one pixel wide.
 void take_far_from(const PixelBits& bits, const PixelBits& near, PixelBits& far);
 
 }  // namespace roomradar

@@ -1,19 +1,18 @@
-// reduced_depth.hpp: a frame's depth with fewer pixels, each of one surface.
+// reduced_depth.hpp: downsamples a frame's depth without mixing surfaces.
 #pragma once
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
 
-/// The stride that a depth image of this size is reduced by where `stride` is asked for: half of it, or 1,
-/// where fewer than 32 rows or columns would be left.
+/// Returns `stride`, halved until the reduced image has at least 32 rows and columns, or 1.
 int usable_stride(const Intrinsics& depth_camera, int stride);
 
-/// One pixel for each stride x stride pixels, and the camera that sees those: scaled(). Its depth is the
-/// mean, of inverse depths, of those pixels that lie on the surface that most of the measured ones show, the
-/// nearer of two that are equally many: so nothing lies between a near edge and what is behind it, and on a
-/// plane it is the depth at the pixel's centre where all are measured. 0 where that surface has less than
-/// half of the pixels, as at the rim of a hole; so a sliver thinner than half a pixel is lost.
-/// @param stride   1, 2 or 4, usable
+/// Replaces each stride x stride pixels by one, and scales the camera to match. Of the surfaces among the
+/// measured pixels, the one with the most pixels is chosen, on a tie the nearer one. The new depth is the
+/// mean over its pixels, in inverse depth. So no pixel gets a depth between a near edge and its background,
+/// and a fully measured plane keeps its depth. If the surface has less than half of the pixels, as at the rim
+/// of a hole, the depth is 0; so slivers thinner than half a reduced pixel are lost.
+/// @param stride   1, 2 or 4, from usable_stride()
 /// @param reduced  depth_m and depth_camera are overwritten; its other fields stay
 void reduce_depth(const Frame& frame, int stride, Frame& reduced);
 

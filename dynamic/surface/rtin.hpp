@@ -7,9 +7,9 @@
 
 namespace roomradar {
 
-/// Squares of 8 x 8 cells, each two right triangles that are bisected at the middle of their hypotenuse, down
-/// to half a cell. The two triangles at a hypotenuse share its bisection point, and the point requires those
-/// of the coarser bisections, so there are no T-junctions. Source: Evans, Kirkpatrick, Townsend,
+/// Each square of 8 x 8 cells is two right triangles, which are bisected at the middle of their hypotenuse,
+/// down to half a cell. The two triangles at a hypotenuse are bisected together, and every bisection includes
+/// the coarser ones that lead to it, so there are no T-junctions. Source: Evans, Kirkpatrick, Townsend,
 /// Right-triangulated irregular networks, Algorithmica 2001.
 struct Rtin {
   int columns = 0, rows = 0;            ///< number of points: multiples of 8, plus one
@@ -25,10 +25,10 @@ struct Rtin {
   }
 };
 
-/// Marks the points at which triangles are bisected.
+/// Marks the points at which triangles are bisected so that all values are within tolerance.
 ///
 /// @param values      one per point, valid at the corners of wanted cells
-/// @param tolerances  max distance of a triangle from the value at each of its points
+/// @param tolerances  one per point: max difference between the value and the triangle there
 /// @param needed      in and out, one per point. Must be 1 at all corners of unwanted cells beside a
 ///                    wanted one, else 0; entries of 1 stay 1.
 void find_needed(const Rtin& grid, std::span<const float> values, std::span<const float> tolerances,

@@ -1,11 +1,11 @@
-// surface_policy.hpp: selects the surfaces that a virtual object can touch in a frame.
+// surface_policy.hpp: the surfaces of a frame that a virtual object can touch.
 #pragma once
 #include <string_view>
 
 namespace roomradar {
 
 enum class SurfacePolicy {
-  kHoles,   ///< this frame's depth pixels only; open across depth discontinuities and where hidden
+  kHoles,   ///< this frame's depth pixels only; open at depth discontinuities and where unmeasured
   kSkirt,   ///< kHoles, plus polygons across depth discontinuities that connect near and far side
   kBorder,  ///< kSkirt, plus the image's border pushed outwards and nearer: a tray around the view
   kMap,     ///< the saved map's static mesh, and this frame's pixels where something is dynamic

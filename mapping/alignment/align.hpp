@@ -11,9 +11,9 @@ namespace roomradar {
 
 enum class TrackStatus {
   kTracked,       ///< all six degrees of freedom are constrained by the measurements
-  kTooFewPoints,  ///< too few correspondences with the references; the returned pose is the guess
-  /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. These degrees of
-  /// freedom keep the guess's values; all others are aligned.
+  kTooFewPoints,  ///< too few correspondences; the returned pose is the initial guess
+  /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. They keep the initial
+  /// guess's values; the others are aligned.
   kDegenerate,
   /// The image disagrees with the references at the aligned pose; the returned pose is the guess.
   kDiverged,
@@ -28,7 +28,7 @@ struct [[nodiscard]] Tracking {
   double inlier_fraction = 0.0;  ///< fraction of the correspondences whose distance is within the noise
   /// Fraction of the image's points that have a correspondence in the first reference.
   double overlap = 0.0;
-  /// Number of unconstrained degrees of freedom, 0..6. They keep the guess's values.
+  /// Number of unconstrained degrees of freedom, 0..6.
   int unconstrained_dofs = 0;
   /// Inverse covariance of the error of T_world_camera, as a twist (translation m, rotation rad) in the
   /// camera frame: T_true = T_world_camera * exp(twist). Scaled down because the errors of neighbouring
@@ -37,8 +37,7 @@ struct [[nodiscard]] Tracking {
   explicit operator bool() const { return status == TrackStatus::kTracked; }
 };
 
-/// Returns true if T_world_camera is an aligned pose. Unconstrained degrees of freedom may still have the
-/// guess's values.
+/// Returns true if T_world_camera is an aligned pose, possibly with unconstrained degrees of freedom.
 inline bool has_pose(const Tracking& tracking) {
   return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
 }
@@ -61,7 +60,7 @@ struct AlignConfig {
   float min_constraint = 0.001F;
   /// A direction counts as unconstrained if the pose's standard deviation along it exceeds this, m.
   float max_uncertainty_m = 0.01F;
-  /// Larger corrections of the guess count as kDiverged; max translation in m, and max rotation in rad.
+  /// Max correction of the guess, translation (m) and rotation (rad); larger corrections count as kDiverged.
   float max_correction_m = 0.5F;
 };
 
@@ -73,13 +72,12 @@ struct PosedReference {
 
 /// Estimates T_world_camera by point-to-plane ICP with projective association. Intensity residuals are added,
 /// with one gain and one offset per reference. Gauss-Newton, from coarse to fine. Residuals are weighted by
-/// their standard deviations and by a robust kernel, so parts of the image that have moved have little
-/// effect. Each reference contributes in proportion to its overlap.
+/// their standard deviations and by a robust kernel, so moving objects have little effect. Each reference
+/// contributes in proportion to its overlap.
 ///
-/// Unconstrained degrees of freedom keep the guess's values and are counted in unconstrained_dofs. If the
-/// guess is not finite, returns kDiverged with the identity as pose. Source: Chen and Medioni 1992 (point to
-/// plane); Newcombe et al., KinectFusion, ISMAR 2011 (projective association); Zhang, Kaess, Singh, On
-/// Degeneracy of Optimization-based State Estimation Problems, ICRA 2016.
+/// If the guess is not finite, returns kDiverged with the identity as pose. Source: Chen and Medioni 1992
+/// (point to plane); Newcombe et al., KinectFusion, ISMAR 2011 (projective association); Zhang, Kaess, Singh,
+/// On Degeneracy of Optimization-based State Estimation Problems, ICRA 2016.
 Tracking align(const SourcePoints& live, std::span<const PosedReference> references,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 
@@ -94,7 +92,7 @@ Eigen::Isometry3d retract(const Eigen::Matrix<double, 6, 1>& twist);
 Eigen::Matrix<double, 6, 1> local(const Eigen::Isometry3d& T);
 
 /// Predicts the motion from this frame to the next. Returns T_last_now if `tracking` is kTracked, else half
-/// of that motion, so unobserved degrees of freedom do not keep a past speed.
+/// of that motion, so the velocity of unobserved degrees of freedom decays.
 Eigen::Isometry3d expected_motion(const Tracking& tracking, const Eigen::Isometry3d& T_last_now);
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// keyframe.hpp: stored views with which later frames are aligned, and averaging of further depth into them.
+// keyframe.hpp: keyframes in compact form, with which later frames are aligned and into which depth is
+// averaged.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -23,12 +24,11 @@ constexpr float kInverseDepthStep_per_m = 5.7e-5F;
 struct Keyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::shared_ptr<const StoredView> view;  ///< never null; refined depth is a new view, views are never
-                                           ///< modified
+  std::shared_ptr<const StoredView> view;  ///< never null; immutable: refined depth becomes a new view
   std::uint32_t revision = 0;              ///< number of times that `view` was replaced
   /// Length of the camera's path up to this keyframe, m; a rotation by 1 rad counts as 1 m, and motion while
-  /// tracking was degenerate counts tenfold. The drift between two keyframes is assumed to be a
-  /// fraction of the path between them.
+  /// tracking was degenerate counts tenfold. The assumed drift between two keyframes grows with the path
+  /// between them.
   double path_length_m = 0.0;
 };
 

@@ -15,12 +15,8 @@ struct CachedKeyframe {
   SourcePoints live;
 };
 
-enum class PreparedParts {
-  kAll,
-  kLive,
-  kReference
-};  ///< Parts of a CachedKeyframe that are prepared. A
-    ///< part that is not prepared stays empty.
+/// Parts of a CachedKeyframe to prepare; the other part stays empty.
+enum class PreparedParts { kAll, kLive, kReference };
 
 std::shared_ptr<const CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
                                                        PreparedParts parts = PreparedParts::kAll);

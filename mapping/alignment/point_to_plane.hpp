@@ -20,7 +20,7 @@ struct NormalEquations {
   void mirror() { H.triangularView<Eigen::StrictlyLower>() = H.transpose(); }
 };
 
-/// Intensity model of one reference: reference intensity = gain * live intensity + offset.
+/// Brightness difference to one reference: reference intensity = gain * live intensity + offset.
 struct Exposure {
   float gain = 1.0F;
   float offset = 0.0F;
@@ -51,7 +51,7 @@ struct MatchLimits {
 /// Projects the points into the reference to find correspondences, and sums the residuals of each: distance
 /// to the reference's plane and, if exposure.known, difference of intensity. Residuals are linearised in the
 /// twist of the camera, in the camera frame.
-/// @param[in,out] pass  the sums are added to it; of H, the upper triangle only
+/// @param[in,out] pass  the residuals are added to its sums; of H, only to the upper triangle
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
                   PointMatches& pass);

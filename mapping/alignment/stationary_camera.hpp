@@ -6,8 +6,8 @@ namespace roomradar {
 
 /// Returns true if most image edges of `before` (intensities 0..255) moved by less than 0.2 px. Then the
 /// camera is stationary; a minority of edges may move, e.g. those of a person. Returns false if the sizes
-/// differ or there are fewer than 300 edge pixels. Depth is not used, because the depth of a Kinect changes
-/// while it recalibrates, even if it is stationary.
+/// differ or there are fewer than 300 edge pixels. Depth is not used: that of a stationary Kinect changes
+/// while the sensor recalibrates.
 bool is_camera_stationary(const Image<float>& before, const Image<float>& now);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// view.hpp: planes of a target view and points of a source view, both prepared for alignment.
+// view.hpp: the two sides of an alignment: planes of a target view, points of a source view.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -15,7 +15,7 @@ struct ViewConfig {
   int finest_width_px = 320;  ///< wider images are halved until they are at most this wide
   int levels = 3;             ///< number of pyramid levels, each half the width and height of the previous
   float min_depth_m = 0.3F;
-  float max_depth_m = 6.0F;  ///< larger depths are not used: there a Kinect v1 is off by more than 6 cm
+  float max_depth_m = 6.0F;  ///< larger depths are not used: a Kinect v1's noise exceeds 6 cm there
   /// Half the side of the neighbourhood to which a pixel's plane is fitted, at the finest level. The
   /// neighbourhood is sampled at 5 x 5 pixels.
   int normal_reach_px = 4;

@@ -11,11 +11,11 @@
 namespace roomradar {
 
 struct Coverage {
-  std::vector<Hole> holes;  ///< unknown space, surface borders, outer borders; per kind, largest first
-  std::vector<std::uint8_t> picture_png;  ///< picture from draw_coverage()
+  std::vector<Hole> holes;                ///< ordered by kind, then largest first
+  std::vector<std::uint8_t> picture_png;  ///< drawn by draw_coverage(), as a PNG file
 };
 
-/// Finds the holes of a finished map and draws its coverage. Takes some tenths of a second for a room.
+/// Finds the holes of a finished map and draws its coverage. Takes a few tenths of a second for a room.
 Coverage survey_coverage(const StaticMap& octree, const Mesh& mesh, const std::vector<TimedPose>& trajectory);
 
 }  // namespace roomradar

@@ -17,11 +17,11 @@ namespace roomradar {
 inline constexpr double kSeenWell_m = 0.003;
 
 /// Draws orthographic projections of the surface from above and from two sides. Back faces are left out, so
-/// walls and ceiling do not hide the room. The picture is rotated to make most walls upright in it; arrows
-/// show the world's axes. Thinly observed surface is orange. Border cells of holes are violet (unknown space,
-/// surface borders) or blue (end of the scan). The largest holes are numbered (1: the first of `holes`), and
-/// a line shows the camera's path. With scale and legend, about 1600 x 1000 pixels. An empty surface gives a
-/// picture that says so.
+/// walls and ceiling do not hide the room. The view is rotated about the vertical so most walls run along the
+/// picture's axes; arrows show the world's axes. Thinly observed surface is orange. Cells at the borders of
+/// holes are violet (unknown space, surface borders) or blue (end of the scan). The largest holes are
+/// numbered by their place in `holes`, from 1, and a line shows the camera's path. With scale and legend,
+/// about 1600 x 1000 pixels. An empty surface gives a picture that says so.
 ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                           std::span<const Hole> holes, std::span<const TimedPose> trajectory);
 

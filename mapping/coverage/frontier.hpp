@@ -14,8 +14,8 @@ struct FrontierConfig {
   /// A border cell is inside the scan if at least this fraction of rays from it into the unknown end at a
   /// surface.
   double min_enclosed = 0.5;
-  /// Otherwise it is inside if its connected component's area is at most this fraction of the scan's cross
-  /// section.
+  /// A border cell with fewer such rays is still inside if its connected component's area is at most this
+  /// fraction of the scan's cross section.
   double max_open_part = 0.08;
 };
 
@@ -30,16 +30,15 @@ struct FrontierCell {
 
 struct Frontier {
   double cell_m = 0.0;      ///< edge of the cells, a multiple of the map's resolution
-  std::vector<Hole> holes;  ///< kUnknownSpace and, at the end of the scan, kOuterBorder; per kind, largest
-                            ///< first
+  std::vector<Hole> holes;  ///< kUnknownSpace, then kOuterBorder; per kind, largest first
   std::vector<FrontierCell> cells;
 };
 
 /// Reads the octree once into a grid of cells (coarser ones if there would be more than 16 million). A cell
 /// is occupied if any of its voxels is, else free if half of it is. Border cells are unknown and share a face
 /// with a free cell; adjacent border cells form one hole. Each face's area is projected along the border's
-/// normal, so a slanted border does not count as its steps. Returns no holes for an empty map. Throws Error
-/// if the config is invalid.
+/// normal, so a slanted border's area is not that of its staircase. Returns no holes for an empty map. Throws
+/// Error if the config is invalid.
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config = {});
 
 }  // namespace roomradar

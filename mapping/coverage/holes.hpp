@@ -11,9 +11,9 @@ namespace roomradar {
 class StaticMap;
 struct Frontier;
 
-/// Returns the frontier's holes and those of the surface: border loops surrounded by surface, at least
-/// min_border_size_m across. Skips loops whose centre is within three cells of a cell of the frontier's
-/// holes. Sorted by kind, then largest first.
+/// Returns the frontier's holes, and the holes of the surface: border loops surrounded by surface, at least
+/// min_border_size_m across. Loops whose centre is within three cells of a frontier hole's cell are left out.
+/// Sorted by kind, then largest first.
 std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                              double min_border_size_m = 0.12);
 

@@ -13,14 +13,14 @@ namespace roomradar {
 
 /// Counts cells of 10 cm with measured surface, from every 16th pixel in both directions, at most 4 m away. A
 /// cell counts as 0.01 m2: exact for surface along the world's axes, up to 1.7 times too much for diagonal
-/// surface. Takes about 50 microseconds per frame. Poses during tracking are not final; surface seen again
-/// after drift may count twice.
+/// surface. Takes about 50 microseconds per frame. During tracking, poses may drift; surface seen again
+/// afterwards may count twice.
 class ObservedArea {
  public:
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   [[nodiscard]] double total_m2() const;
-  /// Area added by the last second of frames, by their time stamps.
+  /// Returns the area added during the last second, by the frames' time stamps.
   [[nodiscard]] double last_second_m2() const;
 
  private:

@@ -1,4 +1,4 @@
-// correlative_search.hpp: finds camera pose hypotheses from depth alone, by correlative search.
+// correlative_search.hpp: finds camera pose candidates from depth alone, by correlative scan matching.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -10,8 +10,7 @@
 
 namespace roomradar {
 
-/// Grid of cubes that stores, by cube, the nearness to the next surface: 255 on a surface, 0 from three cubes
-/// away on.
+/// Grid of cubes that stores, per cube, how near the closest surface is.
 struct ShapeGrid {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();  ///< lower corner of the first cube, in the world, m
   double cell_m = 0.0;
@@ -23,8 +22,8 @@ struct ShapeGrid {
   static constexpr int kReach_cells = 3;  ///< distance from a surface, in cubes, at which nearness is 0
 };
 
-/// Surfaces of all depth previews in a keyframe database, for search_by_shape(): a coarse grid for the search
-/// over the whole room, and a fine grid for refining poses.
+/// Surfaces in the downsampled depth images of all keyframes of a database, for search_by_shape(): a coarse
+/// grid for the search over the whole room, and a fine grid for refining poses.
 struct ShapeIndex {
   ShapeGrid coarse, fine;
   [[nodiscard]] bool empty() const { return coarse.nearness.empty(); }
@@ -35,8 +34,7 @@ ShapeIndex shape_index(const KeyframeDatabase& keyframe_database);
 
 struct ShapeCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  double nearness = 0.0;  ///< mean nearness of the image's points to surfaces, 0..1; 1: all points are on
-                          ///< surfaces
+  double nearness = 0.0;  ///< mean nearness of the image's points, 0..1; 1: all are on surfaces
 };
 
 /// Returns at most `most` distinct poses at which the most points of the depth image are on known surfaces,

@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// One keyframe of the database: image features, surface patches, and a small depth image ("preview").
+/// One keyframe of the database: image features, surface patches, and a downsampled depth image ("preview").
 struct MapKeyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the depth camera
@@ -24,14 +24,14 @@ struct MapKeyframe {
   std::vector<Descriptor> descriptors;
   std::vector<SurfacePatch> patches;  ///< surface patches, in this keyframe's depth camera
   Intrinsics preview_camera;
-  Image<std::uint16_t> preview_depth_mm;  ///< depth preview, with the size of preview_camera; 0: no depth
+  Image<std::uint16_t> preview_depth_mm;  ///< preview: downsampled depth, mm; 0: none
 };
 
 struct KeyframeDatabase {
   std::vector<MapKeyframe> keyframes;
 };
 
-/// Max number of features per keyframe, and max number of patches. Bounds the cost of matching all pairs.
+/// Max number of features, and of patches, per keyframe. Bounds the cost of matching all pairs.
 inline constexpr int kMostDescribed = 10'000;
 
 struct KeyframeDatabaseConfig {

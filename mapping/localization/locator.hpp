@@ -23,7 +23,7 @@ using ExpectedDepth = std::function<const DepthImage&(const Eigen::Isometry3d& T
 /// Search indices over the keyframe database. Each is built when it is first used.
 struct MapIndices {
   PatchIndex patches;
-  ShapeIndex shapes;  ///< surfaces of the keyframes' depth previews
+  ShapeIndex shapes;  ///< surfaces in the keyframes' downsampled depth images
 };
 
 /// Buffers that are reused for each frame: pyramid and points of the live image, pyramid and planes of the
@@ -41,16 +41,16 @@ struct Locator {
   /// Resolution of the expected view. Rendered depth needs no smoothing.
   ViewConfig expected_view{.finest_width_px = 160, .noisy = false};
   AlignConfig align;
-  /// Alignment settings for poses that depth alone must constrain, and for a repeated alignment after the
-  /// first lost most matching patches. The higher min_constraint prevents bumps of the mesh from constraining
-  /// a direction.
+  /// Alignment settings for poses that depth alone must constrain, and for a second alignment if the first
+  /// loses most of the matching patches. With the higher min_constraint, bumps of the mesh do not count as
+  /// constraining a direction.
   AlignConfig strict_align{.min_constraint = 0.01F};
   RelocaliseConfig relocalise;
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< pose of the previous frame; unset while lost
   /// Predicted motion from the previous frame to the next.
   Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
   int unverified_frames = 0;  ///< number of consecutive frames whose depth contradicts the tracked pose
-  /// Number of frames with contradicting depth that must still pass before the map is searched again.
+  /// Remaining number of frames with contradicting depth before the map may be searched again.
   int recheck_cooldown_frames = 0;
   /// Last pose before tracking was lost; locate() tries to resume there in the first 30 lost frames.
   std::optional<Eigen::Isometry3d> T_world_lost;
@@ -71,12 +71,12 @@ struct Locator {
 /// the depth. Without gravity, and without colour or patches in the map, it uses relocalise(). A pose found
 /// by search must be constrained in all directions, verified by depth and patches, and unambiguous.
 ///
-/// With kDegenerate, unconstrained directions have the prediction's values. If the depth of a recalibrating
-/// sensor bent and alignment took this for a motion, the whole pose is the previous frame's instead, also
-/// with kDegenerate.
+/// With kDegenerate, the pose equals the prediction in unconstrained directions. A sensor that recalibrates
+/// distorts its depth for a moment; if alignment mistakes this for motion, the whole pose is the previous
+/// frame's, with kDegenerate.
 ///
-/// @param dynamic_mask  pixels that are not 0 showed moving objects in the previous frame and are ignored;
-///                      empty, or of the depth image's size
+/// @param dynamic_mask  not 0: the pixel showed a moving object in the previous frame and is ignored; empty,
+///                      or of the depth image's size
 /// @return a usable pose if the status is kTracked or kDegenerate; with any other status, the camera is
 ///         lost, and the next call searches for it
 Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,

@@ -37,17 +37,18 @@ struct PoseCandidate {
 };
 
 /// Returns at most `most` distinct poses that at least `min_agreeing` patches of the frame support, best
-/// first. Each pair of similar patches (one of the frame, one known) votes for the approximate pose that it
-/// implies. RANSAC over triples of the agreeing pairs' centres then gives the exact pose. Deterministic.
+/// first. Each pair of similar patches (one of the frame, one known) votes for the approximate pose that the
+/// pair implies. RANSAC over triples of patch centres, among the pairs that agree with a pose, then refines
+/// it. Deterministic.
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing);
 
 /// Comparison of a frame's patches with the known patches at a pose. `compared` is the number of the frame's
-/// patches that coincide with known patches, whatever they look like. `alike` lists the coinciding patches
-/// that also look similar.
+/// patches that coincide with known patches, regardless of appearance. `alike` lists those that also look
+/// similar.
 struct PatchAgreement {
   int compared = 0;
-  /// Patch centres: a is the known patch's, in the world; b is the frame's patch's, in the camera.
+  /// Pairs of patch centres: a in the world (known patch), b in the camera frame (frame's patch).
   std::vector<PointPair> alike;
   [[nodiscard]] double alike_part() const {
     return compared > 0 ? static_cast<double>(alike.size()) / compared : 0.0;

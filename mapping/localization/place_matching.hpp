@@ -9,17 +9,17 @@
 
 namespace roomradar {
 
-/// Returns the indices, in `keyframe_database`, of the keyframes that share the most features with `place`:
-/// at most `count`, best first, each with at least `min_matches` matches. Compares only the first `strongest`
-/// features of each keyframe.
+/// Returns the indices, in `keyframe_database`, of the keyframes with the most features in common with
+/// `place`: at most `count`, best first, each with at least `min_matches` matches. Compares only the first
+/// `strongest` features of each keyframe.
 std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const MapKeyframe> keyframe_database,
                                     std::size_t count, int min_matches, std::size_t strongest = 300);
 
 /// Relative pose of two keyframes a and b, from their matched features.
 struct KeyframeMatch {
   int inliers = 0;
-  /// Rigid motion that maps the surface points of `inliers` features of b onto those of a; valid only if
-  /// inliers > 0.
+  /// Rigid motion that maps surface points of features of b onto the matching points of a, for `inliers`
+  /// matches; valid only if inliers > 0.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
 };
 
@@ -30,7 +30,7 @@ struct PointPair {
 };
 
 /// Computes the rigid motion T_a_b with the most inliers, by RANSAC over `samples` triples, then refines it
-/// over all inliers. The random seed is fixed.
+/// over all inliers. Deterministic: the random seed is fixed.
 KeyframeMatch motion_of(const std::vector<PointPair>& pairs, int samples);
 
 /// Matches all features of two keyframes (nearest descriptor, ratio test), and computes the motion on which

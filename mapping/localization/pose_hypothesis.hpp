@@ -1,4 +1,4 @@
-// pose_hypothesis.hpp: pose hypotheses of a map search, and the tests that accept or reject them.
+// pose_hypothesis.hpp: camera poses tried by a search of the map, and the tests that accept or reject them.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>
@@ -10,11 +10,11 @@
 
 namespace roomradar {
 
-/// Pose that a map search tried, with its agreement in appearance and depth.
+/// Pose tried by a search of the map, with its agreement in appearance and depth.
 struct PoseHypothesis {
   Tracking tracking;
-  double uncertainty_m = 0.0;  ///< uncertainty_m() of the pose after alignment and after moving it to match
-                               ///< patches
+  /// uncertainty_m() after alignment and after moving the pose to fit the patches.
+  double uncertainty_m = 0.0;
   PatchAgreement appearance;
   DepthAgreement agreement;
 };
@@ -36,11 +36,11 @@ double support_of(const PoseHypothesis& hypothesis);
 double uncertainty_m(const Tracking& tracking);
 
 /// Returns true if enough patches match known patches at this pose. Where floorboards or tiles repeat, about
-/// twenty patches match even at a wrong pose. So if depth leaves a direction unconstrained, 40 must match, or
-/// 25 if almost nothing contradicts the pose; otherwise 15 suffice.
+/// twenty patches match even at a wrong pose. If depth leaves a direction unconstrained, 40 must therefore
+/// match, or 25 if almost nothing contradicts the pose; otherwise 15 suffice.
 bool is_verified_by_patches(const PoseHypothesis& hypothesis);
 
-/// Returns true if at least 12 patches were compared, and the fraction that is alike is higher than at wrong
+/// Returns true if at least 12 patches were compared, and a larger fraction of them is alike than at wrong
 /// poses.
 bool is_supported_by_patches(const PatchAgreement& appearance);
 
@@ -49,9 +49,8 @@ bool is_supported_by_patches(const PatchAgreement& appearance);
 /// almost no pixel sees through the model, and the patches do not contradict the pose.
 bool is_certain(const PoseHypothesis& hypothesis);
 
-/// Returns true if another hypothesis at a different pose explains the frame about as well as `best`. The
-/// required margin is larger if few patches were compared, because the fraction alike then varies more by
-/// chance.
+/// Returns true if another hypothesis, at a different pose, explains the frame about as well as `best`. With
+/// few compared patches, `best` needs a larger lead, because the fraction alike then varies more by chance.
 bool is_ambiguous(const PoseHypothesis& best, const std::vector<PoseHypothesis>& hypotheses);
 
 /// Returns true if two poses differ by less than 0.1 m and 0.1 rad.

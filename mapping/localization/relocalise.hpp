@@ -25,8 +25,8 @@ struct [[nodiscard]] Relocalisation {
   std::int64_t keyframe = -1;
   int feature_inliers = 0;  ///< number of matched features that agree with the pose; 0 if found by depth
                             ///< alone
-  /// Fraction of the pixels measured in both the frame and the keyframe's preview whose depths agree within
-  /// the noise.
+  /// Fraction of pixels whose depths agree within the noise, among those measured both in the frame and in
+  /// the keyframe's downsampled depth image.
   double depth_agreement = 0.0;
   explicit operator bool() const { return status == RelocalisationStatus::kFound; }
 };
@@ -39,9 +39,9 @@ struct RelocaliseConfig {
 };
 
 /// Localises a frame in the keyframe database. ORB matches select keyframes; RANSAC over their 3D points
-/// gives a pose; alignment with the keyframe's depth preview refines and verifies the pose. If the frame or
-/// the database has no colour, tries alignment with the 40 previews most similar in depth, with a stricter
-/// test. Deterministic. Does not throw, even for corrupt frames.
+/// gives a pose; alignment with the keyframe's downsampled depth image refines and verifies the pose. If the
+/// frame or the database has no colour, alignment is tried with the 40 keyframes most similar in depth, and
+/// the test is stricter. Deterministic. Does not throw, even for corrupt frames.
 Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_database,
                           const RelocaliseConfig& config = {});
 

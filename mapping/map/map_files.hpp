@@ -20,25 +20,25 @@ inline constexpr std::array<const char*, 5> kMapParts = {kMapOctreeFile, kMapPla
 inline constexpr const char* kMapCoverageFile = "coverage.png";  ///< optional
 inline constexpr const char* kMapUnknownFile = "unknown.bin";    ///< optional: earlier versions saved none
 
-/// Returns whether a map may have a file of this name beside map.json.
+/// Returns true if a map's folder may contain a file of this name besides map.json.
 bool is_map_part(const std::string& name);
 
 /// Throws Error unless `folder` is missing, empty, or contains a map and nothing else.
 void require_replaceable(const std::filesystem::path& folder);
 
-/// Returns the path without dot components and without a trailing slash. Throws Error if no usable name for a
-/// map remains.
+/// Returns the path without dot components and trailing slash. Throws Error if the result is not usable as a
+/// map's name.
 std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
 
 /// Throws Error if the file or folder would be directly in a map's folder, which may contain only the map's
 /// files. An empty path is allowed.
 void require_outside_maps(const std::filesystem::path& path);
-/// Same for files to be written into `folder`; also throws if `folder` itself is a map.
+/// The same check for files to be written into `folder`; also throws if `folder` itself is a map.
 void require_contents_outside_maps(const std::filesystem::path& folder);
 
 /// Checks, before minutes of work, whether a map can be saved to `folder`. Throws Error if save_map would
-/// refuse its name or its content, or if one of `outputs` would be in it. `outputs` are the other files and
-/// folders to be written; empty paths are ignored.
+/// refuse its name or its content, or if one of `outputs` would be in `folder`. `outputs` are other files and
+/// folders that the caller will write; empty paths are ignored.
 void require_can_become_map(const std::filesystem::path& folder,
                             std::initializer_list<std::filesystem::path> outputs);
 

@@ -25,7 +25,7 @@ struct SavedMap {
   KeyframeDatabase keyframe_database;
   std::vector<TimedPose> trajectory;
   std::vector<std::uint8_t> coverage_png;  ///< coverage picture; empty: none
-  /// Border of unknown space, as loaded; null: a map saved by an earlier version, or not saved so far.
+  /// Border of unknown space, set by load_map(); null: not yet saved, or saved by an earlier version.
   std::shared_ptr<const UnknownSurface> unknown;
 };
 
@@ -36,7 +36,7 @@ SurfaceConfig surface_config_of(const MapInfo& info);
 /// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step.
 /// Extracts the border of unknown space from map.octree and map.mesh for the file unknown.bin.
 /// Afterwards `folder` is the complete new map or, after an Error, unchanged. Creates parent folders. Throws
-/// Error if `folder` exists and is not a map (its files are left alone), the map has no surface or too many
+/// Error if `folder` exists and is not a map (its files are not touched), the map has no surface or too many
 /// triangles, or the disk fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);
 

@@ -1,4 +1,4 @@
-// map_info.hpp: what map.json says of a map.
+// map_info.hpp: content of a map's map.json.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -12,10 +12,9 @@ namespace roomradar {
 inline constexpr int kMapFormatVersion = 1;
 
 // Keys of MapInfo::settings that are read back.
-inline constexpr const char* kDeviationSetting = "deviation_m";  ///< SurfaceConfig::max_deviation_m
-inline constexpr const char* kPosesSetting = "poses";            ///< name of the PoseOrigin
-inline constexpr const char* kStoppedSetting =
-    "stopped_for_memory";  ///< source of which only a part is in the map
+inline constexpr const char* kDeviationSetting = "deviation_m";       ///< SurfaceConfig::max_deviation_m
+inline constexpr const char* kPosesSetting = "poses";                 ///< name of the PoseOrigin
+inline constexpr const char* kStoppedSetting = "stopped_for_memory";  ///< a source that did not fit in memory
 
 /// Entry of one file in map.json.
 struct MapFile {
@@ -23,13 +22,13 @@ struct MapFile {
   std::string sha256;  ///< 64 hexadecimal digits
 };
 
-/// Content of map.json. save_map and load_map fill in the fields from `format_version` on.
+/// Content of map.json. save_map() and load_map() set `format_version` and all fields below it.
 struct MapInfo {
   std::string source;  ///< recordings (full paths) or devices, separated by "; "
   std::int64_t frames_read = 0;
   std::int64_t frames_fused = 0;
   std::string up_source = "none";  ///< accelerometer, plane or none
-  /// From the recording's world to the map's, +z up.
+  /// Maps points from the recording's world to the map's world, where +z is up.
   Eigen::Isometry3d T_world_recorded = Eigen::Isometry3d::Identity();
   std::map<std::string, std::string> settings;  ///< prescan's settings, by name
 
@@ -41,13 +40,13 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
-  /// By file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt, and coverage.png if there is
-  /// one.
+  /// By file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt; coverage.png and unknown.bin
+  /// if present.
   std::map<std::string, MapFile> files;
 };
 
-/// Returns whether info.T_world_recorded locates recorded poses in the map. True if the map was scanned with
-/// recorded poses, or from a recording that had them.
+/// Returns true if info.T_world_recorded is known: the map was scanned with recorded poses, or from a
+/// recording that had them.
 bool knows_recorded_world(const MapInfo& info);
 
 /// Returns the output of `roomradar map info`.

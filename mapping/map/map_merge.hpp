@@ -10,20 +10,20 @@ namespace roomradar {
 
 /// Adds `from` to `into`: log-odds are added, signed distances averaged by weight. Each voxel of `into` takes
 /// the log-odds at its centre, and the distance interpolated from the eight samples around it. Exact if the
-/// grids coincide. `into` must not be coarser than `from`, or parts of thin surfaces are lost. Throws Error
-/// if a part of `from` is out of `into`'s reach.
+/// grids coincide. If `into` is coarser than `from`, parts of thin surfaces are lost. Throws Error if a part
+/// of `from` is outside the octree of `into`.
 void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, StaticMap& into);
 
 /// Appends another session's keyframes, poses and counts to a map. The session must be in the map's world;
 /// its stamps are shifted to follow the map's. Octree and mesh are unchanged.
 void append_session(SavedMap& map, const SavedMap& session);
 
-/// Registers b's world to a's: b's surface must fit a, and a's surface must fit b.
+/// Estimates T_a_b between two maps' worlds; b's surface must fit a, and a's surface must fit b.
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config = {});
 
 /// Merges two maps in a's world, at the finer of their resolutions, and extracts the surface again with a's
-/// settings. Throws Error if a map is out of reach at this resolution, or if the resolutions differ by more
-/// than a factor of four.
+/// settings. Throws Error if the octree at this resolution cannot cover both maps, or if the resolutions
+/// differ by more than a factor of four.
 SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b);
 
 }  // namespace roomradar

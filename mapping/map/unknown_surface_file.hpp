@@ -10,8 +10,9 @@ namespace roomradar {
 /// file cannot be written.
 void write_unknown_surface(const UnknownSurface& surface, const std::filesystem::path& path);
 
-/// Reads a file from write_unknown_surface(); memory_bytes is 0. Throws Error naming the file and the fault
-/// if it is missing, truncated, altered, or of another version. Sizes are checked before memory is allocated.
+/// Reads a file written by write_unknown_surface(). UnknownSurface::memory_bytes is not stored and is 0.
+/// Throws Error naming the file and the fault if it is missing, truncated, altered, or of another version.
+/// Sizes are checked before memory is allocated.
 UnknownSurface read_unknown_surface(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -8,9 +8,10 @@
 namespace roomradar {
 
 /// Collapses edges while every vertex of `full` stays within tolerance_m (one per vertex, m, >= 0) of the
-/// triangles that replace its own. Vertices with tolerance 0 are constrained: they do not move, and no new
-/// edge connects two of them. New vertices stay within the same tolerances of `full_surface`, the surface of
-/// `full`. The result has all vertices of `full`, moved, and fewer triangles. Used by mesh_simplify.cpp only.
+/// triangles that replace those around it. Vertices with tolerance 0 are constrained: they do not move, and
+/// no new edge connects two of them. A new vertex's distance from `full_surface`, the surface of `full`, is
+/// at most the larger tolerance of the two vertices it replaces. Vertices keep their indices; those merged
+/// into others remain in the list, unreferenced. Used by mesh_simplify.cpp only.
 Mesh collapsed(const Mesh& full, const MeshDistanceQuery& full_surface,
                const std::vector<float>& tolerance_m);
 

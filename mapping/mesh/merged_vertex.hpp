@@ -1,4 +1,4 @@
-// merged_vertex.hpp: data of an edge collapse per vertex: what was merged, and linked lists of indices.
+// merged_vertex.hpp: edge collapse: accumulated data of merged vertices, and linked lists of indices.
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// No vertex, triangle or corner.
+/// Stands for no vertex, triangle or corner.
 inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
 
 /// Accumulated data of all vertices merged into one.
@@ -19,8 +19,7 @@ struct MergedVertex {
   Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();
   Eigen::Vector3f colour_sum = Eigen::Vector3f::Zero();
   std::uint32_t count = 0;
-  std::uint32_t version = 0;  ///< incremented by every collapse; kNoIndex once removed, which matches no
-                              ///< candidate
+  std::uint32_t version = 0;  ///< incremented by every collapse; kNoIndex: vertex removed
   float tolerance_m = 0.0F;   ///< minimum over the merged vertices; 0: constrained
   bool on_border = false;
 

@@ -14,7 +14,7 @@ namespace roomradar {
 /// mesh.triangles.
 std::vector<std::span<Triangle>> sort_into_blocks(Mesh& mesh, std::size_t max_triangles);
 
-/// For each vertex: true if it is a corner of triangles in more than one block.
+/// Returns, per vertex, true if triangles of more than one block use it.
 std::vector<bool> seam_vertices(const Mesh& mesh, const std::vector<std::span<Triangle>>& blocks);
 
 /// A block as a separate mesh.

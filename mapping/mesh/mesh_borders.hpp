@@ -13,7 +13,7 @@ struct BorderLoop {
   std::vector<std::uint32_t> vertices;  ///< mesh vertices in order; surface on the left seen from outside
   Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();  ///< length-weighted mean of the edges
   /// Unit mean normal of the triangles along the border, towards the side the surface was observed from. A
-  /// camera looking for the missing surface looks along the opposite direction. Zero if the normals cancel.
+  /// camera that observes the missing surface looks along the opposite direction. Zero if the normals cancel.
   Eigen::Vector3d outward_world = Eigen::Vector3d::Zero();
   double length_m = 0.0;  ///< perimeter
   double size_m = 0.0;    ///< extent along the loop's longest principal axis

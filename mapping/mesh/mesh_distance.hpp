@@ -15,12 +15,13 @@ class MeshDistanceQuery {
   /// @param reach_m  max distance (> 0) that queries can find
   MeshDistanceQuery(const Mesh& mesh, float reach_m);
 
-  /// Distance (m) from a point, relative to the mesh's origin, to the nearest surface; infinity if above
-  /// reach_m. The search stops at the first distance not above enough_m, which need not be the smallest.
+  /// Returns the distance (m) from a point, relative to the mesh's origin, to the nearest surface; infinity
+  /// if above reach_m. The search stops at the first distance not above enough_m, so with enough_m > 0 the
+  /// result need not be the smallest.
   [[nodiscard]] float distance_m(const Eigen::Vector3f& p, float enough_m = 0.0F) const;
 
-  /// Nearest triangle within reach_m whose normal is less than 90 degrees from `facing` (any length), which
-  /// skips the far side of a thin sheet. nullopt if there is none.
+  /// Returns the nearest triangle within reach_m whose normal is less than 90 degrees from `facing` (any
+  /// length); so the far side of a thin sheet is skipped. nullopt if there is none.
   [[nodiscard]] std::optional<std::uint32_t> nearest_facing(const Eigen::Vector3f& p,
                                                             const Eigen::Vector3f& facing) const;
 
@@ -29,12 +30,13 @@ class MeshDistanceQuery {
     std::uint32_t cube;  // some bits of the cube's hashed code
     std::uint32_t triangle;
   };
-  /// Calls visit(code) for each cube overlapped by the bounding boxes of the triangle's parts.
+  /// Calls visit(code) for each cube that the triangle's pieces overlap, by bounding box.
   template <typename Visit>
   void for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                      const Visit& visit) const;
 
-  /// Calls visit(triangle) for each candidate within reach of the point, until visit returns true.
+  /// Calls visit(triangle) for each triangle that may be within reach_m of the point, until visit returns
+  /// true.
   template <typename Visit>
   void visit_near(const Eigen::Vector3f& p, const Visit& visit) const;
 
@@ -49,7 +51,7 @@ class MeshDistanceQuery {
   std::vector<Entry> entries_;                ///< sorted by the hash of their cubes
 };
 
-/// A point of one mesh that is too far from the surface of another.
+/// A point of one mesh that is farther than a limit from the surface of another.
 struct FarPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the mesh's origin
   float distance_m = 0.0F;                             ///< infinity if beyond the reach of `other`

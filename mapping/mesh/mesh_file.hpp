@@ -9,7 +9,7 @@ namespace roomradar {
 
 inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 
-/// Reads all triangles of a file, with normals and colours if every vertex has them. Vertices are taken as
+/// Reads all triangles of a file, with normals and colours if every vertex has them. Vertices are read as
 /// metres in the file's own axes, unscaled. Only .glb is converted, as its standard requires: from y up to z
 /// up, and from linear colours to sRGB; its node transforms are applied. Degenerate triangles (two equal
 /// corners, no area) are dropped. The mesh's origin is zero. Throws Error (naming the file, the problem and a

@@ -14,18 +14,18 @@ struct SimplifiedMesh {
   float deviation_m = 0.0F;
 };
 
-inline constexpr std::size_t kBlockTriangles = 6000;  ///< its data fits the CPU cache
+inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size fits the CPU cache
 
-/// Collapses edges in order of quadric error, placing each new vertex where the planes around it intersect
-/// best: flat areas become few large triangles, curved ones keep small ones.
+/// Collapses edges in order of quadric error, and places each new vertex at the least-squares intersection of
+/// the planes around it: flat areas become few large triangles, curved areas keep small ones.
 ///
 /// Bound: during collapses, every vertex of `mesh` stays within max_deviation_m (> 0) of the triangles that
-/// replace its own. Afterwards both surfaces are measured against each other, at points spacing_m apart. If
-/// they exceed the bound somewhere, tolerances there are lowered and the block is simplified again; a block
-/// that fails in all rounds is left unchanged.
+/// replace those around it. Afterwards both surfaces are measured against each other, at points spacing_m
+/// apart. If they exceed the bound somewhere, tolerances there are lowered and the block is simplified again;
+/// a block that fails in all rounds is left unchanged.
 ///
 /// Two threads process meshes above block_triangles (>= 1) in blocks of at most that many. Vertices on seams
-/// between blocks stay fixed, so no cracks appear. Small blocks fit the cache and are repeated separately;
+/// between blocks stay fixed, so no cracks appear. Small blocks fit the cache and are repeated independently;
 /// large blocks have fewer seam vertices. Components, holes and handles are preserved, and edges with two
 /// triangles keep two. Colours and normals are averaged over merged vertices. New triangles less than 0.1 mm
 /// high are rejected. Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics,

@@ -35,8 +35,8 @@ struct Quadric {
   }
   /// Least-squares point of all planes; stays near `guess` along poorly constrained directions.
   [[nodiscard]] Eigen::Vector3d nearest_to_all(const Eigen::Vector3d& guess) const {
-    constexpr double kHardly = 5e-3;  // regularisation relative to trace(A); above what noise on a flat wall
-                                      // constrains
+    // Regularisation relative to trace(A); exceeds the effect of noise on a flat wall.
+    constexpr double kHardly = 5e-3;
     const double trace = A.trace();
     if (!(trace > 0.0)) return guess;
     const Eigen::Matrix3d held = A + kHardly * trace * Eigen::Matrix3d::Identity();

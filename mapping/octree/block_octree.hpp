@@ -1,7 +1,7 @@
 // block_octree.hpp: octree into which depth frames are fused. Private to StaticMap. Keys, depth, log-odds and
 // pruning are OctoMap's, and static_map_file.cpp writes it in OctoMap's file formats. Eight siblings share
-// one block of one cache line; in OctoMap they are nine separately allocated nodes. Memory access dominates
-// the time of a frame, which changes about 50,000 groups of eight voxels.
+// one block of one cache line; in OctoMap they take nine separate allocations. Memory access dominates the
+// time of a frame, which changes about 50,000 groups of eight voxels.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -81,7 +81,7 @@ struct BlockUnits {
   float weight;
 };
 
-/// Position of a node in the tree: its depth and the key of its lowest voxel (kKeyOrigin + voxel index).
+/// Location of a node in the tree: its depth, and the key (kKeyOrigin + voxel index) of its lowest voxel.
 struct NodePlace {
   unsigned depth = 0;
   Eigen::Array3i key = Eigen::Array3i::Zero();
@@ -195,6 +195,7 @@ struct SubtreeSize {
 /// Returns the size of a node with all its descendants.
 SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth);
 
+/// Erases the signed distance and colour of voxel i.
 inline void erase_sample(LeafBlock& block, unsigned i) {
   block.weight[i] = 0;
   block.distance[i] = 0;

@@ -1,5 +1,5 @@
-// depth_pyramid.hpp: min/max pyramid of a depth image, which bounds free and occluded space behind pixel
-// rectangles.
+// depth_pyramid.hpp: min/max pyramid of a depth image, which bounds free and occluded space in the frustum of
+// a pixel rectangle.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -18,10 +18,10 @@ namespace roomradar {
 float half_layer_m(float depth_m, double resolution_m, const FusionConfig& config);
 
 /// Bounds of the depth, along the optical axis, over all pixels of a rectangle. Space nearer than `front` is
-/// free in every pixel. Space nearer than `nearest` is free in every pixel with depth; pixels without depth
-/// are ignored. Space farther than -`behind` is occluded or unmeasured in every pixel. A surface is possible
-/// only between `front` and -`behind`. The unit is 1 / steps_per_m of the pyramid, and values are rounded
-/// conservatively. `behind` is negated, so every bound of a rectangle is the minimum of its pixels' bounds.
+/// free along every pixel's ray. Space nearer than `nearest` is free along the rays of all pixels with depth.
+/// Space farther than -`behind` is occluded or unmeasured along every ray. A surface is possible only between
+/// `front` and -`behind`. The unit is 1 / steps_per_m of the pyramid, and values are rounded conservatively.
+/// `behind` is negated, so every bound of a rectangle is the minimum of its pixels' bounds.
 struct DepthBounds {
   std::int16_t front = 0;
   std::int16_t nearest = 0;
@@ -30,8 +30,8 @@ struct DepthBounds {
 };
 
 /// Pyramid of DepthBounds. Level i has cells of 2^i x 2^i pixels, i = 1..levels. All levels are stacked in
-/// one array, so computing a cell's index is cheap. Array elements outside the levels do not affect a
-/// minimum.
+/// one array, so computing a cell's index is cheap. Unused array elements hold the largest values, so they do
+/// not affect a minimum.
 struct DepthPyramid {
   float steps_per_m = 0.0F;
   int width_px = 0, height_px = 0;
@@ -48,18 +48,18 @@ struct DepthPyramid {
   [[nodiscard]] int cells_down(int level) const { return ((height_px - 1) >> level) + 1; }
 };
 
-/// Builds the pyramid, reusing its memory. Pixels without depth give no evidence. Holes smaller than 4 x 4
-/// pixels (2 x 2 in rectangles up to six pixels wide) take the bounds of the pixels around them, so single
-/// dropouts do not leave the space in front of a wall unknown. Pixels with more depth than max_range_m make
-/// space free up to max_range_m.
+/// Builds the pyramid, reusing its memory. Pixels without depth prove nothing free or occluded. Holes smaller
+/// than 4 x 4 pixels (2 x 2 for query rectangles up to six pixels wide) take the bounds of the pixels around
+/// them, so single dropouts do not leave the space in front of a wall unknown. Pixels with more depth than
+/// max_range_m make space free up to max_range_m.
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid);
 
-/// Rectangle of up to 4 x 4 cells of one level, as offsets into the pyramid's array. The same number of cells
-/// is always read, some of them twice, because a branch would cost more.
+/// Rectangle of up to 4 x 4 cells of one level, as offsets into the pyramid's array. Always eight pairs of
+/// neighbouring cells are read, some of them twice, because a branch would cost more.
 struct CellRect {
   int at = 0;      ///< index of the first cell in the array
-  int column = 0;  ///< offset from the first column to the last but one; 0 if there is none
+  int column = 0;  ///< offset from the first pair of columns to the last pair; 0 if there is one pair
   /// Offsets in the array from the first row of the rectangle to its second, its last but one, and its last
   /// row.
   int second = 0, third = 0, last = 0;

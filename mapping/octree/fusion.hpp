@@ -9,8 +9,8 @@
 
 namespace roomradar {
 
-/// SIMD version of the arithmetic on eight siblings: the fastest that the processor supports, or the portable
-/// one. Both give bit-identical results.
+/// Version of the arithmetic on eight siblings: the fastest SIMD version that the processor supports, or the
+/// portable one. Both give bit-identical results.
 enum class Arithmetic { kFastest, kPortable };
 
 /// Fuses the frame in one descent from the root. Call collect_hits() for this frame and `scratch` first. A

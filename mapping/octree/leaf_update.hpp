@@ -29,6 +29,7 @@ struct Observed {
   unsigned sampled = 0;          ///< bit i: the centre of voxel i is within the truncation band
 };
 
+/// Updates leaf blocks with one frame. A sample is a voxel's signed distance, weight and colour.
 template <typename Float8>
 class LeafUpdate {
  public:
@@ -53,11 +54,13 @@ class LeafUpdate {
 
   /// Returns a free cube at the minimum log-odds; further misses do not change it.
   [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(min_)); }
+  /// Returns the cube's state after one miss.
   [[nodiscard]] Slot missed(Slot cube) const {
     const float after = std::max(static_cast<float>(cube.log_odds()) + miss_, min_);
     return Slot::cube(static_cast<LogOdds>(after == 0.0F ? 1.0F : after));
   }
 
+  /// Looks up the pixel to which each point projects. Pixels without depth set no bits.
   [[nodiscard]] Observed<Float8> observe(const EightPoints<Float8>& p_camera) const {
     const Float8 inverse_z = Float8(1.0F) / p_camera.z;
     const Float8 u = floor(p_camera.x * camera_.fx * inverse_z + (camera_.cx + 0.5F));
@@ -76,8 +79,8 @@ class LeafUpdate {
 
   /// Updates the eight voxels of `node`, and returns the node's new state.
   /// @param hit  bit i: a ray ends in voxel i
-  /// @param refresh_colour  true: also updates colours of voxels to whose weight this frame contributes less
-  ///                        than kSettledPart
+  /// @param refresh_colour  true: also updates colours where this frame's share of the weight is under
+  ///                        kSettledPart
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
@@ -93,10 +96,10 @@ class LeafUpdate {
     return tree_.prune(node, block);
   }
 
-  /// Updates eight voxels that a frame of this weight sees through. `clear` means that the frame also sees
-  /// through the space around them. In this case their samples fade: their distance is averaged with the
-  /// truncation distance, and they are erased once their voxel has the minimum log-odds, so the voxels can be
-  /// merged with the free space around them.
+  /// Adds a miss to all voxels of a block that a frame of this weight sees through. `clear` means that the
+  /// frame also sees through the space around the block. Then the samples fade: their distance is averaged
+  /// with the truncation distance, and they are erased once their voxel has the minimum log-odds and the
+  /// distance nears truncation. The voxels can then merge with the free space around them.
   ///
   /// Without `clear`, samples are kept: beside edges and on obliquely seen surfaces, seeing through a voxel
   /// is caused by noise more often than by a change. Samples behind a surface are the exception, because they
@@ -125,9 +128,9 @@ class LeafUpdate {
   // Min distance behind a surface, in voxels, at which a sample counts as behind it. Samples nearer to the
   // surface are seen past too often, because of noise and pose errors.
   static constexpr float kBehind_voxels = 0.5F;
-  // Number of frames that measured a sample which one frame that sees through the sample cancels. Above 1,
-  // because the first such frames only make the voxel free, and because an object present in half of the
-  // frames should disappear.
+  // One frame that sees through a sample cancels this many frames that measured the sample. Above 1, because
+  // the first such frames only make the voxel free, and because an object present in half of the frames
+  // should disappear.
   static constexpr float kCancelled = 2.0F;
 
   static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
@@ -157,8 +160,8 @@ class LeafUpdate {
   [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
     return ((Float8::load(block.distance) < Float8(behind_)) & (Float8::load(block.log_odds) <= 0.0F)).bits();
   }
-  // Returns the voxels in behind_surface() for which this frame measures a surface farther away by more than
-  // the truncation distance.
+  // Returns those voxels of behind_surface() whose surface this frame sees past by more than the truncation
+  // distance.
   [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
     const Float8 further =
         observed.distance_m * (1.0F / tree_.units().distance_m) - Float8::load(block.distance);

@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Adds a leaf's log-odds; see StaticMap::add_evidence().
+/// Adds a leaf's log-odds, or averages in a sample; see StaticMap::add_evidence().
 void add_evidence(BlockOctree& tree, const FusionConfig& config, const MapLeaf& leaf);
 void add_evidence(BlockOctree& tree, const SurfaceSample& sample);
 

@@ -15,7 +15,7 @@ namespace roomradar {
 /// Smaller depths count as not measured, because no depth camera measures at such short range.
 inline constexpr float kLeastDepth_m = 0.05F;
 
-inline constexpr float kNearest_m = 0.01F;  // min z of points that are projected into the image
+inline constexpr float kNearest_m = 0.01F;  // min depth, m, of points that are projected into the image
 
 /// Pinhole camera in float.
 struct Pinhole {
@@ -35,8 +35,8 @@ struct EightPoints {
   Float8 x, y, z;
 };
 
-/// Offsets from the centre of a node to the centres of its children, in the camera frame, by depth of the
-/// node.
+/// Offsets from the centre of a node to the centres of its children, in the camera frame, by the node's depth
+/// in the tree.
 class ChildOffsets {
  public:
   ChildOffsets(const Eigen::Matrix3d& R_camera_world, double resolution_m) {
@@ -59,6 +59,7 @@ class ChildOffsets {
   /// Returns the half extents, in the camera frame, of the bounding box of all voxel centres in a child of a
   /// node at `depth`, m. Only centres count, because voxels are classified by their centres.
   [[nodiscard]] const Eigen::Vector3f& half_extent(unsigned depth) const { return half_extent_[depth]; }
+  /// Returns the centres of a node's children. `depth` and `parent_camera` are the node's depth and centre.
   template <typename Float8>
   [[nodiscard]] EightPoints<Float8> centres(unsigned depth, const Eigen::Vector3d& parent_camera) const {
     const auto along = [&](unsigned axis) {
@@ -76,14 +77,14 @@ class ChildOffsets {
 /// Visibility of eight siblings that contain no ray endpoint, as bit masks (bit i: sibling i). A sibling in
 /// none of the masks may contain a surface.
 struct NodeVisibility {
-  unsigned nothing = 0;  ///< sibling is occluded or out of view
+  unsigned nothing = 0;  ///< sibling is occluded, out of view, or beyond 2 max_range_m
   unsigned free = 0;     ///< sibling is wholly seen through
   /// The measured part of the sibling is seen through; the rest is out of view or has no depth.
   unsigned part_free = 0;
 };
 
 /// Classifies eight siblings by their boxes in the camera frame and by the image rectangles to which the
-/// boxes project. This is one function, so the eight-wide values stay in registers.
+/// boxes project. Not split into several functions, so the eight-wide values stay in registers.
 /// @param half  half extents of each box, m
 template <typename Float8>
 NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,

@@ -1,6 +1,6 @@
 // octomap_tree.hpp: node type of the project's .ot map files, and an OctoMap octree that reads and writes
-// them. StaticMap itself writes this format node by node. The tree class is for programs that open the file
-// with OctoMap's AbstractOcTree::read(). Only static_map_file.cpp includes this header and OctoMap.
+// them. StaticMap itself writes this format node by node. The class OctoMapTree is for programs that open the
+// file with OctoMap's AbstractOcTree::read(). Only static_map_file.cpp includes this header and OctoMap.
 #pragma once
 #include <octomap/OcTreeNode.h>
 #include <octomap/OccupancyOcTreeBase.h>
@@ -14,8 +14,8 @@
 namespace roomradar {
 
 /// Node with log-odds and, at the finest depth only, a signed distance (if weight > 0). Log-odds of exactly 0
-/// (probability one half) mean unknown. Leaves behind a surface may be unknown and still have a signed
-/// distance; leaves with neither are not stored.
+/// (probability one half) mean unknown. Leaves behind a surface may have a signed distance although their
+/// occupancy is unknown. Leaves with neither are not stored.
 class OctoMapNode : public octomap::OcTreeNode {
  public:
   float distance_m = 0.0F;

@@ -34,6 +34,7 @@ class BlockHits {
 struct FusionScratch {
   DepthPyramid pyramid;
   std::vector<BlockHits> hits;  ///< one entry per block with endpoints, sorted by Morton code
+  // The rest is scratch of collect_hits().
   std::vector<BlockHits> sort_buffer;
   std::vector<float> ray_x;
   std::vector<int> row_keys[2][3];  ///< [previous row, current row][x, y, z]: keys of the row's endpoints
@@ -43,8 +44,8 @@ struct FusionScratch {
 
 enum class HitStatus { kCollected, kNone, kOutOfBounds };
 
-/// Sets scratch.hits to the endpoints of all pixels whose depth is at most max_range_m. Returns kNone if no
-/// pixel has depth at any range, and kOutOfBounds if an endpoint is outside the octree.
+/// Sets scratch.hits to the ray endpoints of all pixels with a depth of at most max_range_m. Returns kNone if
+/// no pixel has depth, even beyond max_range_m, and kOutOfBounds if an endpoint is outside the octree.
 HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double resolution_m,
                        const FusionConfig& config, FusionScratch& scratch);
 

@@ -31,7 +31,7 @@ struct Brick {
   std::array<TsdfSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
 };
 
-/// All bricks that contain at least one sample of weight min_weight or more, in the octree's order.
+/// All bricks that contain at least one sample of weight min_weight or more, in Morton order.
 class TsdfBricks {
  public:
   TsdfBricks(const StaticMap& map, float min_weight);

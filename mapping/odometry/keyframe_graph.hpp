@@ -16,14 +16,15 @@ struct KeyframeGraphConfig {
   int max_edges_rebuild = 12;  ///< max number of edges from a keyframe to older ones on a full rebuild
   int max_edges_new = 6;       ///< max number of edges from a new keyframe to older ones while tracking
   double furthest = 1.5;       ///< max view_distance() between two connected keyframes
-  double min_overlap = 0.25;   ///< min fraction of a keyframe's points with a correspondence in the other
-                               ///< keyframe
+  double min_overlap = 0.25;   ///< min fraction of a keyframe's points with a correspondence
   double min_inliers = 0.5;    ///< min fraction of a pair's correspondences that are inliers
-  /// Max translation, m, between the results of aligning a pair in both directions.
+  /// Max difference between the results of aligning a pair in both directions: translation, m, and rotation,
+  /// rad.
   double max_gap_m = 0.05;
   double max_gap_rad = 0.05;
-  /// Constant part of the max change, by a new edge, of the relative pose of two keyframes: translation in m,
-  /// and rotation in rad. Larger changes are rejected as false matches between places that look alike.
+  /// Max assumed drift between two keyframes, m and rad: drift_m plus drift_part times the length of the path
+  /// between them, m. An edge that would change the relative pose by more is rejected as a false match
+  /// between places that look alike.
   double drift_m = 0.15;
   double drift_part = 0.05;
   std::size_t cached_keyframes = 8;  ///< capacity of the keyframe cache; 4 MB per keyframe
@@ -54,8 +55,8 @@ double view_distance(const Eigen::Isometry3d& T_a_b);
 std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen::Isometry3d& T_world_camera,
                                         double furthest);
 
-/// Returns true if T_older_newer differs from the relative pose of the two keyframes' current poses by less
-/// than the assumed drift: drift_m + drift_part * path between them, in m and rad.
+/// Returns true if T_older_newer differs from the two keyframes' current relative pose by less than the
+/// assumed drift (drift_m + drift_part * path length).
 bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t newer,
                      const Eigen::Isometry3d& T_older_newer, const KeyframeGraphConfig& config);
 
@@ -65,8 +66,8 @@ bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t 
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const ConnectConfig& config, KeyframeCache& cache);
 
-/// Connects the newest keyframe to older keyframes near it. If there are more than max_edges_new, selects
-/// this many over all view distances.
+/// Connects the newest keyframe to older keyframes near it; if there are more than max_edges_new, to this
+/// many, spread over all view distances.
 void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache);
 
 /// Rebuilds all constraints from the keyframes' current depth, on two threads. Deterministic.
@@ -75,10 +76,10 @@ void close_loops(KeyframeGraph& graph, const ConnectConfig& config);
 /// Optimises all keyframe poses to fit the constraints and anchors.
 void solve(KeyframeGraph& graph);
 
-/// Computes the final poses of all keyframes in two steps, to reduce the effect of depth distortion.
-/// Distortion is constant in the camera frame, so it does not average out over many points as noise does.
-/// Between similar views it cancels. Between different views it biases the relative pose, mostly by a
-/// rotation about the observed surface, which alignment wrongly reports as well constrained.
+/// Computes the final poses of all keyframes in two steps, to reduce the effect of the sensor's depth
+/// distortion. Distortion is constant in the camera frame, so it does not average out over many points as
+/// noise does. It cancels between similar views. Between different views it biases the relative pose, mostly
+/// by a rotation about the observed surface, which alignment wrongly reports as well constrained.
 ///
 /// The first step therefore finds the positions. It weights constraints by the similarity of their views
 /// (view_distance()), and uses their information only to exclude unconstrained directions. The second step

@@ -21,8 +21,7 @@ struct KeyframeJob {
   Frame frame;          ///< frame of the newest keyframe
   KeyframeGraph graph;  ///< includes the newest keyframe, which has no edges yet
   KeyframeCache cache;  ///< contains the newest keyframe
-  const KeyframeDatabase* keyframe_database = nullptr;  ///< one entry per keyframe of the graph except the
-                                                        ///< newest
+  const KeyframeDatabase* keyframe_database = nullptr;  ///< one entry per keyframe except the newest
   const KeyframeDatabase* known = nullptr;              ///< database of an earlier map; null: none
 };
 
@@ -34,8 +33,8 @@ struct KeyframeJobResult {
 };
 
 /// Connects the newest keyframe to keyframes near it, and to distant keyframes with similar features, which
-/// are the same place if poses have drifted. Then optimises the poses near the newest keyframe, or all poses
-/// if a distant keyframe was connected.
+/// show the same place if the poses have drifted. Then optimises the poses near the newest keyframe, or all
+/// poses if a distant keyframe was connected.
 KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config);
 
 }  // namespace roomradar

@@ -24,9 +24,9 @@ class Odometry {
   Odometry& operator=(Odometry&&) noexcept;
   ~Odometry();
 
-  /// Sets the keyframe database of an earlier map; call before the first frame. New keyframes are searched
-  /// for in it. Once one is found, all poses, also those of earlier frames, are in the earlier map's world.
-  /// The earlier map's own poses stay constant.
+  /// Sets the keyframe database of an earlier map; call before the first frame. Each new keyframe is
+  /// localised in it if possible. Once this succeeds, all poses, including those of earlier frames, are in
+  /// the earlier map's world. The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
   /// Returns true if poses are in the world of the map given to set_prior_map().
   [[nodiscard]] bool is_located() const;

@@ -17,9 +17,9 @@ struct OdometryConfig {
   /// the calibration of the colour camera is inexact and walls are glossy.
   AlignConfig align = {.intensity_sigma = 16.0F, .max_correction_m = 0.25F};
   /// Settings for aligning keyframes with each other. Keyframes are farther apart than consecutive frames, so
-  /// the distortion of depth matters; a wide robust kernel averages it out. Both intensity_sigma values and
-  /// robust_sigma were chosen on the kitchen recording; each changes the ATE and the RPE over 30 frames by at
-  /// most 0.3 mm.
+  /// the distortion of depth matters; a wide robust kernel averages the distortion out. Both intensity_sigma
+  /// values and robust_sigma were chosen on the kitchen recording; each changes the ATE and the RPE over 30
+  /// frames by at most 0.3 mm.
   AlignConfig align_keyframes = {.robust_sigma = 4.0F, .intensity_sigma = 8.0F, .max_correction_m = 0.25F};
   KeyframeGraphConfig graph;
   KeyframeDatabaseConfig place;
@@ -31,8 +31,8 @@ struct OdometryConfig {
   /// Min overlap with the current keyframe. Below it, another keyframe becomes the current one, or a new one
   /// is added.
   double keyframe_overlap = 0.7;
-  int references = 2;  ///< max number of keyframes with which a frame is aligned
-  /// Number of frames averaged into a keyframe's depth before the keyframe is prepared for alignment again.
+  int references = 2;  ///< max number of keyframes that a frame is aligned with
+  /// Number of frames averaged into a keyframe's depth before its points and normals are recomputed.
   int improve_every = 5;
   /// Number of frames after which the background result for a new keyframe is applied.
   int apply_result_after_frames = 4;

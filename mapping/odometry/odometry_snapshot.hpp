@@ -33,21 +33,21 @@ struct OdometrySnapshot {
   std::vector<KeptFrame> frames;
   /// Index of the current keyframe: the keyframe with which the next frame is aligned first.
   std::size_t current = 0;
-  /// Number of frames averaged into the current keyframe's depth since it was last prepared for alignment.
+  /// Number of frames averaged into the current keyframe's depth since its points and normals were last
+  /// recomputed.
   int improved = 0;
   Eigen::Isometry3d T_world_last = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< predicted motion from the last frame to
-                                                                  ///< the next
-  double path_length_m = 0.0;  ///< length of the camera's path, as defined at Keyframe
+  Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< predicted motion to the next frame
+  double path_length_m = 0.0;  ///< length of the camera's path; see Keyframe::path_length_m
   /// Intensity image of the last frame before the camera became stationary; empty if its pose is not trusted.
   Image<float> last_moved_grey;
   Tracking last_moved;   ///< tracking result of the frame of last_moved_grey
   bool located = false;  ///< true if poses are in the world of the prior map
 };
 
-/// Sets new keyframe poses and moves all poses that depend on them. The camera moves with the current
+/// Sets new keyframe poses and moves all poses that depend on them. The camera pose moves with the current
 /// keyframe.
-/// @param moved  keyframes of kept.graph with new poses; the newest may be missing
+/// @param moved  the keyframes of kept.graph with new poses; the newest keyframes may be missing
 /// @return the motion of the current keyframe, in the world
 Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept);
 

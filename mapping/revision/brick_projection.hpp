@@ -14,7 +14,7 @@
 
 namespace roomradar {
 
-inline constexpr float kNearestProjected_m = 0.1F;  // min z for projection into the image
+inline constexpr float kNearestProjected_m = 0.1F;  // min depth, m, for projection into the image
 
 /// Returns false if nothing within radius_m of the centre can be in the image.
 inline bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_camera, double radius_m) {
@@ -27,10 +27,10 @@ inline bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_
          pixel.y() < camera.height_px + margin_px;
 }
 
-/// A brick of 8 x 8 x 8 voxels, and the entries of its voxels in a list.
+/// A brick of 8 x 8 x 8 voxels, and the range of its voxels' entries in a list kept by the caller.
 struct VoxelBrick {
   VoxelIndex first = VoxelIndex::Zero();
-  std::size_t end = 0;  ///< end of its entries; they begin at the end of the previous brick's
+  std::size_t end = 0;  ///< end of the range; it begins at the previous brick's end
 };
 
 class BrickProjection {
@@ -54,9 +54,9 @@ class BrickProjection {
   }
   [[nodiscard]] float fx() const { return fx_; }
 
-  /// Calls visit(index of an entry, centre in the camera frame, pixel x, y) for voxels in the image nearer
+  /// Calls visit(entry index, voxel centre in the camera frame, pixel x, y) for voxels in the image nearer
   /// than farthest_m.
-  /// @param offset_of  callable with the index of an entry; brick_offset() of its voxel
+  /// @param offset_of  returns, for an entry index, brick_offset() of the voxel
   template <typename OffsetOf, typename Visit>
   void for_each_nearer(float farthest_m, std::span<const VoxelBrick> bricks, const OffsetOf& offset_of,
                        const Visit& visit) const {

@@ -9,13 +9,12 @@ namespace roomradar {
 
 inline constexpr int kMaxWindowRadius_px = 31;
 
-/// Sparse table. nearest_m[k] contains, by pixel, the minimum depth of the 2^k x 2^k pixels whose upper left
-/// corner is this pixel; infinity if none of them has depth. Four such squares cover any window whose side is
-/// at least 2^k and less than 2^(k+1).
+/// Sparse table. nearest_m[k] stores, at each pixel, the minimum depth of the 2^k x 2^k pixels whose upper
+/// left corner is this pixel; infinity if none of them has depth. Four such squares cover any window whose
+/// side is at least 2^k and less than 2^(k+1).
 struct DepthWindows {
   std::vector<DepthImage> nearest_m;
-  Image<std::int32_t> measured;  ///< integral image: number of pixels with depth above and left of each
-                                 ///< corner
+  Image<std::int32_t> measured;  ///< integral image: number of pixels with depth above and left
 };
 
 struct WindowDepth {
@@ -28,7 +27,7 @@ struct WindowDepth {
 void build_windows(const DepthImage& depth_m, DepthWindows& windows);
 
 /// Queries the window of (2 radius + 1)^2 pixels around pixel x, y of the image, with a radius in
-/// 0..kMaxWindowRadius_px. At the image's border some pixels beside the window may be included.
+/// 0..kMaxWindowRadius_px. At the image's border, nearest_m may include some pixels just outside the window.
 WindowDepth window_depth(const DepthWindows& windows, int x, int y, int radius_px);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// ghost_removal.hpp: removes ghosts of objects that moved during the scan from the static map.
+// ghost_removal.hpp: removes ghosts from the static map: surface of objects that moved during the scan.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,7 +13,7 @@ namespace roomradar {
 
 /// A fused frame, and its position in the source.
 struct FusedFrame {
-  std::int64_t position = 0;  ///< number of reads before this frame's
+  std::int64_t position = 0;  ///< number of frames read from the source before this frame
   std::int64_t frame_index = 0;
   Intrinsics depth_camera;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
@@ -21,7 +21,7 @@ struct FusedFrame {
 
 /// Voxels removed from the map, and the progress of refuse_surroundings() there.
 struct GhostRevision {
-  GhostVotes::Verdicts verdicts;  ///< still and unseen: only those near the others
+  GhostVotes::Verdicts verdicts;  ///< the lists `still` and `unseen` keep only voxels near removed ones
   std::uint64_t next = 0;  ///< index of the first fused frame that refuse_surroundings() has not processed
 
   [[nodiscard]] std::int64_t voxels() const {
@@ -33,8 +33,8 @@ struct GhostRevision {
 using GhostProgress = std::function<void(const std::string& note)>;
 
 /// Reads the source again and removes departed objects from the map. Surface that frames see through becomes
-/// free; surface that is gone with nothing measured behind becomes unknown. Erases signed distances around
-/// both. Stages timed: read, ghosts (per frame).
+/// free. Surface that is gone, with nothing measured behind, becomes unknown. Also erases signed distances
+/// around both. Stages timed: read, ghosts (per frame).
 ///
 /// @throws Error if the source cannot be rewound or the config is invalid
 GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fused, const GhostConfig& config,

@@ -11,27 +11,28 @@
 namespace roomradar {
 
 /// All cells of 4^3 voxels that contain a ghost, and their neighbours. The zone extends at least four voxels
-/// around each ghost, as far as signed distance is kept from a surface at up to 2.5 m.
+/// around each ghost, which is the width of the truncation band for surfaces measured from up to 2.5 m.
 class GhostZone {
  public:
   GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m);
 
-  /// Ghosts become free, absent voxels unknown. Other samples of the zone are erased to be measured again,
-  /// except on surface that no frame would measure. An occupied voxel without a sample has no votes: within
-  /// two voxels of a ghost it becomes unknown, unless surface that remains is also within two voxels.
+  /// Returns the action for a voxel. Ghosts become free, absent voxels become unknown. Other samples of the
+  /// zone are erased so they can be measured again, except at surface of an earlier scan that no frame
+  /// measures. An occupied voxel without a sample becomes unknown if a ghost is within two voxels and no
+  /// remaining surface is.
   [[nodiscard]] SampleAction fate_of(const SurfaceSample& sample) const;
-  /// True if a voxel is near enough to affect the zone.
+  /// Returns true if a voxel is within two voxels of a brick of the zone.
   [[nodiscard]] bool reaches(const VoxelIndex& voxel) const;
-  /// True if any part of the zone may be in the camera's image.
+  /// Returns true if any part of the zone may be in the camera's image.
   [[nodiscard]] bool in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const;
 
-  /// Keeps depth only in pixels that end within two voxels of remaining surface near the zone and not within
-  /// two voxels of a ghost; other pixels carry no information on the zone's samples.
+  /// Clears the depth of all pixels except those whose ray ends within two voxels of remaining surface near
+  /// the zone and not within two voxels of a ghost. Only these pixels measure the zone's erased samples.
   void mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m) const;
 
  private:
   struct Marks {
-    std::bitset<8> cells;        // which of its 2^3 cells are in the zone
+    std::bitset<8> cells;        // which of a brick's 2^3 cells are in the zone
     std::bitset<8> ghost_cells;  // which of these contain a ghost
     std::bitset<512> ghost;
     std::bitset<512> absent;
@@ -43,8 +44,7 @@ class GhostZone {
   [[nodiscard]] const Marks* marks_of(const VoxelIndex& voxel) const;
 
   double resolution_m_;
-  std::unordered_map<std::uint64_t, Marks> marks_;  // by brick: those that contain a ghost, and their
-                                                    // neighbours
+  std::unordered_map<std::uint64_t, Marks> marks_;  // bricks with ghosts, and their neighbours
   std::vector<VoxelIndex> bricks_;                  // their lowest voxels
 };
 

@@ -13,9 +13,9 @@
 namespace roomradar {
 
 /// Counts, for each surface voxel of the map, the frames that see it and the frames that see through it. A
-/// hand that rested on the table for half of the recording is measured as well as the table; only frames that
-/// see the table through it distinguish it from static surface. Frames without depth there count as
-/// AbsenceVotes.
+/// hand that rested on a table for half of the recording is measured in as many frames as the table; only the
+/// frames that see the table through the hand distinguish it from static surface. Frames without depth at the
+/// voxel count as AbsenceVotes.
 class GhostVotes {
  public:
   /// Copies the map's current surface: samples within a voxel of the surface, and occupied ones. Throws Error
@@ -25,16 +25,16 @@ class GhostVotes {
   /// Adds one frame's votes; the frame must have been fused at this pose.
   void look(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Departed objects are large enough groups of voxels with enough evidence, plus connected voxels with
-  /// weaker evidence. The latter extend little around small groups, and more around groups too large to be
-  /// tracking errors.
+  /// A departed object is a large enough connected group of voxels with enough evidence, plus voxels with
+  /// weaker evidence that are connected to the group. These may extend farther from groups that are too large
+  /// to be tracking errors.
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects that are seen through
     std::vector<VoxelIndex> absent;  ///< voxels of departed objects with nothing measured behind
     std::vector<VoxelIndex> still;   ///< other occupied surface that a frame observed
     std::vector<VoxelIndex> unseen;  ///< surface of an earlier scan, which no frame measured or saw through
   };
-  /// Classifies all voxels; each list is in the octree's order.
+  /// Classifies all voxels; each list is in Morton order.
   [[nodiscard]] Verdicts verdicts() const;
 
  private:
@@ -45,12 +45,13 @@ class GhostVotes {
     std::uint16_t occupied : 1 = 0;
     std::uint16_t seen = 0;
     std::uint16_t through = 0;
-    std::uint16_t glimpsed = 0;  // frames whose centre pixel sees through it, but not the whole window
+    // Frames that see through it in the centre pixel, but not in the whole window.
+    std::uint16_t glimpsed = 0;
   };
-  // Voxels for which are_such(votes, absence votes) is true.
+  // Returns the voxels for which are_such(votes, absence votes) is true.
   template <typename AreSuch>
   [[nodiscard]] std::vector<VotedVoxel> those(const AreSuch& are_such) const;
-  // True if `part` > 0 and at least min_through_share of part + others.
+  // Returns true if `part` > 0 and at least min_through_share of part + others.
   [[nodiscard]] bool is_share(int part, int others) const;
 
   double resolution_m_;

@@ -1,5 +1,4 @@
-// refuse_region.hpp: erases a region of the static map and fuses it again from frames of the room's present
-// state.
+// refuse_region.hpp: erases a region of the static map and fuses it again from current frames.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -36,13 +35,13 @@ struct RegionView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Updates a region of the map to the frames. Uses only pixels whose measured point is in the region, or that
-/// measure beyond an expected point in the region. All other pixels change nothing.
+/// Updates a region of the map from the frames. Uses only pixels whose measured point is in the region, or
+/// whose expected point is in the region and whose measured depth is beyond it.
 ///
-/// First erases samples that these pixels contradict. Samples that more frames see through than measure
-/// become free, even behind the region, e.g. on the far side of a removed object. Samples in the region that
-/// at least one frame measures, within the truncation distance, are erased. Then fuses the pixels as
-/// StaticMap::fuse() does, which measures the erased samples again.
+/// Samples that more frames see through than measure become free, even behind the region, e.g. on the far
+/// side of a removed object. Samples in the region that at least one frame measures, within the truncation
+/// distance, are erased. Then the pixels are fused as in StaticMap::fuse(), which measures the erased samples
+/// again.
 ///
 /// @param views  frames of one static scene; pass several, because a single frame's noise becomes surface
 /// @return the box (world, m) in which surface may have changed; empty if nothing changed

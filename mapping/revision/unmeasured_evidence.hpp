@@ -21,24 +21,27 @@ struct AbsenceVotes {
   std::uint16_t gone = 0;  ///< frames with hardly any depth at and around the voxel
   /// Frames without depth at the voxel and in most pixels around it, and without nearer depth around it.
   std::uint16_t unmeasured = 0;
-  std::uint16_t last_look = 0;      ///< frame that last measured it or found it gone
+  std::uint16_t last_look = 0;      ///< index of the frame that last measured it or found it gone
   std::uint16_t turn_change = 0;    ///< sum over `turns` of the largest change of a colour channel
   std::uint16_t steady_change = 0;  ///< sum over `steadies` of the largest change of a colour channel
-  std::uint8_t turns = 0;  ///< switches between measured and gone in consecutive observations from one place
-  std::uint8_t steadies = 0;      ///< pairs of consecutive observations from one place that both measured it
-  State state = State::kUnknown;  ///< at last_look
-  Rgb colour{};                   ///< at last_look
+  /// Switches between measured and gone, each between consecutive observations from one place.
+  std::uint8_t turns = 0;
+  std::uint8_t steadies = 0;      ///< pairs of consecutive observations from one place, both measured
+  State state = State::kUnknown;  ///< state in frame last_look
+  Rgb colour{};                   ///< colour in frame last_look
 };
 
-/// Converts frames into votes; one instance per map, frames in the order of the recording.
+/// Converts frames into votes. Use one instance per map, and pass frames in the order of the recording.
 class AbsenceVoter {
  public:
+  /// Call first for each frame.
   void begin(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
-  /// Call if the frame measures the voxel's own distance in the pixel that sees it.
+  /// Call if the frame measures the voxel's surface in the pixel to which the voxel projects.
   void measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const;
-  /// Call if the frame has no depth in pixel x, y, which should see the voxel.
-  /// @param measured_share  fraction of pixels with depth, within about 3 cm around it
-  /// @param beside_nearer   true if any of those is nearer than the voxel, which may be in its shadow
+  /// Call if the frame has no depth in pixel x, y, to which the voxel projects.
+  /// @param measured_share  fraction of pixels with depth, within about 3 cm of the voxel
+  /// @param beside_nearer   true if one of these pixels is nearer than the voxel: it may shadow the
+  ///                        projector's light
   /// @param has_colour      true if the voxel's colour is tracked
   void unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera, float measured_share,
                   bool beside_nearer, bool has_colour, AbsenceVotes& votes) const;
@@ -58,9 +61,10 @@ struct VotedVoxel {
   std::uint32_t position = 0;
 };
 
-/// True if a voxel measured by `seen` frames is gone often enough to be in the core of a departed object.
+/// Returns true if a voxel that `seen` frames measured is gone in enough frames to be in the core of a
+/// departed object.
 bool may_be_absent(const AbsenceVotes& votes, int seen);
-/// True if weaker evidence supports absence of a voxel that is connected to such a core.
+/// Returns true if the evidence suffices for a voxel that is connected to such a core.
 bool may_go_along(const AbsenceVotes& votes, int seen);
 
 /// Returns the candidates in connected groups of at least min_group_voxels whose colour changed between

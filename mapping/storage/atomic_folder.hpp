@@ -9,11 +9,11 @@ namespace roomradar {
 /// Waits until a file's content, or a folder's list of names, is on disk. Throws Error on failure.
 void sync_to_disk(const std::filesystem::path& path);
 
-/// New folder beside `target` (target.partial-PID); the destructor removes it unless it was put in place.
+/// New folder beside `target` (target.partial-PID); the destructor removes it unless commit() succeeded.
 class AtomicFolder {
  public:
-  /// Creates the folder and its parents. Removes partial folders that killed processes left beside `target`,
-  /// but restores the folder that interrupted_replacement_of() returns as `target`. Throws Error on failure.
+  /// Creates the folder and its parents. Removes partial folders that killed processes left beside `target`.
+  /// If interrupted_replacement_of() returns a folder, renames it back to `target`. Throws Error on failure.
   explicit AtomicFolder(const std::filesystem::path& target);
   ~AtomicFolder();
   AtomicFolder(const AtomicFolder&) = delete;
@@ -30,12 +30,13 @@ class AtomicFolder {
   std::filesystem::path partial_;
 };
 
-/// Returns the old version of `target` (target.before-PID) if a process was killed while replacing it by two
-/// renames, on a file system that cannot exchange names. Empty if `target` exists or nothing was set aside.
+/// On a file system that cannot exchange two names, commit() needs two renames. If a process was killed
+/// between them, returns the old version of `target` (target.before-PID). Empty if `target` exists or there
+/// is none.
 std::filesystem::path interrupted_replacement_of(const std::filesystem::path& target);
 
-/// Returns an identifier that changes when another folder is put in place under this name. Empty if there is
-/// no folder.
+/// Returns an identifier that changes when the folder is replaced by another of the same name. Empty if there
+/// is no folder.
 std::string folder_version(const std::filesystem::path& folder);
 
 /// Throws Error: the folder is replaced faster than it can be read.

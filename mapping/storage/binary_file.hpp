@@ -47,7 +47,7 @@ class BinaryReader {
     take(&number, 1, what);
     return number;
   }
-  /// Same, and fails if the number is not finite.
+  /// Takes a double; also fails if it is not finite.
   double take_finite(const char* what);
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
   [[nodiscard]] std::string path() const { return path_.string(); }
@@ -61,8 +61,8 @@ class BinaryReader {
 void write_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
                   std::string_view body);
 
-/// Returns the body of a file from write_binary(). Throws Error naming the file and the fault if the file is
-/// missing, truncated, altered, or of another kind or version.
+/// Returns the body of a file written by write_binary(). Throws Error naming the file and the fault if the
+/// file is missing, truncated, altered, or of another kind or version.
 std::string read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version);
 
 }  // namespace roomradar

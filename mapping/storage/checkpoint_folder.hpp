@@ -1,4 +1,4 @@
-// checkpoint_folder.hpp: the files of a folder of checkpoints: their names, checksums and identity.
+// checkpoint_folder.hpp: files in a folder of checkpoints: names, checksums, identity of the work.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -10,13 +10,13 @@
 
 namespace roomradar {
 
-/// Name of the file that the folder's owner locks.
+/// Name of the file that the process which owns the folder locks.
 inline constexpr const char* kCheckpointLock = "lock";
 
 /// A checkpoint that was read back, with sizes and checksums of all files verified.
 struct Checkpoint {
   std::string stage;             ///< as passed to write_checkpoint()
-  std::filesystem::path folder;  ///< contains the written files; read-only
+  std::filesystem::path folder;  ///< contains the state's files; not to be changed
 };
 
 /// Writes a state's files into `into`, an empty folder. `previous` is the preceding checkpoint's folder, or
@@ -26,14 +26,14 @@ using WriteCheckpointFiles =
     std::function<void(const std::filesystem::path& into, const std::filesystem::path& previous)>;
 
 /// Writes checkpoint `number` under a temporary name, syncs it, and renames it. Then removes all but the last
-/// two. Throws Error or std::filesystem::filesystem_error if the disk fails; discard_unfinished() must
-/// follow.
+/// two. If the disk fails, throws Error or std::filesystem::filesystem_error; the caller must then call
+/// discard_unfinished().
 /// @param last_number    number of the last complete checkpoint; 0: none
-/// @param on_disk_until  files of the folder that were last written before this are on disk already
+/// @param on_disk_until  files of the folder last written before this time are already synced
 void write_checkpoint(const std::filesystem::path& folder, std::int64_t number, std::int64_t last_number,
                       const std::string& stage, const WriteCheckpointFiles& write_files,
                       std::filesystem::file_time_type on_disk_until);
-/// Removes what an interrupted write_checkpoint() left; ignores errors.
+/// Removes the partial files of an interrupted write_checkpoint(); ignores errors.
 void discard_unfinished(const std::filesystem::path& folder);
 
 /// Verifies all files of a checkpoint. Throws Error naming the first that is missing or altered.
@@ -48,15 +48,15 @@ void write_identity(const std::filesystem::path& folder, const std::map<std::str
 /// Returns the identity in the folder's work.json. Throws Error if the file is missing or damaged.
 std::map<std::string, std::string> identity_of(const std::filesystem::path& folder);
 
-/// Returns true if the folder contains only `work.json` and the lock, as one newly created does.
+/// Returns true if the folder contains only `work.json` and the lock, as after its creation.
 bool has_nothing_to_resume(const std::filesystem::path& folder);
 
-/// Returns the name that the folder has while it is being removed. If a crash leaves a folder of this name,
-/// it can be deleted.
+/// Returns the name to which the folder is renamed before it is removed. A folder of this name, left by a
+/// crash, can be deleted.
 std::filesystem::path done_beside(const std::filesystem::path& folder);
 
-/// Throws Error if `folder` exists and is not a folder, or contains anything other than checkpoints and
-/// `beside`, an entry of their owner. Protects other files from removal.
+/// Throws Error if `folder` exists and is not a folder, or contains anything other than checkpoints and the
+/// entry named `beside`. Protects other files from removal.
 void require_checkpoints_only(const std::filesystem::path& folder, std::string_view beside);
 
 /// Makes `to` a hard link to `from`, or a copy if linking fails. Returns false if `from` does not exist or

@@ -43,15 +43,16 @@ class Checkpoints {
   /// Throws Error naming the difference if the folder belongs to work with another identity.
   void require_same_work() const;
 
-  /// Returns whether `every_s` has passed since the last checkpoint began and that checkpoint is complete.
+  /// Returns true if `every_s` has passed since the last checkpoint began, and that checkpoint is complete.
   bool is_due();
-  /// Same at the end of a stage, where a third of `every_s` is enough; waits for the last checkpoint to
-  /// complete.
+  /// For the end of a stage: waits for the last checkpoint to complete, and returns true if a third of
+  /// `every_s` has passed.
   bool is_due_at_end();
-  /// Starts a child that writes a checkpoint; takes some milliseconds itself. A failure (disk full) keeps the
-  /// previous checkpoint and is counted in failures(); only the first failure is reported (tell_failure()).
+  /// Starts a child process that writes a checkpoint; returns after a few milliseconds. If the child fails
+  /// (disk full), the previous checkpoint stays and failures() increases; only the first failure is reported
+  /// (tell_failure()).
   void write(const std::string& stage, const WriteFiles& write_files);
-  /// Returns whether there is a checkpoint to resume from; waits for the one that is being written.
+  /// Returns true if there is a checkpoint to resume from; waits for one that is being written.
   [[nodiscard]] bool has_any();
   /// Removes the folder of completed work.
   void remove();
@@ -59,7 +60,7 @@ class Checkpoints {
   void forget();
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Creates and locks the folder now, for callers that store other files in it.
+  /// Creates and locks the folder now, for callers that store their own files in it.
   void ensure_folder();
   /// One sentence per damaged checkpoint that resume() skipped.
   [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }

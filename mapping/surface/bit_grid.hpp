@@ -34,7 +34,7 @@ class BitGrid {
   /// Returns a grid in which each voxel has the value of its neighbour `step` (-1 or 1) along the axis.
   [[nodiscard]] BitGrid shifted(int axis, int step) const;
 
-  /// Dilates by one step along the axes, restricted to `where`. A voxel set in barred[axis] blocks the step
+  /// Dilates by one step along the axes, restricted to `where`. A voxel set in blocked[axis] blocks the step
   /// between it and the next voxel along that axis, in both directions. All grids have the same size.
   void spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
   /// Repeats spread() until nothing changes.
@@ -51,8 +51,8 @@ class BitGrid {
             if (x < size_.x()) visit(Eigen::Vector3i(x, y, z));
           }
   }
-  /// Calls visit(first voxel, length) for each run of set voxels along x, in the same order. A run of more
-  /// than 64 voxels may be visited in pieces that follow each other.
+  /// Calls visit(first voxel, length) for each run of set voxels along x, in the same order. A run longer
+  /// than 64 voxels may be visited as several consecutive runs.
   template <typename Visit>
   void for_each_run(const Visit& visit) const {
     for (int z = 0; z < size_.z(); ++z)
@@ -79,7 +79,7 @@ class BitGrid {
     return words_.data() + row_index(y, z) * words_a_row_;
   }
   void clear_row_ends();
-  /// Spreads from voxels of `source`, which may be this grid, into one row. Returns true if that added any.
+  /// Dilates `source`, which may be this grid, into one row. Returns true if a voxel was added.
   bool spread_to_row(const BitGrid& source, const BitGrid& where, const std::array<BitGrid, 3>& blocked,
                      int y, int z);
 
@@ -89,8 +89,8 @@ class BitGrid {
 };
 
 /// Morphological opening by a cube: keeps the voxels that are in a cube of edge x edge x edge set voxels and
-/// removes thinner parts. With lattice > 1 only cubes whose lowest voxel's coordinates are multiples of it
-/// count. edge and lattice must be >= 1.
+/// removes thinner parts. With lattice > 1, only cubes whose lowest voxel's coordinates are multiples of
+/// `lattice` are considered. edge and lattice must be >= 1.
 BitGrid opened(const BitGrid& bits, int edge, int lattice = 1);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// blocked_neighbours.hpp: finds the steps between neighbouring grid cells that a surface blocks.
+// blocked_neighbours.hpp: finds pairs of neighbouring grid cells that a surface separates.
 #pragma once
 #include <array>
 

@@ -1,5 +1,4 @@
-// dual_marching_cubes.hpp: dual marching cubes: extracts the zero surface of signed distances at voxel
-// resolution.
+// dual_marching_cubes.hpp: extracts the zero level set of signed distances at voxel resolution.
 #pragma once
 #include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/types/mesh.hpp"
@@ -9,14 +8,14 @@ namespace roomradar {
 /// Each cell of eight neighbouring samples gets one vertex per surface sheet, at the mean of the sheet's zero
 /// crossings on the cell's edges. Each crossed edge whose four cells have vertices gets a quad (two
 /// triangles). A cell with an unknown corner has no vertex, so unobserved areas stay open. Extrapolated
-/// samples only complete cells: an edge with an extrapolated end gets no quad, and its crossing hardly moves
-/// a vertex. Vertices are in the world (mesh.origin + vertex). Triangles and normals (gradient of the
-/// trilinear distance) face the free side. Colours are the samples', grey if they have none.
+/// samples count as corners, but an edge with an extrapolated end gets no quad, and its crossing has little
+/// weight in a vertex. Vertices are in the world (mesh.origin + vertex). Triangles and normals (gradient of
+/// the trilinear distance) face the free side. Colours are the samples', grey if they have none.
 ///
-/// Edges are manifold: each has two triangles, or one where the samples end. Sheets are separated by
-/// the crossings of the cell's faces; an ambiguous face (equal signs on each diagonal) separates its inside
-/// corners. If all four crossings of such a face are one sheet in both of its cells, the face separates its
-/// outside corners instead. Source: Gibson, Constrained Elastic Surface Nets, MICCAI 1998 (placement);
+/// Edges are manifold: each has two triangles, or one where the samples end. The crossings on a cell's faces
+/// determine its sheets; an ambiguous face (equal signs on each diagonal) separates its two inside corners.
+/// If all four crossings of such a face then belong to one sheet in both adjacent cells, the face separates
+/// its outside corners instead. Source: Gibson, Constrained Elastic Surface Nets, MICCAI 1998 (placement);
 /// Nielson, Dual Marching Cubes, IEEE Visualization 2004 (sheets); Wenger, Isosurfaces, CRC Press 2013,
 /// chapter 3 (manifold faces).
 Mesh dual_marching_cubes(const TsdfBricks& bricks, double resolution_m);

@@ -12,10 +12,10 @@ struct SurfaceConfig {
   /// Samples with less weight count as unknown. Default: the weight of one frame at 2.9 m or about ten frames
   /// at 5 m, a standard deviation of 13 mm.
   float min_weight = 0.02F;
-  /// Strength of smoothing, in measurements from 1 m; 0: none. Samples of higher weight keep their detail,
-  /// those of lower weight are averaged over more voxels.
+  /// Strength of smoothing, as a sample weight (1: one measurement from 1 m); 0: none. Samples of higher
+  /// weight keep their detail; samples of lower weight are averaged over more voxels.
   float smoothing = 0.4F;
-  float min_component_area_m2 = 4e-3F;  ///< smaller connected components are dropped (default about 6 x 6 cm)
+  float min_component_area_m2 = 4e-3F;  ///< smaller components are dropped (default: about 6 x 6 cm)
   /// Simplification bound: max distance between the simplified and the full surface, in both directions; 0
   /// keeps every triangle.
   float max_deviation_m = 2e-3F;
@@ -33,12 +33,13 @@ struct SurfaceStats {
 /// curved ones. Crack-free: every edge has two triangles, or one along a border of the observed surface, so
 /// holes stay open. Vertices are in the world (mesh.origin + vertex), normals point to the free side, colours
 /// come from the samples. An empty map gives an empty mesh. Throws Error if a setting is not finite and >= 0.
-/// Sources: dual_marching_cubes.hpp, sample_smoothing.hpp and mesh_simplify.hpp.
+/// Methods: see dual_marching_cubes.hpp, tsdf_smoothing.hpp and mesh_simplify.hpp.
+/// @param facts  receives the statistics; may be null
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceStats* facts = nullptr);
 
 /// Extracts the part of the surface in a box: all triangles with a corner in the box grown by one voxel, so
-/// up to two voxels beyond the box. Samples farther than 12 voxels from the box are ignored; they would move
-/// the result by less than 0.1 mm. The area of components is also measured within those 12 voxels only.
+/// up to two voxels beyond the box. Samples farther than 12 voxels from the box would move the result by less
+/// than 0.1 mm and are ignored, also when the area of a component is measured.
 Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
                      const SurfaceConfig& config = {});
 

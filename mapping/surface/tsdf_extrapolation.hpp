@@ -4,11 +4,11 @@
 
 namespace roomradar {
 
-/// Extrapolates a distance to each unknown voxel that shares a face with a known one, in two rounds, and
-/// marks it as guessed. The distance is the mean of the linear extrapolations from the sides with two known
-/// voxels in line, or, without such a side, the mean of the known face neighbours. Adds no bricks. All cells
-/// around a measured zero crossing then have complete corners, so the surface extends as far as the
-/// measurements.
+/// Extrapolates a distance to each unknown voxel that shares a face with a known voxel, in two rounds, and
+/// marks the sample as extrapolated. The distance is the mean of the linear extrapolations from the sides
+/// with two known voxels in line, or else the mean of the known face neighbours. Adds no bricks. Afterwards
+/// all eight corners of every cell around a measured zero crossing are known, so the surface extends as far
+/// as the measurements.
 void extrapolate_neighbours(TsdfBricks& bricks);
 
 }  // namespace roomradar

@@ -7,13 +7,13 @@ namespace roomradar {
 
 /// A box of cubic cells on a lattice in the world.
 struct CellGrid {
-  Eigen::Vector3i first_cell = Eigen::Vector3i::Zero();  ///< the box's lowest corner is at first_cell *
-                                                         ///< cell_m
+  /// Lowest cell; its lower corner is at first_cell * cell_m.
+  Eigen::Vector3i first_cell = Eigen::Vector3i::Zero();
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   double cell_m = 0.0;
 };
 
-/// The cells that have a face towards their neighbour `step` (-1 or 1) along the axis.
+/// Cells whose face towards the neighbour at `step` (-1 or 1) along the axis is to be meshed.
 struct VoxelFaces {
   BitGrid cells;
   int axis = 0;

@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// Names with `camera` alone mean the depth camera; T_colour_depth leads to the colour camera.
+/// In names, `camera` alone means the depth camera.
 struct Frame {
   std::int64_t index = 0;  ///< index in the recording from 0, skipped frames included
   double stamp_s = 0.0;    ///< sensor time; index / 30 in a recording without timestamps

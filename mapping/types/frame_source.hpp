@@ -17,7 +17,7 @@ enum class ReadStatus {
 struct [[nodiscard]] ReadResult {
   ReadStatus status = ReadStatus::kEnd;
   std::string fault;     ///< a sentence; only with kSkipped
-  bool waiting = false;  ///< with kSkipped: no frame was lost, a live source has delivered none for a while
+  bool waiting = false;  ///< with kSkipped: no frame was lost; a live source delivered none in time
 };
 
 /// Delivers frames in the order of their timestamps. Not thread safe.

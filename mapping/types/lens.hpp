@@ -17,8 +17,8 @@ struct PlanePoint {
   Scalar x{}, y{};
 };
 
-/// Distorts the normalised point `p`. Scalar and Coefficient may be automatic-differentiation types,
-/// independently of each other; therefore the coefficients are separate parameters.
+/// Distorts the normalised point `p`. Scalar and Coefficient may each be an automatic-differentiation type,
+/// so the coefficients are separate parameters.
 template <typename Scalar, typename Coefficient>
 PlanePoint<Scalar> distorted(const PlanePoint<Scalar>& p, const Coefficient& k1, const Coefficient& k2,
                              const Coefficient& p1, const Coefficient& p2, const Coefficient& k3) {

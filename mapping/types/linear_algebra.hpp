@@ -23,22 +23,22 @@ struct SymmetricEigen {
 SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A);
 SymmetricEigen<6> symmetric_eigen(const Matrix6d& A);
 
-/// x with A x = b, A symmetric and positive or negative semidefinite (LDLT with pivoting). Not finite where A
-/// or b is not.
+/// Returns x with A x = b, for A symmetric and positive or negative semidefinite (LDLT with pivoting). Not
+/// finite if A or b is not.
 Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
 Vector6d solve_symmetric(const Matrix6d& A, const Vector6d& b);
 
-/// Inverse by LU decomposition; not finite where A is singular.
+/// Returns the inverse by LU decomposition; not finite if A is singular.
 Matrix6d inverse(const Matrix6d& A);
 
-/// Rotation R that is nearest to A in the least-squares sense, U V' of its singular value decomposition. Its
-/// determinant is -1 where A mirrors.
+/// Returns the orthogonal matrix nearest to A in the least-squares sense: U V' of A's singular value
+/// decomposition. Its determinant is -1 if A's is negative.
 Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& A);
 
-/// Shortest rotation from one direction to another, neither of them zero.
+/// Returns the shortest rotation from one direction to another; neither may be zero.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-/// T_b_a of least squared distances |T_b_a a_i - b_i|, without scale; points in columns.
+/// Returns the T_b_a that minimises the sum of |T_b_a a_i - b_i|^2, without scale; points are in columns.
 /// Source: Umeyama, Least-squares estimation of transformation parameters, PAMI 1991.
 Eigen::Isometry3d fit_rigid(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b);
 

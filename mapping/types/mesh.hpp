@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// Counter-clockwise seen from outside (the sensor's side).
+/// Vertex indices, counter-clockwise as seen from outside (the sensor's side).
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// Indexed triangles. Vertex i is at origin + vertices[i] in the mesh's frame (world or object frame).

@@ -1,4 +1,4 @@
-// pose_origin.hpp: where the poses of a source's frames come from.
+// pose_origin.hpp: origin of a scan's camera poses.
 #pragma once
 #include <string_view>
 
@@ -9,7 +9,7 @@ enum class PoseOrigin {
   kRecorded,  ///< taken from the recording; frames without a pose are not fused
 };
 
-/// The name that the command line, the map and the reports use.
+/// Returns the name used by the command line, maps and reports.
 constexpr std::string_view to_string(PoseOrigin poses) {
   return poses == PoseOrigin::kTracked ? "tracked" : "recorded";
 }

@@ -30,7 +30,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what a ByteWriter wrote. The input is not trusted: ends and sizes are checked before memory is
+/// Reads bytes written by a ByteWriter. The input is not trusted: sizes are checked before memory is
 /// allocated. Invalid values throw Error naming the file.
 class ByteReader {
  public:

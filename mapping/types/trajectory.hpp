@@ -19,7 +19,7 @@ struct TimedPose {
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory);
 
 /// Reads a file of this format; lines starting with # are comments. frame_index counts the poses, from 0.
-/// Throws Error naming file and line if a line has not 8 finite numbers or its quaternion is not a unit
+/// Throws Error naming file and line if a line does not have 8 finite numbers or its quaternion is not a unit
 /// quaternion.
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& path);
 
@@ -31,13 +31,14 @@ struct TrajectoryError {
 };
 
 /// Computes the absolute trajectory error: distances of positions matched by frame index, after the best
-/// rigid alignment (scale 1). `poses` is 0 if fewer than 3 match. Source: Horn 1987; Sturm et al., IROS 2012.
+/// rigid alignment (scale 1). TrajectoryError::poses is 0 if fewer than 3 match. Source: Horn 1987; Sturm et
+/// al., IROS 2012.
 TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
                                           const std::vector<TimedPose>& reference);
 
 /// Returns the T_reference_estimate that best aligns whole poses matched by frame index: the camera's
-/// position, and the points 1 m along its axes. Rotation is constrained even if the camera hardly moved or
-/// moved along a line, where positions alone would leave it to noise. Returns nullopt if no pose matches.
+/// position, and the points 1 m along its axes. Positions alone would not constrain the rotation if the
+/// camera hardly moved or moved along a line. Returns nullopt if no pose matches.
 std::optional<Eigen::Isometry3d> pose_alignment(const std::vector<TimedPose>& estimate,
                                                 const std::vector<TimedPose>& reference);
 

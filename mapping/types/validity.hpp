@@ -10,22 +10,23 @@
 
 namespace roomradar {
 
-/// True if focal lengths are finite and > 0 and the principal point is finite. Ignores the image size.
+/// Returns true if focal lengths are finite and > 0 and the principal point is finite. Ignores the image
+/// size.
 [[nodiscard]] bool can_project(const Intrinsics& camera);
 
-/// True if the camera satisfies the rules of require_valid().
+/// Returns true if the camera satisfies the rules of require_valid().
 [[nodiscard]] bool is_valid(const Intrinsics& camera);
 
-/// True if T is finite, a proper rotation and a translation. No entry of R^T R may differ from the identity
-/// by `tolerance` or more.
+/// Returns true if T is finite, a proper rotation and a translation. No entry of R^T R may differ from the
+/// identity by `tolerance` or more.
 [[nodiscard]] bool is_rigid(const Eigen::Isometry3d& T, double tolerance);
 
 /// Returns a sentence saying why the frame's depth image does not fit its depth camera; empty if it fits.
 [[nodiscard]] std::string_view depth_fault_of(const Frame& frame);
-/// As depth_fault_of(), for depth and colour. A frame without a colour image has its colour camera ignored.
+/// As depth_fault_of(), for depth and colour. Without a colour image, the colour camera is not checked.
 [[nodiscard]] std::string_view fault_of(const Frame& frame);
 
-/// True if all corners are existing, finite vertices of the mesh.
+/// Returns true if all corners are existing, finite vertices of the mesh.
 [[nodiscard]] inline bool is_usable(const Mesh& mesh, const Triangle& triangle) {
   return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t vertex) {
     return vertex < mesh.vertices.size() && mesh.vertices[vertex].allFinite();

@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Processor that computes the minimum over each query's pixels.
+/// Where the minimum over each query's pixels is computed.
 enum class GlMinimum {
   /// The GPU if there is one, else the CPU.
   kAuto,
@@ -20,13 +20,14 @@ enum class GlMinimum {
 struct GlRadarConfig {
   /// Number of samples along the longer side of the object's outline, 1 to 4096.
   int resolution_px = 128;
-  /// Surfaces that overlap the object's front by more than this count as behind the object and are ignored.
+  /// Surfaces more than this behind the object's front surface, in a pixel, are ignored.
   double overlap_tolerance_m = 0.03;
   /// Side of the textures shared by many queries, 1 to 16384.
   int atlas_px = 2048;
   GlMinimum minimum = GlMinimum::kAuto;
-  /// Runs CyberRadar if the two depth passes cannot decide (see GlRadar), so the result is exact. Requires
-  /// that all meshes that intersect the query's volume share a triangle tree (GpuMesh::tree()).
+  /// Runs CyberRadar for a query whose lower_m would be 0 for lack of resolution (see GlRadar), so the result
+  /// is exact. Requires that all meshes that intersect the query's volume share a triangle tree
+  /// (GpuMesh::tree()).
   bool exact_fallback = true;
 };
 /// Checks that all values are in their ranges.

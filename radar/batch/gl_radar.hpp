@@ -22,8 +22,8 @@
 
 namespace roomradar {
 
-/// Cyber Radar with OpenGL. An object that moves along a line first touches the scene at the pixel with the
-/// least gap ahead of its front.
+/// An object that moves along a line first touches the scene at the pixel with the least gap ahead of its
+/// front.
 ///
 ///     rear plane                                                  far plane
 ///        |<------------------------ d ------------------------------->|
@@ -32,33 +32,32 @@ namespace roomradar {
 ///        |                               |<--------------- M -------->|      L = R + M - d
 ///
 /// u is the direction of motion. M is the object's depth image (its mask) seen from the far plane. R is the
-/// scene's depth image seen from the rear plane, through the object's outline. L is the gap between them in
-/// each pixel; the least L is the distance to contact. L is defined only in pixels that both the object and
-/// the scene cover. R is the first surface not behind the object's front. A surface behind the front is
+/// scene's depth image seen from the rear plane, limited to the object's outline. L is the gap between them
+/// in each pixel; the least L is the distance to contact. L is defined only in pixels that both the object
+/// and the scene cover. R is the first surface not behind the object's front. A surface behind the front is
 /// ignored in a pixel if it
 ///   - is back-facing, since the object moves away from it (for example the table that a plate is
 ///     lifted from), or
 ///   - is behind by more than overlap_tolerance_m or the object's own length, whichever is less, or
-///   - is not certainly inside the front slab of the object's solid (it may be in a concavity, such
-///     as the hole of a handle).
+///   - is not certainly inside the front slab, the object's material between its front and the next rear
+///     surface (it may be in a concavity, such as the hole of a handle).
 ///
 /// contact_distance_m is sampled, so it can be wrong in three ways. A spike or sheet thinner than a pixel may
-/// be missed. A surface in a concavity is compared with the object's front layer only. And contact_distance_m
-/// is too large by about half a pixel's diagonal times the sum of both surfaces' slopes.
+/// be missed. A surface in a concavity is compared with the object's front only. And contact_distance_m is
+/// too large by about half a pixel's diagonal times the sum of both surfaces' slopes.
 ///
-/// lower_m and upper_m are guaranteed bounds. They come from the same two passes: each pixel also stores the
-/// surfaces that may touch its square, and those that certainly cross its sample line. lower_m is 0 if scene
-/// in one of the object's pixels is neither wholly ahead nor wholly behind, for example a wall passed closer
-/// than a pixel, or a peg in a hole. Such a query gets the exact test on the CPU if possible
-/// (GlRadarConfig::exact_fallback); then lower_m = upper_m.
+/// lower_m and upper_m are guaranteed bounds. They come from the same two passes: each pixel also stores
+/// depth bounds of the surfaces that may touch its square, and of those that certainly cross its sample line.
+/// lower_m is 0 if, in one of the object's pixels, scene is neither certainly ahead of the object nor
+/// certainly behind it, for example a wall passed closer than a pixel, or a peg in a hole. Such a query gets
+/// the exact test on the CPU if possible (GlRadarConfig::exact_fallback); then lower_m = upper_m.
 ///
 /// One-sided surfaces (is_one_sided(), for example the frontier of observed space) block from both sides
 /// here; use CyberRadar if they must not.
 ///
-/// Overlaps and concavities are recognised only for a closed object with triangles counter-clockwise seen
-/// from outside. Masks are cached: an object queried again along the same direction in its own frame is not
-/// redrawn. Source of R, M and L: the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread
-/// safe.
+/// Overlaps and concavities are recognised only if the object is closed, with triangles counter-clockwise
+/// seen from outside. Masks are cached by object and direction in the object's frame. Source of R, M and L:
+/// the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread safe.
 class GlRadar {
  public:
   /// @throws Error if config is invalid or the renderer lacks a required feature
@@ -86,13 +85,13 @@ class GlRadar {
   void query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
                  std::span<Contact> contacts);
 
-  /// Returns the images of the last valid query (not kInvalidInput) of the last call; all images are empty if
+  /// Returns the images of the last call's last valid query (not kInvalidInput); all images are empty if
   /// there is none. If no scene intersects the query's volume, nothing was drawn, and R and M equal depth_m
   /// in all pixels.
   [[nodiscard]] RadarPictures pictures() const;
 
  private:
-  /// A query that was drawn, and its scene triangles: runs_[first_run] to runs_[first_run + run_count - 1].
+  /// A query that was drawn, and its scene triangles: run_count entries of runs_ from first_run on.
   struct Drawn {
     std::size_t query = 0;
     RadarOutline outline;

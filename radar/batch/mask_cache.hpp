@@ -1,5 +1,4 @@
-// mask_cache.hpp: cache of the masks (depth images of objects) that GlRadar has drawn, by object and
-// direction.
+// mask_cache.hpp: cache of the masks (objects' depth images) drawn by GlRadar.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -22,8 +21,8 @@ struct MaskKey {
 };
 MaskKey mask_key(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh);
 
-/// A fixed number of tiles (regions of the mask texture), each with its key and outline. Tiles used in the
-/// current round are never evicted. Allocates in reset() only. Not thread safe.
+/// A fixed number of tiles (regions of the mask texture), each with its key and outline. Tiles used since
+/// begin_round() are never evicted. Allocates in reset() only. Not thread safe.
 class MaskCache {
  public:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);

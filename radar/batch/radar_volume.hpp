@@ -1,5 +1,4 @@
-// radar_volume.hpp: an object's outline seen along its motion, its pixels, and the volume that the object
-// sweeps.
+// radar_volume.hpp: an object's outline along its motion, the outline's pixels, and the swept volume.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -11,7 +10,7 @@ namespace roomradar {
 /// An object's outline along a direction u, in the frame of its mesh. Valid while the object's orientation
 /// relative to u is unchanged. Defines the outline coordinates. x and y are perpendicular to u, in pixels
 /// from the outline's corner. z is along u, in metres from the object's foremost point. The object lies in z
-/// = -length_m..0, so values near contact are small.
+/// = -length_m..0.
 struct RadarOutline {
   /// Rotation from the mesh's frame. Its rows are the axes x, y and u, right-handed.
   Eigen::Matrix3d R_outline_mesh = Eigen::Matrix3d::Identity();
@@ -40,8 +39,8 @@ Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, cons
 /// Returns the box that contains the object and the volume it sweeps, in the world.
 RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m);
 
-/// Returns the max error of the object's vertices in the renderer's floats, perpendicular to u, px. Uses the
-/// same formula as kTileVertexShader.
+/// Returns the max rounding error of the object's vertices on the renderer, perpendicular to u, px; same
+/// formula as in kTileVertexShader.
 double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline);
 
 /// Returns the distance from 0 within which a gap L counts as touching, m.

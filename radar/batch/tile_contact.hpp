@@ -1,5 +1,4 @@
-// tile_contact.hpp: converts the result of a GlRadar query (its least gap and the triangle touched) into a
-// Contact.
+// tile_contact.hpp: converts a GlRadar query's least gap and touched triangle into a Contact.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +12,8 @@
 
 namespace roomradar {
 
-/// A contiguous range of triangles of a scene mesh that intersects a query's volume. Keys number the scene
-/// triangles of a call: triangle first_triangle + k has the key first_key + k.
+/// A contiguous range of triangles of a scene mesh whose boxes intersect a query's volume. Keys number the
+/// scene triangles of a call: triangle first_triangle + k has the key first_key + k.
 struct SceneRun {
   /// Index of the mesh in the scene.
   std::size_t scene_index = 0;

@@ -23,8 +23,8 @@ struct TileQuery {
   std::int32_t query = 0;
   /// Key of the draw's first triangle; following triangles have the following keys.
   std::uint32_t first_key = 0;
-  /// Greatest z to draw; distance from 0 within which a gap counts as touching; overlap tolerance; object's
-  /// length along the motion.
+  /// In this order: greatest z to draw; gap that counts as touching; overlap tolerance; object's length along
+  /// the motion.
   float far_m = 0.0F, touching_m = 0.0F, tolerance_m = 0.0F, length_m = 0.0F;
   /// Twice the error of the object's vertices perpendicular to the motion.
   float margin_px = 0.0F;

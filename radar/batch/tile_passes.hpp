@@ -1,5 +1,5 @@
-// tile_passes.hpp: the two depth passes of GlRadar: first objects into mask tiles, then the scene through the
-// masks.
+// tile_passes.hpp: the two depth passes of GlRadar: objects into mask tiles, then the scene, compared with
+// the masks, into scene tiles.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -33,7 +33,7 @@ class TilePasses {
   TilePasses(const TilePasses&) = delete;
   TilePasses& operator=(const TilePasses&) = delete;
 
-  /// Returns the tiles of M (objects' masks), indexed by mask.
+  /// Returns the tiles with the objects' masks (M), indexed as in MaskCache.
   TileAtlas& object_tiles() { return object_.tiles; }
   [[nodiscard]] const TileAtlas& object_tiles() const { return object_.tiles; }
   /// Returns the tiles of the scene, indexed by the query's index in its batch.

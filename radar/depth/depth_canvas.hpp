@@ -11,7 +11,7 @@ namespace roomradar {
 /// Inverse depth (1/m) of the nearest surface per pixel; 0 if there is no surface. The result does not depend
 /// on the drawing order.
 struct DepthCanvas {
-  /// Number of pixels written at once. Rows are padded by at least as many pixels.
+  /// Number of pixels written at once. Rows are padded by at least this many pixels.
   static constexpr int kLanes = 8;
 
   int width_px = 0, height_px = 0, stride_px = 0;
@@ -35,7 +35,7 @@ struct ProjectedVertices {
 /// Indices of a triangle's projected vertices.
 using PieceTriangle = std::array<std::uint16_t, 3>;
 
-/// Scratch buffers of draw_triangles(). Each Lane has one value per triangle.
+/// Scratch buffers of draw_triangles(). A Lane holds one value per triangle.
 struct TriangleSetup {
   /// Number of triangles processed together.
   static constexpr std::size_t kMost = 256;
@@ -52,8 +52,9 @@ struct TriangleSetup {
   /// Inverse depth, 1/m: value at pixel (first_x, first_y), slope per pixel, and range of the corners.
   alignas(32) Lane<float> q_first, q_per_x, q_per_y, least_q, most_q;
   // Pixels of a row that a triangle covers. Row y covers the pixels from the maximum of left_slope * (y - v)
-  // + left over the three edges to the minimum of right_slope * (y - v) + right. v is the height of a corner
-  // of the edge; offsets are measured from it, since a nearly horizontal edge has a huge slope.
+  // + left over the three edges to the minimum of right_slope * (y - v) + right. v is the row coordinate of a
+  // corner of the edge; `left` and `right` are measured there, since a nearly horizontal edge has a huge
+  // slope.
   alignas(32) std::array<Lane<float>, 3> left, left_slope, right, right_slope;
 };
 

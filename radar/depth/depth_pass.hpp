@@ -1,4 +1,4 @@
-// depth_pass.hpp: renders the depth image that a noise-free depth camera would measure of meshes.
+// depth_pass.hpp: renders depth images of meshes, as an ideal depth camera would measure them.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -58,7 +58,8 @@ class DepthPass {
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 
   /// Renders only a rectangle of the image; pixels of `depth_m` outside it are unchanged. If depth_m does not
-  /// have the camera's size, it is first resized and set to 0. Chunks outside the rectangle are not drawn.
+  /// have the camera's size, it is first resized and set to 0. Parts of meshes (chunks) outside the rectangle
+  /// are not drawn.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, DepthImage& depth_m);
 

@@ -19,10 +19,10 @@
 
 namespace roomradar {
 
-/// Renders the images of DepthPass without OpenGL. Several times as fast as a software OpenGL, whose cost per
-/// triangle is too high for images this small. Two threads share the pieces of the meshes; each draws on its
-/// own canvas, and the nearest surface wins, so the result does not depend on which thread drew a piece. Not
-/// thread safe.
+/// Renders the images of DepthPass without OpenGL. Several times as fast as software OpenGL, whose cost per
+/// triangle is too high for images of this size. Two threads share the pieces of the meshes; each draws on
+/// its own canvas, and the nearest surface wins, so the result does not depend on which thread drew a piece.
+/// Not thread safe.
 class DepthRaster {
  public:
   /// Renders a rectangle of an image. Parameters are those of DepthPass::render() and DepthPassConfig. `rect`
@@ -36,7 +36,7 @@ class DepthRaster {
   /// Matrix from local points to (u * depth, v * depth, depth).
   using Projection = Eigen::Matrix<double, 3, 4>;
 
-  /// A mesh drawn before, cut into pieces.
+  /// A mesh that was drawn before, cut into pieces.
   struct KnownMesh {
     const GpuMesh* mesh = nullptr;
     std::uint64_t revision = 0;

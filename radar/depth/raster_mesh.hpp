@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-/// A contiguous range of nearby triangles, and the vertices that only they use.
+/// A contiguous range of nearby triangles, with their own copies of their vertices.
 struct RasterPiece {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_vertex = 0, vertex_count = 0;

@@ -11,7 +11,8 @@
 namespace roomradar {
 
 /// Intersection of two projected triangles (object and scene), restricted to the points that are equally
-/// near. In the frame of the motion, z is the direction of motion.
+/// near: at most a tolerance farther than the nearest point of the query. The frame of the motion has the
+/// direction of motion as its z axis.
 struct PatchPiece {
   double contact_distance_m = 0.0;
   // Points on the scene's triangle before the motion, in the frame of the motion, m. Only the first `count`
@@ -57,9 +58,9 @@ class ContactPatch {
   /// @param best_m  least distance to contact found so far
   void add(const TriangleGap& gap, double contact_distance_m, double equally_m, const FrameTriangle& scene,
            SurfaceKind kind, double best_m);
-  /// Returns the centroid, perpendicular to the motion, of the pieces at most equally_m farther than best_m.
-  /// Pieces are weighted by area; if none has area, by length; if none has length, all are weighted equally.
-  /// Requires at least one piece.
+  /// Returns the x and y of the centroid of the pieces at most equally_m farther than best_m. Pieces are
+  /// weighted by area; if none has area, by length; if none has length, all are weighted equally. Requires at
+  /// least one piece.
   [[nodiscard]] Eigen::Vector2d middle(double best_m, double equally_m);
   /// Returns the point nearest to `place` (perpendicular to the motion) on the stored pieces that are at most
   /// equally_m farther than best_m. Requires at least one stored piece.
@@ -82,7 +83,7 @@ class ContactPatch {
   /// Number of pieces in the sums.
   std::size_t summed_count_ = 0;
 
-  /// Removes pieces farther than limit_m, and the sums if they are farther.
+  /// Removes stored pieces farther than limit_m, and the sums if they are farther.
   void leave_out_what_is_farther(double limit_m);
   /// Moves all stored pieces into the sums.
   void sum_up(double best_m);

@@ -24,15 +24,16 @@ struct RadarSearch;
 ///   1. M: per pixel, an upper bound of the object's height along u (ObjectHeightMap). Kept while the
 ///      object's tree and the direction in its frame are unchanged.
 ///   2. R: the scene's bounding boxes, from large to small, nearest first (SceneInFrame). A box's least
-///      height minus the greatest M under it is a lower bound for every contact in it. For a triangle, the
-///      bound is computed from its plane over each pixel of M.
-///   3. L: the triangle with the least bound gets the exact test, in double, against all object triangles in
-///      its column (search_column, find_gap, classify_pair). The least distance found is an upper bound of
-///      the result, and the least untested bound a lower one. Once they agree, both are exact.
+///      height minus the greatest M under the box is a lower bound of the distance to every contact in it.
+///      For a triangle, the bound is computed from its plane over each pixel of M.
+///   3. L: the triangle with the least bound gets the exact test, in double, against all object triangles
+///      that overlap it in projection (search_column, find_gap, classify_pair). The least distance found is
+///      an upper bound of the result, and the least untested bound a lower one. Once they agree, both are
+///      exact.
 ///
-/// Triangles thinner than a pixel enter M and R with their whole bounding boxes, so neither bound misses
-/// them. Scene inside a concavity of the object is behind M, and a negative gap to M is not a contact there.
-/// The exact test compares such scene with the object's surfaces behind it.
+/// Triangles thinner than a pixel enter M and R with their whole bounding boxes, so the bounds include them.
+/// Scene inside a concavity of the object is behind M, and a negative gap to M is not a contact there. The
+/// exact test compares such scene with the object's surfaces behind it.
 ///
 /// Exactness: the error is that of double arithmetic on the float vertices, about 1e-12 m in a room and 1e-9
 /// m at a million metres from the world's origin.
@@ -43,26 +44,26 @@ struct RadarSearch;
 ///
 /// Overlap: surfaces that intersect by more than touching_m(), or scene inside a closed object
 /// (TriangleTree::is_closed()). Back-facing scene triangles do not count. Each pair of triangles intersects
-/// over an interval of travel, and scene is inside a closed object over an interval of travel.
-/// contact_distance_m = lower_m = upper_m is the lower end of the union of intervals that contains 0: the
-/// object is clear after moving back this far. An object that is sunk in the ground and moves along it is
-/// clear only where the ground ends, so a long search is cut short (kMostOverlapWork). Then
-/// contact_distance_m = upper_m is the lower end of the union found so far, and lower_m is -infinity.
+/// over an interval of the distance moved, and so does scene inside a closed object. contact_distance_m =
+/// lower_m = upper_m is the lower end of the connected union of intervals that contains 0: the object is
+/// clear after moving back this far. An object that is sunk in the ground and moves along it is clear only
+/// where the ground ends, so the search stops at a work limit (kMostOverlapWork). Then contact_distance_m =
+/// upper_m is the lower end of the union found so far, and lower_m is -infinity.
 ///
 /// Sliding: a scene triangle that is exactly parallel to the motion (|n . u| <= 1e-9) is no contact for
 /// object triangles wholly on one side of it. An open sheet that runs exactly along edges of the object's
 /// mesh is therefore not touched by the triangles on either side.
 ///
 /// Leaving: the object is leaving a back-facing surface that it intersects now. Other back-facing surfaces
-/// that it will intersect without interruption from now on are ignored too, even if part of the object is
-/// still behind them. Example: a cup leaves a hand that is in its handle, and the handle's bar is still
-/// behind the hand. These surfaces cause no contact until the object has passed the last of them.
+/// are ignored too if the object will intersect one or another of them without interruption from now on.
+/// Example: a cup leaves a hand that is in its handle, and the handle's bar is still behind the hand. These
+/// surfaces cause no contact until the object has passed the last of them.
 ///
 /// One-sided surfaces (is_one_sided()) are touched from their outside only: their back-facing triangles are
 /// always ignored.
 ///
 /// Contact point: the one nearest to the centroid of all equally near points, for example those of a face
-/// that lands flat. At most ContactPatch::kMaxPieces pairs of triangles are counted.
+/// that lands flat. At most ContactPatch::kMaxPieces pairs of triangles contribute.
 ///
 /// No GL. Not thread safe: use one radar per thread; trees and images may be shared.
 class CyberRadar {
@@ -85,13 +86,14 @@ class CyberRadar {
 
   /// Minimum number of exact tests before sampled mode stops.
   static constexpr int kSampledExactTests = 48;
-  /// Limit of the cost (in units of ColumnScratch::work, a few milliseconds in all) of testing scene behind
-  /// M. It is reached if the object is sunk in a very fine mesh, or if such a mesh lies in a concavity of the
-  /// object. Beyond it lower_m is 0 in exact mode too, and back-facing surfaces cause no contact.
+  /// Max cost of testing scene behind M, in units of ColumnScratch::work; a few milliseconds. Reached if the
+  /// object is sunk in a very fine mesh, or if such a mesh lies in a concavity of the object. Then lower_m is
+  /// 0 in exact mode too, and back-facing surfaces cause no contact.
   static constexpr std::uint64_t kMostWorkBehind = 40'000;
 
  private:
-  /// A back-facing scene triangle, and the interval of travel over which an object triangle intersects it.
+  /// A back-facing scene triangle, and the interval of distance moved over which an object triangle
+  /// intersects it.
   struct Back {
     double low_m, high_m;
     std::uint32_t object_triangle;

@@ -1,4 +1,4 @@
-// depth_blocks.hpp: triangles of a depth image inside a volume, in blocks of 8 x 8 cells.
+// depth_blocks.hpp: triangles of a depth image inside a volume, in blocks of 8 x 8 grid cells.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// Axis-aligned box in the frame of the motion, m.
+/// Axis-aligned box in the frame of the motion (z is the direction of motion), m.
 struct FrameBox {
   float x0, x1, y0, y1, z0, z1;
 };
@@ -30,9 +30,9 @@ struct DepthView {
   int i0 = 0, i1 = -1, j0 = 0, j1 = -1;
 };
 
-/// Finds the rectangle of vertices whose cells can intersect `volume` (in the frame of the motion). The
-/// rectangle is the volume's outline in the image, since a cell's triangles lie in the pyramid between camera
-/// and cell.
+/// Finds the rectangle of vertices whose cells can intersect `volume` (in the frame of the motion): the
+/// volume's bounding rectangle in the image, since a cell's triangles lie in the pyramid between camera and
+/// cell.
 /// @return false if there is no such cell
 bool place_depth(const SceneDepth& scene, const Eigen::Matrix3d& R_frame_world,
                  const Eigen::Vector3d& origin_world, const Eigen::AlignedBox3d& volume, DepthView& view);

@@ -20,10 +20,10 @@ class ObjectFront {
   /// Sets the object's orientation and computes bounds(); build() must follow.
   void turn(const TurnedTree& object);
   /// Builds a coarse M for a new direction. If the direction repeats, builds a finer M once the queries with
-  /// it have cost more than the finer M costs to build. M's resolution affects the speed of an exact query,
-  /// not its result.
+  /// this direction have cost more than building the finer M would. M's resolution affects the speed of an
+  /// exact query, not its result.
   void build(const TurnedTree& object, const SceneInFrame& scene, const RadarConfig& config);
-  /// Adds the cost of a query with this M, in units of ColumnScratch::work.
+  /// Adds the cost of a query, in units of ColumnScratch::work.
   void add_work(std::uint64_t work) { work_ += work; }
 
   [[nodiscard]] const ObjectHeightMap& map() const { return map_; }
@@ -37,7 +37,7 @@ class ObjectFront {
   // Accumulated cost of all queries since the last change of object or direction, in units of
   // ColumnScratch::work.
   std::uint64_t work_ = 0;
-  /// Last direction of motion, in the object's frame.
+  /// Previous query's direction of motion, in the object's frame.
   Eigen::Vector3d u_mesh_ = Eigen::Vector3d::Zero();
 };
 

@@ -27,7 +27,7 @@ struct OverlappedTriangle {
 };
 
 struct Overlap {
-  /// Distance that the object has to move back against the motion; 0 if there is no overlap.
+  /// Distance that the object has to move against the direction of motion; 0 if there is no overlap.
   double depth_m = 0.0;
   /// False if the search was cut short; depth_m is then a lower bound.
   bool is_all = true;
@@ -43,10 +43,10 @@ struct Overlap {
 inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 
 /// Computes how far the object has to move back until it no longer overlaps the scene. A pair of triangles
-/// intersects over an interval of travel, from its least gap to its greatest. Between these intervals, a
-/// scene triangle is inside a closed object if more exits from the solid than entries are ahead of it. The
-/// union of all intervals that contains 0 gives the depth: the distance from 0 back to its lower end.
-/// Back-facing scene triangles are ignored.
+/// intersects over an interval of the distance moved, from its least gap to its greatest. Between these
+/// intervals, a scene triangle is inside a closed object if more exits from the solid than entries are ahead
+/// of the triangle. The depth is the distance from 0 back to the lower end of the connected union of
+/// intervals that contains 0. Back-facing scene triangles are ignored.
 /// @param known  an overlapped triangle, reported if the search is cut short before it finds one
 Overlap overlap_depth(const TurnedTree& object, const ObjectHeightMap& front, SceneInFrame& scene,
                       const OverlappedTriangle& known, OverlapScratch& scratch);

@@ -33,8 +33,7 @@ struct RadarVolume {
 /// Images R, M and L of one query, row by row, volume.width_px x height_px.
 struct RadarPictures {
   RadarVolume volume;
-  /// R, m: distance from the rear plane to the scene. volume.depth_m if there is no surface or L is
-  /// undefined.
+  /// R, m: distance from the rear plane to the scene; volume.depth_m where L is undefined.
   Image<float> range_m;
   /// M, m: distance from the far plane back to the object. volume.depth_m if the object does not cover the
   /// pixel.

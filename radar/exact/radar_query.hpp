@@ -9,7 +9,7 @@
 namespace roomradar {
 
 enum class RadarMode {
-  /// Runs few exact tests: fast; the bounds are as wide as the depth range within a pixel.
+  /// Runs few exact tests. Fast; the bounds may be apart by the depth range within a pixel.
   kSampled,
   /// Runs exact tests until lower_m = upper_m = contact_distance_m.
   kExact
@@ -21,10 +21,10 @@ constexpr std::string_view to_string(RadarMode mode) {
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
   /// Pixels along the longer side of the object's outline in its height map M, 1 to 4096. Determines
-  /// Contact::pixel_m and the width of sampled mode's bounds. Sampled mode uses this resolution only after
-  /// the direction in the object's frame has repeated often enough to amortise building the finer map.
-  /// Before, M has at most 40 pixels per side, or 64 for an object of fewer than 500 triangles. Exact mode
-  /// chooses the fastest resolution; its result does not depend on it.
+  /// Contact::pixel_m and the width of sampled mode's bounds. Sampled mode uses this resolution only once the
+  /// direction in the object's frame has repeated often enough to pay for building the map. Until then, M has
+  /// at most 40 pixels per side, or 64 for an object of fewer than 500 triangles. Exact mode chooses the
+  /// fastest resolution; its result does not depend on it.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };

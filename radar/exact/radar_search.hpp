@@ -32,7 +32,7 @@ struct RadarSearch {
   OverlappedTriangle overlapped;
   /// True if the object intersects a back-facing surface now.
   bool leaves_something = false;
-  /// True if a contact with a back-facing surface was found.
+  /// True if a contact with a back-facing surface was found ahead.
   bool met_a_back = false;
   /// True if back-facing surfaces are collected instead of treated as contacts.
   bool collects_backs = false;

@@ -1,4 +1,4 @@
-// scene_boxes.hpp: finds the meshes of a scene that intersect a box, without testing each.
+// scene_boxes.hpp: bounding volume hierarchy over the meshes of a scene.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace roomradar {
 
-/// A bounding volume hierarchy over the bounding boxes of a scene's meshes. Rebuilt for every frame.
-/// Allocates nothing once this many meshes have been stored.
+/// Hierarchy over the bounding boxes of a scene's meshes, to be rebuilt for every frame. Allocates nothing
+/// once this many meshes have been stored.
 class SceneBoxes {
  public:
   /// Builds the hierarchy over a scene's meshes. Skips meshes that are null or empty, and meshes whose poses

@@ -1,4 +1,4 @@
-// scene_in_frame.hpp: the scene in the frame of one motion, subdivided step by step.
+// scene_in_frame.hpp: the scene in the frame of one motion (z is its direction), subdivided on demand.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -36,8 +36,8 @@ struct SceneItem {
 };
 
 /// Computes lower bounds of the distance to contact. A box's bound is its least height minus the object's
-/// greatest height under it. The bound holds for everything in the box, since ObjectHeightMap covers the
-/// whole area of each pixel.
+/// greatest height under it. The bound holds for everything in the box, since ObjectHeightMap is an upper
+/// bound over the whole area of each pixel.
 struct SceneBound {
   /// Height map of the object.
   const ObjectHeightMap* front = nullptr;
@@ -83,7 +83,7 @@ class SceneInFrame {
     Eigen::Matrix3d R_frame_mesh;
     // Position of the tree's centre, in the frame, m.
     Eigen::Vector3d t_frame_centre;
-    /// Bound of the rounding error of a height, m.
+    /// Max rounding error of a height, m.
     float slack_m;
   };
   Eigen::Matrix3d R_frame_world_ = Eigen::Matrix3d::Identity();

@@ -29,7 +29,7 @@ class SceneQueue {
     items_.push_back(item);
     std::push_heap(items_.begin(), items_.end(), is_farther);
   }
-  /// Removes all items that may be behind the object's leading surface (negative bound).
+  /// Removes all items with a negative bound: they may be behind the object's leading surface.
   void drop_below_zero() {
     std::erase_if(items_, [](const SceneItem& item) { return item.low_m < 0.0F; });
     arrange();

@@ -1,4 +1,4 @@
-// turned_bounds.hpp: bounds of a triangle tree in a rotated frame.
+// turned_bounds.hpp: bounding box of a triangle tree in a rotated frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <limits>
@@ -11,8 +11,8 @@ namespace roomradar {
 /// Max relative rounding error of a linear function of a point in float, with a safety factor.
 inline constexpr float kHeightRounding = 16.0F * std::numeric_limits<float>::epsilon();
 
-/// Returns the bounds of the object in the rotated frame, including rounding and margin. They are at most
-/// tolerance_m too large. Runs one search per side of the box.
+/// Returns the object's bounding box in the rotated frame, including rounding and margin, at most tolerance_m
+/// too large. Runs one search per side of the box.
 /// @param pending  scratch memory
 Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, double tolerance_m,
                                   std::vector<PendingNode>& pending);

@@ -18,8 +18,7 @@ class BoxTree {
   [[nodiscard]] std::size_t size() const { return levels_.empty() ? 0 : levels_.front().count; }
 
   /// Calls work(index) for each given box for which `reaches(box)` is true, in ascending order of index.
-  /// `reaches` must be monotonic: if it is true for a box, it must be true for every box that contains that
-  /// box.
+  /// If `reaches` is true for a box, it must be true for every box that contains that box.
   template <typename Reaches, typename Work>
   void visit(const Reaches& reaches, const Work& work) const {
     if (!levels_.empty()) visit_range(levels_.size() - 1, 0, levels_.back().count, reaches, work);

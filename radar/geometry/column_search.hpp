@@ -75,9 +75,9 @@ inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t firs
   }
 }
 
-/// Column that a scene triangle spans along the motion. Its axes, edge and plane are gradients of linear
-/// functions of the object's points p (mesh frame, relative to the tree's centre, m). All bounds include
-/// float rounding.
+/// Infinite prism that a scene triangle spans along the motion. Its axes, edge and plane are gradients of
+/// linear functions of the object's points p (mesh frame, relative to the tree's centre, m). All bounds
+/// include float rounding.
 struct SceneColumn {
   Eigen::Vector3f x_axis, y_axis, z_axis;
   /// Bounds of the scene triangle in the frame of the motion, m. z0 and z1 are infinite unless is_steep.
@@ -87,8 +87,8 @@ struct SceneColumn {
   Eigen::Vector3f edge;
   float edge_reach;
   /// Height of the triangle's plane above a point p, along the motion: offset + plane . p, +- plane_slack. If
-  /// is_edge_on, offset + plane . p is instead the signed distance of p from the plane; a box whose distance
-  /// from the plane exceeds -beside does not cross it.
+  /// is_edge_on, offset + plane . p is instead the signed distance of p from the plane; a box does not cross
+  /// the plane if its distance exceeds -beside.
   Eigen::Vector3f plane = Eigen::Vector3f::Zero();
   float offset = 0.0F, plane_slack = std::numeric_limits<float>::infinity();
   float beside = -std::numeric_limits<float>::infinity();

@@ -54,7 +54,7 @@ constexpr std::string_view to_string(SurfaceKind touched) {
 }
 
 struct [[nodiscard]] Contact {
-  ContactStatus status = ContactStatus::kInvalidInput;  // a default-constructed Contact means failed
+  ContactStatus status = ContactStatus::kInvalidInput;  // unset: failed
   /// Distance along the direction to contact, m; valid for kContact and kOverlap only. For kOverlap it is
   /// negative: the object must move back by -contact_distance_m along the direction to clear the surfaces
   /// that face against the motion.
@@ -69,7 +69,7 @@ struct [[nodiscard]] Contact {
   /// Unit normal of the scene's triangle, turned to face the object.
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
   SurfaceKind touched = SurfaceKind::kNothing;
-  /// Side of a radar pixel, m: spacing of the query's samples across the direction.
+  /// Edge of a pixel of the query's images, perpendicular to the direction, m.
   double pixel_m = 0.0;
 
   /// Returns true for kContact and kOverlap.

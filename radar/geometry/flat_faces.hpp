@@ -9,8 +9,7 @@
 
 namespace roomradar {
 
-/// Returns, by triangle, whether it is within a flat face, i.e. all its neighbours belong to the same face
-/// (see TriangleTree).
+/// Returns, per triangle, true if all its neighbours belong to the same flat face (see TriangleTree).
 /// @param edges   result of half_edges_of() for these triangles
 /// @param flat_m  flatness tolerance: a triangle joins a face if its corners are at most this far from the
 ///                plane of the face; in the complete face, they are at most twice this far from its plane

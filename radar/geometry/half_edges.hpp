@@ -1,4 +1,4 @@
-// half_edges.hpp: half-edges of a triangle mesh, and the test whether they enclose a volume.
+// half_edges.hpp: half-edges of a triangle mesh, and a test for closed meshes.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -15,7 +15,7 @@ struct HalfEdge {
   int sense;           ///< +1 or -1: direction of the side along the undirected edge
 };
 
-/// Returns a number by vertex, the same for all vertices at the same position. Vertices that are not finite
+/// Returns one number per vertex, equal for all vertices at the same position. Vertices that are not finite
 /// get 0.
 std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& vertices);
 

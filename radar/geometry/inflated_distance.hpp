@@ -4,10 +4,10 @@
 
 namespace roomradar {
 
-/// Returns the least distance >= 0 that `object` can move along z until it is within margin_m of `scene`. 0
-/// if it is within the margin now, infinity if it never is. Stops early, with a lower bound, once the result
-/// exceeds limit_m. Never exceeds the true distance. Is less than the true distance only if 20 steps do not
-/// converge because the object passes the margin at a grazing angle.
+/// Returns the least distance >= 0 that `object` can move along z until it is within margin_m of `scene`: 0
+/// if it is so now, infinity if it never is. Stops early, with a lower bound, once the result exceeds
+/// limit_m. The result never exceeds the true distance; it is less only if 20 steps do not converge because
+/// the object grazes the margin.
 ///
 /// The distance between two convex sets is a convex function of the distance moved. The plane perpendicular
 /// to the shortest segment separates the sets. Each Newton step moves the object until its distance from that

@@ -51,7 +51,7 @@ struct RadarScene {
   std::span<const SceneTree> trees;
   std::span<const SceneDepth> depths;
   /// Optional hierarchy of the boxes of `trees` at their present poses, so a query visits only the trees near
-  /// it. Null: a query visits all trees. Building it is worthwhile from some tens of trees on, if many
+  /// it. Null: a query visits all trees. Building the hierarchy pays from a few tens of trees on, if many
   /// queries share it.
   const SceneBoxes* boxes = nullptr;
 };

@@ -26,8 +26,7 @@ bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double li
 bool is_within(const std::vector<Layer>& layers, double contact_distance_m);
 
 /// Returns true if a scene triangle that does not intersect the object's surface is inside the object's
-/// solid, deeper than touching_m. Counts the crossings ahead of a point of the triangle. Returns false if the
-/// object is not closed.
+/// solid, deeper than touching_m. Always false if the object is not closed.
 bool is_inside(const TurnedTree& object, const FrameTriangle& scene, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 

@@ -27,7 +27,7 @@ struct PendingPair {
 };
 /// Order in which pairs of boxes are visited.
 enum class PairOrder {
-  kAny,  ///< last in, first out: keeps the number of pending pairs smallest
+  kAny,  ///< last in, first out: keeps the number of pending pairs small
   /// Smallest key first: once a leaf has lowered the bound, pairs with larger keys are never opened.
   kLeastFirst,
 };
@@ -52,13 +52,12 @@ inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other
   return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
 }
 
-/// Cache of one leaf's triangles, so they are computed once while consecutive calls pass the same leaf with
-/// different boxes of the other tree.
+/// Cache of one leaf's triangles, so consecutive calls with the same leaf compute them once.
 class LeafTriangles {
  public:
   /// Returns the leaf's triangles; valid until the next call.
-  /// @param triangle  callable that returns triangle i of the tree; called only if the leaf is another one
-  ///                  than in the previous call
+  /// @param triangle  callable that returns triangle i of the tree; called only if the leaf differs from the
+  ///                  previous call's
   template <typename MakeTriangle>
   std::span<const FrameTriangle> of(const PairBox& leaf, const MakeTriangle& triangle) {
     assert(leaf.count <= kLeafTriangles);
@@ -138,9 +137,10 @@ inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
          -kTouching_m;
 }
 
-/// Calls leaf(object box, scene box) for all pairs of leaves whose key(object box, scene box) is finite,
-/// until leaf() returns -infinity. Skips pairs in which both boxes lie within flat faces (see TriangleTree).
-/// With PairOrder::kLeastFirst, stops once all pending keys are at least the value that leaf() returned last.
+/// Calls leaf(object box, scene box) for all pairs of leaves for which key(), of these and of all enclosing
+/// boxes, is finite, until leaf() returns -infinity. Skips pairs in which both boxes lie within flat faces
+/// (see TriangleTree). With PairOrder::kLeastFirst, stops once all pending keys are at least the value that
+/// leaf() returned last.
 template <PairOrder order, typename Key, typename Leaf>
 void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
   constexpr float kNone = std::numeric_limits<float>::infinity();

@@ -35,8 +35,8 @@ struct TriangleGap {
 };
 
 /// Computes the gap of two triangles.
-/// @return false if their projections have no point in common. Corners within rounding of an outline count
-///         as on it, so no contact is missed between triangles that share an edge.
+/// @return false if their projections have no point in common. Corners within rounding of an outline count as
+///         on it, so no contact is missed at an edge that two triangles share.
 bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleGap& gap);
 
 /// Returns a cheap lower bound of the gap, from the triangles' z ranges and from the object's corners against

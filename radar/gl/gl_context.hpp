@@ -55,7 +55,8 @@ class GlContext {
 void forget_gl_errors();
 
 /// Throws Error if a GL error has occurred since forget_gl_errors(), the context is lost (the GPU was reset
-/// or suspended), or no context is current on this thread. Data read from the renderer is then invalid.
+/// or suspended), or no context is current on this thread. If it throws, data read from the renderer is
+/// invalid.
 /// @param what  name of the failed task, which begins the message
 void require_drawn(const char* what);
 

@@ -24,8 +24,8 @@ enum class MeshUsage {
 };
 
 /// Owns vertex and index buffers. Vertices are relative to the mesh's origin, which is stored in double.
-/// Callers compose matrices in double before drawing, so a room a thousand kilometres from the world's origin
-/// keeps its precision. Not thread safe.
+/// Callers compose matrices in double, so a mesh a thousand kilometres from the world's origin keeps its
+/// precision. Not thread safe.
 class GpuMesh {
  public:
   explicit GpuMesh(GlContext& context);
@@ -39,13 +39,12 @@ class GpuMesh {
   /// kStatic rejects a mesh with an index past the last vertex or a used vertex that is not finite, and keeps
   /// the previous mesh. kStreamed drops such triangles and counts them. kStreamed allocates nothing once a
   /// mesh of this size has been uploaded.
-  /// @throws Error if the mesh is rejected (kStatic), the number of normals or colours is neither 0 nor that
-  /// of
-  ///         the vertices, the origin is not finite, or there are more than 2^31 / 3 triangles. Also throws
-  ///         if the renderer is lost or has no memory; the mesh is then empty.
+  /// @throws Error if the mesh is rejected (kStatic), the number of normals or colours is neither 0 nor the
+  ///         number of vertices, the origin is not finite, or there are more than 2^31 / 3 triangles. Also
+  ///         throws if the renderer is lost or has no memory; the mesh is then empty.
   void upload(const Mesh& mesh, MeshUsage usage);
 
-  /// Replaces the mesh, and uses the tree's triangles and vertices instead of storing a second CPU copy.
+  /// Replaces the mesh; the tree's triangles and vertices serve as the CPU copy.
   /// @param tree  built from this mesh (in order for kStreamed); must not be destroyed or rebuilt before the
   ///              next upload
   void upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree);

@@ -23,10 +23,9 @@ Face face_of(const FrameTriangle& triangle);
 /// Returns true if an edge of one triangle passes through the other triangle.
 bool cross(const Face& a, const Face& b);
 
-/// Returns true if a unit direction points away from the triangle's outside, at most 60 degrees from its
-/// normal. At an edge between two faces whose normals are up to 120 degrees apart, every direction between
-/// the normals is outside at least one face. The limit of 60 degrees keeps rounding from accepting directions
-/// parallel to the face.
+/// Returns true if a unit direction is at most 60 degrees from the triangle's normal. At an edge between two
+/// faces whose normals are up to 120 degrees apart, every direction between the normals passes for at least
+/// one face. The limit is below 90 degrees so rounding does not admit directions parallel to the face.
 inline bool is_outside(const Eigen::Vector3d& direction, const FrameTriangle& t) {
   return direction.dot(t.normal) > 0.5 - 1e-9;
 }

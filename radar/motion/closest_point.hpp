@@ -18,7 +18,7 @@ struct ClosestPoint {
   /// Distance between the features, m, >= 0; 0 if they touch.
   double gap_m = 0.0;
   SurfaceKind kind = SurfaceKind::kNothing;
-  /// Index of the scene's tree.
+  /// Index of the tree in RadarScene::trees.
   std::uint32_t tree = 0;
 };
 

@@ -1,4 +1,4 @@
-// free_time.hpp: how long a rigid motion stays free of contact.
+// free_time.hpp: contact-free duration of a rigid motion, by separating planes.
 #pragma once
 #include <vector>
 
@@ -18,12 +18,12 @@ struct FreeTime {
   ClosestPoint limit;
 };
 
-/// Computes how long a rigid motion stays free of contact with surfaces that do not intersect the object now.
-/// Each pair of triangles is separated by a plane: the plane of one of them, or the plane perpendicular to
-/// the segment between their nearest points. No corner approaches that plane faster than its present speed
-/// plus the most that rotation can add. A pair's minimum distance is keep_m, or half its present distance if
-/// its present distance is under 2 * keep_m. Sources: Mirtich, PhD thesis, Berkeley 1996, section 2.3; Tang,
-/// Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
+/// Returns a lower bound of the duration for which a rigid motion stays free of contact with surfaces that do
+/// not intersect the object now. Each pair of triangles is separated by a plane: the plane of one of them, or
+/// the plane perpendicular to the segment between their nearest points. No corner approaches that plane
+/// faster than its present speed plus the most that rotation can add. A pair's minimum distance is keep_m, or
+/// half its present distance if its present distance is under 2 * keep_m. Sources: Mirtich, PhD thesis,
+/// Berkeley 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
 ///
 /// @param keep_m    minimum distance to keep, m
 /// @param left_out  kinds of surfaces to ignore

@@ -1,5 +1,4 @@
-// proximity.hpp: closest features of an object and the scene, and how long a rigid motion stays free of
-// contact.
+// proximity.hpp: closest features of an object and the scene, and the contact-free duration of a motion.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -35,7 +34,7 @@ class ProximityQuery {
   SurfaceKindMask near(const TreeInstance& object, const RadarScene& scene, double reach_m,
                        SurfaceKindMask left_out, std::vector<ClosestPoint>& points);
 
-  /// Computes how long a motion stays free of contact; see free_time() in free_time.hpp.
+  /// Computes the contact-free duration of a motion; see free_time.hpp.
   FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
                      const RadarScene& scene, SurfaceKindMask left_out = 0);
 

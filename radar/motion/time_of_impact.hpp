@@ -76,13 +76,14 @@ struct [[nodiscard]] TimeOfImpact {
 /// orientation half-way through the step, inflated by the greatest distance that rotation can carry a point
 /// from there. That distance is the chord 2 R sin(a / 4), where a is the step's rotation and R the greatest
 /// distance of a point from the axis. A path that is free for the inflated object is free at every moment of
-/// the step, so nothing tunnels at any speed. If the chord is longer than R, the query uses a capsule that
-/// contains the object in every orientation. Steps double on success and halve on failure. An object that
-/// rotates in place and is free for a full turn is free for the whole duration. Without rotation a single
-/// query gives the result.
+/// the step, so nothing tunnels at any speed. If the chord is longer than R, the query inflates the axis
+/// instead: the resulting capsule contains the object in every orientation. Steps double on success and halve
+/// on failure. An object that rotates in place and is free for a full turn is free for the whole duration.
+/// Without rotation a single query gives the result.
 ///
-/// An object that touches while rotating (by more than a nanometre) is stopped at once, even if it would
-/// separate, so callers should keep a gap. A stopped object has a gap of up to tolerance_m.
+/// An object that touches the scene at the start and rotates (by more than a nanometre of motion) stops at
+/// once, even if it would separate, so callers should keep a gap. A stopped object has a gap of up to
+/// tolerance_m.
 ///
 /// Allocates a few hundred bytes in addition to the radar's memory.
 TimeOfImpact time_of_impact(CyberRadar& radar, const TreeInstance& object, const RigidMotion& motion,

@@ -1,4 +1,4 @@
-// mapped_room.hpp: simulated rooms with maps made by a prescan of them.
+// mapped_room.hpp: simulated rooms, each with a map from a simulated prescan.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -23,7 +23,7 @@ std::vector<RoomChoice> choose_rooms(int random_rooms);
 
 struct RoomScan {
   double resolution_m = 0.01;
-  int every = 3;       ///< fuse only every this many of the walk's 720 frames
+  int every = 3;       ///< fuse only every n-th of the walk's 720 frames
   int width_px = 640;  ///< width of the depth images, 4:3
   std::string maps;    ///< folder in which maps are stored and reused; empty: none
 };
@@ -36,12 +36,12 @@ struct ScannedRoom {
   Mesh unknown_world;  ///< border of unknown space
 };
 /// Walks round the room with its noisy depth camera at known poses, fuses the frames and extracts the
-/// surface. Loads the map instead if an earlier run stored the same.
+/// surface. If an earlier run stored this map, loads it instead.
 /// @param progress  called after each frame, possibly from several threads at once
 /// Throws Error if the room shows no surface or a stored map is damaged.
 ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std::function<void()>& progress);
 
-/// A scanned room on the renderer, with a scene per policy.
+/// A scanned room in the renderer's memory, with a scene per policy.
 struct MappedRoom {
   ScannedRoom scanned;
   Shape shape;
@@ -51,9 +51,9 @@ struct MappedRoom {
   MappedRoom(GlContext& context, ScannedRoom room);
 };
 
-/// Assignment of a scenario to a room. Rooms alternate, and each numbers its own scenarios: kinds of
-/// occluder, motion and shape alternate by scenario number, so with the run's number a room would get only
-/// some of them.
+/// Assignment of a run's scenario to a room. Rooms alternate, and each room numbers its own scenarios. Kinds
+/// of occluder, motion and shape alternate by this number; with the run's number, a room would get only some
+/// of them.
 struct ScenarioTurn {
   std::size_t room = 0;     ///< index among the rooms
   std::int64_t number = 0;  ///< number of the scenario in that room

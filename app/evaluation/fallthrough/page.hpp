@@ -16,7 +16,7 @@ struct FailurePicture {
 
 /// Writes a self-contained file that needs no network. Does nothing if the path is empty. Throws Error if it
 /// cannot be written.
-/// @param about  a line on scenarios, seed, rooms and machine
+/// @param about  a line that names scenarios, seed, rooms and machine
 void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
                 const std::vector<FailurePicture>& pictures, const std::filesystem::path& path);
 

@@ -10,7 +10,7 @@ namespace roomradar {
 struct FallthroughPolicy {
   std::string_view name;  ///< for tables and reports
   SurfacePolicy surfaces = SurfacePolicy::kMap;
-  bool unknown_solid = false;  ///< also the border of unknown space
+  bool unknown_solid = false;  ///< true: the border of unknown space can be touched, too
 };
 
 /// The first policy is the reference for the cost of the others.

@@ -5,9 +5,9 @@
 
 namespace roomradar {
 
-/// Writes, in slow motion, the camera's view and, per policy, a section with the surfaces and the object's
-/// path. Closes the video. Throws Error as VideoWriter does.
-/// @param video  empty, with kReplayPicturesPerS
+/// Writes and closes a video in slow motion: the camera's view and, per policy, a section with the surfaces
+/// and the object's path. Throws Error as VideoWriter does.
+/// @param video  without pictures so far; its rate is kReplayPicturesPerS
 void write_replay(PreparedScenario& prepared, MappedRoom& room, CyberRadar& radar, VideoWriter& video);
 inline constexpr double kReplayPicturesPerS = 30.0;
 

@@ -30,17 +30,17 @@ ScenarioRow row_of(const Scenario& scenario, std::int64_t number, std::size_t ro
 struct PolicyTotals {
   int passed = 0;
   int false_stops = 0;
-  /// |distance from the true contact| over stopped objects; NaN if none was stopped.
+  /// Median of |travelled distance - true distance| over stopped objects; NaN if none was stopped.
   double contact_error_median_m = 0.0;
   double contact_error_p95_m = 0.0;
   double frame_median_ms = 0.0;
-  double cost_ratio = 0.0;  ///< median over scenarios of the frame time relative to the first policy's
+  double cost_ratio = 0.0;  ///< median over scenarios of frame time / first policy's frame time
 };
 std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>& rows);
 
 /// Returns the nearest-rank percentile, 0 <= part <= 1; NaN if there are no values.
 double percentile(std::vector<double> values, double part);
-/// Returns "3.2 mm" and the like; "-" if not finite.
+/// Returns text such as "3.2 mm"; "-" if not finite.
 std::string millimetres(double metres);
 
 std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int scenarios);

@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// Frames of a scenario, rendered on first use. If nothing moves, all frames are the first.
+/// Frames of a scenario, rendered on first use. If nothing moves, the first rendering serves for all frames.
 class ScenarioFrames {
  public:
   ScenarioFrames(const Scenario& scenario, const Room& room) : scenario_(scenario), room_(room) {}
@@ -25,7 +25,7 @@ class ScenarioFrames {
   std::map<int, Frame> frames_;
 };
 
-/// A scenario with its frames so far and its object's tree.
+/// A scenario with its object's tree and the frames rendered so far.
 struct PreparedScenario {
   Scenario scenario;
   TriangleTree object;
@@ -47,26 +47,26 @@ struct Trial {
 struct TrialStep {
   int frame = 0;
   std::span<const SceneTree> surfaces;  ///< all that can be touched
-  double from_m = 0.0, to_m = 0.0;      ///< distance travelled at the frame's begin and end
+  double from_m = 0.0, to_m = 0.0;      ///< distance travelled at the frame's start and end
   bool is_last = false;
 };
 using WatchTrial = std::function<void(const TrialStep& step)>;
 
 /// Settings for making the surfaces of a trial.
 struct TrialSurfaces {
-  SurfacePolicy policy = SurfacePolicy::kMap;  ///< the scene's
+  SurfacePolicy policy = SurfacePolicy::kMap;  ///< policy of the scene
   int depth_stride = 1;                        ///< 1, 2 or 4: factor by which depth images are reduced first
   bool fine_mesh = false;                      ///< near the object, every dynamic pixel is a vertex
 };
 
-/// Sets the scene's surfaces to those of one frame of the scenario, at the tracked (inexact) pose. Frame 0
-/// follows an identical frame, so the foreground has a history. Returns the time taken, ms.
+/// Sets the scene's surfaces to those of one frame of the scenario, at the simulated tracker's inexact pose.
+/// Frame 0 is processed twice, so the foreground has a history. Returns the time taken, ms.
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
                   std::span<const FineRegion> about_objects, FrameScene& scene);
 
 /// Runs the scenario frame by frame: makes the policy's surfaces from the camera's frame and moves the object
-/// as far as the radar allows. Ends when the object is stopped or passes the scenario's limit. The camera's
-/// pose is the tracked one.
+/// as far as the radar allows. Ends when the object is stopped or passes the scenario's limit. Uses the
+/// simulated tracker's inexact camera pose.
 Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& surfaces,
                 CyberRadar& radar, const WatchTrial& watch = {});
 /// Runs the scenario in the room's scene of kFallthroughPolicies[policy].

@@ -20,7 +20,7 @@ class SideView {
   [[nodiscard]] ColourImage room_at(int frame) const;
   /// Adds the surfaces' intersection lines: static black, dynamic blue, inferred back violet, unknown red.
   void add_surfaces(std::span<const SceneTree> surfaces, ColourImage& picture) const;
-  /// Adds the object's section after it has travelled this far, blended by `part`.
+  /// Adds the object's section after it has travelled travelled_m, with opacity `part`.
   void add_object(double travelled_m, Rgb colour, double part, ColourImage& picture) const;
 
  private:
@@ -34,8 +34,8 @@ class SideView {
   MaskImage object_;  ///< the object's section at its start position
 };
 
-/// Returns the camera's depth, shaded. add_outline() adds the object's outline after it has travelled this
-/// far.
+/// Returns the camera's depth image, shaded. add_outline() draws the object's outline after it has travelled
+/// travelled_m.
 ColourImage camera_view(const Scenario& scenario, const Frame& frame, int width_px);
 void add_outline(const Scenario& scenario, double travelled_m, Rgb colour, double part, ColourImage& picture);
 

@@ -7,10 +7,10 @@
 
 namespace roomradar {
 
-/// Returns combinations worth measuring, after changes of single parameters were measured. One sequence
-/// applies faster values in order of loss per time saved; the other applies more accurate values in order of
-/// time per loss avoided. Each step keeps the changes before it, and a parameter never moves back towards its
-/// default. The steps must be measured too: single changes do not tell how combined ones interact.
+/// Returns combinations of parameter values to measure next, from measured changes of single parameters. One
+/// sequence applies faster values in order of loss per time saved; the other applies more accurate values in
+/// order of time per loss avoided. Each step keeps the earlier changes, and a parameter never moves back
+/// towards its default. The combinations must be measured, since changes may interact.
 /// @param defaults  index of the default among the summaries
 /// @return up to `count` settings, spread evenly along both sequences, without those already among the
 /// summaries

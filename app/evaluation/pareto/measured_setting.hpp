@@ -1,5 +1,5 @@
-// measured_setting.hpp: a kind of work with a trade-off of time and accuracy: its parameters, measurements
-// and scenes.
+// measured_setting.hpp: work that trades time for accuracy (a prescan, a run): its parameters, measured
+// quantities (figures) and scenes.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -22,7 +22,7 @@ enum class FigureKind {
 struct FigureName {
   std::string name;    ///< column name, with unit: "surface_error_median_m"
   std::string title;   ///< title on the page, with the page's unit: "surface error, median, mm"
-  double shown = 1.0;  ///< factor from the measured to the page's unit
+  double shown = 1.0;  ///< factor from the measured unit to the page's unit
   FigureKind kind = FigureKind::kFact;
   double negligible = 0.0;  ///< kError, > 0: errors that differ by less count as equal
 };
@@ -31,14 +31,14 @@ struct FigureName {
 using Readings = std::vector<double>;
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Does the work once with a setting. Throws Error if this is impossible.
+/// Does the work once with a setting and returns its figures. Throws Error if this is impossible.
 using Measure = std::function<Readings(const Setting& setting)>;
 
 struct MeasuredWork {
   std::string name;  ///< "prescan", "run"
   std::vector<Parameter> parameters = {};
   std::vector<FigureName> figures = {};
-  std::size_t time = 0;                  ///< index of the figure used as time in comparisons
+  std::size_t time = 0;                  ///< index of the figure that serves as time in comparisons
   std::vector<std::string> scenes = {};  ///< names of the scenes in which the work is done
   /// Prepares a scene; the returned function owns its data. Throws Error if that fails.
   std::function<Measure(std::size_t scene)> open = {};

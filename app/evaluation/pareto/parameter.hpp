@@ -7,16 +7,16 @@
 
 namespace roomradar {
 
-/// One field of a quality, and the values to try, as words.
+/// One field of a quality (ScanQuality, RunQuality), and the values to try, as words.
 struct Parameter {
   std::string name;                ///< field name, and column name
   std::vector<std::string> words;  ///< fastest first
   std::size_t defaults = 0;        ///< index of the default among the words
-  /// Amount of work, not its quality: changed only alone, and never on a front.
+  /// True: sets the amount of work, not its quality. Changed only alone, and never on a front.
   bool is_load = false;
 };
 
-/// Index of a word for each parameter.
+/// A value for each parameter: index into its words.
 using Setting = std::vector<std::size_t>;
 
 Setting default_setting(const std::vector<Parameter>& parameters);

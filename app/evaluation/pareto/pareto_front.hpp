@@ -13,8 +13,8 @@ struct CostAndError {
 /// Returns true if a is nowhere worse than b and somewhere better.
 bool dominates(const CostAndError& a, const CostAndError& b);
 
-/// Returns the indices of the points that no other point dominates, cheapest first; the first of equal
-/// points. Points that are not finite are never on the front.
+/// Returns the indices of the points that no other point dominates, cheapest first; of equal points only the
+/// first. Points that are not finite are never on the front.
 std::vector<std::size_t> pareto_front_of(const std::vector<CostAndError>& points);
 
 }  // namespace roomradar

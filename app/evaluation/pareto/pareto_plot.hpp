@@ -7,12 +7,12 @@ namespace roomradar {
 
 struct PlotDot {
   double x = 1.0, y = 0.0;
-  double x_least = 1.0, x_most = 1.0;  ///< spread, drawn as a line
+  double x_least = 1.0, x_most = 1.0;  ///< range of x, drawn as a line
   std::string title;                   ///< tooltip
   std::string label;                   ///< text beside the dot; may be empty
   bool is_default = false;
   bool is_preset = false;
-  bool is_on_front = false;  ///< of this plot
+  bool is_on_front = false;  ///< on this plot's Pareto front
 };
 
 struct ParetoPlot {
@@ -21,8 +21,8 @@ struct ParetoPlot {
 };
 
 /// Returns the plot. Both axes are logarithmic; y is linear if a dot's y is 0. Dots that are not finite are
-/// omitted. The front is drawn as steps: dots above and to the right of it are dominated. Colours are the
-/// page's CSS variables --ink --grid --dot --front --mark --paper.
+/// omitted. The front is drawn as steps: dots above and to the right of the line are dominated. Colours are
+/// the page's CSS variables --ink --grid --dot --front --mark --paper.
 std::string pareto_plot(const ParetoPlot& plot);
 
 }  // namespace roomradar

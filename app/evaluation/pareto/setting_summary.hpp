@@ -10,12 +10,14 @@ namespace roomradar {
 struct SettingSummary {
   Setting setting = {};
   int rows = 0;                                ///< number of successful measurements
-  double time_ratio = 0.0;                     ///< median of time relative to the default measured beside it
-  double least_ratio = 0.0, most_ratio = 0.0;  ///< range of the time ratio
-  Readings ratios = {};                        ///< per figure, median ratio to the default measured beside it
-  /// Times and memory: median of all rows. Others: mean over scenes of the scene's mean, where measured.
+  double time_ratio = 0.0;                     ///< median of time / default's time in the same measurement
+  double least_ratio = 0.0, most_ratio = 0.0;  ///< range of that ratio
+  Readings ratios = {};                        ///< per figure: median of value / default's value
+  /// Times and memory: median of all rows. Other figures: mean over each scene's rows, then mean over the
+  /// scenes.
   Readings figures = {};
-  /// Measured in every scene in which any setting was measured; only complete settings are comparable.
+  /// True if measured in every scene in which any setting was measured; only complete settings are
+  /// comparable.
   bool is_complete = false;
 };
 

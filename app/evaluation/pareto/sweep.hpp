@@ -14,10 +14,11 @@ namespace roomradar {
 struct SweepRow {
   std::size_t setting = 0;  ///< index among the plan's settings
   std::size_t scene = 0;    ///< index among the work's scenes
-  int repeat = 0;           ///< from 0
+  int repeat = 0;           ///< index of the repetition, from 0
   Readings figures = {};
-  Readings default_before = {}, default_after = {};  ///< the default's figures just before and after
-  /// Per figure, the setting's value over the mean of both.
+  /// Figures of the default, measured just before and after.
+  Readings default_before = {}, default_after = {};
+  /// Per figure: the setting's value / mean of the default's two values.
   Readings ratios = {};
   std::string fault = {};  ///< reason of a failure; the figures are then NaN
 };
@@ -25,7 +26,7 @@ struct SweepRow {
 struct SweepPlan {
   std::vector<Setting> settings;
   int repeats = 1;
-  std::uint64_t seed = 1;  ///< for the order
+  std::uint64_t seed = 1;  ///< seed of the random order
 };
 
 struct SweptRows {
@@ -38,9 +39,9 @@ struct SweepWatch {
   std::function<bool()> is_stopped;                 ///< called before each measurement; may be empty
 };
 
-/// Measures all settings per scene and repeat, in a new random order each time, the default's own row first.
-/// The default is measured between any two settings, and each setting is compared with the default before and
-/// after it. A machine that slows down or is busy for a while thus slows all three.
+/// Measures all settings, per scene and repetition, in a new random order each time, the default's own row
+/// first. The default is also measured between any two settings, and each setting is compared with the
+/// default before and after it. A machine that slows down for a while thus slows all three.
 ///
 /// A failing setting's row has the fault, and the sweep goes on. The sweep ends early if it is stopped, the
 /// default fails, a scene cannot be opened, or on_row throws Error. It then returns the rows of completed

@@ -23,8 +23,8 @@ struct DynamicTouch {
 inline constexpr double kTouchRadius_m = 0.04;
 inline constexpr double kTouchLimit_m = 0.5;  ///< max distance that a ball flies
 
-/// Draws up to 4 balls for each scenario with an occluder that was absent from the prescan. The
-/// occluder is 0.8 to 3.5 m away at that pixel, and the ball touches it well before the room.
+/// Draws up to 4 balls for each scenario with an occluder that was absent from the prescan. Each ball flies
+/// through a pixel that shows the occluder at 0.8 to 3.5 m, and touches it well before the room.
 std::vector<DynamicTouch> draw_dynamic_touches(
     const std::vector<std::unique_ptr<PreparedScenario>>& scenarios, const Room& room);
 

@@ -12,7 +12,7 @@ namespace roomradar {
 
 class KeptFrames final : public FrameSource {
  public:
-  /// The frames must outlive this.
+  /// `frames` must outlive this object.
   KeptFrames(const std::vector<Frame>& frames, std::string name) : frames_(frames), name_(std::move(name)) {}
 
   ReadResult next(Frame& frame) override {
@@ -33,7 +33,7 @@ class KeptFrames final : public FrameSource {
   }
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::ssize(frames_); }
   [[nodiscard]] std::string name() const override { return name_; }
-  /// Returns the time spent copying frames.
+  /// Returns the total time spent copying frames, ms.
   [[nodiscard]] double spent_ms() const { return spent_ms_; }
 
  private:

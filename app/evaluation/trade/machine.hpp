@@ -5,10 +5,10 @@
 namespace roomradar {
 
 struct Machine {
-  std::string processor;  ///< "unknown processor" if the system does not tell
+  std::string processor;  ///< model name; "unknown processor" if not available
   unsigned threads = 0;
   std::string system;    ///< "Linux 6.1"
-  std::string renderer;  ///< OpenGL's
+  std::string renderer;  ///< name of the OpenGL renderer
 };
 
 /// Describes this machine. Queries the renderer in a child process, so this process stays without a GL

@@ -1,4 +1,4 @@
-// measured_sandboxed.hpp: measures in a child process, so measurements do not share memory.
+// measured_sandboxed.hpp: runs a measurement in a child process, so its memory use is measured alone.
 #pragma once
 #include <functional>
 #include <string>

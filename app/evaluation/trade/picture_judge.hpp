@@ -24,8 +24,8 @@ struct JudgedPicture {
   std::vector<JudgedObject> objects;
 };
 
-/// Sums of colour differences from the true pictures (0 to 1, mean over channels) over all pictures. They are
-/// divided only at the end, because a picture with a mostly hidden object alone says little.
+/// Sums of colour differences from the true pictures (0 to 1, mean over channels) over all pictures. Sums are
+/// divided only at the end, so a picture with a mostly hidden object has little weight.
 struct PictureErrors {
   double difference = 0.0;        ///< sum over all pixels
   std::size_t object_pixels = 0;  ///< pixels that objects change in the true picture
@@ -50,7 +50,7 @@ class PictureJudge {
   /// The colour camera must be the depth camera.
   /// @param frame           with colour
   /// @param true_depth_m    same size
-  /// @param T_world_camera  true, in the objects' world
+  /// @param T_world_camera  true pose, in the objects' world
   PictureErrors errors_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
                           const Eigen::Isometry3d& T_world_camera);
 

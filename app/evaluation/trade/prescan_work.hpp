@@ -14,8 +14,8 @@ std::vector<Parameter> scan_parameters();
 ScanQuality scan_quality_of(const Setting& setting);
 
 /// Scenes: the rooms (as in `sim:`, "table", "random?seed=3"), then the recordings (folders with poses). In
-/// rooms, the mesh is compared with the exact solids; in recordings, with every seventh frame, which is held
-/// out. The tracked trajectory is compared with the room's or the recording's poses.
+/// rooms, the mesh is compared with the exact solids; in recordings, with held-out frames (every seventh).
+/// The tracked trajectory is compared with the room's or the recording's poses.
 MeasuredWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
                           const TradeScale& scale);
 

@@ -21,20 +21,20 @@ struct RunSetting {
 struct RunFacts {
   std::string renderer;
   StageTimes times;
-  double frame_ms = 0.0;   ///< mean over frames; with alternating work no single frame is typical
+  double frame_ms = 0.0;   ///< mean over frames; with work that alternates, no single frame is typical
   double cpu_ms = 0.0;     ///< CPU time of all threads per frame
-  double moved_ms = 0.0;   ///< mean of physics over frames that move objects; NaN: none
+  double moved_ms = 0.0;   ///< mean physics time over frames that move objects; NaN: no such frame
   double memory_mb = 0.0;  ///< peak growth of the process's memory
-  double located = 0.0;    ///< fraction of the frames
+  double located = 0.0;    ///< fraction of the frames that were localised
   /// Means over the localised frames; NaN if there are none.
   double dynamic_triangles = 0.0, static_triangles = 0.0;
-  double pose_error_m = 0.0;            ///< RMS of the camera's position
+  double pose_error_m = 0.0;            ///< RMS error of the camera's position
   double object_age_ms = 0.0;           ///< mean age of the shown object poses at the frame's time
   std::vector<JudgedPicture> pictures;  ///< one per true view of the scene
 };
 
-/// Runs a session with objects of this mesh. Each is dropped every 25 frames, staggered, at the scene's
-/// places or over a surface in view.
+/// Runs a session with objects of this mesh. Each object is dropped every 25 frames, staggered, at the
+/// scene's drop positions or over a surface in view.
 RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mesh& object);
 
 /// Results of the scene's scenarios and of its touches; NaN if it has none.

@@ -28,10 +28,10 @@ struct RunScene {
   Mesh mesh_room;                                            ///< the map's mesh in the room's frame
   std::vector<std::unique_ptr<PreparedScenario>> scenarios;  ///< with all their frames; they refer to `room`
   std::vector<DynamicTouch> touches;
-  std::vector<Eigen::Vector3d> drop_at_world;  ///< places to drop objects over; empty: over surfaces in view
+  std::vector<Eigen::Vector3d> drop_at_world;  ///< positions to drop objects at; empty: over surfaces in view
 };
 
-/// @param spec  of a room: "table", "random?seed=3"
+/// @param spec  room as in a `sim:` source: "table", "random?seed=3"
 std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const TradeScale& scale);
 /// Maps the first frames of the recording and uses the rest, at most half, for the run. Throws Error as
 /// frames_of_recording() does.

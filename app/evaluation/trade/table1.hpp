@@ -1,4 +1,4 @@
-// table1.hpp: the published radar's table of frame rates, compared with this machine.
+// table1.hpp: the frame rates of table 1 of the Cyber Radar paper, compared with this machine's.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,11 +12,11 @@ namespace roomradar {
 struct Table1Row {
   int published_polygons = 0;
   double published_ms = 0.0;  ///< frame time of the published application on its GPU
-  std::size_t triangles = 0;  ///< of our object
+  std::size_t triangles = 0;  ///< triangles of our object
   double frame_median_ms = 0.0, frame_p95_ms = 0.0;
-  double radar_median_ms = 0.0;    ///< all radar queries of a frame
-  double static_triangles = 0.0;   ///< of the room, drawn per frame
-  double dynamic_triangles = 0.0;  ///< of the dynamic foreground, meshed per frame
+  double radar_median_ms = 0.0;    ///< time of all radar queries of a frame
+  double static_triangles = 0.0;   ///< room triangles drawn per frame
+  double dynamic_triangles = 0.0;  ///< triangles of the dynamic foreground's mesh per frame
 };
 
 struct Table1 {

@@ -15,8 +15,8 @@ std::string csv_field(const std::string& text);
 /// CSV file with one header for all kinds of work; fields that do not apply are empty.
 class TradeCsv {
  public:
-  /// Writes nothing if the path is empty. An existing file is overwritten only with the first line, as it may
-  /// be hours of work.
+  /// Writes nothing if the path is empty. An existing file, possibly hours of work, is overwritten only when
+  /// the first line is written.
   TradeCsv(const std::filesystem::path& path, const std::vector<MeasuredWork>& works);
 
   /// Writes and flushes one measurement. Throws Error if the file cannot be written.

@@ -11,8 +11,8 @@ namespace roomradar {
 
 inline constexpr std::size_t kFewestTradeFrames = 30;
 
-/// Returns the readable ones of a recording's first `count` frames. Throws Error if it cannot be read, has
-/// fewer than kFewestTradeFrames readable frames, or a frame has no pose, as errors need ground truth.
+/// Returns the readable frames among a recording's first `count`. Throws Error if the recording cannot be
+/// read, has fewer than kFewestTradeFrames readable frames, or has a frame without a pose (the ground truth).
 std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t count);
 
 }  // namespace roomradar

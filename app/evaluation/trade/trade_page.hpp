@@ -1,4 +1,4 @@
-// trade_page.hpp: writes a sweep's HTML file: plots of fronts, tables of presets, and how to read them.
+// trade_page.hpp: writes a sweep's HTML file: plots of fronts, tables of presets, and explanations.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// A work and all its measurements.
+/// One kind of work with all its measurements.
 struct TradeResult {
   MeasuredWork work = {};
   std::vector<Setting> settings = {};
@@ -23,8 +23,8 @@ struct TradeResult {
 /// Returns a line for each setting that failed: setting, scene and reason.
 std::vector<std::string> faults_of(const TradeResult& result);
 
-/// Writes a self-contained file that needs no network, light or dark as the reader's system. Does nothing if
-/// the path is empty. Throws Error if it cannot be written.
+/// Writes a self-contained file that needs no network, in the light or dark theme of the reader's system.
+/// Does nothing if the path is empty. Throws Error if it cannot be written.
 /// @param about  lines on machine, renderer, seed and scenes
 void write_trade_page(const std::vector<TradeResult>& results, const std::vector<std::string>& about,
                       const std::filesystem::path& path);

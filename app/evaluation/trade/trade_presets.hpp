@@ -1,4 +1,4 @@
-// trade_presets.hpp: converts a sweep's choice to the presets read by `--preset` and `--budget-ms`.
+// trade_presets.hpp: converts a sweep's chosen settings to the presets read by `--preset` and `--budget-ms`.
 #pragma once
 #include <map>
 #include <string>

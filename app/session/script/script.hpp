@@ -1,4 +1,4 @@
-// script.hpp: events file of `roomradar run --script FILE`: actions of the virtual objects, and their times.
+// script.hpp: events file of `roomradar run --script FILE`: actions on virtual objects, and their times.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -15,7 +15,8 @@ struct Script {
   std::vector<ScriptEvent> events;
 };
 
-/// Treatment of a last line without a line end: an event, or possibly cut off when its writer was killed.
+/// Treatment of a last line without a line end. kWhole: an event. kMayBeCut: ignored, since its writer may
+/// have been killed.
 enum class LastLine { kWhole, kMayBeCut };
 
 /// Reads an events file. One event per line, words separated by blanks, # begins a comment:
@@ -41,11 +42,10 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 230  camera hold                      repeats this frame; go, rewind, loop, stay, resume
 ///     frame 300  quit
 ///
-/// An object that would begin inside another one begins on top of it, if the room leaves space there. place,
-/// drop and throw may end with `turned YAW PITCH ROLL`: degrees about z, then the rotated y, then the rotated
-/// x axis. Without it an object keeps its last orientation, initially upright.
+/// An object that would start inside another object starts on top of it, if the room leaves space there.
+/// place, drop and throw may end with `turned YAW PITCH ROLL`: degrees about z, then the rotated y, then the
+/// rotated x axis. Without it an object keeps its last orientation, initially upright.
 ///
-/// @param last_line  kMayBeCut: a last line without a line end is ignored, for a file whose writer was killed
 /// Throws Error "FILE:LINE: ..." with the text found and the text expected. Reasons: an unknown, missing or
 /// surplus word; a number that is malformed, not finite or out of range; a negative frame or time; a name not
 /// added, or added twice; a file that is unreadable, binary or longer than 64 MiB.

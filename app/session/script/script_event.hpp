@@ -18,14 +18,14 @@ enum class Action {
   kDrop,      ///< let it fall from above a point, or from above a level surface in view
   kThrow,     ///< put it at a position with a velocity
   kRemove,    ///< take it out of the room
-  kTurn,      ///< rotate it about its middle until something is in the way
+  kTurn,      ///< rotate it about its centre until something is in the way
   kCarry,     ///< hold it and move it to a position, until something is in the way; lasts until kRelease
   kRelease,   ///< let go of a carried object, with a velocity
   kSurfaces,  ///< change which surfaces can be touched
   kUnknown,   ///< make unknown space free or solid
   kRadar,     ///< change the radar's mode and resolution
   kQuality,   ///< change the quality
-  kCamera,    ///< change which frame of the source follows
+  kCamera,    ///< change which frame of the source is next
   kCommit,    ///< commit objects in view that stand still, or are gone, to the map
   kQuit,      ///< end the run before this frame
 };
@@ -37,18 +37,18 @@ enum class CameraPlay {
   kRewind,  ///< the source's first frame
   kLoop,    ///< at the end of the source, its first frame
   kStay,    ///< at the end of the source, its last frame, held
-  kResume,  ///< the next frame, 1/30 s after the last: a device's clock ran on during a pause
+  kResume,  ///< next frame, 1/30 s after the last, since a device's clock runs on during a pause
 };
 
 inline constexpr double kMaxTurn_deg = 3600.0;  ///< max angle of one kTurn, per axis
 
 /// One line of a script (script.hpp). Positions are those of the object's origin, in the world (m, +z up).
 struct ScriptEvent {
-  int line = 0;                       ///< in the file, from 1; 0 in a script made in code
+  int line = 0;                       ///< line in the file, from 1; 0: not from a file
   std::optional<std::int64_t> frame;  ///< due before this frame of the run, from 0; alternative to time_s
   std::optional<double> time_s;       ///< due before the first frame at or after this time of the run
   Action action = Action::kQuit;
-  std::string name;              ///< the object's; empty for actions without an object
+  std::string name;              ///< name of the object; empty for actions without an object
   std::string mesh;              ///< kAdd: `teapot`, or a mesh file, relative to the script's folder
   std::optional<double> size_m;  ///< kAdd: length of the longest side after scaling; unset: not scaled
   /// kPlace, kDrop, kThrow, kCarry. kDrop without a position: over a surface in view.

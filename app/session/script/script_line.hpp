@@ -17,7 +17,7 @@ struct Word {
   Value value;
 };
 
-/// Returns "add, place or drop" and the like.
+/// Returns a list such as "add, place or drop".
 template <typename Value, std::size_t kCount>
 std::string listed(const std::array<Word<Value>, kCount>& words) {
   std::string list;
@@ -36,7 +36,7 @@ std::string_view word_of(const std::array<Word<Value>, kCount>& words, Value val
 
 std::string in_quotes(std::string_view text);
 
-/// Reads the words of one line in order; every error names the file and the line.
+/// Reads the words of one line in order. Errors name the file and the line.
 class LineReader {
  public:
   /// @param where  name of the file, for messages; must outlive the reader, as must `text`
@@ -47,7 +47,7 @@ class LineReader {
   [[noreturn]] void fail(const std::string& complaint) const;
   /// Returns the next word. `wanted` describes it in the message if the line has ended.
   std::string_view word(const char* wanted);
-  /// Takes the next word if it is `expected`; returns true if it was.
+  /// Consumes the next word if it is `expected`; returns true if so.
   bool take_if(std::string_view expected);
   void expect(std::string_view expected);
   /// Reads a finite number in lowest..highest.

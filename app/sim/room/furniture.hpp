@@ -1,4 +1,4 @@
-// furniture.hpp: adds furniture to a simulated room; each piece's origin is on the surface it stands on.
+// furniture.hpp: adds furniture to a simulated room. Each piece's origin is on the surface that carries it.
 #pragma once
 #include <cstdint>
 
@@ -20,7 +20,7 @@ void add_shell(Room& room, const Material& floor, const Material& wall, const Ma
 void add_picture(Room& room, const Eigen::Isometry3d& T_world_picture, double width_m, double height_m,
                  const Material& picture, const Material& frame);
 
-/// Adds a table.
+/// Adds a table of this size.
 void add_table(Room& room, const Eigen::Isometry3d& T_world_table, const Eigen::Vector3d& size_m,
                const Material& material);
 /// Adds a chair that faces +y, with its seat at 0.45 m and a back up to 0.9 m.

@@ -22,9 +22,9 @@ struct Lamp {
   double radius_m = 0.2;
 };
 
-/// A simulated room: z is up, the floor is at z = 0, units are metres. Solids touch but do not overlap, so
-/// every solid's surface is part of the room's surface, except where solids touch. Solids must not change
-/// after the room is made.
+/// A simulated room: z is up, the floor is at z = 0, units are metres. Solids do not overlap but may touch;
+/// each solid's surface is part of the room's surface except where solids touch. Solids must not change after
+/// the room is made.
 struct Room {
   std::string name;
   std::vector<Solid> solids;

@@ -76,8 +76,8 @@ struct Scenario {
 
 /// Returns the object's travel per frame, m; at most 33 cm.
 inline double step_m(const Scenario& scenario) { return scenario.speed_m_s * kScenarioFrame_s; }
-/// Returns the last frame before contact: the frame at the start of the step in which the object touches the
-/// true surface.
+/// Returns the last frame before contact: the object touches the true surface between this frame and the
+/// next.
 inline int contact_frame(const Scenario& scenario) {
   return static_cast<int>(scenario.true_travel_m / step_m(scenario));
 }

@@ -8,7 +8,8 @@
 
 namespace roomradar {
 
-/// Surfaces that could stop the object must be hidden up to this distance behind the true contact.
+/// Surfaces that could stop the object are hidden from the camera up to this distance behind the true
+/// contact.
 inline constexpr double kBeyond_m = 0.05;
 
 /// A surface point and its unit normal.
@@ -36,8 +37,8 @@ bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario);
 /// several hundred rays from the object's front.
 std::vector<Patch> stopping_patches(const Room& room, const Scenario& scenario, double limit_m);
 
-/// Draws a camera pose, an occluder and its motion for a placed object, until the surface that stops the
-/// object is hidden.
+/// Draws a camera pose, an occluder and its motion for a placed object until the points that could stop the
+/// object are hidden.
 /// @param patches  points that could stop the object
 /// @return false if 12 draws fail
 bool hide(const ScenarioRoom& from, const std::vector<Patch>& patches, CounterRandom& random,

@@ -26,9 +26,8 @@ ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed = 1);
 ///   by at most 15 mm. This excludes contacts that depend on detail finer than the map's cells.
 ///
 /// Scenarios alternate between four drops and four pushes; each group of four has all four kinds of occluder.
-/// Object shapes alternate too. An occluder hides at least half of the stopping surface by itself. If 3,000
-/// draws find no placement, the next kind of occluder is tried, then the next shape. Throws Error if all
-/// fail.
+/// Object shapes alternate too. The occluder alone hides at least half of the stopping points. If 3,000 draws
+/// find no placement, the next kind of occluder is tried, then the next shape. Throws Error if all fail.
 Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number);
 
 enum class Outcome {

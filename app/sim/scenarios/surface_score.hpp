@@ -16,7 +16,7 @@ namespace roomradar {
 /// Max distance between mesh and true surface at which the surface counts as found.
 inline constexpr double kSurfaceFound_m = 0.02;
 
-/// The part of a room's true surface that depth frames measured within 5 m, as one point per cube of side
+/// The part of a room's true surface that depth frames measured within 5 m, as one point per cube of edge
 /// kSurfaceFound_m.
 class SeenSurface {
  public:
@@ -42,7 +42,7 @@ struct SurfaceScore {
   double error_p95_m = 0.0;
   /// Fraction of the mesh within kSurfaceFound_m of the room's surface.
   double precision = 0.0;
-  /// Fraction of the measured surface points with mesh within kSurfaceFound_m.
+  /// Fraction of the measured surface points that have mesh within kSurfaceFound_m.
   double cover = 0.0;
 };
 

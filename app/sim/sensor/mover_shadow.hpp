@@ -1,4 +1,4 @@
-// mover_shadow.hpp: shadows cast by moving objects, which the precomputed lighting lacks.
+// mover_shadow.hpp: shadows of moving objects, in addition to the precomputed lighting.
 #pragma once
 #include <span>
 #include <vector>

@@ -15,8 +15,8 @@ struct SensorFaults {
   Intrinsics depth_camera, colour_camera;
   Lens depth_lens, colour_lens;
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
-  /// Scale in 1 / reported depth = (1 / true depth - offset) / scale; for the offset see
-  /// inverse_depth_offset_per_m().
+  /// `scale` in: 1 / reported depth = (1 / true depth - offset) / scale, with inverse_depth_offset_per_m() as
+  /// offset.
   double inverse_depth_scale = 1.0;
 };
 
@@ -29,8 +29,8 @@ SensorFaults sensor_faults(const Intrinsics& depth_camera, const Intrinsics& col
 /// about the centre and a slope: at most 3 mm at 1 m and 27 mm at 3 m.
 double inverse_depth_offset_per_m(const Intrinsics& depth_camera, double x_px, double y_px);
 
-/// Per pixel of a true camera, the point of the declared pinhole camera's image onto which its viewing ray
-/// projects.
+/// Per pixel of the true camera: the point in the declared pinhole camera's image to which the pixel's
+/// viewing ray projects.
 using PixelRays = Image<PlanePoint<float>>;
 /// Computes the rays of a camera.
 /// @param truth  true camera

@@ -12,13 +12,13 @@ namespace roomradar {
 enum class CameraPathKind {
   /// Walks around the room and back to the start, looking across it.
   kScan,
-  /// Stays at one place, hand-held, and looks at the room's focus.
+  /// Stays at one place, hand-held, and looks at the room's focus point.
   kView,
-  /// Swings in front of the focus, near, far and tilted, for calibration.
+  /// Swings in front of the focus point, near, far and tilted, for calibration.
   kSwing,
 };
 enum class MoverKind {
-  /// A hand and forearm that reach over the focus and withdraw.
+  /// A hand and forearm that reach over the focus point and withdraw.
   kHand,
   /// A ball that rolls back and forth.
   kBall,
@@ -29,7 +29,7 @@ enum class MoverKind {
 enum class Pace {
   /// Moves continuously.
   kSteady,
-  /// Moves continuously at a third of that speed.
+  /// Moves continuously at a third of kSteady's speed.
   kSlow,
   /// Alternates between 2 s still and 2 s moving.
   kWaits,

@@ -11,8 +11,8 @@ enum class SolidShape {
   kCylinder,
 };
 
-/// A box or cylinder, inflated by a ball of radius round_m. An inflated point is a sphere, and an inflated
-/// line segment is a capsule.
+/// A box or cylinder, inflated by round_m (Minkowski sum with a ball). An inflated point is a sphere, an
+/// inflated line segment a capsule.
 struct Solid {
   SolidShape shape = SolidShape::kBox;
   Eigen::Isometry3d T_world_solid = Eigen::Isometry3d::Identity();

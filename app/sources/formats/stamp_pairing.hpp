@@ -26,7 +26,6 @@ struct PairingConfig {
 /// nearest colour image may be almost a period away.
 constexpr PairingConfig kDevicePairing{.tolerance_s = 0.030, .unbeatable_s = 1.0 / 60.0};
 
-/// A depth image with its colour image, if it has one.
 /// A depth image, and its colour image if there is one. Images are identified by the caller's numbers.
 struct DepthColourPair {
   std::int64_t depth = 0;

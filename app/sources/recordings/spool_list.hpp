@@ -1,7 +1,7 @@
 // spool_list.hpp: files of a frame cache on disk (spool): a list of the frames, and their images.
 //
-// The list, list.bin, has a header: "RRSPOOL1" and the source's name. For each frame follows the size of its
-// entry in bytes (u32) and the entry. A size of 0 marks the end of the source.
+// The list, list.bin, has a header: "RRSPOOL1" and the source's name. Then, for each frame: the size of its
+// entry in bytes (u32), and the entry. A size of 0 marks the end of the source.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -22,11 +22,11 @@ struct SpoolEntry {
 };
 
 /// The list that an earlier process left in a folder.
-/// Name of the source.
 struct SpoolList {
+  /// Name of the source.
   std::string name;
-  /// True if the source had ended.
   std::vector<SpoolEntry> entries;
+  /// True if the source had ended.
   bool at_end = false;
   /// Length of the list's valid part; an incomplete entry may follow.
   std::uintmax_t sound_bytes = 0;

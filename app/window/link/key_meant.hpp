@@ -4,8 +4,8 @@
 
 namespace roomradar {
 
-/// GLFW identifies a key by its place on a US keyboard; the codes of typing keys are the capital characters
-/// typed there.
+/// GLFW identifies a key by its position on a US keyboard. The code of a key that types is the capital
+/// character at that position.
 ///
 /// @param key    GLFW's key code
 /// @param types  UTF-8 text typed by the key without modifiers, as from glfwGetKeyName(); may be null

@@ -1,5 +1,4 @@
-// play_host.hpp: the session's side of the window: waits for frames to be due, delivers the user's events and
-// publishes results.
+// play_host.hpp: connects a session to the window: paces frames, delivers user events, publishes results.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -17,7 +16,7 @@
 
 namespace roomradar {
 
-/// The parts of a run that are needed only with a window. Session, source and times must outlive it.
+/// Used by the session's thread if the run has a window. All arguments of the constructor must outlive it.
 class PlayHost {
  public:
   /// @param is_live  frames are shown as they arrive; only repeated frames wait for their time stamps
@@ -25,7 +24,7 @@ class PlayHost {
            const Mesh& room, bool is_live)
       : link_(link), session_(session), source_(source), times_(times), is_live_(is_live), maker_(room) {}
 
-  /// Waits until the frame is due or the user steps to it; returns false once the window is closed.
+  /// Waits until the frame is due or the user steps to it. Returns false if the window is closed.
   bool wait_turn(const Frame& frame);
   [[nodiscard]] bool is_closed() const { return link_.is_closed(); }
   /// Returns the user's events since the last frame, with at most one kAdd. New meshes are read on another
@@ -43,10 +42,10 @@ class PlayHost {
  private:
   /// Objects that the user adds, prepared on another thread.
   struct NewObjects {
-    std::deque<UserCommand> waiting{};  ///< objects to add; the first is being prepared
+    std::deque<UserCommand> waiting{};  ///< requests; the first is being prepared
     std::future<ObjectParts> readying{};
-    int frames_waited = 0;  ///< frames since its preparation began
-    ObjectParts parts{};    ///< of the last one ready
+    int frames_waited = 0;  ///< frames since the first request's preparation began
+    ObjectParts parts{};    ///< parts of the last object that became ready
   };
   /// The newest frame shown.
   struct ShownFrame {
@@ -67,7 +66,7 @@ class PlayHost {
   Snapshot filled_;
   ShownFrame shown_;
   std::string given_up_;
-  std::string said_to_wait_;  ///< object whose waiting drop the user was told about
+  std::string said_to_wait_;  ///< object whose waiting drop was last reported to the user
 
   /// Moves requests for new objects from `commands` to new_.waiting, and back once the object is ready.
   void ready_new_objects(std::vector<UserCommand>& commands);

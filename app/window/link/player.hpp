@@ -15,14 +15,14 @@ namespace roomradar {
 
 /// Surfaces at a pixel of the session's picture.
 struct Pointed {
-  std::optional<MeshHit> surface;  ///< nearest of room and dynamic foreground
+  std::optional<MeshHit> surface;  ///< nearest hit on room or dynamic foreground
   std::optional<MeshHit> object;   ///< nearest virtual object, if in front of that surface
-  std::string name;                ///< the object's
+  std::string name;                ///< name of that object
 };
-/// Empty if the camera was not localised.
+/// Returns the surfaces at a pixel; empty if the camera was not localised.
 Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel);
 
-/// Returns the rotation for a mouse drag, such that the object's front follows the mouse. Sideways drags
+/// Returns the rotation for a mouse drag that makes the object's front follow the mouse. Sideways drags
 /// rotate about the vertical, or about the picture's up axis if the vertical is far from it. Drags up and
 /// down rotate about the picture's right axis.
 /// @param R_world_view  camera axes: x right, y down, z forward
@@ -32,8 +32,8 @@ Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, cons
 class Player {
  public:
   /// Returns the events, without frame numbers, in the order to apply them before the next frame. If a carry
-  /// and its release arrive together, the release is delayed by one frame, so the result may include earlier
-  /// commands.
+  /// and its release arrive together, the release is delayed by one frame, so the result may include events
+  /// of earlier commands.
   std::vector<ScriptEvent> events_of(std::span<const UserCommand> commands, const Session& session);
 
   [[nodiscard]] const std::string& chosen() const { return chosen_; }
@@ -52,7 +52,7 @@ class Player {
   std::string chosen_;
   std::optional<Grabbed> grabbed_;
   std::string complaint_;
-  std::vector<ScriptEvent> held_back_;  ///< for the next call
+  std::vector<ScriptEvent> held_back_;  ///< events delayed to the next call
 
   void choose_if_none(const Session& session);
   void add(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);

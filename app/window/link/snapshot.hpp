@@ -19,19 +19,19 @@ class SnapshotMaker {
   /// @param room  mesh of the saved room, copied once
   explicit SnapshotMaker(const Mesh& room) : room_(std::make_shared<const Mesh>(room)) {}
 
-  /// Sets the parts of `shown` that come from the session, for the object `shown.chosen`. Reuses its
-  /// allocations.
+  /// Sets the fields of `shown` that come from the session; the radar's images are those of the object
+  /// `shown.chosen`. Reuses the allocations of `shown`.
   void fill(const Session& session, const FrameResult& result, const StageTimes& times,
             const ViewsWanted& wanted, Snapshot& shown);
 
  private:
   std::shared_ptr<const Mesh> room_;
-  std::uint64_t room_revision_ = 0;  ///< revision of the session's room that room_ shows; 0: none so far
+  std::uint64_t room_revision_ = 0;  ///< revision of the session's room that room_ copies; 0: none so far
   std::map<std::shared_ptr<const ObjectModel>, std::shared_ptr<const Mesh>> object_meshes_;
   std::map<std::string, std::size_t, std::less<>> counted_;  ///< samples per stage before this frame
   CyberRadar radar_;
   RadarPictures pictures_;
-  std::string pictures_of_;  ///< name of the object they show
+  std::string pictures_of_;  ///< name of the object in pictures_
   std::chrono::steady_clock::time_point pictures_due_{};
 
   void fill_radar(const Session& session, const std::string& chosen, ShownRadar& shown);

@@ -30,7 +30,7 @@ enum class UserCommandKind {
   kThrow,   ///< throw the chosen object from the camera towards the pixel
   kGrab,    ///< grab and choose the object at the pixel
   kDrag,    ///< carry the grabbed object to the pixel
-  kLetGo,   ///< release the grabbed object; if none, and not dragged: drop the chosen one here
+  kLetGo,   ///< release the grabbed object; after a click on no object: drop the chosen object here
   kTurn,    ///< rotate the grabbed or else the chosen object by `event.turn_world_deg`
   kChoose,  ///< choose the object `event.name`
   kNew,     ///< add an object from `event.mesh` of size `event.size_m`, choose it and drop it in view
@@ -43,7 +43,7 @@ struct UserCommand {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();             ///< in the picture
   Eigen::Vector2d pixel_velocity_s = Eigen::Vector2d::Zero();  ///< velocity of the mouse, pixels per second
   bool was_dragged = false;                                    ///< for kLetGo
-  double nearer_m = 0.0;   ///< kDrag, kLetGo: total motion towards the camera
+  double nearer_m = 0.0;   ///< kDrag, kLetGo: total motion towards the camera so far
   double speed_mps = 3.0;  ///< for kThrow
   ScriptEvent event;
 };
@@ -91,7 +91,7 @@ struct Snapshot {
   RadarConfig radar;
   std::string given_up;  ///< settings reduced by --budget-ms; empty: none
   bool is_held = false;
-  bool is_repeating = false;  ///< source held, or at its end
+  bool is_repeating = false;  ///< the frame is a repetition: source held, or at its end
   AtEnd at_end = AtEnd::kEnd;
   std::shared_ptr<const Mesh> room;
   Mesh seen_world, inferred_world;  ///< dynamic foreground
@@ -121,8 +121,8 @@ class UiChannel {
   [[nodiscard]] bool is_over() const;
 
   // For the session's thread.
-  /// Waits until the frame with this stamp is due: not while paused and, if in_time, not before its stamp.
-  /// While waiting, calls `refresh` when the wanted views change. Returns false once the window is closed.
+  /// Waits while paused and, if in_time, until the time of this stamp. While waiting, calls `refresh` when
+  /// the wanted views change. Returns false once the window is closed.
   bool wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh);
   [[nodiscard]] bool is_closed() const;
   /// Returns true if the window was paused since the last call.
@@ -143,7 +143,7 @@ class UiChannel {
   Snapshot newest_;
   bool is_fresh_ = false;
   bool is_paused_ = false, is_closed_ = false, is_over_ = false;
-  bool was_paused_ = false;  ///< since take_pause()
+  bool was_paused_ = false;  ///< paused since the last take_pause()
   int steps_ = 0;
   double speed_ = 1.0;
   ViewsWanted wanted_;

@@ -24,14 +24,14 @@ void mark_chosen(ImDrawList& draw, const Snapshot& shown, const Area& image, dou
 void draw_box(ImDrawList& draw, const std::function<Eigen::Vector3d(int)>& corner, const ToWindow& to_window,
               ImU32 colour, float thickness);
 
-/// Draws the radar's target volume: rear plane, far plane, direction, and first contact.
+/// Draws the box that the radar searched: rear plane, far plane, direction, and first contact.
 void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindow& to_window,
                         const look::Fonts& fonts);
 
-/// Draws the camera's view frustum down to a depth.
+/// Draws the camera's view frustum up to a depth.
 void draw_camera(ImDrawList& draw, const ShownView& view, double depth_m, const ToWindow& to_window);
 
-/// Returns "at rest on seen static", "moves at 1.2 m/s" or "carried" and the like.
+/// Returns the object's state as text, such as "at rest on seen static", "moves at 1.2 m/s" or "carried".
 std::string what_it_does(const ShownObject& object);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// model_view.hpp: 3D view of room, dynamic foreground, objects, camera and target volume.
+// model_view.hpp: 3D view of room, dynamic foreground, objects, camera, and the box that the radar searched.
 #pragma once
 #include <Eigen/Geometry>
 #include <map>
@@ -20,8 +20,8 @@ struct Orbit {
 /// Returns the eye's pose: x right, y up, looking along -z (OpenGL).
 Eigen::Isometry3d eye_of(const Orbit& orbit);
 
-/// Draws into a texture, only when something has changed: without a GPU, a room of half a million triangles
-/// takes some 10 ms. The window's context must be current.
+/// Renders into a texture, and only when something has changed: without a GPU, a room of half a million
+/// triangles takes tens of milliseconds. The window's context must be current.
 class ModelView {
  public:
   ModelView();

@@ -22,7 +22,7 @@ class PicturePane {
   /// Call if the pane is not drawn: releases a grabbed object.
   void leave();
 
-  /// Returns the mouse's position in the picture, pixels; empty if it is elsewhere.
+  /// Returns the mouse position in the picture, pixels; unset if the mouse is elsewhere.
   [[nodiscard]] const std::optional<Eigen::Vector2d>& pixel() const { return pixel_; }
 
  private:
@@ -30,7 +30,7 @@ class PicturePane {
   GlTexture texture_{/*smooth=*/true};
   std::optional<Eigen::Vector2d> pixel_;
   bool is_down_ = false, was_dragged_ = false;
-  Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();  ///< in the window
+  Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();  ///< mouse position in the window at the press
   double nearer_m_ = 0.0;
   struct Sample {
     double time_s = 0.0;

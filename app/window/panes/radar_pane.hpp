@@ -1,4 +1,4 @@
-// radar_pane.hpp: shows R, M and L of the chosen object as pictures.
+// radar_pane.hpp: shows the radar's R, M and L images of the chosen object (see RadarPictures).
 #pragma once
 #include <string>
 
@@ -15,7 +15,7 @@ class RadarPane {
   void draw(const Area& area, const ShownRadar& radar, const look::Fonts& fonts);
 
  private:
-  /// Returns the values at a pixel, if it is in the pictures, and the shortest distance to contact.
+  /// Returns, as text, R, M and L at a pixel, if it is in the images, and the distance to contact.
   [[nodiscard]] std::string numbers_at(const ShownRadar& radar, int x, int y) const;
 
   GlTexture range_{false}, mask_{false}, lookat_{false};

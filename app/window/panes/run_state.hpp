@@ -1,4 +1,4 @@
-// run_state.hpp: state of the run and its frame time, at the right end of the bar.
+// run_state.hpp: state of the run and its frame time, at the right end of the top bar.
 #pragma once
 #include "app/window/link/snapshot.hpp"
 #include "app/window/link/ui_channel.hpp"
@@ -12,8 +12,8 @@ namespace roomradar {
 /// @param silent_s  time since the newest frame
 void draw_run_state(const Area& area, const Snapshot& shown, const UiChannel& link, double silent_s);
 
-/// Draws the time of the last frame as numbers, and as a bar beside its goal and budget.
-/// @param speed  of the run, 1 = as recorded
+/// Draws the time of the last frame as a number, and as a bar with marks at goal and budget.
+/// @param speed  playback speed, 1 = as recorded
 void draw_frame_time(const Area& area, const TimingPane& timing, double frames_per_s, double speed,
                      const look::Fonts& fonts);
 

@@ -17,19 +17,19 @@ inline constexpr double kGoal_ms = 16.6;  ///< period of frames at 60 Hz
 
 class TimingPane {
  public:
-  /// @param budget_ms  the run's time limit per frame; none: the period of a Kinect's frames
+  /// @param budget_ms  the run's time limit per frame; unset: the period of a Kinect's frames
   explicit TimingPane(std::optional<double> budget_ms) : budget_ms_(budget_ms.value_or(33.3)) {}
 
   void add(const Snapshot& shown);
   void draw(const Area& area, const look::Fonts& fonts) const;
 
   [[nodiscard]] double budget_ms() const { return budget_ms_; }
-  /// Returns the goal, at most the budget.
+  /// Returns the time to aim at: kGoal_ms, or the budget if that is less.
   [[nodiscard]] double goal_ms() const { return std::min(kGoal_ms, budget_ms_); }
-  /// Returns the time of the last frame, without reading it.
+  /// Returns the time of the last frame, without the time for reading it.
   [[nodiscard]] float frame_ms() const { return frames_.empty() ? 0.0F : frames_.back().whole_ms; }
 
-  /// In stacking order; "rest" is the time outside all other stages.
+  /// Stages from bottom to top of the chart; "rest" is the time outside all other stages.
   static constexpr std::array<const char*, 9> kStages = {
       "locate", "expected", "foreground", "changes", "mesh", "physics", "radar", "compose", "rest"};
 

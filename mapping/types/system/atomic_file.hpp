@@ -6,8 +6,8 @@
 namespace roomradar {
 
 /// Writes to target.partial-PID and renames it to `target` once complete; until then, and after any error,
-/// `target` is unchanged. A `target` that is not a regular file (a pipe, a device) is written directly. A
-/// file that stdout or stderr is redirected to is appended to directly, in order with their output.
+/// `target` is unchanged. A `target` that is not a regular file (a pipe, a device) is written directly. If
+/// stdout or stderr is redirected to `target`, the file is appended to directly, in order with their output.
 class AtomicFile {
  public:
   /// Throws Error, with the system's reason, if the file cannot be opened.
@@ -20,15 +20,14 @@ class AtomicFile {
   /// Binary stream to write to.
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
-  /// Renames the partial file to `target` atomically. A file being replaced is dropped only after the new one
-  /// is synced to disk. Throws Error if writing, syncing or renaming fails.
+  /// Renames the partial file to `target` atomically. An existing file is replaced only after the new one is
+  /// synced to disk. Throws Error if writing, syncing or renaming fails.
   void commit();
 
  private:
   std::filesystem::path target_;
   std::filesystem::path partial_;  ///< equals target_ if written directly
-  int stream_of_process_ = -1;     ///< descriptor of the stdout or stderr that is redirected to the target;
-                                   ///< -1: none
+  int stream_of_process_ = -1;     ///< descriptor of stdout or stderr if redirected to the target; else -1
   std::ofstream stream_;
 };
 

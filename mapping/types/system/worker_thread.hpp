@@ -1,4 +1,4 @@
-// worker_thread.hpp: a worker thread that runs one piece of work beside the caller's.
+// worker_thread.hpp: a worker thread that runs one task in parallel with the caller's own.
 #pragma once
 #include <atomic>
 #include <exception>
@@ -6,9 +6,9 @@
 
 namespace roomradar {
 
-/// Owns the thread, which sleeps between calls. A machine with one processor gets no thread: the two pieces
-/// of work run one after the other, and results must not depend on which. Call run() from one thread only,
-/// and not from inside run().
+/// Owns the thread, which sleeps between calls. On a machine with one processor there is no thread: the two
+/// tasks run one after the other, and results must not depend on their order. Call run() from one thread
+/// only, and not from inside run().
 class WorkerThread {
  public:
   WorkerThread();
@@ -16,8 +16,8 @@ class WorkerThread {
   WorkerThread(const WorkerThread&) = delete;
   WorkerThread& operator=(const WorkerThread&) = delete;
 
-  /// Calls here() on the caller's thread and beside() on the worker; returns when both are done. Exceptions
-  /// are rethrown then; here()'s takes precedence.
+  /// Calls here() on the caller's thread and beside() on the worker; returns when both are done. Then
+  /// rethrows an exception of either; here()'s takes precedence.
   template <typename Here, typename Beside>
   void run(const Here& here, const Beside& beside) {
     start([](const void* work) { (*static_cast<const Beside*>(work))(); }, &beside);
