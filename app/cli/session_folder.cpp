@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/models/model_file.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
@@ -30,7 +31,8 @@ constexpr const char* kFrames = "frames";
 constexpr const char* kMeshes = "meshes";
 constexpr const char* kResults = "results.txt";
 constexpr const char* kFormat = "roomradar session";
-constexpr int kFormatVersion = 2;
+constexpr int kFormatVersion = 3;
+constexpr int kOldestVersion = 2;  // keeps the files of meshes, read as they were then
 constexpr std::uintmax_t kMaxSettingsBytes = 1U << 20U;
 
 std::string checksum_of(const MapInfo& map) {
@@ -46,9 +48,10 @@ Json read_settings(const fs::path& folder) {
     throw Error(path.string() + ": is not the settings of a recorded session, or is damaged");
   if (!json.contains("format_version") || !json["format_version"].is_number_integer())
     throw Error(path.string() + ": does not say its format version; is it damaged?");
-  if (json["format_version"] != kFormatVersion)
+  if (json["format_version"] < kOldestVersion || json["format_version"] > kFormatVersion)
     throw Error(path.string() + ": is of format version " + json["format_version"].dump() +
-                ", and this program reads version " + std::to_string(kFormatVersion));
+                ", and this program reads versions " + std::to_string(kOldestVersion) + " and " +
+                std::to_string(kFormatVersion));
   return json;
 }
 
@@ -114,15 +117,16 @@ std::unique_ptr<FrameSource> SessionRecorder::recorded(std::unique_ptr<FrameSour
   return SpooledSource::kept(std::move(source), folder_ / kFrames, kAhead);
 }
 
-ScriptEvent SessionRecorder::with_mesh_kept(ScriptEvent event) {
+ScriptEvent SessionRecorder::with_mesh_kept(ScriptEvent event, const Model& model) {
   if (event.action != Action::kAdd || event.mesh == "teapot") return event;
-  const fs::path original = event.mesh;
-  const std::string name = "mesh-" + std::to_string(++meshes_) + original.extension().string();
+  const std::string name = "mesh-" + std::to_string(++meshes_) + kModelCopyExtension;
   std::error_code fault;
   fs::create_directories(folder_ / kMeshes, fault);
-  if (!fault) fs::copy_file(original, folder_ / kMeshes / name, fault);
-  if (fault) throw Error((folder_ / kMeshes / name).string() + ": cannot be copied: " + fault.message());
+  if (fault) throw Error((folder_ / kMeshes).string() + ": the model cannot be copied: " + fault.message());
+  write_model_copy(model, folder_ / kMeshes / name);
   event.mesh = std::string(kMeshes) + "/" + name;
+  event.size_m.reset();
+  event.up.reset();
   return event;
 }
 
@@ -152,6 +156,18 @@ bool is_session_calibrated(const fs::path& folder) {
 
 bool is_session_events(const fs::path& file) {
   return file.filename() == kEvents && is_session_folder(file.parent_path());
+}
+
+Script read_session_events(const fs::path& file) {
+  Script script = read_script(file, LastLine::kMayBeCut);
+  if (read_settings(file.parent_path())["format_version"] != kOldestVersion) return script;
+  // Then an .obj stood with z up, and an object's origin was its file's.
+  for (ScriptEvent& event : script.events) {
+    if (event.action != Action::kAdd) continue;
+    event.origin = ModelOrigin::kAsInFile;
+    if (fs::path(event.mesh).extension() == ".obj") event.up = UpAxis::kZ;
+  }
+  return script;
 }
 
 RunOptions read_session(const fs::path& folder) {

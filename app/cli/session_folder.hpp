@@ -4,7 +4,7 @@
 //   session.json   format, settings, source, map
 //   events.txt     every event, in the format of `--script`
 //   frames/        the source's frames, bit-exact (SpooledSource)
-//   meshes/        mesh files of virtual objects
+//   meshes/        models of virtual objects with their textures, upright and scaled
 //   results.txt    one line per frame: frame number, hash of the objects, hash of the rendered image
 #pragma once
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "app/cli/options/run_options.hpp"
+#include "app/models/model.hpp"
 #include "app/session/script/script.hpp"
 #include "app/session/session_fingerprint.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -37,10 +38,12 @@ class SessionRecorder {
 
   /// Wraps a source, so its frames are recorded as they are read and can be read again.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
-  /// Copies the mesh file that a kAdd event names into the folder, and returns the event with the copy's
-  /// name. Call before applying the event. Throws Error if the copy fails; the caller must then not add the
-  /// object, since the recording would lack it.
-  ScriptEvent with_mesh_kept(ScriptEvent event);
+  /// Writes the model of a kAdd event into the folder, unless it is the built-in one, and returns the event
+  /// with the copy's name. Other events are returned as they are. Call before the object is in the room.
+  /// Throws Error if writing fails; the caller must then not add the object, so every object in the run is
+  /// also in the recording.
+  /// @param model  as loaded for the event
+  ScriptEvent with_mesh_kept(ScriptEvent event, const Model& model);
   /// Records an event that with_mesh_kept() returned and that is applied before frame `run_frame`. Throws
   /// Error if the event cannot be written.
   void write(ScriptEvent event, std::int64_t run_frame);
@@ -60,6 +63,10 @@ bool is_session_folder(const std::filesystem::path& folder);
 bool is_session_calibrated(const std::filesystem::path& folder);
 /// Returns true if the file is the events file of a recorded session.
 bool is_session_events(const std::filesystem::path& file);
+
+/// Reads such a file; a last line that is cut off is ignored. Events of older sessions are completed, so that
+/// objects stand as they did then. Throws Error as read_script() does.
+Script read_session_events(const std::filesystem::path& file);
 
 /// Returns the recorded options: the folder itself as source, its events file as script, the map, and the
 /// settings that affect results. Throws Error, naming the file and the problem, if session.json is missing or

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "app/objects/triangle_weights.hpp"
 #include "mapping/mesh/mesh_distance.hpp"
 
 namespace roomradar {
@@ -28,17 +29,8 @@ Corners corners_of(const std::vector<Eigen::Vector3f>& values, const Triangle& t
   return {values[t[0]], values[t[1]], values[t[2]]};
 }
 
-/// Returns the barycentric weights of the triangle's point nearest to p; approximate if p projects outside
-/// the triangle.
 Eigen::Vector3f weights_at(const Corners& triangle, const Eigen::Vector3f& p) {
-  const Eigen::Vector3f normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
-  const auto part = [&](const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
-    return std::max(0.0F, (to - from).cross(p - from).dot(normal));
-  };
-  const Eigen::Vector3f weights(part(triangle.b, triangle.c), part(triangle.c, triangle.a),
-                                part(triangle.a, triangle.b));
-  const float sum = weights.sum();
-  return sum > 0.0F ? Eigen::Vector3f(weights / sum) : Eigen::Vector3f::Constant(1.0F / 3.0F);
+  return triangle_weights(triangle.a, triangle.b, triangle.c, p);
 }
 
 /// Calls visit(barycentric weights, area) for sample points that represent equal parts of the triangle.

@@ -65,10 +65,20 @@ void weld(Mesh& mesh) {
   mesh.colours = std::move(colours);
 }
 
-void set_mean_normals(Mesh& mesh) {
+/// @param by_position  vertices at the same position get the same normal
+void set_mean_normals(Mesh& mesh, bool by_position) {
   mesh.normals.assign(mesh.vertices.size(), Eigen::Vector3f::Zero());
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t vertex : t) mesh.normals[vertex] += area_normal(mesh, t);
+  if (by_position) {
+    std::map<std::array<float, 3>, Eigen::Vector3f> sums;
+    const auto sum_at = [&](std::size_t v) -> Eigen::Vector3f& {
+      const Eigen::Vector3f& p = mesh.vertices[v];
+      return sums.try_emplace({p.x(), p.y(), p.z()}, Eigen::Vector3f::Zero()).first->second;
+    };
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) sum_at(v) += mesh.normals[v];
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) mesh.normals[v] = sum_at(v);
+  }
   for (Eigen::Vector3f& normal : mesh.normals) {
     const float length = normal.norm();
     normal = length > 0.0F ? Eigen::Vector3f(normal / length) : Eigen::Vector3f::UnitZ();
@@ -76,7 +86,8 @@ void set_mean_normals(Mesh& mesh) {
 }
 
 /// Gives corners at sharp edges a vertex of their own with the face's normal.
-void sharpen(Mesh& mesh) {
+void sharpen(LevelOfDetail& level) {
+  Mesh& mesh = level.mesh;
   constexpr float kCosSmooth = 0.906F;  // 25 degrees
   for (Triangle& t : mesh.triangles) {
     const Eigen::Vector3f along = area_normal(mesh, t);
@@ -88,6 +99,7 @@ void sharpen(Mesh& mesh) {
       mesh.vertices.push_back(Eigen::Vector3f(mesh.vertices[vertex]));
       mesh.normals.push_back(face);
       if (!mesh.colours.empty()) mesh.colours.push_back(Rgb(mesh.colours[vertex]));
+      if (!level.full_vertex.empty()) level.full_vertex.push_back(std::uint32_t{level.full_vertex[vertex]});
       vertex = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
     }
   }
@@ -107,7 +119,7 @@ const LevelOfDetail& base_of(float bound_m, const LevelOfDetail& full,
 
 }  // namespace
 
-std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh) {
+std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh, bool keeps_seams) {
   std::vector<LevelOfDetail> levels;
   if (mesh.triangles.size() < kManyTriangles || !is_sound(mesh)) return levels;
   Eigen::AlignedBox3f box;
@@ -119,8 +131,8 @@ std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh) {
   const bool has_normals = !mesh.normals.empty();
   LevelOfDetail full{mesh, 0.0F};
   if (!has_normals) {
-    weld(full.mesh);
-    set_mean_normals(full.mesh);
+    if (!keeps_seams) weld(full.mesh);
+    set_mean_normals(full.mesh, keeps_seams);
   }
   std::size_t triangles = full.mesh.triangles.size();
   for (float bound_m = kFinestOfSize * size_m;
@@ -134,14 +146,18 @@ std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh) {
       continue;
     triangles = simple.mesh.triangles.size();
     const float off_m = finer.deviation_m + simple.deviation_m;
-    // fewer triangles and no larger deviation
+    LevelOfDetail level{std::move(simple.mesh), off_m};
+    if (keeps_seams)
+      for (const std::uint32_t vertex : simple.full_vertex)
+        level.full_vertex.push_back(finer.full_vertex.empty() ? vertex : finer.full_vertex[vertex]);
+    // fewer triangles and no larger deviation; `finer` may be one of the levels removed
     while (!levels.empty() && levels.back().deviation_m >= off_m) levels.pop_back();
-    levels.push_back({std::move(simple.mesh), off_m});
+    levels.push_back(std::move(level));
   }
 
-  if (!has_normals) sharpen(full.mesh);
+  if (!has_normals) sharpen(full);
   for (auto level = levels.begin(); level != levels.end(); ++level) {
-    if (!has_normals) sharpen(level->mesh);
+    if (!has_normals) sharpen(*level);
     const LevelOfDetail& finer = base_of(level->deviation_m, full, {levels.begin(), level});
     fit_normals(finer.mesh, level->deviation_m + finer.deviation_m, kSpacingOfSize * size_m, level->mesh);
   }

@@ -1,12 +1,14 @@
 // object_model.cpp: makes the model of a mesh.
 #include "app/objects/object_model.hpp"
 
+#include <numeric>
 #include <utility>
 
+#include "app/models/model_triangles.hpp"
+#include "app/objects/textured_lod.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
-
 namespace {
 
 std::vector<Eigen::Vector3d> corners_of(const GpuMesh& mesh) {
@@ -21,32 +23,69 @@ std::vector<Eigen::Vector3d> corners_of(const GpuMesh& mesh) {
 
 }  // namespace
 
-ObjectParts object_parts(const std::string& name, Mesh mesh) {
+ObjectParts object_parts(const std::string& name, Model source) {
   ObjectParts parts;
-  parts.mesh = std::move(mesh);
-  parts.touched.build_by_place(parts.mesh);
+  parts.source = std::move(source);
+  const Mesh& mesh = parts.source.mesh;
+  parts.touched.build_by_place(mesh);
   if (parts.touched.empty()) throw Error(name + ": has no triangles; a virtual object is a surface");
-  parts.mass = mass_properties(parts.mesh, parts.touched.is_closed());
-  parts.surface = spread_points(parts.mesh);
-  parts.levels = levels_of_detail(parts.mesh);
+  parts.mass = mass_properties(mesh, parts.touched.is_closed());
+  parts.surface = spread_points(mesh);
+  parts.levels = levels_of_detail(parts.source);
   return parts;
 }
 
-ObjectModel::ObjectModel(GlContext& context, ObjectParts parts)
-    : mesh(std::move(parts.mesh)), shape(context), mass(parts.mass), surface(std::move(parts.surface)) {
-  shape.set(mesh, std::move(parts.touched));
+ObjectParts object_parts(const std::string& name, Mesh mesh) {
+  return object_parts(name, Model{.mesh = std::move(mesh)});
+}
+
+ObjectModel::ObjectModel(GlContext& context, ObjectParts made)
+    : source(std::move(made.source)), shape(context), mass(made.mass), surface(std::move(made.surface)) {
+  shape.set(source.mesh, std::move(made.touched));
   corners = corners_of(shape.drawn);
   middle = shape.drawn.bounds().center();
-  for (const LevelOfDetail& level : parts.levels) {
-    levels.push_back({level.deviation_m, std::make_unique<GpuMesh>(context)});
-    levels.back().mesh->upload(level.mesh, MeshUsage::kStatic);
+  upload_textures(context);
+  parts = upload_parts(context, source);
+  for (const LevelOfDetail& level : made.levels) {
+    DrawnLevel drawn{level.deviation_m, std::make_unique<GpuMesh>(context)};
+    drawn.mesh->upload(level.mesh, MeshUsage::kStatic);
+    if (!level.parts.empty())
+      drawn.parts = upload_parts(
+          context, {.mesh = level.mesh, .texture_points = level.texture_points, .parts = level.parts});
+    levels.push_back(std::move(drawn));
   }
 }
 
-bool is_model_of(const ObjectModel& model, const Mesh& mesh) {
-  const Mesh& own = model.mesh;
-  return own.origin == mesh.origin && own.vertices == mesh.vertices && own.triangles == mesh.triangles &&
-         own.normals == mesh.normals && own.colours == mesh.colours;
+void ObjectModel::upload_textures(GlContext& context) {
+  for (const Texture& texture : source.textures) {
+    textures.push_back(std::make_unique<GpuTexture>(context, texture));
+    is_opaque = is_opaque && texture.opacity.empty();
+  }
+}
+
+std::vector<DrawnPart> ObjectModel::upload_parts(GlContext& context, const Model& of) {
+  std::vector<DrawnPart> drawn;
+  for (const ModelPart& part : of.parts) {
+    if (part.triangle_count == 0) continue;
+    std::vector<std::uint32_t> triangles(part.triangle_count);
+    std::iota(triangles.begin(), triangles.end(), part.first_triangle);
+    const Model alone = triangles_alone(of, triangles);
+    part_meshes.push_back(std::make_unique<GpuMesh>(context));
+    GpuMesh& mesh = *part_meshes.back();
+    mesh.upload(alone.mesh, MeshUsage::kStatic);
+    const bool is_textured = part.texture != kNoTexture;
+    if (is_textured) mesh.upload_texture_points(alone.texture_points);
+    drawn.push_back({&mesh, is_textured ? textures[static_cast<std::size_t>(part.texture)].get() : nullptr});
+  }
+  return drawn;
+}
+
+bool is_model_of(const ObjectModel& model, const Model& source) {
+  const Model& own = model.source;
+  return own.mesh.origin == source.mesh.origin && own.mesh.vertices == source.mesh.vertices &&
+         own.mesh.triangles == source.mesh.triangles && own.mesh.normals == source.mesh.normals &&
+         own.mesh.colours == source.mesh.colours && own.texture_points == source.texture_points &&
+         own.parts == source.parts && own.textures == source.textures;
 }
 
 }  // namespace roomradar

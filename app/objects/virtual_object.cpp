@@ -6,21 +6,14 @@
 #include <limits>
 #include <utility>
 
-#include "app/objects/teapot.hpp"
-#include "mapping/mesh/mesh_file.hpp"
-#include "mapping/types/system/error.hpp"
-
 namespace roomradar {
 namespace {
 
-constexpr int kTeapotTessellation = 10;  // 6,320 triangles: looks smooth at arm's length
-constexpr double kTeapotHeight_m = 0.15;
-
 /// Returns null if no object was made from this mesh.
 std::shared_ptr<const ObjectModel> model_among(std::span<const std::unique_ptr<VirtualObject>> objects,
-                                               const Mesh& mesh) {
+                                               const Model& source) {
   const auto same = std::find_if(objects.begin(), objects.end(),
-                                 [&](const auto& object) { return is_model_of(*object->model, mesh); });
+                                 [&](const auto& object) { return is_model_of(*object->model, source); });
   return same == objects.end() ? nullptr : (*same)->model;
 }
 
@@ -33,30 +26,46 @@ VirtualObject::VirtualObject(std::string name, std::shared_ptr<const ObjectModel
   make_contact_shadow(model->surface, body.T_world_object.linear(), shadow);
 }
 
+std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, Model source,
+                                         std::span<const std::unique_ptr<VirtualObject>> others) {
+  std::shared_ptr<const ObjectModel> model = model_among(others, source);
+  if (!model) model = std::make_shared<const ObjectModel>(context, object_parts(name, std::move(source)));
+  return std::make_unique<VirtualObject>(name, std::move(model));
+}
+
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
                                          std::span<const std::unique_ptr<VirtualObject>> others) {
-  std::shared_ptr<const ObjectModel> model = model_among(others, mesh);
-  if (!model) model = std::make_shared<const ObjectModel>(context, object_parts(name, mesh));
-  return std::make_unique<VirtualObject>(name, std::move(model));
+  return object_of(context, name, Model{.mesh = mesh}, others);
 }
 
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others) {
-  std::shared_ptr<const ObjectModel> model = model_among(others, parts.mesh);
+  std::shared_ptr<const ObjectModel> model = model_among(others, parts.source);
   if (!model) model = std::make_shared<const ObjectModel>(context, std::move(parts));
   return std::make_unique<VirtualObject>(name, std::move(model));
 }
 
-const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
-                          const Eigen::Isometry3d& T_world_camera, double error_px) {
+DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
+                         const Eigen::Isometry3d& T_world_camera, double error_px) {
+  const ObjectModel& model = *object.model;
   const Eigen::Vector3d middle_camera =
-      T_world_camera.inverse() * (object.body.T_world_object * object.model->middle);
+      T_world_camera.inverse() * (object.body.T_world_object * model.middle);
   const double nearest_m = middle_camera.z() - radius_m(object);
   const double pixel_m = nearest_m / std::max(camera.fx_px, camera.fy_px);
-  const GpuMesh* mesh = &object.model->shape.drawn;
-  for (const DrawnLevel& level : object.model->levels)
-    if (is_fine_enough(level.deviation_m, pixel_m, error_px)) mesh = level.mesh.get();
-  return *mesh;
+  DrawnObject drawn{.instance = {&model.shape.drawn, object.body.T_world_object},
+                    .is_closed = model.shape.touched.is_closed() && model.is_opaque,
+                    .parts = model.parts};
+  for (const DrawnLevel& level : model.levels) {
+    if (!is_fine_enough(level.deviation_m, pixel_m, error_px)) continue;
+    drawn.instance.mesh = level.mesh.get();
+    drawn.parts = level.parts;
+  }
+  return drawn;
+}
+
+const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
+                          const Eigen::Isometry3d& T_world_camera, double error_px) {
+  return *drawn_object(object, camera, T_world_camera, error_px).instance.mesh;
 }
 
 namespace {
@@ -75,9 +84,7 @@ double lowest_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_obje
   return -farthest_m(object, -R_world_object.row(2));
 }
 
-double lowest_m(const VirtualObject& object) {
-  return lowest_m(object, object.body.T_world_object.linear());
-}
+double lowest_m(const VirtualObject& object) { return lowest_m(object, object.body.T_world_object.linear()); }
 
 double highest_m(const VirtualObject& object) {
   return farthest_m(object, object.body.T_world_object.linear().row(2));
@@ -98,20 +105,6 @@ double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_
 Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {
   const Eigen::Vector3d to_middle = R_world_object * object.model->middle;
   return {to_middle.x(), to_middle.y(), 0.0};
-}
-
-Mesh object_mesh(const std::string& name_or_path, double size_m) {
-  Mesh mesh =
-      name_or_path == "teapot" ? utah_teapot(kTeapotTessellation, kTeapotHeight_m) : read_mesh(name_or_path);
-  if (size_m <= 0.0) return mesh;
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
-  const float longest_m = box.sizes().maxCoeff();
-  if (!(longest_m > 0.0F)) throw Error(name_or_path + ": all vertices are in one place; it cannot be scaled");
-  const float scale = static_cast<float>(size_m) / longest_m;
-  for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= scale;
-  mesh.origin *= static_cast<double>(scale);
-  return mesh;
 }
 
 }  // namespace roomradar

@@ -1,14 +1,15 @@
 // virtual_object.hpp: a virtual object: model, pose and state in the room.
 #pragma once
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "app/objects/object_file.hpp"
 #include "app/objects/object_model.hpp"
 #include "app/physics/physics.hpp"
 #include "app/render/contact_shadow.hpp"
+#include "app/render/draw.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
 
@@ -39,8 +40,11 @@ struct VirtualObject {
   VirtualObject(std::string name, std::shared_ptr<const ObjectModel> its_model);
 };
 
-/// Makes an object of this mesh; shares the model of another object with the same mesh. Throws Error as
-/// object_parts() and ObjectModel do.
+/// Makes an object of this model; shares the ObjectModel of another object if that was made from the same
+/// model. Throws Error as object_parts() and ObjectModel do.
+std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, Model source,
+                                         std::span<const std::unique_ptr<VirtualObject>> others);
+/// Same, of a mesh without textures.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 /// The same, with the model's parts already made; they are discarded if a model can be shared.
@@ -61,13 +65,12 @@ double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_
 /// origin may be at a corner, or outside.
 Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
-/// Returns the coarsest mesh of the object within error_px of the full one, as the camera sees it at its
-/// nearest point.
+/// Returns the coarsest level of the object within error_px of the full one, as the camera sees it at its
+/// nearest point. Valid as long as the object's model.
+DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
+                         const Eigen::Isometry3d& T_world_camera, double error_px);
+/// Returns the mesh of drawn_object().
 const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
                           const Eigen::Isometry3d& T_world_camera, double error_px);
-
-/// Loads the mesh that a user names: `teapot` (built in, 0.15 m high), or a file that read_mesh() reads. If
-/// size_m > 0, the mesh is scaled to that longest side. Throws Error naming the file and the fault.
-Mesh object_mesh(const std::string& name_or_path, double size_m = 0.0);
 
 }  // namespace roomradar

@@ -10,6 +10,10 @@ set_target_properties(roomradar_warnings PROPERTIES EXPORT_NAME warnings)
 # The program.
 install(TARGETS roomradar COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES ${PROJECT_BINARY_DIR}/roomradar.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+  RENAME roomradar COMPONENT program)
+install(FILES ${PROJECT_BINARY_DIR}/roomradar.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
+  RENAME _roomradar COMPONENT program)
 install(FILES app/quality/presets.json DESTINATION ${CMAKE_INSTALL_DATADIR}/roomradar COMPONENT program)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)

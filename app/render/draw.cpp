@@ -18,10 +18,18 @@ namespace {
 constexpr double kNear_m = 0.05;
 constexpr int kMaxSupersampled_px = 80'000;  // a quarter of a 640 x 480 picture
 
-constexpr const char* kVertexShader = R"(#version 450 core
+// The shaders are compiled with and without textures, so that objects without one do not pay for them.
+constexpr const char* kPlain = "#version 450 core\n";
+constexpr const char* kTextured = "#version 450 core\n#define TEXTURED\n";
+
+constexpr const char* kVertexShader = R"(
 layout(location = 0) in vec3 p_local;
 layout(location = 1) in vec3 normal_local;
 layout(location = 2) in vec3 colour_srgb;
+#ifdef TEXTURED
+layout(location = 3) in vec2 texture_point;
+out vec2 p_texture;
+#endif
 layout(location = 0) uniform mat4 clip_from_local;
 layout(location = 1) uniform mat4 eye_from_local;  // world axes, camera at the origin
 layout(location = 2) uniform vec4 plain_srgb;      // used if w is 1, else the vertices' colours
@@ -34,15 +42,23 @@ void main() {
   normal_eye = mat3(eye_from_local) * normal_local;
   albedo = mix(colour_srgb, plain_srgb.rgb, plain_srgb.a);
   albedo *= albedo;  // gamma 2 approximates sRGB without a pow() per pixel
+#ifdef TEXTURED
+  p_texture = texture_point;
+#endif
 }
 )";
 
 // Lighting of a room: ambient light, stronger from above, one broad lamp, and reflections on glaze.
 // Highlight: normalised Blinn-Phong. Grazing reflection: Schlick's approximation of the Fresnel term.
-constexpr const char* kFragmentShader = R"(#version 450 core
+constexpr const char* kFragmentShader = R"(
 in vec3 p_eye;
 in vec3 normal_eye;
 in vec3 albedo;
+#ifdef TEXTURED
+in vec2 p_texture;
+layout(binding = 0) uniform sampler2D base_srgb;
+layout(location = 7) uniform float least_opacity;
+#endif
 layout(location = 3) uniform vec3 up;
 layout(location = 4) uniform vec3 to_light;
 layout(location = 5) uniform vec2 exposure_gloss;
@@ -67,7 +83,13 @@ void main() {
   float away = 1.0 - max(dot(n, to_eye), 0.0);
   float fresnel = 0.04 + 0.96 * away * away * away * away * away;
   vec3 mirrored = mix(ground, sky, smoothstep(-0.3, 0.6, dot(reflect(-to_eye, n), up)));
-  vec3 light = albedo * (ambient * 0.75 + lamp * lambert * 0.75)
+  vec3 base = albedo;
+#ifdef TEXTURED
+  vec4 texel = texture(base_srgb, p_texture);
+  if (texel.a < least_opacity) discard;
+  base *= texel.rgb * texel.rgb;  // gamma 2, as for colours
+#endif
+  vec3 light = base * (ambient * 0.75 + lamp * lambert * 0.75)
              + exposure_gloss.y * (lamp * highlight + fresnel * mirrored);
   light *= exposure_gloss.x;
   colour = vec4(sqrt(light / (1.0 + 0.15 * light)), 1.0);
@@ -77,7 +99,7 @@ void main() {
 }  // namespace
 
 struct ObjectDrawer::State {
-  unsigned program = 0;
+  unsigned plain = 0, textured = 0;  ///< programs
   unsigned framebuffer = 0;
   std::array<unsigned, 2> textures{};  // colour, depth
   int width_px = 0;
@@ -98,6 +120,41 @@ struct ObjectDrawer::State {
     require_drawn("virtual objects");
     width_px = wide_px;
     height_px = high_px;
+  }
+
+  /// Sets what is the same for all objects.
+  static void set_lighting(unsigned program, const Lighting& lighting) {
+    const Eigen::Vector3f up = lighting.up_world.normalized().cast<float>();
+    const Eigen::Vector3f to_light = lighting.to_key_light_world.normalized().cast<float>();
+    glProgramUniform3fv(program, 3, 1, up.data());
+    glProgramUniform3fv(program, 4, 1, to_light.data());
+    glProgramUniform2f(program, 5, lighting.exposure, lighting.gloss);
+  }
+
+  /// Draws a mesh at a pose.
+  void draw(const DrawnPart& part, const DrawnObject& object, const Eigen::Matrix4d& clip_from_world,
+            const Eigen::Vector3d& camera_world) const {
+    const GpuMesh& mesh = *part.mesh;
+    const MeshInstance instance{&mesh, object.instance.T_world_mesh};
+    const Eigen::Matrix4d clip = clip_from_local(instance, clip_from_world);
+    const Eigen::Matrix4f clip_float = clip.cast<float>();
+    // Relative to the camera, in double, to keep precision in a room far from the world's origin.
+    Eigen::Isometry3d eye = instance.T_world_mesh * Eigen::Translation3d(mesh.origin());
+    eye.translation() -= camera_world;
+    const Eigen::Matrix4f eye_float = eye.matrix().cast<float>();
+    const auto level = [](std::uint8_t byte) { return static_cast<float>(byte) / 255.0F; };
+    glUseProgram(part.texture != nullptr ? textured : plain);
+    glUniformMatrix4fv(0, 1, GL_FALSE, clip_float.data());
+    glUniformMatrix4fv(1, 1, GL_FALSE, eye_float.data());
+    const Rgb colour = part.texture != nullptr ? Rgb{255, 255, 255} : object.colour;
+    glUniform4f(2, level(colour.r), level(colour.g), level(colour.b), mesh.has_colours() ? 0.0F : 1.0F);
+    glUniform1i(6, mesh.has_normals() ? 1 : 0);
+    if (part.texture != nullptr) {
+      glUniform1f(7, part.texture->least_opacity());
+      glBindTextureUnit(0, part.texture->name());
+    }
+    object.is_closed ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
+    mesh.draw(clip);
   }
 
   /// Binds and clears the framebuffer, and sets depth test and culling.
@@ -122,7 +179,12 @@ struct ObjectDrawer::State {
 };
 
 ObjectDrawer::ObjectDrawer(GlContext& /*context*/) : state_(std::make_unique<State>()) {
-  state_->program = make_program("virtual objects", kVertexShader, kFragmentShader);
+  const auto program = [](const char* name, const char* head) {
+    return make_program(
+        name, {{GL_VERTEX_SHADER, {head, kVertexShader}}, {GL_FRAGMENT_SHADER, {head, kFragmentShader}}});
+  };
+  state_->plain = program("virtual objects", kPlain);
+  state_->textured = program("textured virtual objects", kTextured);
   glCreateFramebuffers(1, &state_->framebuffer);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &state_->most_px);
 }
@@ -130,7 +192,8 @@ ObjectDrawer::ObjectDrawer(GlContext& /*context*/) : state_(std::make_unique<Sta
 ObjectDrawer::~ObjectDrawer() {
   glDeleteFramebuffers(1, &state_->framebuffer);
   glDeleteTextures(2, state_->textures.data());
-  glDeleteProgram(state_->program);
+  glDeleteProgram(state_->plain);
+  glDeleteProgram(state_->textured);
 }
 
 void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics& camera,
@@ -149,34 +212,17 @@ void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics&
   if (width == 0 || height == 0) return;
 
   state_->prepare(width, height);
-  glUseProgram(state_->program);
-  const Eigen::Vector3f up = lighting.up_world.normalized().cast<float>();
-  const Eigen::Vector3f to_light = lighting.to_key_light_world.normalized().cast<float>();
-  glUniform3fv(3, 1, up.data());
-  glUniform3fv(4, 1, to_light.data());
-  glUniform2f(5, lighting.exposure, lighting.gloss);
-
+  for (const unsigned program : {state_->plain, state_->textured}) State::set_lighting(program, lighting);
   const Intrinsics fine_camera = scaled(camera, layer.samples);
   const PixelRect fine_rect{layer.rect.x * layer.samples, layer.rect.y * layer.samples, width, height};
   const Eigen::Matrix4d clip_from_world =
       clip_from_camera(fine_camera, kNear_m, fine_rect) * T_world_camera.inverse().matrix();
   for (const DrawnObject& object : objects) {
     if (object.instance.mesh == nullptr) continue;
-    const GpuMesh& mesh = *object.instance.mesh;
-    const Eigen::Matrix4d clip = clip_from_local(object.instance, clip_from_world);
-    const Eigen::Matrix4f clip_float = clip.cast<float>();
-    // Relative to the camera, in double, to keep precision in a room far from the world's origin.
-    Eigen::Isometry3d eye = object.instance.T_world_mesh * Eigen::Translation3d(mesh.origin());
-    eye.translation() -= T_world_camera.translation();
-    const Eigen::Matrix4f eye_float = eye.matrix().cast<float>();
-    const auto part = [](std::uint8_t byte) { return static_cast<float>(byte) / 255.0F; };
-    glUniformMatrix4fv(0, 1, GL_FALSE, clip_float.data());
-    glUniformMatrix4fv(1, 1, GL_FALSE, eye_float.data());
-    glUniform4f(2, part(object.colour.r), part(object.colour.g), part(object.colour.b),
-                mesh.has_colours() ? 0.0F : 1.0F);
-    glUniform1i(6, mesh.has_normals() ? 1 : 0);
-    object.is_closed ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
-    mesh.draw(clip);
+    const Eigen::Vector3d& camera_world = T_world_camera.translation();
+    if (object.parts.empty())
+      state_->draw({object.instance.mesh, nullptr}, object, clip_from_world, camera_world);
+    for (const DrawnPart& part : object.parts) state_->draw(part, object, clip_from_world, camera_world);
   }
   require_drawn("virtual objects");  // before later calls clear GL errors
   glFlush();

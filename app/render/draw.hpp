@@ -4,11 +4,18 @@
 #include <memory>
 #include <span>
 
+#include "app/render/gpu_texture.hpp"
 #include "app/render/object_layer.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "radar/gl/gpu_mesh.hpp"
 
 namespace roomradar {
+
+/// Part of an object with one texture, or with none.
+struct DrawnPart {
+  const GpuMesh* mesh = nullptr;        ///< with texture points, if there is a texture
+  const GpuTexture* texture = nullptr;  ///< multiplies the colours; null: colours only
+};
 
 /// A virtual object to render. Mesh normals and colours are used if present, otherwise flat shading and
 /// `colour`.
@@ -17,6 +24,8 @@ struct DrawnObject {
   Rgb colour{198, 120, 72};
   /// True if the mesh is closed: its inside is never visible, so back faces are culled.
   bool is_closed = false;
+  /// Drawn in place of the instance's mesh, at its pose; all have the same origin. Empty: that mesh is drawn.
+  std::span<const DrawnPart> parts{};
 };
 
 struct Lighting {

@@ -78,11 +78,11 @@ void require_small_enough(const VirtualObject& object, const DropRequest& drop) 
   const double reach_m =
       footprint_radius_m(object, drop.R_world_object.value_or(object.body.T_world_object.linear()));
   if (reach_m <= kMostFootprint_m) return;
-  std::array<char, 240> text{};
+  std::array<char, 320> text{};
   std::snprintf(
       text.data(), text.size(),
       ": reaches %.3g m sideways from its middle, and only what reaches at most %.0f m is dropped in view. "
-      "Meshes are in metres: give it a size (add NAME FILE size 0.2) or a place (drop NAME at X Y Z)",
+      "Meshes are in metres: give it a size (--object FILE,size=0.2; add NAME FILE size 0.2) or a place (at=X,Y,Z; drop NAME at X Y Z)",
       reach_m, kMostFootprint_m);
   throw Error(object.body.name + text.data());
 }

@@ -32,14 +32,20 @@ void ObjectSet::require_new(const std::string& name) const {
   if (is_there) throw Error("script: there is an object named " + name + " already");
 }
 
-void ObjectSet::add(const std::string& name, const Mesh& mesh) {
+void ObjectSet::add(const std::string& name, const Mesh& mesh) { add(name, Model{.mesh = mesh}); }
+
+void ObjectSet::add(const std::string& name, Model model) {
   require_new(name);
-  objects_.push_back(object_of(context_, name, mesh, objects_));
+  std::vector<std::string> notes = model.notes;
+  objects_.push_back(object_of(context_, name, std::move(model), objects_));
+  for (std::string& note : notes) notices_.push_back({"", std::move(note)});
 }
 
 void ObjectSet::add(const std::string& name, ObjectParts parts) {
   require_new(name);
+  std::vector<std::string> notes = parts.source.notes;
   objects_.push_back(object_of(context_, name, std::move(parts), objects_));
+  for (std::string& note : notes) notices_.push_back({"", std::move(note)});
 }
 
 void ObjectSet::cancel_drop(const std::string& name) {

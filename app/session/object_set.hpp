@@ -46,6 +46,8 @@ class ObjectSet {
   /// Adds an object that is not in the room at first. Throws Error if the name is taken or the mesh is
   /// unsuitable.
   void add(const std::string& name, const Mesh& mesh);
+  /// Same, with the model's textures; its notes become notices.
+  void add(const std::string& name, Model model);
   /// Adds an object from parts that were prepared earlier, such as on another thread.
   void add(const std::string& name, ObjectParts parts);
   /// Puts an object into the room. If it would overlap other objects, it starts on top of them if the room

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 
+#include "app/objects/unknown_support.hpp"
+
 namespace roomradar {
 namespace {
+
+constexpr double kBesideObject_m = 0.03;  // by which a hatched patch is seen beside its object
 
 /// Extrapolates a camera's pose to after_s after T_world_now from its motion over the last dt_s, by at most
 /// that motion in either direction. Returns T_world_now without a time difference, or after a jump: the
@@ -92,9 +96,7 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   std::vector<ShadowCaster> casters;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
-    drawn.push_back({.instance = {&drawn_mesh(*object, camera, T_world_view, config_.object_error_px),
-                                  object->body.T_world_object},
-                     .is_closed = object->model->shape.touched.is_closed()});
+    drawn.push_back(drawn_object(*object, camera, T_world_view, config_.object_error_px));
     if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
   }
   drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // runs in parallel with real depth and shadows
@@ -105,6 +107,13 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   if (rect.width > 0 && rect.height > 0) scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);
   cast_shadows(background_, camera, T_world_view, real_depth_m_, casters, config_.picture.shadow_strength,
                picture_);
+  patches_.clear();
+  for (const auto& object : objects_)
+    if (rests_on_unknown(*object))
+      patches_.push_back(
+          {support_point_world(*object),
+           footprint_radius_m(*object, object->body.T_world_object.linear()) + kBesideObject_m});
+  hatch(patches_, camera, T_world_view, real_depth_m_, picture_);
   drawer_.finish(layer_);
   lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_);
 }

@@ -8,6 +8,7 @@
 
 #include "app/objects/virtual_object.hpp"
 #include "app/render/draw.hpp"
+#include "app/render/hatched_patch.hpp"
 #include "app/render/occlusion.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/session_config.hpp"
@@ -60,6 +61,7 @@ class PictureComposer {
   std::optional<ShownView> colour_view_;                 ///< view of the last colour image, if recent
   static constexpr int kColourLasts_frames = 15;         ///< half a second of a Kinect's frames
   int frames_without_colour_ = kColourLasts_frames + 1;  ///< since the last colour image
+  std::vector<HatchedPatch> patches_;                    ///< scratch: under objects on unknown space
   std::size_t last_shadow_ = 0;  ///< index of the object whose shadow was renewed last
   ColourImage background_;
   ColourImage picture_;

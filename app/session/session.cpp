@@ -25,6 +25,7 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config.tracking_px;
   room_.shape.set(map.mesh, MeshUsage::kStatic);
   room_.lowest_known_m = lowest_known_m(map);
+  room_.extent_m = extent_m(map);
   if (!config.map_updates) return;
   if (octree == nullptr) throw Error("adopt: the session was given no octree to change");
   if (config.scene.surfaces != SurfacePolicy::kMap)

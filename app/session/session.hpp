@@ -41,6 +41,8 @@ class Session {
 
   /// Adds an object, at first outside the room. Throws Error if the name is taken or the mesh is unsuitable.
   void add_object(const std::string& name, const Mesh& mesh) { objects_.add(name, mesh); }
+  /// Same, with the model's textures; its notes become notices.
+  void add_object(const std::string& name, Model model) { objects_.add(name, std::move(model)); }
   /// Adds an object from parts that were prepared earlier, such as on another thread.
   void add_object(const std::string& name, ObjectParts parts) { objects_.add(name, std::move(parts)); }
   /// Puts an object into the room; see ObjectSet::place(). This call and those below throw Error if there is
@@ -86,6 +88,8 @@ class Session {
   /// Commits objects in view that stand still, or are gone, to the map. Throws Error unless
   /// config().map_updates is set.
   void commit_changes();
+  /// Returns the notices since the last frame or call, for calls made before the first frame.
+  std::vector<ObjectNotice> take_notices() { return objects_.take_notices(); }
   /// Returns the changes committed to the room so far.
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
   /// Waits for a running commit, so the octree may be read.
@@ -107,6 +111,8 @@ class Session {
   [[nodiscard]] const FrameScene& scene() const { return scene_; }
   /// The room's current shape, with all committed changes.
   [[nodiscard]] const Shape& room() const { return room_.shape; }
+  /// Longest side of the known room, m, when the session began.
+  [[nodiscard]] double room_extent_m() const { return room_.extent_m; }
   /// Null until unknown space is made solid for the first time.
   [[nodiscard]] const UnknownSurface* unknown() const { return room_.unknown.get(); }
   [[nodiscard]] bool unknown_is_solid() const { return room_.unknown_is_solid; }

@@ -4,6 +4,18 @@
 #include <algorithm>
 
 namespace roomradar {
+namespace {
+
+/// Returns the box around the map's surface and observed space, in the world.
+Eigen::AlignedBox3d known_box(const SavedMap& map) {
+  Eigen::AlignedBox3d box = map.info.counts.known_world.isEmpty()  // not loaded from a folder
+                                ? map.octree.counts().known_world
+                                : map.info.counts.known_world;
+  for (const Eigen::Vector3f& vertex : map.mesh.vertices) box.extend(map.mesh.origin + vertex.cast<double>());
+  return box;
+}
+
+}  // namespace
 
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object) {
   return is_in_solid_unknown(room, object, object.body.T_world_object);
@@ -25,14 +37,11 @@ bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object,
   });
 }
 
-double lowest_known_m(const SavedMap& map) {
-  const Eigen::AlignedBox3d known_world = map.info.counts.known_world.isEmpty()  // not loaded from a folder
-                                              ? map.octree.counts().known_world
-                                              : map.info.counts.known_world;
-  double lowest_m = known_world.min().z();
-  for (const Eigen::Vector3f& vertex : map.mesh.vertices)
-    lowest_m = std::min(lowest_m, map.mesh.origin.z() + static_cast<double>(vertex.z()));
-  return lowest_m;
+double lowest_known_m(const SavedMap& map) { return known_box(map).min().z(); }
+
+double extent_m(const SavedMap& map) {
+  const Eigen::AlignedBox3d box = known_box(map);
+  return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
 }
 
 }  // namespace roomradar

@@ -13,6 +13,7 @@ namespace roomradar {
 struct SessionRoom {
   Shape shape;                  ///< the map's mesh in the world, with all committed changes
   double lowest_known_m = 0.0;  ///< least height of the map's surface and observed space, in the world
+  double extent_m = 0.0;        ///< longest side of the box around surface and observed space
   /// Null until unknown space is made solid for the first time.
   std::shared_ptr<const UnknownSurface> unknown{};
   TriangleTree unknown_tree{};
@@ -27,5 +28,7 @@ bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object,
 
 /// Returns the least height of the map's surface and observed space, m in the world.
 double lowest_known_m(const SavedMap& map);
+/// Returns the longest side of the box around the map's surface and observed space, m.
+double extent_m(const SavedMap& map);
 
 }  // namespace roomradar

@@ -1,13 +1,11 @@
 // mesh_file.hpp: reads and writes triangle meshes as .ply, .obj, .stl and .glb.
 #pragma once
-#include <cstddef>
 #include <filesystem>
 
+#include "mapping/mesh/assimp_import.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
-
-inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 
 /// Reads all triangles of a file, with normals and colours if every vertex has them. Vertices are read as
 /// metres in the file's own axes, unscaled. Only .glb is converted, as its standard requires: from y up to z

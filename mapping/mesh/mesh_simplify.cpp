@@ -99,7 +99,8 @@ class BlockSimplifier {
     std::vector<float> tolerance_m;
     for (const std::uint32_t v : full.name)
       tolerance_m.push_back(on_seam_[v] ? 0.0F : kOfBound * max_deviation_m_);
-    const auto [simple, deviation_m] = simplified_block(full.mesh, tolerance_m, max_deviation_m_, spacing_m_);
+    const SimplifiedMesh result = simplified_block(full.mesh, tolerance_m, max_deviation_m_, spacing_m_);
+    const Mesh& simple = result.mesh;
     for (std::size_t v = 0; v < full.name.size(); ++v) {
       const std::uint32_t name = full.name[v];
       if (on_seam_[name]) continue;
@@ -110,7 +111,7 @@ class BlockSimplifier {
     for (std::size_t t = 0; t < block.size(); ++t)
       for (std::size_t k = 0; k < 3; ++k)
         block[t][k] = t < simple.triangles.size() ? full.name[simple.triangles[t][k]] : kNoCorner;
-    return deviation_m;
+    return result.deviation_m;
   }
 
   Mesh& mesh_;
@@ -120,6 +121,18 @@ class BlockSimplifier {
   std::vector<bool> on_seam_;
   std::atomic<std::size_t> next_ = 0;
 };
+
+// Returns the used vertices in the order of compacted().
+std::vector<std::uint32_t> vertices_by_use(const Mesh& mesh) {
+  std::vector<bool> is_known(mesh.vertices.size(), false);
+  std::vector<std::uint32_t> used;
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) {
+      if (!is_known[v]) used.push_back(v);
+      is_known[v] = true;
+    }
+  return used;
+}
 
 }  // namespace
 
@@ -134,7 +147,7 @@ SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std
     deviation_m = blocks.work();
   }
   std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == kNoCorner; });
-  return {compacted(mesh, mesh.triangles), deviation_m};
+  return {compacted(mesh, mesh.triangles), deviation_m, vertices_by_use(mesh)};
 }
 
 }  // namespace roomradar

@@ -1,6 +1,8 @@
 // mesh_simplify.hpp: mesh simplification within a guaranteed distance bound.
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "mapping/types/mesh.hpp"
 
@@ -12,6 +14,8 @@ struct SimplifiedMesh {
   /// Greatest measured distance between the surfaces, in both directions, m: at all vertices and at points
   /// spacing_m apart. Never above the bound; between the points the distance may be slightly larger.
   float deviation_m = 0.0F;
+  /// Per vertex: index of a vertex of the original that was merged into it.
+  std::vector<std::uint32_t> full_vertex{};
 };
 
 inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size fits the CPU cache

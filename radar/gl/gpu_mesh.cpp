@@ -21,6 +21,7 @@ constexpr std::uint32_t kStaticChunkTriangles = 1024;
 constexpr std::uint32_t kStreamedChunkTriangles = 512;
 
 enum Buffer : GLuint { kPositions, kNormals, kColours, kIndices };
+constexpr GLuint kTexturePoints = 3;  // attribute and binding
 
 /// Returns true if the box is wholly outside one of the clip planes. Conservative: a box near a corner may
 /// count as inside.
@@ -82,6 +83,7 @@ GpuMesh::GpuMesh(GlContext& /*context*/) {
 
 GpuMesh::~GpuMesh() {
   glDeleteBuffers(static_cast<GLsizei>(buffers_.size()), buffers_.data());
+  glDeleteBuffers(1, &texture_points_);  // 0 is ignored
   glDeleteVertexArrays(1, &vertex_array_);
 }
 
@@ -114,6 +116,23 @@ void GpuMesh::upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree
   cut_into_chunks(tree.vertices(), tree.triangles(),
                   usage == MeshUsage::kStatic ? kStaticChunkTriangles : kStreamedChunkTriangles, chunked_);
   send(mesh, usage);
+}
+
+void GpuMesh::upload_texture_points(std::span<const Eigen::Vector2f> points) {
+  if (points.size() != vertices().size())
+    refuse(std::to_string(points.size()) + " texture points for " + std::to_string(vertices().size()) +
+           " vertices; give one each");
+  forget_gl_errors();
+  if (texture_points_ == 0) {
+    glCreateBuffers(1, &texture_points_);
+    glVertexArrayVertexBuffer(vertex_array_, kTexturePoints, texture_points_, 0, sizeof(Eigen::Vector2f));
+    glVertexArrayAttribBinding(vertex_array_, kTexturePoints, kTexturePoints);
+    glVertexArrayAttribFormat(vertex_array_, kTexturePoints, 2, GL_FLOAT, GL_FALSE, 0);
+    glEnableVertexArrayAttrib(vertex_array_, kTexturePoints);
+  }
+  glNamedBufferData(texture_points_, static_cast<GLsizeiptr>(points.size_bytes()), points.data(),
+                    GL_STATIC_DRAW);
+  require_drawn("texture coordinates");
 }
 
 /// Uploads the CPU copy. If the renderer has no memory or is lost, the mesh is empty afterwards.

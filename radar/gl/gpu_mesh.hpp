@@ -48,6 +48,9 @@ class GpuMesh {
   /// @param tree  built from this mesh (in order for kStreamed); must not be destroyed or rebuilt before the
   ///              next upload
   void upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree);
+  /// Adds texture coordinates to the last upload of kStatic, one per vertex of that mesh: attribute 3 (vec2).
+  /// Throws Error if their number is another, or the renderer has no memory.
+  void upload_texture_points(std::span<const Eigen::Vector2f> points);
   /// Returns the tree of the last upload, or null if it had none.
   [[nodiscard]] const TriangleTree* tree() const { return tree_; }
 
@@ -112,6 +115,7 @@ class GpuMesh {
   unsigned vertex_array_ = 0;
   // GL buffers: positions, normals, colours, indices.
   std::array<unsigned, 4> buffers_{};
+  unsigned texture_points_ = 0;  // GL buffer; 0: none
   std::array<std::size_t, 4> capacity_bytes_{};
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   // Tree that holds the CPU copy; if null, vertices_ and chunked_ hold it.

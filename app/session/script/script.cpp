@@ -82,6 +82,26 @@ void read_quality(LineReader& line, ScriptEvent& event) {
   }
 }
 
+constexpr std::array<Word<UpAxis>, 6> kUpAxes = {{{"x", UpAxis::kX},
+                                                  {"y", UpAxis::kY},
+                                                  {"z", UpAxis::kZ},
+                                                  {"-x", UpAxis::kMinusX},
+                                                  {"-y", UpAxis::kMinusY},
+                                                  {"-z", UpAxis::kMinusZ}}};
+
+/// Reads what follows the mesh, in any order.
+void read_add(LineReader& line, ScriptEvent& event) {
+  while (!line.done()) {
+    if (!event.size_m && line.take_if("size")) {
+      event.size_m = line.number("a size (m), 0.001..10", 0.001, 10.0);
+    } else if (!event.up && line.take_if("up")) {
+      event.up = line.choice("the axis of the file that points up", kUpAxes);
+    } else {
+      return;
+    }
+  }
+}
+
 void read_when(LineReader& line, ScriptEvent& event) {
   const std::string_view when = line.word("'frame' or 'time'");
   if (when == "frame") {
@@ -99,7 +119,7 @@ void read_action(LineReader& line, ScriptEvent& event) {
   switch (event.action) {
     case Action::kAdd:
       event.mesh = line.word("'teapot' or a mesh file");
-      if (line.take_if("size")) event.size_m = line.number("a size (m), 0.001..10", 0.001, 10.0);
+      read_add(line, event);
       break;
     case Action::kPlace:
       event.position_world = read_position(line);
@@ -221,6 +241,7 @@ std::string to_line(const ScriptEvent& event) {
     case Action::kAdd:
       line.append(" ").append(event.mesh);
       if (event.size_m) line += " size" + number_word(*event.size_m);
+      if (event.up) line.append(" up ").append(to_string(*event.up));
       break;
     case Action::kPlace:
       line += vector_words(*event.position_world) + turned_words(event);

@@ -22,6 +22,7 @@ enum class LastLine { kWhole, kMayBeCut };
 /// Reads an events file. One event per line, words separated by blanks, # begins a comment:
 ///
 ///     frame 0    add pot teapot size 0.2
+///     frame 0    add chair chair.obj size 0.9 up z        longest side (m); axis of the file that points up
 ///     frame 10   drop pot view height 0.3         over the free level surface nearest to the view's middle
 ///     frame 11   drop pot near 0.4 -0.1 0.7       over the one nearest to this point, at most 25 cm away
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3

@@ -3,6 +3,8 @@
 
 namespace roomradar {
 
+ObjectSource source_of(const ScriptEvent& add) { return {add.mesh, add.size_m, add.up, add.origin}; }
+
 bool has_object(Action action) {
   switch (action) {
     case Action::kSurfaces:

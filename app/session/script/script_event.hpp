@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/objects/object_file.hpp"
 #include "app/quality/frame_load.hpp"
 #include "app/quality/quality.hpp"
 #include "dynamic/surface/surface_policy.hpp"
@@ -51,6 +52,9 @@ struct ScriptEvent {
   std::string name;              ///< name of the object; empty for actions without an object
   std::string mesh;              ///< kAdd: `teapot`, or a mesh file, relative to the script's folder
   std::optional<double> size_m;  ///< kAdd: length of the longest side after scaling; unset: not scaled
+  std::optional<UpAxis> up;      ///< kAdd: axis of the file that points up; unset: the format's
+  /// kAdd: kAsInFile in sessions recorded before origins were brought near.
+  ModelOrigin origin = ModelOrigin::kNear;
   /// kPlace, kDrop, kThrow, kCarry. kDrop without a position: over a surface in view.
   std::optional<Eigen::Vector3d> position_world;
   /// kDrop without a position: over the surface in view nearest to this point; unset: nearest to the view's
@@ -74,6 +78,8 @@ struct ScriptEvent {
   CameraPlay camera = CameraPlay::kGo;  ///< kCamera
 };
 
+/// Returns the model that a kAdd event names.
+ObjectSource source_of(const ScriptEvent& add);
 /// Returns true if the action is followed by an object's name.
 bool has_object(Action action);
 

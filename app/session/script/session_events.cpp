@@ -1,6 +1,10 @@
 // session_events.cpp: one typed call of Session per kind of event.
 #include "app/session/script/session_events.hpp"
 
+#include <cctype>
+#include <string>
+#include <utility>
+
 #include "mapping/types/system/stage_times.hpp"
 
 namespace roomradar {
@@ -11,12 +15,33 @@ ObjectState state_of(const ScriptEvent& event) {
           event.angular_velocity_world_rad_s};
 }
 
+/// Returns the text that a user's script or command line needs before a size.
+std::string option_before_size(const ScriptEvent& add) {
+  if (add.line > 0) return "add " + add.name + " " + add.mesh + " size ";
+  return add.name == kOnlyObject ? "--object-size " : "--object " + add.mesh + ",size=";
+}
+
+void add_object(Session& session, const ScriptEvent& add) {
+  const ObjectSource source = source_of(add);
+  Model model = object_model(source);
+  require_sensible_size(model, source, {session.room_extent_m(), option_before_size(add)});
+  session.add_object(add.name, std::move(model));
+}
+
 }  // namespace
+
+std::string object_name(const std::string& mesh) {
+  std::string stem = mesh.substr(mesh.find_last_of('/') + 1);
+  stem = stem.substr(0, stem.find('.'));
+  for (char& letter : stem)
+    if (std::isspace(static_cast<unsigned char>(letter)) != 0 || letter == '#') letter = '_';
+  return stem.empty() ? "object" : stem;
+}
 
 void apply(Session& session, const ScriptEvent& event) {
   switch (event.action) {
     case Action::kAdd:
-      session.add_object(event.name, object_mesh(event.mesh, event.size_m.value_or(0.0)));
+      add_object(session, event);
       break;
     case Action::kPlace:
     case Action::kThrow:

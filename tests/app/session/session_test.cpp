@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/run/run_results.hpp"
+#include "app/run/run_summary.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/radar/shapes.hpp"
 #include "tests/support/error_of.hpp"
@@ -223,7 +223,7 @@ TEST(Session, ADropThatWaitsToTheEndIsSaid) {
   for (const bool is_in_view : {false, true}) {
     if (is_in_view) see_the_floor(session, times);
     testing::internal::CaptureStdout();
-    print_summary({}, session);
+    print_objects(session);
     const std::string said = testing::internal::GetCapturedStdout();
     EXPECT_EQ(said.find("pot: not in the room; its drop waits") == std::string::npos, is_in_view) << said;
   }

@@ -44,6 +44,21 @@ frame 257  quality from physics move_every_n_frames 4
 frame 300  quit
 )";
 
+TEST(Script, AnObjectMayBeAddedWithASizeAndAnAxisThatPointsUp) {
+  for (const char* line :
+       {"frame 0 add chair chair.obj size 0.9 up -y", "frame 0 add chair chair.obj up -y size 0.9"}) {
+    const Script script = parse_script(std::string(line) + "\n", "test");
+    ASSERT_EQ(script.events.size(), 1U);
+    EXPECT_EQ(script.events[0].size_m, 0.9);
+    EXPECT_EQ(script.events[0].up, UpAxis::kMinusY);
+    EXPECT_EQ(to_line(script.events[0]), "frame 0 add chair chair.obj size 0.9 up -y");
+  }
+  EXPECT_FALSE(parse_script("frame 0 add chair chair.obj\n", "test").events[0].up);
+  for (const char* bad : {"up sideways", "up", "size 0.9 size 0.8", "up y up z", "upright"})
+    EXPECT_THROW(parse_script(std::string("frame 0 add chair chair.obj ") + bad + "\n", "test"), Error)
+        << bad;
+}
+
 TEST(Script, ReadsEachAction) {
   const Script script = parse_script(kWhole, "events.txt");
   ASSERT_EQ(script.events.size(), 17U);

@@ -1,0 +1,122 @@
+// object_options.cpp: takes apart "FILE,size=S,up=A,at=X,Y,Z".
+#include "app/cli/options/object_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "app/cli/options/option_checks.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kLeastSize_m = 0.001, kMostSize_m = 10.0;
+constexpr double kMostCoordinate_m = 1e6;
+constexpr std::array<std::string_view, 3> kKeys = {"size", "up", "at"};
+
+[[noreturn]] void fail(const std::string& text, const std::string& fault) {
+  throw CLI::ValidationError("--object " + text + ": " + fault);
+}
+
+/// Returns the position of the next ",size=", ",up=" or ",at="; npos if there is none.
+std::size_t next_key(std::string_view text, std::size_t from) {
+  std::size_t first = std::string_view::npos;
+  for (const std::string_view key : kKeys)
+    first = std::min(first, text.find("," + std::string(key) + "=", from));
+  return first;
+}
+
+double number_of(const std::string& text, const std::string& word, double low, double high,
+                 const std::string& wanted) {
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(word, value) && value >= low && value <= high) return value;
+  fail(text, wanted + ", not \"" + word + "\"");
+}
+
+UpAxis axis_of(const std::string& option, const std::string& word) {
+  if (const auto up = up_axis_of(word)) return *up;
+  throw CLI::ValidationError(option + ": the axis that points up must be " + std::string(kUpAxisWords) +
+                             ", not \"" + word + "\"");
+}
+
+Eigen::Vector3d point_of(const std::string& text, const std::string& words) {
+  const std::string wanted = "at= needs three numbers X,Y,Z in metres";
+  std::vector<std::string> parts = CLI::detail::split(words, ',');
+  if (parts.size() != 3) fail(text, wanted + ", not \"" + words + "\"");
+  Eigen::Vector3d point;
+  for (int i = 0; i < 3; ++i)
+    point[i] =
+        number_of(text, parts[static_cast<std::size_t>(i)], -kMostCoordinate_m, kMostCoordinate_m, wanted);
+  return point;
+}
+
+void take_value(const std::string& text, const std::string& key, const std::string& value,
+                ObjectOption& object) {
+  const bool is_again = (key == "size" && object.source.size_m) || (key == "up" && object.source.up) ||
+                        (key == "at" && object.at_world);
+  if (is_again) fail(text, key + "= is given twice");
+  if (key == "size")
+    object.source.size_m =
+        number_of(text, value, kLeastSize_m, kMostSize_m, "size= must be within 0.001 and 10 (metres)");
+  else if (key == "up")
+    object.source.up = axis_of("--object " + text, value);
+  else
+    object.at_world = point_of(text, value);
+}
+
+ObjectOption object_of(const std::string& text) {
+  ObjectOption object{.text = text};
+  std::size_t at = next_key(text, 0);
+  object.source.mesh = text.substr(0, at);
+  if (object.source.mesh.empty()) fail(text, "names no mesh; wanted is MESH[,size=M][,up=AXIS][,at=X,Y,Z]");
+  while (at != std::string::npos) {
+    const std::size_t equals = text.find('=', at);
+    const std::size_t end = next_key(text, equals);
+    take_value(text, text.substr(at + 1, equals - at - 1),
+               text.substr(equals + 1, end == std::string::npos ? end : end - equals - 1), object);
+    at = end;
+  }
+  return object;
+}
+
+}  // namespace
+
+void add_object_options(CLI::App& command, ObjectOptions& options) {
+  command
+      .add_option(
+          "--object", options.texts,
+          "virtual object: teapot (built in), or a .glb, .gltf, .obj, .ply, .stl or .dae file; may be\n"
+          "given several times. After the name may follow, each with a comma: size=M, the longest\n"
+          "side (m); up=AXIS, the file's axis that points up (x, y, z, -x, -y, -z); at=X,Y,Z, a point\n"
+          "of the map (m) 5 cm above which it is dropped, else over a level surface in view:\n"
+          "--object chair.glb,size=0.9,up=y,at=0.4,-0.1,0.75 (default: teapot)")
+      ->allow_extra_args(false)
+      ->type_name("MESH[,size=M][,up=AXIS][,at=X,Y,Z]");
+  command
+      .add_option("--object-size", options.size_m,
+                  "longest side of the objects that have no size= of their own\n"
+                  "(default: as in the file, whose numbers are metres unless it states a unit)")
+      ->check(within(kLeastSize_m, kMostSize_m, "metres"))
+      ->type_name("M");
+  command
+      .add_option(
+          "--object-up", options.up,
+          "axis that points up in the files of objects that have no up= of their own: x, y, z, -x, -y\n"
+          "or -z (default: y for .glb, .gltf and .obj, z for .ply and .stl, as stated in a .dae)")
+      ->type_name("AXIS");
+}
+
+std::vector<ObjectOption> objects_of(const ObjectOptions& options) {
+  std::vector<ObjectOption> objects;
+  for (const std::string& text : options.texts) objects.push_back(object_of(text));
+  if (objects.empty()) objects.push_back(object_of("teapot"));
+  for (ObjectOption& object : objects) {
+    if (!object.source.size_m) object.source.size_m = options.size_m;
+    if (!object.source.up && options.up)
+      object.source.up = axis_of("--object-up " + *options.up, *options.up);
+  }
+  return objects;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,37 @@
+// assimp_import.hpp: reads files of triangle meshes through assimp, with explicit limits.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace Assimp {
+class Importer;
+}
+struct aiScene;
+
+namespace roomradar {
+
+inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
+
+/// Throws Error "FILE: fault".
+[[noreturn]] void fail_for_file(const std::filesystem::path& path, const std::string& fault);
+/// Throws Error that states the number of triangles and the limit.
+[[noreturn]] void fail_for_size(const std::filesystem::path& path, std::uint64_t triangles);
+
+/// Returns the extension in lower case, with its point.
+std::string lower_extension(const std::filesystem::path& path);
+
+/// Throws Error if the file is missing, empty, larger than 512 MiB, or declares more triangles than
+/// kMaxMeshTriangles or than it can hold. Allocates nothing for the mesh.
+void require_plausible_size(const std::filesystem::path& path);
+
+/// Reads a file as triangles, without animations, lights and cameras. assimp crashes or hangs on damaged
+/// files: call this within run_sandboxed(). The corners of an .stl are joined and its facet normals dropped.
+/// Coordinates are in the file's own axes; those of a .dae are converted to metres, as the file states.
+/// @param dropped  further assimp components (aiComponent) to drop
+/// @return the scene, owned by the importer
+/// @throws Error naming the file and the fault
+const aiScene& import_scene(Assimp::Importer& importer, const std::filesystem::path& path, int dropped);
+
+}  // namespace roomradar
