@@ -25,6 +25,20 @@ std::vector<TimedPose> trusted_poses(const FusionPass& pass) {
   return poses;
 }
 
+/// Spans of frames without a trusted pose. Unreadable frames in a span are included.
+std::vector<FrameSpan> lost_frames(const std::vector<TrackedFrame>& frames) {
+  std::vector<FrameSpan> lost;
+  bool goes_on = false;
+  for (const TrackedFrame& frame : frames) {
+    if (!frame.trusted && goes_on)
+      lost.back().last = frame.frame_index;
+    else if (!frame.trusted)
+      lost.push_back({frame.frame_index, frame.frame_index});
+    goes_on = !frame.trusted;
+  }
+  return lost;
+}
+
 std::string why_none_trusted(const PrescanWork& work) {
   if (work.config.poses == PoseOrigin::kTracked) return "is there depth between 0.5 and 6 m in the frames?";
   return "the recording has no poses, or none within the octree's reach of " +
@@ -100,6 +114,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   map.keyframe_database = std::move(pass.found.keyframe_database);
   transform(map.keyframe_database, pass.T_world_found);
 
+  result.lost = lost_frames(pass.found.frames);
   counts = pass.counts;
   counts.stopped_for_memory |= pass.stopped_for_memory;
   counts.frames_tracked = static_cast<std::int64_t>(map.trajectory.size());

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mapping/coverage/holes.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -23,6 +24,7 @@ struct PrescanConfig {
   double resolution_m = 0.01;  ///< edge of the octree's smallest voxels
   PoseOrigin poses = PoseOrigin::kTracked;
   OdometryConfig odometry;
+  std::optional<GivenUp> up;  ///< up direction that the user states; unset: estimated
   int fuse_every = 1;         ///< only tracked frames whose index is a multiple of this are fused
   std::int64_t hold_out = 0;  ///< N > 0: frames selected by is_held_out() are tracked, but not fused
   bool remove_ghosts = true;  ///< remove surfaces of objects that moved during the scan
@@ -37,9 +39,15 @@ struct PrescanConfig {
 /// hold_out < 1.
 bool is_held_out(std::int64_t frame_index, std::int64_t hold_out);
 
+/// Consecutive frames of the source.
+struct FrameSpan {
+  std::int64_t first = 0, last = 0;  ///< frame indices, both included
+};
+
 struct PrescanResult {
   SavedMap map;
-  std::vector<Hole> holes;  ///< regions that the scan did not observe; per kind, largest first
+  std::vector<Hole> holes;      ///< regions that the scan did not observe; per kind, largest first
+  std::vector<FrameSpan> lost;  ///< readable frames without a trusted pose, in order
   PrescanCounts counts;
   SurfaceStats surface;
 };
@@ -60,10 +68,11 @@ struct PrescanInput {
 };
 
 /// Scans a room. Reads the source once to track the camera and again to fuse with the final poses; if
-/// something moved, reads parts of it twice more to remove ghosts. Without start.map, the map's world is the
-/// recording's (recorded poses) or the first camera's (tracked), rotated so +z is up. Stages timed: read,
-/// track, optimise, fuse, ghosts, surface, coverage, checkpoint (time the work is blocked), and frame (track
-/// plus fuse of one frame, without reading).
+/// something moved, reads parts of it twice more to remove ghosts. Without start.map, the map's world has +z
+/// up; its origin is the recording's (recorded poses), or on the floor below the first camera (tracked; at
+/// the height of that camera if no level surface is measured). Stages timed: read, track, optimise, fuse,
+/// ghosts, surface, coverage, checkpoint (time the work is blocked), and frame (track plus fuse of one frame,
+/// without reading).
 ///
 /// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface; also
 ///         if start.map shows another room, or overlaps the source too little for a reliable registration

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "mapping/coverage/observed_area.hpp"
+#include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/registration.hpp"
+#include "mapping/map/surface_points.hpp"
 #include "mapping/revision/ghost_removal.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/storage/checkpoints.hpp"
@@ -122,7 +124,7 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, TrackingPass& pass) {
   }
   TrajectoryEstimate found;
   found.frames = work.times.timed("optimise", [&] { return pass.odometry.optimise(); });
-  found.up = pass.up.estimate();
+  found.up = config.up ? pass.up.take(*config.up) : pass.up.estimate();
   found.recorded = std::move(pass.recorded);
   pass.counts.keyframes = pass.odometry.counts().keyframes;
   pass.counts.loops_found = pass.odometry.counts().loops_found;
@@ -130,11 +132,22 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, TrackingPass& pass) {
   return found;
 }
 
-/// Computes the transform from the tracker's world to the map's: to an existing map, or else a rotation to +z
-/// up.
+/// Computes the world of a new map: +z up. Tracked poses get their origin on the floor below the first
+/// camera; recorded poses keep the recording's.
+Eigen::Isometry3d transform_to_new_map(const TrajectoryEstimate& found, PoseOrigin poses) {
+  Eigen::Isometry3d T_map_found = level_rotation(found.up.up_world);
+  const auto first = std::find_if(found.frames.begin(), found.frames.end(),
+                                  [](const TrackedFrame& frame) { return frame.trusted; });
+  if (poses == PoseOrigin::kRecorded || first == found.frames.end()) return T_map_found;
+  const Eigen::Vector3d camera_map = T_map_found * first->T_world_camera.translation();
+  const double floor_m = floor_height_m(found.keyframe_database, found.up.up_world).value_or(camera_map.z());
+  T_map_found.pretranslate(Eigen::Vector3d(-camera_map.x(), -camera_map.y(), -floor_m));
+  return T_map_found;
+}
+
+/// Computes the transform from the tracker's world to that of an existing map.
 Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEstimate& found,
-                                   const std::optional<SavedMap>& map, const std::string& source) {
-  if (!map) return level_rotation(found.up.up_world);
+                                   const SavedMap& map, const std::string& source) {
   constexpr std::size_t kPoints = 12'000;
   const std::vector<Eigen::Vector3d> surface = surface_of(found.keyframe_database, kPoints);
   // A long scan may be localised in the map, then leave it for other rooms, so only a small fraction
@@ -143,8 +156,8 @@ Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEst
   located.min_overlap = 0.01;
   const Registration placed =
       odometry.is_located()
-          ? verify_registration(map->octree, surface, Eigen::Isometry3d::Identity(), located)
-          : register_to(map->octree, map->keyframe_database, found.keyframe_database, surface);
+          ? verify_registration(map.octree, surface, Eigen::Isometry3d::Identity(), located)
+          : register_to(map.octree, map.keyframe_database, found.keyframe_database, surface);
   if (!placed)
     throw Error(source + ": cannot be registered to the map that it is to be added to: " + describe(placed) +
                 "; the map is unchanged. Begin where the map was scanned, or save as another map");
@@ -173,7 +186,8 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
   if (fusing.counts.frames_read == fusing.counts.frames_skipped)
     throw Error(work.source.name() + ": there is not one readable frame" +
                 (fusing.counts.last_fault.empty() ? "" : "; the last fault: " + fusing.counts.last_fault));
-  fusing.T_world_found = transform_to_map(pass.odometry, fusing.found, map, work.source.name());
+  fusing.T_world_found = map ? transform_to_map(pass.odometry, fusing.found, *map, work.source.name())
+                             : transform_to_new_map(fusing.found, work.config.poses);
   fusing.octree = map ? std::move(map->octree) : StaticMap(work.config.resolution_m);
   keep(work.checkpoints, kFusingStage, fusing, work.times, /*between_frames=*/false);
   return fusing;

@@ -32,9 +32,9 @@ struct ChangePoint {
   float steady_s = 0.0F;                               ///< total time in frames that confirmed the point
   float unseen_s = 0.0F;                               ///< time since it was last seen
   std::uint32_t id = 0;
-  std::uint16_t sightings = 1;  ///< number of frames averaged into position
-  std::uint8_t doubt = 0;       ///< score of contradicting frames; the point is dropped above a limit
-  bool as_it_was = true;        ///< confirmed by the last frame
+  std::uint16_t sightings = 1;     ///< number of frames averaged into position
+  std::uint8_t contradiction = 0;  ///< score of contradicting frames; the point is dropped above a limit
+  bool as_it_was = true;           ///< confirmed by the last frame
   LastingKind kind = LastingKind::kCame;
 };
 

@@ -15,7 +15,7 @@ constexpr float kNearest_m = 0.2F;  // no sensor measures nearer
 constexpr double kLongestStep_s = 0.5;
 // A contradicting sighting weighs as much as two confirming ones. At the rim of an object that stays, the
 // pixel may show the background: one frame in four misses the object there.
-constexpr int kContradiction = 2, kConfirmation = 1, kMostDoubt = 7;
+constexpr int kContradiction = 2, kConfirmation = 1, kMaxContradiction = 7;
 constexpr float kFarApart_m = 4.0F;  // depth at which pixels of the sampling grid are spacing_m apart
 constexpr float kNothing_m = std::numeric_limits<float>::quiet_NaN();
 
@@ -150,12 +150,12 @@ bool ChangeTracker::review(const View& view, float dt_s, ChangePoint& point) {
   }
   point.unseen_s = 0.0F;
   if (!holds) {
-    point.doubt = static_cast<std::uint8_t>(point.doubt + kContradiction);
-    return point.doubt <= kMostDoubt;
+    point.contradiction = static_cast<std::uint8_t>(point.contradiction + kContradiction);
+    return point.contradiction <= kMaxContradiction;
   }
   point.as_it_was = true;
   point.steady_s += dt_s;
-  point.doubt = static_cast<std::uint8_t>(std::max(point.doubt - kConfirmation, 0));
+  point.contradiction = static_cast<std::uint8_t>(std::max(point.contradiction - kConfirmation, 0));
   if (came && std::abs(live_here - z) <= tolerance && live_here > 0.0F) {
     // Mean of all sightings, along the rays.
     if (point.sightings < std::numeric_limits<std::uint16_t>::max()) ++point.sightings;

@@ -38,7 +38,7 @@ struct GridPoint {
   int x, y;
 };
 
-namespace bisected_grid {
+namespace rtin {
 
 /// Descends into a triangle a, b, c with the right angle at c, counter-clockwise with y down.
 template <typename Take>
@@ -57,13 +57,13 @@ void descend(const Rtin& grid, std::span<const std::uint8_t> needed, GridPoint a
   if (grid.is_wanted(c.x - (x < 2 * c.x ? 1 : 0), c.y - (y < 2 * c.y ? 1 : 0))) take(a, b, c);
 }
 
-}  // namespace bisected_grid
+}  // namespace rtin
 
 /// Calls take(a, b, c) for each triangle on wanted cells in the square with this top left point.
 template <typename Take>
 void walk_square(const Rtin& grid, std::span<const std::uint8_t> needed, int column, int row,
                  const Take& take) {
-  using bisected_grid::descend;
+  using rtin::descend;
   const GridPoint top_left{column, row}, bottom_left{column, row + 8};
   const GridPoint bottom_right{column + 8, row + 8}, top_right{column + 8, row};
   const GridPoint middle{column + 4, row + 4};

@@ -166,10 +166,10 @@ Tracking search(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
   };
   if (locator.index.patches.empty()) locator.index.patches = build_patch_index(keyframe_database);
   const std::vector<SurfacePatch> seen = describe_patches(frame, locator.relocalise.place.patches);
-  const std::vector<PoseCandidate> by_look =
+  const std::vector<PoseCandidate> by_appearance =
       propose_poses(seen, locator.index.patches, kByLook, kMinAgreeing);
-  for (const PoseCandidate& candidate : by_look)
-    if (4 * candidate.agreeing >= by_look.front().agreeing)
+  for (const PoseCandidate& candidate : by_appearance)
+    if (4 * candidate.agreeing >= by_appearance.front().agreeing)
       hypotheses.push_back(tried(locator, frame, seen, candidate, expected_depth));
   if (!frame.down_camera && (frame.colour.empty() || locator.index.patches.empty())) {
     const Relocalisation by_preview = relocalise(frame, keyframe_database, locator.relocalise);
@@ -207,8 +207,9 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
 }
 
 /// Returns whether enough patches of the frame coincide with known ones and look like them.
-bool is_borne_out_by_look(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
-                          const Eigen::Isometry3d& T_world_camera) {
+bool is_verified_by_appearance(Locator& locator, const Frame& frame,
+                               const KeyframeDatabase& keyframe_database,
+                               const Eigen::Isometry3d& T_world_camera) {
   if (locator.index.patches.empty()) locator.index.patches = build_patch_index(keyframe_database);
   const PatchAgreement appearance = match_patches_at(
       describe_patches(frame, locator.relocalise.place.patches), locator.index.patches, T_world_camera);
@@ -229,7 +230,7 @@ Tracking resume(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
                      agreement.alike_part() > kMinAlike && agreement.farther_part() < kMaxFarther;
   const bool is_open = tracking.status == TrackStatus::kDegenerate;
   if (!holds ||
-      (is_open && !is_borne_out_by_look(locator, frame, keyframe_database, tracking.T_world_camera)))
+      (is_open && !is_verified_by_appearance(locator, frame, keyframe_database, tracking.T_world_camera)))
     return {};
   return tracking;
 }
@@ -238,8 +239,8 @@ Tracking resume(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
 /// search fails, the camera is lost, unless a good part of the view still fits, because objects may have been
 /// taken away. If the search finds another place, the predicted motion is reset. Returns false if the map was
 /// searched and the camera is lost.
-bool doubt(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
-           const ExpectedDepth& expected_depth, Tracking& tracking) {
+bool verify_tracking(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+                     const ExpectedDepth& expected_depth, Tracking& tracking) {
   constexpr double kMinAlike = 0.3, kMaxFarther = 0.25, kHopeless = 0.3;
   constexpr int kPatience_frames = 3, kSure_frames = 30;
   const DepthAgreement agreement = depth_agreement_of(frame.depth_m, expected_depth(tracking.T_world_camera));
@@ -276,7 +277,8 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
   bool may_be_found = true;  // by a search; one per frame is enough
   if (locator.T_world_camera) {
     tracking = follow(locator, frame, expected_depth);
-    if (has_pose(tracking)) may_be_found = doubt(locator, frame, keyframe_database, expected_depth, tracking);
+    if (has_pose(tracking))
+      may_be_found = verify_tracking(locator, frame, keyframe_database, expected_depth, tracking);
     if (!has_pose(tracking)) {
       locator.T_world_lost = locator.T_world_camera;
       locator.T_world_camera.reset();

@@ -114,7 +114,8 @@ class ObjectFinder {
     }
   }
 
-  /// Returns the connected components with enough clear surface, except those that pose errors explain.
+  /// Returns the connected components with enough clear surface, except those that the end of the other map's
+  /// scan or pose errors explain.
   std::vector<std::vector<VoxelIndex>> gather() {
     constexpr int kBridged_voxels = 2;
     std::vector<std::vector<VoxelIndex>> things;
@@ -133,7 +134,8 @@ class ObjectFinder {
         });
       }
       ++number;
-      if (is_large(thing) && !is_there_aside(thing)) things.push_back(std::move(thing));
+      if (is_large(thing) && !ends_the_scan(thing) && !is_there_aside(thing))
+        things.push_back(std::move(thing));
     }
     return things;
   }
@@ -149,6 +151,27 @@ class ObjectFinder {
     const double voxel_m = has_.resolution_m();
     return static_cast<double>(clear) * voxel_m * voxel_m >= config_.min_area_m2 &&
            box.sizes().maxCoeff() + voxel_m >= config_.min_size_m;
+  }
+
+  /// Returns whether the other map's scan ends at this surface: most of the space just behind it is unknown
+  /// there, because rays that grazed the surface freed voxels in front of it and saw nothing of it. The space
+  /// behind the surface of an object that came or went is known in the map without it.
+  [[nodiscard]] bool ends_the_scan(const std::vector<VoxelIndex>& thing) const {
+    static const std::array<Eigen::Vector3d, 14> kAround = directions();
+    const double behind_m = clearance_m_;
+    std::size_t looked = 0, unknown = 0;
+    for (const VoxelIndex& voxel : thing) {
+      const Eigen::Vector3d p = centre(voxel);
+      Eigen::Vector3d outwards = Eigen::Vector3d::Zero();  // towards free space of the map with the surface
+      for (const Eigen::Vector3d& direction : kAround)
+        if (has_.occupancy_at(p + 2.0 * has_.resolution_m() * direction) == Occupancy::kFree)
+          outwards += direction;
+      if (outwards.norm() < 0.5) continue;
+      ++looked;
+      const Eigen::Vector3d behind = T_lacks_has_ * (p - behind_m * outwards.normalized());
+      if (lacks_.occupancy_at(behind) == Occupancy::kUnknown && !lacks_.sample_at(behind)) ++unknown;
+    }
+    return 2 * unknown > looked;
   }
 
   /// Returns whether the other map also has the object, slightly shifted.

@@ -40,7 +40,8 @@ struct DiffConfig {
 /// Throws Error naming field, value and rule.
 void require_valid(const DiffConfig& config);
 
-/// Returns the changes, largest first. Regions unknown in one of the maps count as unchanged. Objects smaller
+/// Returns the changes, largest first. Regions unknown in one of the maps count as unchanged, and
+/// so does surface at which one map's scan ends. Objects smaller
 /// than the clearance are not detected, nor are objects that moved, or stand out from a plane, by less than
 /// max_pose_error_m.
 /// @param T_a_b  maps points from b's world to a's world

@@ -215,6 +215,14 @@ SavedMap load_map(const fs::path& folder) {
   return read_consistent(folder, [&] { return read_map(folder); });
 }
 
+Mesh load_map_mesh(const fs::path& folder) {
+  return read_consistent(folder, [&] {
+    const MapInfo info = read_info(folder);
+    if (const auto fault = fault_of(folder / kMapMeshFile, info.files.at(kMapMeshFile))) throw Error(*fault);
+    return read_mesh(folder / kMapMeshFile);
+  });
+}
+
 std::vector<std::string> verify_map(const fs::path& folder) {
   return read_consistent(folder, [&] { return faults_of(folder); });
 }

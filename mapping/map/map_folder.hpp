@@ -46,6 +46,9 @@ SavedMap load_map(const std::filesystem::path& folder);
 /// Reads and checks only map.json.
 MapInfo load_map_info(const std::filesystem::path& folder);
 
+/// Reads the map's mesh after verifying its checksum. Throws Error naming the file and the fault.
+Mesh load_map_mesh(const std::filesystem::path& folder);
+
 /// Returns one sentence per fault, naming the file; empty for an intact map. Never throws for a damaged map.
 std::vector<std::string> verify_map(const std::filesystem::path& folder);
 

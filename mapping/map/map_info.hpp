@@ -27,7 +27,7 @@ struct MapInfo {
   std::string source;  ///< recordings (full paths) or devices, separated by "; "
   std::int64_t frames_read = 0;
   std::int64_t frames_fused = 0;
-  std::string up_source = "none";  ///< accelerometer, plane or none
+  std::string up_source = "none";  ///< accelerometer, plane, given or none
   /// Maps points from the recording's world to the map's world, where +z is up.
   Eigen::Isometry3d T_world_recorded = Eigen::Isometry3d::Identity();
   std::map<std::string, std::string> settings;  ///< prescan's settings, by name

@@ -21,7 +21,8 @@ Occupancy occupancy_of(LogOdds log_odds) {
   return log_odds > 0 ? Occupancy::kOccupied : Occupancy::kFree;
 }
 
-SurfaceSample sample_of(const BlockOctree& tree, const LeafBlock& block, unsigned i, const Eigen::Array3i& key) {
+SurfaceSample sample_of(const BlockOctree& tree, const LeafBlock& block, unsigned i,
+                        const Eigen::Array3i& key) {
   return {.voxel = (key - kKeyOrigin).matrix(),
           .occupancy = occupancy_of(block.log_odds[i]),
           .distance_m = block.distance[i] * tree.units().distance_m,

@@ -44,6 +44,8 @@ std::string_view to_string(UpSource source) {
       return "accelerometer";
     case UpSource::kPlane:
       return "plane";
+    case UpSource::kGiven:
+      return "given";
     case UpSource::kNone:
       break;
   }
@@ -90,14 +92,22 @@ void UpEstimator::keep(const Eigen::Vector3f& normal_world) {
   keep_every_ *= 2;
 }
 
+Eigen::Vector3d UpEstimator::camera_up() const {
+  const bool is_known = camera_up_sum_world_.norm() > 1e-6;
+  return is_known ? Eigen::Vector3d(camera_up_sum_world_.normalized())
+                  : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
+}
+
+UpDirection UpEstimator::take(const GivenUp& given) const {
+  return {UpSource::kGiven, given.up_world.value_or(camera_up()), 1.0};
+}
+
 UpDirection UpEstimator::estimate() const {
   if (frames_ == 0) return {};
   if (2 * frames_with_gravity_ >= frames_ && down_sum_world_.norm() > 1e-6)
     return {UpSource::kAccelerometer, -down_sum_world_.normalized(), 1.0};
 
-  const bool upright_known = camera_up_sum_world_.norm() > 1e-6;
-  const Eigen::Vector3d camera_up = upright_known ? Eigen::Vector3d(camera_up_sum_world_.normalized())
-                                                  : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
+  const Eigen::Vector3d camera_up = this->camera_up();
   // Try each of a subset of the normals as the mode, then refine the best to the mean of its window.
   const double cos_cone = cos_deg(kConeAboutCameraUp_deg);
   const std::size_t stride = std::max<std::size_t>(1, normals_world_.size() / 400);

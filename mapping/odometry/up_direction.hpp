@@ -1,6 +1,7 @@
 // up_direction.hpp: estimates a recording's up direction from the accelerometer or from dominant planes.
 #pragma once
 #include <Eigen/Geometry>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,14 +13,22 @@ enum class UpSource {
   kNone,           ///< neither gravity nor a plane was usable; up_world is the cameras' mean -y axis
   kAccelerometer,  ///< mean gravity measured by the device
   kPlane,          ///< normal of the dominant plane within 60 degrees of the cameras' mean -y axis
+  kGiven,          ///< stated by the user
 };
 std::string_view to_string(UpSource source);
 
 struct UpDirection {
   UpSource source = UpSource::kNone;
   Eigen::Vector3d up_world = Eigen::Vector3d::UnitZ();  ///< unit vector
-  /// kPlane: fraction of all normals that are within 5 degrees of up_world. kAccelerometer: 1. kNone: 0.
+  /// kPlane: fraction of all normals that are within 5 degrees of up_world. kAccelerometer, kGiven: 1. kNone:
+  /// 0.
   double support = 0.0;
+};
+
+/// Up direction that a user states.
+struct GivenUp {
+  /// Unit vector in the poses' world; unset: the cameras' mean -y axis.
+  std::optional<Eigen::Vector3d> up_world;
 };
 
 /// Accumulates measurements frame by frame. Callers should add only frames with trusted poses.
@@ -34,6 +43,8 @@ class UpEstimator {
   /// % of all normals are within 5 degrees of it; (3) the mean -y axis, with kNone. The limit of 60 degrees
   /// assumes that a hand-held camera may look down at a table, but is rarely upside down.
   [[nodiscard]] UpDirection estimate() const;
+  /// Returns the stated direction, with kGiven.
+  [[nodiscard]] UpDirection take(const GivenUp& given) const;
 
   /// Writes the complete state to a ByteWriter, or reads it from a ByteReader.
   template <typename Archive>
@@ -51,6 +62,8 @@ class UpEstimator {
   }
 
  private:
+  /// Returns the cameras' mean -y axis.
+  [[nodiscard]] Eigen::Vector3d camera_up() const;
   /// Stores every keep_every_-th normal. When the buffer is full, drops every second stored normal and
   /// doubles keep_every_, so early and late frames have equal weight.
   void keep(const Eigen::Vector3f& normal_world);

@@ -116,22 +116,22 @@ std::vector<SeenByBoth> sampled(const freenect_registration& registration) {
 
 class FreenectDevice final : public KinectDevice {
  public:
-  explicit FreenectDevice(const KinectRequest& wish)
-      : name_("kinect:" + std::to_string(wish.number)), listener_(wish.listener), context_(name_) {
+  explicit FreenectDevice(const KinectRequest& request)
+      : name_("kinect:" + std::to_string(request.number)), listener_(request.listener), context_(name_) {
     const int devices = freenect_num_devices(context_.get());
-    const bool by_serial = !wish.serial.empty();
-    if (!by_serial && (wish.number < 0 || wish.number >= devices))
+    const bool by_serial = !request.serial.empty();
+    if (!by_serial && (request.number < 0 || request.number >= devices))
       throw Error(name_ + ": there is no such Kinect; libfreenect sees " +
                   std::to_string(std::max(devices, 0)) +
                   ", counted from 0. Is it plugged into USB and into its own power supply? roomradar doctor "
                   "looks further");
-    serial_ = by_serial ? wish.serial : serial_of(context_.get(), wish.number);
+    serial_ = by_serial ? request.serial : serial_of(context_.get(), request.number);
     const int opened = by_serial
                            ? freenect_open_device_by_camera_serial(context_.get(), &device_, serial_.c_str())
-                           : freenect_open_device(context_.get(), &device_, wish.number);
+                           : freenect_open_device(context_.get(), &device_, request.number);
     if (opened < 0) throw Error(name_ + ": cannot be opened: " + why_not_opened());
     try {
-      start(wish);
+      start(request);
     } catch (...) {
       close();
       throw;
@@ -170,10 +170,10 @@ class FreenectDevice final : public KinectDevice {
   }
 
  private:
-  void start(const KinectRequest& wish) {
-    if (wish.depth != KinectDepth::kRaw && replayed_folder())
+  void start(const KinectRequest& request) {
+    if (request.depth != KinectDepth::kRaw && replayed_folder())
       throw Error(name_ + ": fakenect replays raw depth only; leave ?depth= away");
-    const auto depth_mode = freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM, format_of(wish.depth));
+    const auto depth_mode = freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM, format_of(request.depth));
     const auto video_mode = freenect_find_video_mode(FREENECT_RESOLUTION_MEDIUM, FREENECT_VIDEO_RGB);
     if (!depth_mode.is_valid || !video_mode.is_valid)
       throw Error(name_ + ": this libfreenect does not have the mode that is asked for; ask for ?depth=raw");
@@ -212,8 +212,8 @@ class FreenectDevice final : public KinectDevice {
 
 }  // namespace
 
-std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& wish) {
-  return std::make_unique<FreenectDevice>(wish);
+std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& request) {
+  return std::make_unique<FreenectDevice>(request);
 }
 
 int count_kinects() {

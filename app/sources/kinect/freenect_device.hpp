@@ -8,6 +8,6 @@ namespace roomradar {
 
 /// Opens a Kinect with libfreenect; a KinectOpener. Throws Error naming the cause: no such device, no
 /// permission, a device used by another program, or a build without Kinect support.
-std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& wish);
+std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& request);
 
 }  // namespace roomradar

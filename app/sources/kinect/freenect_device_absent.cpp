@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& wish) {
-  throw Error("kinect:" + std::to_string(wish.number) +
+std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& request) {
+  throw Error("kinect:" + std::to_string(request.number) +
               ": this program was built without Kinect; configure it with -DROOMRADAR_WITH_KINECT=ON and "
               "libfreenect-dev");
 }

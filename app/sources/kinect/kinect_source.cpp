@@ -156,8 +156,8 @@ std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& option
   const auto replay = std::make_shared<FakenectReplay>(*folder);
   config.is_replay = true;
   config.broken = replay->broken();
-  return open_kinect([replay](const KinectRequest& wish) { return open_freenect(wish); }, std::move(config),
-                     options, *folder);
+  return open_kinect([replay](const KinectRequest& request) { return open_freenect(request); },
+                     std::move(config), options, *folder);
 }
 
 }  // namespace roomradar

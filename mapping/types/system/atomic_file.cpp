@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
 
 namespace roomradar {
 namespace {
@@ -19,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
-  throw Error(path.string() + ": cannot be written: " + reason +
-              "; is the disk full, is the folder there, and may you write in it?");
+  const std::string why = why_not_writable(path);
+  throw Error(path.string() + ": cannot be written: " + (why.empty() ? reason : why));
 }
 
 bool reaches_disk(const fs::path& path) {

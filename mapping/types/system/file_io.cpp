@@ -1,6 +1,9 @@
 // file_io.cpp: checks a file's kind and size before reading it.
 #include "mapping/types/system/file_io.hpp"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <fstream>
 #include <system_error>
 
@@ -41,10 +44,31 @@ void write_bytes(const fs::path& path, std::string_view bytes) {
   require_written(file, path);
 }
 
+std::string why_not_writable(const fs::path& path) {
+  constexpr std::uintmax_t kLeastFree_bytes = 1U << 20U;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code fault;
+  if (!fs::exists(folder, fault)) return "the folder " + folder.string() + " does not exist; make it first";
+  if (!fs::is_directory(folder, fault)) return folder.string() + " is not a folder";
+  if (fs::is_directory(path, fault)) return "a folder has that name";
+  const fs::space_info space = fs::space(folder, fault);
+  if (!fault && space.capacity == 0)
+    return "the system makes no files in " + folder.string() + "; choose another folder";
+  if (!fault && space.available < kLeastFree_bytes)
+    return "the disk is full; make room or choose another folder";
+  const fs::path& opened = fs::exists(path, fault) ? path : folder;
+  if (::access(opened.c_str(), W_OK) != 0)
+    return "you may not write " + std::string(opened == path ? "it" : "in its folder") + " (" +
+           std::generic_category().message(errno) + ")";
+  return {};
+}
+
 void require_written(const std::ios& stream, const fs::path& path) {
-  if (!stream)
-    throw Error(path.string() +
-                ": cannot be written; is the disk full, is the folder there, and may you write in it?");
+  if (stream) return;
+  const std::string why = why_not_writable(path);
+  throw Error(
+      path.string() + ": cannot be written: " +
+      (why.empty() ? "the system refused it; was the disk full for a moment, or a size limit met?" : why));
 }
 
 }  // namespace roomradar

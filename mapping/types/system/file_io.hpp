@@ -20,8 +20,13 @@ namespace roomradar {
 /// @throws Error naming the file if some bytes could not be written; the partial file is removed
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
-/// Throws Error naming the file if `stream` has failed; for use after writing to `path` through a plain
-/// stream.
+/// Returns why a file cannot be written at this path, as the end of a sentence, by looking: its folder does
+/// not exist, is not writable, holds no files (/proc), or its disk is full. Returns an empty string if
+/// nothing is in the way now.
+[[nodiscard]] std::string why_not_writable(const std::filesystem::path& path);
+
+/// Throws Error naming the file and the cause if `stream` has failed; for use after writing to `path` through
+/// a plain stream.
 void require_written(const std::ios& stream, const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -1,0 +1,163 @@
+// level_surfaces.cpp: connected components of level triangles; a histogram of the heights of level depth
+// pixels.
+#include "mapping/map/level_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace roomradar {
+namespace {
+
+constexpr double kCosLevel = 0.98481;   // 10 degrees
+constexpr double kSameHeight_m = 0.03;  // as a table top bends in a scan
+constexpr double kMinFloorShare = 0.1;  // of the largest surface: smaller and lower is a box on a ledge below
+constexpr double kMinFloorArea_m2 = 0.05;  // of depth pixels; each keyframe counts
+
+/// Disjoint sets of vertices.
+class VertexSets {
+ public:
+  explicit VertexSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  std::uint32_t find(std::uint32_t vertex) {
+    while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
+    return vertex;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { parent_[find(a)] = find(b); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+struct LevelTriangle {
+  Eigen::Vector3d middle_world;
+  double area_m2 = 0.0;
+  std::uint32_t vertex = 0;
+};
+
+std::vector<LevelTriangle> level_triangles(const Mesh& mesh, VertexSets& sets) {
+  std::vector<LevelTriangle> level;
+  for (const Triangle& triangle : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.vertices[triangle[0]].cast<double>();
+    const Eigen::Vector3d b = mesh.vertices[triangle[1]].cast<double>();
+    const Eigen::Vector3d c = mesh.vertices[triangle[2]].cast<double>();
+    const Eigen::Vector3d twice_area = (b - a).cross(c - a);
+    const double norm = twice_area.norm();
+    if (!(twice_area.z() >= kCosLevel * norm) || !(norm > 0.0)) continue;
+    level.push_back({mesh.origin + (a + b + c) / 3.0, 0.5 * norm, triangle[0]});
+    sets.join(triangle[0], triangle[1]);
+    sets.join(triangle[0], triangle[2]);
+  }
+  return level;
+}
+
+/// Returns the surface of the triangles within kSameHeight_m of their most frequent height.
+LevelSurface surface_of(const std::vector<const LevelTriangle*>& triangles) {
+  std::map<long, double> area_at;  // by height in steps of kSameHeight_m / 2
+  const auto step_of = [](double z) { return std::lround(2.0 * z / kSameHeight_m); };
+  for (const LevelTriangle* t : triangles) area_at[step_of(t->middle_world.z())] += t->area_m2;
+  const auto most = std::max_element(area_at.begin(), area_at.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  const double height_m = static_cast<double>(most->first) * kSameHeight_m / 2.0;
+  LevelSurface surface;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const LevelTriangle* t : triangles) {
+    if (std::abs(t->middle_world.z() - height_m) > kSameHeight_m) continue;
+    surface.area_m2 += t->area_m2;
+    sum += t->area_m2 * t->middle_world;
+  }
+  const Eigen::Vector3d centroid = sum / surface.area_m2;
+  surface.height_m = centroid.z();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const LevelTriangle* t : triangles) {
+    const double distance = (t->middle_world - centroid).squaredNorm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    surface.middle_world = t->middle_world;
+  }
+  return surface;
+}
+
+/// Adds the area of a keyframe's level pixels to a histogram over their heights, in steps of 1 cm.
+void add_level_pixels(const MapKeyframe& keyframe, const Eigen::Vector3d& up_world,
+                      std::map<long, double>& area_at) {
+  constexpr int kStep_px = 4;          // noise of normals from nearer pixels exceeds 10 degrees
+  constexpr double kFarthest_m = 4.0;  // a Kinect's error grows to 2 cm there
+  const Image<std::uint16_t>& depth_mm = keyframe.preview_depth_mm;
+  const Intrinsics& camera = keyframe.preview_camera;
+  const auto point = [&](int x, int y) -> std::optional<Eigen::Vector3d> {
+    const double depth_m = 1e-3 * depth_mm.at(x, y);
+    if (!(depth_m > 0.0) || depth_m > kFarthest_m) return std::nullopt;
+    return keyframe.T_world_camera * back_project(camera, x, y, depth_m);
+  };
+  for (int y = 0; y + kStep_px < depth_mm.height; y += kStep_px)
+    for (int x = 0; x + kStep_px < depth_mm.width; x += kStep_px) {
+      const auto here = point(x, y), right = point(x + kStep_px, y), below = point(x, y + kStep_px);
+      if (!here || !right || !below) continue;
+      const Eigen::Vector3d area = (*below - *here).cross(*right - *here);  // towards the camera
+      const double area_m2 = area.norm();
+      if (!(area.dot(up_world) > kCosLevel * area_m2) || area_m2 > 0.02) continue;
+      area_at[std::lround(100.0 * here->dot(up_world))] += area_m2;
+    }
+}
+
+}  // namespace
+
+std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area_m2) {
+  VertexSets sets(mesh_world.vertices.size());
+  const std::vector<LevelTriangle> level = level_triangles(mesh_world, sets);
+  std::map<std::uint32_t, std::vector<const LevelTriangle*>> parts;
+  for (const LevelTriangle& triangle : level) parts[sets.find(triangle.vertex)].push_back(&triangle);
+  std::vector<LevelSurface> surfaces;
+  for (const auto& [root, triangles] : parts) {
+    const LevelSurface surface = surface_of(triangles);
+    if (surface.area_m2 >= min_area_m2) surfaces.push_back(surface);
+  }
+  std::stable_sort(surfaces.begin(), surfaces.end(),
+                   [](const auto& a, const auto& b) { return a.area_m2 > b.area_m2; });
+  return surfaces;
+}
+
+std::optional<std::size_t> floor_among(std::span<const LevelSurface> surfaces) {
+  std::optional<std::size_t> floor;
+  double largest_m2 = 0.0;
+  for (const LevelSurface& surface : surfaces) largest_m2 = std::max(largest_m2, surface.area_m2);
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (surfaces[i].area_m2 >= kMinFloorShare * largest_m2 &&
+        (!floor || surfaces[i].height_m < surfaces[*floor].height_m))
+      floor = i;
+  return floor;
+}
+
+std::optional<double> floor_height_m(const KeyframeDatabase& keyframe_database,
+                                     const Eigen::Vector3d& up_world) {
+  std::map<long, double> area_at;
+  for (const MapKeyframe& keyframe : keyframe_database.keyframes)
+    add_level_pixels(keyframe, up_world, area_at);
+  // Area and mean height within 2 cm of a step.
+  const auto near = [&](long step) {
+    double area_m2 = 0.0, moment = 0.0;
+    for (auto at = area_at.lower_bound(step - 2); at != area_at.end() && at->first <= step + 2; ++at) {
+      area_m2 += at->second;
+      moment += 0.01 * static_cast<double>(at->first) * at->second;
+    }
+    return std::pair(area_m2, moment / area_m2);
+  };
+  double most_m2 = 0.0;
+  for (const auto& [step, area_m2] : area_at) most_m2 = std::max(most_m2, near(step).first);
+  if (most_m2 < kMinFloorArea_m2) return std::nullopt;
+  // The lowest local maximum of sufficient area.
+  for (const auto& [step, area_m2] : area_at) {
+    const double here_m2 = near(step).first;
+    if (here_m2 < kMinFloorShare * most_m2) continue;
+    long best = step;
+    for (long other = step; other <= step + 5; ++other)
+      if (area_at.contains(other) && near(other).first > near(best).first) best = other;
+    return near(best).second;
+  }
+  return std::nullopt;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,36 @@
+// level_surfaces.hpp: floor, table tops and other level surfaces of a room.
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mapping/localization/keyframe_database.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// A connected level surface that faces up, in a world with +z up.
+struct LevelSurface {
+  double height_m = 0.0;  ///< mean z
+  double area_m2 = 0.0;
+  Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();  ///< point of the surface nearest to its centroid
+};
+
+/// Returns the level surfaces of a mesh, largest first. Triangles count as level if their normal is within 10
+/// degrees of +z; surfaces are connected over shared vertices and split where the height changes by more than
+/// 3 cm from the surface's largest part. Surfaces under min_area_m2 are left out.
+std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area_m2 = 0.05);
+
+/// Returns the index of the floor: the lowest surface with at least a tenth of the largest surface's area;
+/// nullopt if there is no surface.
+std::optional<std::size_t> floor_among(std::span<const LevelSurface> surfaces);
+
+/// Returns the height of the floor above the keyframes' world origin along `up_world`, m: the lowest height
+/// at which the keyframes' depth shows level surface, with at least a tenth of the area of the most frequent
+/// height. nullopt if no level surface is measured.
+/// @param up_world  unit vector
+std::optional<double> floor_height_m(const KeyframeDatabase& keyframe_database,
+                                     const Eigen::Vector3d& up_world);
+
+}  // namespace roomradar
