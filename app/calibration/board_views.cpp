@@ -3,8 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <numbers>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -111,7 +114,7 @@ std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colo
 }
 
 BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
-                            const std::function<void(std::size_t)>& progress) {
+                            const std::function<void(const BoardViews&)>& progress) {
   require_valid(board);
   BoardViews result;
   std::vector<std::vector<Eigen::Vector2d>> off_plane_px;  // corners of each entry of result.off_plane_ratios
@@ -121,13 +124,13 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
     const ReadResult read = source.next(frame);
     if (read.status == ReadStatus::kEnd) break;
     if (read.status == ReadStatus::kSkipped) {
-      if (!read.waiting) progress(result.views.size());
+      if (!read.waiting) progress(result);
       continue;
     }
     ++result.frames;
     if (frame.colour.empty()) {
       before.clear();
-      progress(result.views.size());
+      progress(result);
       continue;
     }
     if (result.first.colour.empty()) result.first = frame;
@@ -135,27 +138,71 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
     const bool still =
         corners_px && !before.empty() && distance_either_way_px(*corners_px, before) < kStill_px;
     if (corners_px) ++result.with_board;
+    if (still) ++result.still;
     before = corners_px.value_or(std::vector<Eigen::Vector2d>{});
     const auto is_there = [&](const std::vector<Eigen::Vector2d>& known_px) {
       return distance_either_way_px(*corners_px, known_px) < kNew_px;
     };
     const auto is_known = [&](const BoardView& view) { return is_there(view.corners_px); };
     if (still && std::none_of(result.views.begin(), result.views.end(), is_known)) {
-      DepthOnBoard depth =
-          depth_on_board(frame, board, pose_of_board(*corners_px, board, frame.colour_camera, {}));
+      const Eigen::Isometry3d T_colour_board = pose_of_board(*corners_px, board, frame.colour_camera, {});
+      DepthOnBoard depth = depth_on_board(frame, board, T_colour_board);
       if (depth.samples.size() >= kLeastDepthSamples)
-        result.views.push_back({frame.index, *corners_px, std::move(depth.samples)});
+        result.views.push_back(
+            {frame.index, *corners_px, std::move(depth.samples), T_colour_board.linear().col(2)});
       else if (depth.ratios.size() >= kLeastDepthSamples &&
                std::none_of(off_plane_px.begin(), off_plane_px.end(), is_there)) {
         result.off_plane_ratios.push_back(median_of(std::move(depth.ratios)));
         off_plane_px.push_back(*corners_px);
       }
     }
-    progress(result.views.size());
+    progress(result);
   }
   if (result.frames > 0 && result.first.colour.empty())
     throw Error(source.name() + ": has no colour images, in which the board's corners would be found");
   return result;
+}
+
+std::size_t count_tilted(const BoardViews& views) {
+  constexpr double kTilt_deg = 12.0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> normals;
+  for (const BoardView& view : views.views) {
+    normals.push_back(view.normal_camera.z() < 0.0 ? Eigen::Vector3d(-view.normal_camera)
+                                                   : view.normal_camera);
+    mean += normals.back();
+  }
+  const double cosine = std::cos(kTilt_deg * std::numbers::pi / 180.0);
+  return static_cast<std::size_t>(
+      std::count_if(normals.begin(), normals.end(),
+                    [&](const Eigen::Vector3d& normal) { return normal.dot(mean.normalized()) < cosine; }));
+}
+
+std::string advice_on(const BoardViews& views, const Board& board) {
+  constexpr std::int64_t kPatience_frames = 45;  // a second and a half
+  constexpr std::size_t kSome = 4;
+  if (views.with_board == 0)
+    return views.frames < kPatience_frames
+               ? ""
+               : "no board of " + std::to_string(board.columns) + " by " + std::to_string(board.rows) +
+                     " inner corners is seen whole: count them, --columns and --rows say so";
+  if (views.still == 0)
+    return views.with_board < kPatience_frames ? "" : "the board always moves: hold it still for a second";
+  if (views.off_plane_ratios.size() >= kSome && views.off_plane_ratios.size() > views.views.size()) {
+    std::array<char, 96> text{};
+    std::snprintf(text.data(), text.size(),
+                  "the squares seem to be %.3g m, not %.3g m: measure one, --square says so",
+                  median_of(views.off_plane_ratios) * board.square_m, board.square_m);
+    return text.data();
+  }
+  if (views.views.size() >= 2 * kSome && 3 * count_tilted(views) < views.views.size())
+    return "tilt the board more, every way, by 30 to 50 degrees";
+  return {};
+}
+
+bool is_registered(const Frame& frame) {
+  return !frame.colour.empty() && frame.T_colour_depth.isApprox(Eigen::Isometry3d::Identity(), 1e-9) &&
+         frame.colour_camera == frame.depth_camera;
 }
 
 }  // namespace roomradar

@@ -71,6 +71,25 @@ void print_fit(const BoardViews& views, const CalibrationFit& fit, const Summary
   std::printf("depth, RMS       %7.2f mm %7.2f mm\n", 1e3 * before.depth_rms_m, 1e3 * after.depth_rms_m);
 }
 
+/// Returns the number of views, how many are tilted, and what is missing.
+std::string progress_note(const BoardViews& views, const Board& board) {
+  const std::string advice = advice_on(views, board);
+  return std::to_string(views.views.size()) + " views, " + std::to_string(count_tilted(views)) + " tilted" +
+         (advice.empty() ? "" : "; " + advice);
+}
+
+/// Says once, with the first colour image, that the relative pose of the cameras is not in the recording.
+void say_if_registered(const BoardViews& views, bool& was_said) {
+  if (was_said || views.first.colour.empty()) return;
+  was_said = true;
+  if (is_registered(views.first))
+    std::fprintf(
+        stderr,
+        "roomradar: the depth is registered to the colour image, so both cameras count as one; for a "
+        "Kinect's own two cameras record kinect:N without ?depth=registered, or sim:board with "
+        "colour=separate\n");
+}
+
 /// Warns if the depth scale is suspicious. Only the squares' size sets the scale: a board printed at 97 %
 /// yields a camera that measures 3 % too far.
 void say_if_scaled(double inverse_scale, double square_m) {
@@ -103,11 +122,14 @@ int run(const CalibrateOptions& options) {
   std::unique_ptr<FrameSource> source =
       ended_by_interrupt(open_source(options.source, options.frames, {}, source_options));
   BoardViews views;
+  bool was_said = false;
   {
     Progress progress("looking for the board", source->frame_count());
     views = report.times.timed("views", [&] {
-      return find_board_views(*source, options.board, kMostViews,
-                              [&](std::size_t found) { progress.step(std::to_string(found) + " views"); });
+      return find_board_views(*source, options.board, kMostViews, [&](const BoardViews& found) {
+        say_if_registered(found, was_said);
+        progress.step(progress_note(found, options.board));
+      });
     });
   }
   source.reset();  // stops the device

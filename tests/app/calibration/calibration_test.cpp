@@ -300,7 +300,7 @@ TEST(BoardViews, AreOfTheWholeStillBoardWithItsDepthOnIt) {
   SimOptions options = parse_sim_spec("sim:board?path=swing&colour=separate&faults=1&frames=60&rate=15");
   SimulatedSource source(options);
   std::size_t told = 0;
-  const BoardViews views = find_board_views(source, kBoard, 100, [&](std::size_t) { ++told; });
+  const BoardViews views = find_board_views(source, kBoard, 100, [&](const BoardViews&) { ++told; });
   EXPECT_EQ(views.frames, 60);
   EXPECT_EQ(told, 60U);
   EXPECT_GE(views.with_board, 30);
@@ -320,13 +320,44 @@ TEST(BoardViews, AreOfTheWholeStillBoardWithItsDepthOnIt) {
   }
   // With squares stated as half as large, no view fits, and the error suggests the size that would.
   ASSERT_TRUE(source.rewind());
-  BoardViews wrong = find_board_views(source, Board{8, 6, 0.03}, 100, [](std::size_t) {});
+  BoardViews wrong = find_board_views(source, Board{8, 6, 0.03}, 100, [](const BoardViews&) {});
   EXPECT_TRUE(wrong.views.empty());
   ASSERT_GE(wrong.off_plane_ratios.size(), 3U);
   for (const double ratio : wrong.off_plane_ratios) EXPECT_NEAR(ratio, 2.0, 0.1);
   wrong.off_plane_ratios.resize(12, 2.0);
+  EXPECT_NE(advice_on(wrong, Board{8, 6, 0.03}).find("the squares seem to be 0.06 m, not 0.03 m"),
+            std::string::npos)
+      << advice_on(wrong, Board{8, 6, 0.03});
   const std::string fault = error_of([&] { (void)calibrate(wrong, {.board = Board{8, 6, 0.03}}); });
   EXPECT_NE(fault.find("--square"), std::string::npos) << fault;
+}
+
+TEST(BoardViews, WhatIsMissingIsSaidWhileItIsRead) {
+  const Board board{8, 6, 0.03};
+  BoardViews views;
+  EXPECT_EQ(advice_on(views, board), "");  // nothing was read so far
+  views.frames = 100;
+  EXPECT_NE(advice_on(views, board).find("no board of 8 by 6 inner corners"), std::string::npos);
+  views.with_board = 100;
+  EXPECT_NE(advice_on(views, board).find("hold it still"), std::string::npos);
+  views.still = 50;
+  views.views.resize(9);  // all facing the camera
+  EXPECT_EQ(count_tilted(views), 0U);
+  EXPECT_NE(advice_on(views, board).find("tilt the board"), std::string::npos);
+  for (int i = 0; i < 9; ++i)
+    views.views[static_cast<std::size_t>(i)].normal_camera =
+        Eigen::AngleAxisd(0.6, Eigen::Vector3d(std::cos(i), std::sin(i), 0.0)) * Eigen::Vector3d::UnitZ();
+  EXPECT_GE(count_tilted(views), 8U);
+  EXPECT_EQ(advice_on(views, board), "");
+}
+
+TEST(BoardViews, RegisteredDepthIsNoticed) {
+  Frame frame;
+  EXPECT_TRUE(SimulatedSource(parse_sim_spec("sim:board?frames=1")).next(frame).status == ReadStatus::kFrame);
+  EXPECT_TRUE(is_registered(frame));
+  EXPECT_TRUE(SimulatedSource(parse_sim_spec("sim:board?frames=1&colour=separate")).next(frame).status ==
+              ReadStatus::kFrame);
+  EXPECT_FALSE(is_registered(frame));
 }
 
 TEST(Calibrate, WhatNoFileWouldBeReadWithIsNoCalibration) {
