@@ -4,7 +4,6 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "app/window/link/key_meant.hpp"
@@ -14,27 +13,12 @@ namespace roomradar {
 namespace {
 
 constexpr int kWidth_px = 1280, kHeight_px = 800;
+constexpr int kLeastWidth_px = 640, kLeastHeight_px = 480;
 
 std::string last_glfw_error() {
   const char* what = nullptr;
   glfwGetError(&what);
   return what != nullptr ? what : "no reason was given";
-}
-
-/// Sets a min size at which the top bar's content fits, if the screen is large enough.
-void keep_wide_enough(GLFWwindow* window) {
-  constexpr float kLeastWidth = 1240.0F, kLeastHeight = 600.0F;
-  float scale_x = 1.0F, scale_y = 1.0F;
-  glfwGetWindowContentScale(window, &scale_x, &scale_y);
-  int x = 0, y = 0, width_px = 0, height_px = 0;
-  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor(); monitor != nullptr)
-    glfwGetMonitorWorkarea(monitor, &x, &y, &width_px, &height_px);
-  const auto least = [](float wanted, int there_is) {
-    const int wanted_px = static_cast<int>(wanted);
-    return there_is > 0 ? std::min(wanted_px, there_is) : wanted_px;
-  };
-  glfwSetWindowSizeLimits(window, least(kLeastWidth * scale_x, width_px),
-                          least(kLeastHeight * scale_y, height_px), GLFW_DONT_CARE, GLFW_DONT_CARE);
 }
 
 }  // namespace
@@ -64,7 +48,7 @@ GlfwWindow::GlfwWindow(const std::string& title) {
     throw Error("--window: the display gives no window with OpenGL 3.3 (" + fault +
                 "); leave --window out and write what it would show with --video FILE.mp4");
   }
-  keep_wide_enough(window_);
+  glfwSetWindowSizeLimits(window_, kLeastWidth_px, kLeastHeight_px, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);

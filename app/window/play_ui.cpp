@@ -19,10 +19,10 @@ constexpr double kMessage_s = 5.0;
 
 }  // namespace
 
-PlayUi::PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
+PlayUi::PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<ObjectSource>& meshes,
                std::optional<double> budget_ms)
     : link_(link), fonts_(fonts), picture_(link), timing_(budget_ms) {
-  settings_.meshes = {"teapot"};
+  settings_.meshes = {{.mesh = "teapot"}};
   settings_.meshes.insert(settings_.meshes.end(), meshes.begin(), meshes.end());
 }
 
@@ -55,7 +55,7 @@ void PlayUi::count_rate() {
 void PlayUi::draw(float width, float height) {
   const float scale = look::px(1.0F);
   const WindowLayout layout = window_layout(width, height, view_, scale);
-  draw_bar(layout.bar);
+  draw_bar(layout.bar, layout.has_two_rows);
   if (shown_.run_frame < 0) {
     draw_waiting(window_layout(width, height, MainView::kCamera, scale).camera);
   } else {
@@ -65,13 +65,13 @@ void PlayUi::draw(float width, float height) {
       picture_.leave();
     if (!layout.models.empty()) models_.draw(layout.models, shown_, fonts_);
   }
-  timing_.draw(layout.timing, fonts_);
-  radar_.draw(layout.radar, shown_.shown_radar, fonts_);
+  if (!layout.timing.empty()) timing_.draw(layout.timing, fonts_);
+  if (!layout.radar.empty()) radar_.draw(layout.radar, shown_.shown_radar, fonts_);
   draw_side_panel(layout.side, shown_, link_, settings_, fonts_);
   const Area main = window_layout(width, height, MainView::kCamera, scale).camera;
   draw_message(main);
   if (shows_help_ && draw_help(width, height, fonts_)) shows_help_ = false;
-  link_.want({.radar = true, .models = view_ != MainView::kCamera});
+  link_.want({.radar = true, .models = view_ != MainView::kCamera, .point_px = picture_.pixel()});
 }
 
 void PlayUi::draw_waiting(const Area& area) {
@@ -83,39 +83,43 @@ void PlayUi::draw_waiting(const Area& area) {
   look::end_pane();
 }
 
-void PlayUi::draw_bar(const Area& area) {
+void PlayUi::draw_bar(const Area& area, bool has_two_rows) {
   look::begin_pane("bar", area, look::kPanel);
-  ImGui::PushFont(fonts_.large);
-  ImGui::AlignTextToFramePadding();
-  ImGui::PushStyleColor(ImGuiCol_Text, look::kAccent);
-  ImGui::TextUnformatted("roomradar");
-  ImGui::PopStyleColor();
-  ImGui::PopFont();
-  ImGui::SameLine(0.0F, look::px(18.0F));
+  const float gap = look::px(has_two_rows ? 3.0F : 8.0F), wide_gap = look::px(has_two_rows ? 8.0F : 22.0F);
+  if (!has_two_rows) {
+    ImGui::PushFont(fonts_.large);
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushStyleColor(ImGuiCol_Text, look::kAccent);
+    ImGui::TextUnformatted("roomradar");
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+    ImGui::SameLine(0.0F, wide_gap);
+  }
+  const auto button = [&](const char* label, const char* key, bool is_lit) {
+    const bool is_clicked = look::button(label, has_two_rows ? "" : key, is_lit);
+    ImGui::SameLine(0.0F, gap);
+    return is_clicked;
+  };
   const bool is_paused = link_.is_paused();
-  if (look::button(is_paused ? "Play" : "Pause", "Space", is_paused)) press(GLFW_KEY_SPACE);
-  ImGui::SameLine();
-  if (look::button("Step", ".", false)) press(GLFW_KEY_PERIOD);
-  ImGui::SameLine();
-  if (look::button("Restart", "Home", false)) press(GLFW_KEY_HOME);
-  ImGui::SameLine();
-  if (look::button("Hold camera", "F", shown_.is_held)) press(GLFW_KEY_F);
-  ImGui::SameLine();
-  if (look::button("Loop", "L", shown_.at_end == AtEnd::kLoop)) press(GLFW_KEY_L);
-  ImGui::SameLine(0.0F, look::px(22.0F));
+  if (button(is_paused ? "Play" : "Pause", "Space", is_paused)) press(GLFW_KEY_SPACE);
+  if (button("Step", ".", false)) press(GLFW_KEY_PERIOD);
+  if (button("Restart", "Home", false)) press(GLFW_KEY_HOME);
+  if (button(has_two_rows ? "Hold" : "Hold camera", "F", shown_.is_held)) press(GLFW_KEY_F);
+  if (button("Loop", "L", shown_.at_end == AtEnd::kLoop)) press(GLFW_KEY_L);
+  ImGui::SameLine(0.0F, wide_gap);
   const struct {
     const char* name;
     MainView view;
   } views[] = {{"Camera", MainView::kCamera}, {"Models", MainView::kModels}, {"Both", MainView::kBoth}};
   for (const auto& view : views) {
-    if (look::button(view.name, view.view == MainView::kBoth ? "V" : "", view_ == view.view))
-      view_ = view.view;
+    if (button(view.name, view.view == MainView::kBoth ? "V" : "", view_ == view.view)) view_ = view.view;
     ImGui::SameLine(0.0F, look::px(2.0F));
   }
-  ImGui::SameLine(0.0F, look::px(22.0F));
-  if (look::button("Help", "H", shows_help_)) shows_help_ = !shows_help_;
-  draw_run_state(area, shown_, link_, ImGui::GetTime() - newest_s_);
-  draw_frame_time(area, timing_, rate_.frames_per_s, speed_, fonts_);
+  ImGui::SameLine(0.0F, wide_gap);
+  if (button("Help", "H", shows_help_)) shows_help_ = !shows_help_;
+  if (has_two_rows) ImGui::NewLine();
+  draw_run_state(area, has_two_rows, shown_, link_, ImGui::GetTime() - newest_s_);
+  draw_frame_time(area, has_two_rows, timing_, rate_.frames_per_s, speed_, fonts_);
   look::end_pane();
 }
 
@@ -143,9 +147,10 @@ void PlayUi::ask_at_mouse(UserCommandKind kind) {
 void PlayUi::add_object() { link_.ask(new_object_command(settings_)); }
 
 void PlayUi::take_file(const std::string& path) {
-  const auto known = std::find(settings_.meshes.begin(), settings_.meshes.end(), path);
+  const auto known = std::find_if(settings_.meshes.begin(), settings_.meshes.end(),
+                                  [&](const ObjectSource& source) { return source.mesh == path; });
   settings_.mesh = static_cast<std::size_t>(known - settings_.meshes.begin());
-  if (known == settings_.meshes.end()) settings_.meshes.push_back(path);
+  if (known == settings_.meshes.end()) settings_.meshes.push_back({.mesh = path});
   add_object();
 }
 
@@ -289,7 +294,10 @@ bool PlayUi::press_window_key(int key, int modifiers) {
                                            : MainView::kCamera;
       return true;
     case GLFW_KEY_C:
-      models_.look_at_chosen(shown_);
+      if ((modifiers & GLFW_MOD_CONTROL) == 0)
+        models_.look_at_chosen(shown_);
+      else if (shown_.pointed_world)
+        ImGui::SetClipboardText(position_words(*shown_.pointed_world).c_str());
       return true;
     case GLFW_KEY_H:
     case GLFW_KEY_F1:

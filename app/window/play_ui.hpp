@@ -19,9 +19,9 @@ namespace roomradar {
 /// Call on the window's thread, within Dear ImGui's frames.
 class PlayUi {
  public:
-  /// @param meshes     files that can be added besides the built-in teapot
+  /// @param meshes     objects that can be added besides the built-in teapot
   /// @param budget_ms  the run's time limit per frame, if it has one
-  PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
+  PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<ObjectSource>& meshes,
          std::optional<double> budget_ms);
 
   /// Takes the newest snapshot and message; returns true if there was one.
@@ -72,7 +72,7 @@ class PlayUi {
   bool press_scene_key(int key);
   bool press_window_key(int key, int modifiers);
   void set_speed(double speed);
-  void draw_bar(const Area& area);
+  void draw_bar(const Area& area, bool has_two_rows);
   void draw_message(const Area& area);
   void draw_waiting(const Area& area);
 };

@@ -31,12 +31,12 @@ namespace {
 struct ImGuiOfWindow {
   look::Fonts fonts;
 
-  explicit ImGuiOfWindow(GLFWwindow* window) {
+  ImGuiOfWindow(GLFWwindow* window, std::optional<double> ui_scale) {
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     float scale = 1.0F;
     glfwGetWindowContentScale(window, &scale, nullptr);
-    fonts = look::apply(std::clamp(scale, 1.0F, 3.0F));
+    fonts = look::apply(ui_scale ? static_cast<float>(*ui_scale) : std::clamp(scale, 1.0F, 3.0F));
     ImGui_ImplGlfw_InitForOpenGL(window, /*install_callbacks=*/true);  // calls the callbacks installed
                                                                        // before, too
     ImGui_ImplOpenGL3_Init("#version 330 core");
@@ -51,9 +51,9 @@ struct ImGuiOfWindow {
 };
 
 /// Draws after every event, otherwise every kIdle_s.
-void show(GlfwWindow& window, UiChannel& link, const std::vector<std::string>& meshes,
-          std::optional<double> budget_ms) {
-  const ImGuiOfWindow imgui(window.get());
+void show(GlfwWindow& window, UiChannel& link, const std::vector<ObjectSource>& meshes,
+          std::optional<double> budget_ms, std::optional<double> ui_scale) {
+  const ImGuiOfWindow imgui(window.get(), ui_scale);
   PlayUi ui(link, imgui.fonts, meshes, budget_ms);
   constexpr double kLeastFrame_s = 1.0 / 60.0, kIdle_s = 0.25;
   while (glfwWindowShouldClose(window.get()) == GLFW_FALSE && !ui.wants_to_quit()) {
@@ -86,8 +86,9 @@ void show(GlfwWindow& window, UiChannel& link, const std::vector<std::string>& m
 
 }  // namespace
 
-int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
-                  std::optional<double> budget_ms, const std::function<int(UiChannel&)>& work) {
+int run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,
+                  std::optional<double> budget_ms, std::optional<double> ui_scale,
+                  const std::function<int(UiChannel&)>& work) {
   GlfwWindow window(title);
   UiChannel link([] { glfwPostEmptyEvent(); });
   int status = 0;
@@ -102,7 +103,7 @@ int run_in_window(const std::string& title, const std::vector<std::string>& mesh
     link.finish();
   });
   try {
-    show(window, link, meshes, budget_ms);
+    show(window, link, meshes, budget_ms, ui_scale);
   } catch (...) {
     link.close();
     session.join();

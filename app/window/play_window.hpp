@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/objects/object_file.hpp"
 #include "app/window/link/ui_channel.hpp"
 
 namespace roomradar {
@@ -13,11 +14,13 @@ namespace roomradar {
 /// The window stays open after `work` has returned. Call on the main thread.
 ///
 /// @param title      title of the window
-/// @param meshes     files that can be added besides the built-in teapot, readable by read_mesh
+/// @param meshes     objects that can be added besides the built-in teapot
 /// @param budget_ms  the run's time limit per frame, if it has one
+/// @param ui_scale   scale of text and panes; unset: the monitor's
 /// @return the value returned by `work`; rethrows what `work` throws
 /// @throws Error with advice if this build has no window, or there is no display with OpenGL 3.3
-int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
-                  std::optional<double> budget_ms, const std::function<int(UiChannel&)>& work);
+int run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,
+                  std::optional<double> budget_ms, std::optional<double> ui_scale,
+                  const std::function<int(UiChannel&)>& work);
 
 }  // namespace roomradar

@@ -14,8 +14,11 @@ namespace {
 constexpr int kSaidAfterFrames = 30;  // before the user is told that an object is being read
 
 /// Throws Error naming the mesh file and the fault.
-ObjectParts parts_of(const ScriptEvent& add) {
-  return object_parts(add.mesh, object_mesh(add.mesh, add.size_m.value_or(0.0)));
+ObjectParts parts_of(const ScriptEvent& add, double room_extent_m) {
+  const ObjectSource source = source_of(add);
+  Model model = object_model(source);
+  require_sensible_size(model, source, {room_extent_m, "the slider \"new\" at "});
+  return object_parts(add.mesh, std::move(model));
 }
 
 }  // namespace
@@ -60,7 +63,8 @@ void PlayHost::ready_new_objects(std::vector<UserCommand>& commands) {
       link_.say("reading " + new_.waiting.front().event.mesh + " ...");
   } else if (!new_.waiting.empty()) {
     new_.frames_waited = 0;
-    new_.readying = std::async(std::launch::async, parts_of, new_.waiting.front().event);
+    new_.readying =
+        std::async(std::launch::async, parts_of, new_.waiting.front().event, session_.room_extent_m());
   }
 }
 

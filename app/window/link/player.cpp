@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "app/session/script/session_events.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -144,17 +146,13 @@ void Player::choose_if_none(const Session& session) {
 
 void Player::add(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
   const std::string& mesh = command.event.mesh;
-  // The name must be one word in a script, and unique.
-  std::string stem = mesh.substr(mesh.find_last_of('/') + 1);
-  stem = stem.substr(0, stem.find('.'));
-  for (char& letter : stem)
-    if (std::isspace(static_cast<unsigned char>(letter)) != 0 || letter == '#') letter = '_';
-  if (stem.empty()) stem = "object";
+  const std::string stem = object_name(mesh);
   std::string name = stem;
   for (int number = 2; find_object(session, name) != nullptr; ++number) name = stem + std::to_string(number);
   ScriptEvent event = event_of(Action::kAdd, name);
   event.mesh = mesh;
   event.size_m = command.event.size_m;
+  event.up = command.event.up;
   events.push_back(event);
   events.push_back(event_of(Action::kDrop, name));
   chosen_ = name;

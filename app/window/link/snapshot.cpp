@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "app/window/link/player.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -53,6 +55,12 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
   shown.room = room_;
   shown.seen_world = wanted.models ? session.scene().dynamic_world().seen_world : Mesh{};
   shown.inferred_world = wanted.models ? session.scene().dynamic_world().inferred_world : Mesh{};
+  shown.pointed_world.reset();
+  if (wanted.point_px) {
+    const Pointed pointed = pointed_at(session, *wanted.point_px);
+    if (const auto& hit = pointed.object ? pointed.object : pointed.surface)
+      shown.pointed_world = hit->point_world;
+  }
   shown.shown_radar = {};
   if (wanted.radar) fill_radar(session, shown.chosen, shown.shown_radar);
 }

@@ -62,7 +62,9 @@ void UiChannel::set_speed(double speed) {
 void UiChannel::want(const ViewsWanted& views) {
   const std::lock_guard lock(mutex_);
   if (views == wanted_) return;
+  const bool only_mouse = views.radar == wanted_.radar && views.models == wanted_.models;
   wanted_ = views;
+  if (only_mouse && !is_paused_) return;  // the next frame shows it
   wants_changed_ = true;
   changed_.notify_all();
 }

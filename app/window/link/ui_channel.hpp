@@ -48,10 +48,11 @@ struct UserCommand {
   ScriptEvent event;
 };
 
-/// Costly views, made only while they are visible.
+/// Costly views, made only while they are visible, and the point under the mouse.
 struct ViewsWanted {
-  bool radar = false;   ///< R, M and L
-  bool models = false;  ///< dynamic meshes
+  bool radar = false;                         ///< R, M and L
+  bool models = false;                        ///< dynamic meshes
+  std::optional<Eigen::Vector2d> point_px{};  ///< pixel of the picture under the mouse; unset: none
   friend bool operator==(const ViewsWanted&, const ViewsWanted&) = default;
 };
 
@@ -96,6 +97,7 @@ struct Snapshot {
   std::shared_ptr<const Mesh> room;
   Mesh seen_world, inferred_world;  ///< dynamic foreground
   ShownRadar shown_radar;
+  std::optional<Eigen::Vector3d> pointed_world;  ///< surface point at ViewsWanted::point_px; unset: none
 };
 
 /// Connects one window and one session. Thread safe.

@@ -3,12 +3,13 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 
 namespace roomradar {
 namespace {
 
-constexpr std::array<std::array<const char*, 2>, 21> kHelp = {
+constexpr std::array<std::array<const char*, 2>, 22> kHelp = {
     {{"click on a surface", "drop the chosen object there"},
      {"Shift + click", "place it there"},
      {"drag an object", "carry it; let go in motion: throw it"},
@@ -29,35 +30,48 @@ constexpr std::array<std::array<const char*, 2>, 21> kHelp = {
      {"X", "radar exact, sampled"},
      {"V", "camera, models, both"},
      {"C", "models: look at the chosen object"},
+     {"Ctrl + C", "copy the position under the mouse, for a script"},
      {"Esc, a click", "close this; Ctrl + Q quits"}}};
 
 }  // namespace
 
 bool draw_help(float width, float height, const look::Fonts& fonts) {
-  const float row = look::px(23.0F), wide = look::px(520.0F);
-  const float tall = row * static_cast<float>(kHelp.size()) + look::px(62.0F);
-  ImDrawList* draw = ImGui::GetForegroundDrawList();
-  draw->AddRectFilled({0.0F, 0.0F}, {width, height}, IM_COL32(8, 10, 13, 150));
-  const float left = 0.5F * (width - wide), top = 0.5F * (height - tall);
+  const float row = look::px(23.0F), margin = look::px(16.0F);
+  const float wide = std::min(look::px(540.0F), width - 2.0F * margin);
+  const float tall =
+      std::min(row * static_cast<float>(kHelp.size()) + look::px(72.0F), height - 2.0F * margin);
   // A transparent window over all panes, so a click reaches nothing else.
   ImGui::SetNextWindowPos({0.0F, 0.0F});
   ImGui::SetNextWindowSize({width, height});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(8, 10, 13, 150));
+  ImGui::SetNextWindowFocus();
   ImGui::Begin("help", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground);
-  ImGui::SetCursorScreenPos({0.0F, 0.0F});
-  const bool is_clicked = ImGui::InvisibleButton("close", {width, height});
-  ImGui::End();
-  draw->AddRectFilled({left, top}, {left + wide, top + tall}, look::kRaised, look::px(10.0F));
-  draw->AddText(fonts.large, fonts.large->FontSize, {left + look::px(24.0F), top + look::px(18.0F)},
-                look::kText, "Mouse and keys");
-  float y = top + look::px(50.0F);
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleColor();
+  ImGui::SetCursorScreenPos({0.5F * (width - wide), 0.5F * (height - tall)});
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, look::kRaised);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {look::px(24.0F), look::px(16.0F)});
+  ImGui::BeginChild("keys", {wide, tall}, /*border=*/true,
+                    ImGuiWindowFlags_NoNav);  // scrolls if it is too low
+  ImGui::PushFont(fonts.large);
+  ImGui::TextUnformatted("Mouse and keys");
+  ImGui::PopFont();
   for (const auto& [keys, what] : kHelp) {
-    draw->AddText({left + look::px(24.0F), y}, look::kAccent, keys);
-    draw->AddText({left + look::px(210.0F), y}, look::kText, what);
-    y += row;
+    ImGui::PushStyleColor(ImGuiCol_Text, look::kAccent);
+    ImGui::TextUnformatted(keys);
+    ImGui::PopStyleColor();
+    ImGui::SameLine(std::min(look::px(210.0F), 0.42F * wide));
+    ImGui::TextWrapped("%s", what);
   }
-  return is_clicked;
+  const bool is_on_scrollbar =
+      ImGui::GetScrollMaxY() > 0.0F &&
+      ImGui::GetMousePos().x > 0.5F * (width + wide) - ImGui::GetStyle().ScrollbarSize - look::px(4.0F);
+  ImGui::EndChild();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  ImGui::End();
+  return ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !is_on_scrollbar;
 }
 
 }  // namespace roomradar

@@ -14,7 +14,21 @@ namespace {
 constexpr double kDragFrom_px = 4.0;  // pixels of the window; a shorter drag is a click
 constexpr double kWheel_m = 0.04;
 
+/// Draws a line of text that is legible on any picture.
+void draw_note(ImDrawList& draw, ImVec2 at, const std::string& text, const look::Fonts& fonts) {
+  const float shift = look::px(1.0F);
+  draw.AddText(fonts.small, fonts.small->FontSize, {at.x + shift, at.y + shift}, IM_COL32(0, 0, 0, 160),
+               text.c_str());
+  draw.AddText(fonts.small, fonts.small->FontSize, at, look::kText, text.c_str());
+}
+
 }  // namespace
+
+std::string position_words(const Eigen::Vector3d& p_world) {
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "%.3f %.3f %.3f", p_world.x(), p_world.y(), p_world.z());
+  return text.data();
+}
 
 void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Fonts& fonts,
                        double drop_height_m) {
@@ -40,10 +54,10 @@ void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Font
     std::array<char, 96> text{};
     std::snprintf(text.data(), text.size(), "frame %lld   %.1f s", static_cast<long long>(shown.source_frame),
                   shown.run_time_s);
-    draw->AddText(fonts.small, fonts.small->FontSize, {image.x + look::px(11.0F), image.y + look::px(9.0F)},
-                  IM_COL32(0, 0, 0, 160), text.data());
-    draw->AddText(fonts.small, fonts.small->FontSize, {image.x + look::px(10.0F), image.y + look::px(8.0F)},
-                  look::kText, text.data());
+    draw_note(*draw, {image.x + look::px(10.0F), image.y + look::px(8.0F)}, text.data(), fonts);
+    if (is_here && shown.pointed_world)
+      draw_note(*draw, {image.x + look::px(10.0F), image.y + image.height - look::px(24.0F)},
+                position_words(*shown.pointed_world) + " m   (Ctrl+C copies)", fonts);
   }
   look::end_pane();
 }

@@ -12,6 +12,9 @@
 
 namespace roomradar {
 
+/// Returns a position as a script has it: "X Y Z" in metres.
+std::string position_words(const Eigen::Vector3d& p_world);
+
 class PicturePane {
  public:
   explicit PicturePane(UiChannel& link) : link_(link) {}

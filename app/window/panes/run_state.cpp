@@ -15,9 +15,12 @@ constexpr double kStall_s = 1.0;  // time without a new frame after which the ba
 
 }  // namespace
 
-void draw_run_state(const Area& area, const Snapshot& shown, const UiChannel& link, double silent_s) {
-  ImGui::SameLine();
-  ImGui::SetCursorPosX(area.width - look::px(338.0F));
+void draw_run_state(const Area& area, bool has_two_rows, const Snapshot& shown, const UiChannel& link,
+                    double silent_s) {
+  if (!has_two_rows) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(area.width - look::px(338.0F));
+  }
   ImGui::AlignTextToFramePadding();
   const FrameResult& result = shown.result;
   if (link.is_over())
@@ -36,8 +39,8 @@ void draw_run_state(const Area& area, const Snapshot& shown, const UiChannel& li
     look::pill(look::kGood, result.tracking == TrackStatus::kDegenerate ? "partly tracked" : "tracked");
 }
 
-void draw_frame_time(const Area& area, const TimingPane& timing, double frames_per_s, double speed,
-                     const look::Fonts& fonts) {
+void draw_frame_time(const Area& area, bool has_two_rows, const TimingPane& timing, double frames_per_s,
+                     double speed, const look::Fonts& fonts) {
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const float frame_ms = timing.frame_ms();
   std::array<char, 48> text{};
@@ -45,7 +48,8 @@ void draw_frame_time(const Area& area, const TimingPane& timing, double frames_p
   if (speed != 1.0)
     std::snprintf(text.data(), text.size(), "%.1f ms   %.0f fps   x%g", static_cast<double>(frame_ms),
                   frames_per_s, speed);
-  const float left = area.width - look::px(182.0F), top = area.y + look::px(10.0F), width = look::px(168.0F);
+  const float left = area.width - look::px(182.0F), top = area.y + look::px(has_two_rows ? 50.0F : 10.0F),
+              width = look::px(168.0F);
   draw->AddText(fonts.small, fonts.small->FontSize, {left, top}, look::kText, text.data());
   // Frame time and goal as fractions of the budget.
   const float bar_y = top + look::px(19.0F), bar_height = look::px(6.0F), rounding = look::px(3.0F);

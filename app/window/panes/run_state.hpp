@@ -8,13 +8,15 @@
 
 namespace roomradar {
 
-/// Draws a word for the state: loading, paused, tracked, ...
+/// Draws a word for the state: loading, paused, tracked, ... At the right end of the bar, or at the left end
+/// of its second row.
 /// @param silent_s  time since the newest frame
-void draw_run_state(const Area& area, const Snapshot& shown, const UiChannel& link, double silent_s);
+void draw_run_state(const Area& area, bool has_two_rows, const Snapshot& shown, const UiChannel& link,
+                    double silent_s);
 
 /// Draws the time of the last frame as a number, and as a bar with marks at goal and budget.
 /// @param speed  playback speed, 1 = as recorded
-void draw_frame_time(const Area& area, const TimingPane& timing, double frames_per_s, double speed,
-                     const look::Fonts& fonts);
+void draw_frame_time(const Area& area, bool has_two_rows, const TimingPane& timing, double frames_per_s,
+                     double speed, const look::Fonts& fonts);
 
 }  // namespace roomradar

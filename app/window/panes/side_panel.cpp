@@ -51,14 +51,14 @@ void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings
   if (look::button("Reset", "R", false, {half, 0.0F}, !shown.objects.empty())) ask(UserCommandKind::kReset);
   ImGui::SetNextItemWidth(half);
   const auto short_name = [](const std::string& mesh) { return mesh.substr(mesh.find_last_of('/') + 1); };
-  if (ImGui::BeginCombo("##mesh", short_name(settings.meshes[settings.mesh]).c_str())) {
+  if (ImGui::BeginCombo("##mesh", short_name(settings.meshes[settings.mesh].mesh).c_str())) {
     for (std::size_t i = 0; i < settings.meshes.size(); ++i) {  // by index, as two files may have the same
                                                                 // name
       ImGui::PushID(static_cast<int>(i));
       if (ImGui::Selectable("##file", i == settings.mesh)) settings.mesh = i;
       ImGui::PopID();
       ImGui::SameLine(0.0F, 0.0F);
-      ImGui::TextUnformatted(short_name(settings.meshes[i]).c_str());
+      ImGui::TextUnformatted(short_name(settings.meshes[i].mesh).c_str());
     }
     ImGui::EndCombo();
   }
@@ -133,7 +133,10 @@ void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
 UserCommand new_object_command(const PlaySettings& settings) {
   UserCommand command;
   command.kind = UserCommandKind::kNew;
-  command.event.mesh = settings.meshes[settings.mesh];
+  const ObjectSource& source = settings.meshes[settings.mesh];
+  command.event.mesh = source.mesh;
+  command.event.size_m = source.size_m;
+  command.event.up = source.up;
   if (settings.new_size_m >= 0.001F) command.event.size_m = static_cast<double>(settings.new_size_m);
   return command;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/objects/object_file.hpp"
 #include "app/window/link/ui_channel.hpp"
 #include "app/window/panes/theme.hpp"
 #include "app/window/panes/window_layout.hpp"
@@ -13,8 +14,8 @@ namespace roomradar {
 struct PlaySettings {
   float drop_height_m = 0.3F;
   float throw_speed_mps = 3.0F;
-  float new_size_m = 0.0F;          ///< size of an added object; 0: that of its mesh
-  std::vector<std::string> meshes;  ///< meshes that can be added: `teapot`, and files
+  float new_size_m = 0.0F;           ///< size of an added object; 0: as given for it, or that of its file
+  std::vector<ObjectSource> meshes;  ///< objects that can be added: `teapot`, and files
   std::size_t mesh = 0;
   int radar_px = 64;  ///< value of the slider while it is dragged
 };

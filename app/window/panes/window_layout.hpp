@@ -14,15 +14,21 @@ enum class MainView { kCamera, kModels, kBoth };
 
 struct WindowLayout {
   Area bar, camera, models, side, timing, radar;
+  bool has_two_rows = false;  ///< the bar is too narrow for one row
 };
 
+/// Returns the panes of a window. In a narrow window the bar has two rows and the side panel takes less; in a
+/// low one the panes `timing` and `radar` are empty.
 /// @param scale  the screen's; 1 at 96 dpi
 constexpr WindowLayout window_layout(float width, float height, MainView view, float scale = 1.0F) {
-  const float bar = scale * 48.0F, side = scale * 292.0F;
-  const float strip = std::clamp(0.27F * height, scale * 120.0F, scale * 250.0F);
+  const bool has_two_rows = width < scale * 1240.0F;
+  const float bar = scale * (has_two_rows ? 88.0F : 48.0F), side = std::min(scale * 292.0F, 0.42F * width);
+  const float strip =
+      height < scale * 560.0F ? 0.0F : std::clamp(0.27F * height, scale * 120.0F, scale * 250.0F);
   const float main_width = std::max(width - side, 0.0F);
   const float main_height = std::max(height - bar - strip, 0.0F);
   WindowLayout layout;
+  layout.has_two_rows = has_two_rows;
   layout.bar = {0.0F, 0.0F, width, bar};
   layout.side = {main_width, bar, side, height - bar};
   layout.timing = {0.0F, bar + main_height, 0.5F * main_width, strip};
