@@ -2,8 +2,12 @@
 #include "app/media/svg_plot.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -16,6 +20,20 @@ std::string format(const char* text, Numbers... numbers) {
 }
 
 }  // namespace
+
+std::string readable_number(double value, int digits) {
+  if (!std::isfinite(value)) return format_number(value);
+  const std::string rounded = format_general(value, digits);  // may have an exponent
+  double parsed = 0.0;
+  std::from_chars(rounded.data(), rounded.data() + rounded.size(), parsed);
+  std::array<char, 400> text{};
+  std::string plain(
+      text.data(),
+      std::to_chars(text.data(), text.data() + text.size(), parsed, std::chars_format::fixed).ptr);
+  const std::size_t first = plain.front() == '-' ? 1 : 0;
+  for (std::size_t at = std::min(plain.find('.'), plain.size()); at > first + 3;) plain.insert(at -= 3, ",");
+  return plain;
+}
 
 std::string escaped(const std::string& text) {
   std::string safe;
@@ -59,8 +77,8 @@ std::string percent_plot(const std::string& title, const std::string& x_name, do
        decade *= 10.0)
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" class=\"g\"/>", at_x(decade),
                   at_x(decade), kTop, kTop + kHigh) +
-           format("<text x=\"%.1f\" y=\"%.1f\" class=\"n m\">%g</text>", at_x(decade), kTop + kHigh + 15.0,
-                  decade);
+           format("<text x=\"%.1f\" y=\"%.1f\" class=\"n m\">%s</text>", at_x(decade), kTop + kHigh + 15.0,
+                  readable_number(decade).c_str());
   svg += format("<text x=\"%.1f\" y=\"%.1f\" class=\"n m\">", kLeft + 0.5 * kWide, kTop + kHigh + 32.0) +
          escaped(x_name) + "</text>";
   double legend_y = kTop + 12.0;

@@ -25,6 +25,10 @@ struct ShareTable {
 };
 std::string share_cells(const ShareTable& table);
 
+/// Formats a number for people: `digits` (1..15) significant digits, commas between thousands, no exponent:
+/// "2,250", "0.00123", "-12". "nan" and "inf" for these.
+std::string readable_number(double value, int digits = 3);
+
 /// Escapes `<`, `>`, `&` and double quotes for HTML.
 std::string escaped(const std::string& text);
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
@@ -69,7 +70,7 @@ struct VideoWriter::State {
     std::error_code fault;
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     const std::filesystem::space_info space = std::filesystem::space(folder, fault);
-    if (!fault && space.available < kMinFreeBytes)
+    if (!fault && space.capacity > 0 && space.available < kMinFreeBytes)
       throw Error(path.string() + ": the disk is full; make room or choose another folder");
   }
 };
@@ -87,6 +88,9 @@ VideoWriter::VideoWriter(std::filesystem::path path, double frames_per_s)
     throw Error(path.string() + ": is a folder, not a video file");
   if (std::filesystem::is_symlink(path, fault) && std::filesystem::exists(path, fault))
     path = std::filesystem::canonical(path, fault);
+  if (partial_of(path) != path)  // else a pipe or a device
+    if (const std::string why = why_not_writable(path); !why.empty())
+      throw Error(path.string() + ": cannot be written: " + why);
   state_->partial = partial_of(path);
   state_->path = std::move(path);
   state_->frames_per_s = frames_per_s;

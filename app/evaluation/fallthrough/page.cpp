@@ -21,7 +21,9 @@ constexpr char kStyle[] =
     "th{font-weight:600}tr>*:first-child{text-align:left}table.totals tr+tr{border-top:1px solid #ddd}"
     "caption{text-align:left;font-weight:600;padding:.3em 0}.t{font:600 14px sans-serif}"
     ".n{font:12px sans-serif;fill:#444}.e{text-anchor:end}.m{text-anchor:middle}.g{stroke:#ddd}"
-    "figure{display:inline-block;margin:.5em;width:560px;vertical-align:top}figcaption{font-size:13px}"
+    ".wide{overflow-x:auto}svg{max-width:100%;height:auto}"
+    "figure{display:inline-block;margin:.5em "
+    "0;width:560px;max-width:100%;vertical-align:top}figcaption{font-size:13px}"
     "img{max-width:100%}.cells{display:inline-table;margin-right:2em;vertical-align:top}"
     ".cells th,.cells td{min-width:3.3em;text-align:center;font-variant-numeric:tabular-nums}"
     ".cells tr>th:first-child{text-align:left;font-weight:400}";
@@ -46,7 +48,8 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
   const auto totals = totals_of(rows);
   const double count = std::max<double>(1.0, static_cast<double>(rows.size()));
   std::string html =
-      "<table class=\"totals\"><tr><th>surfaces</th><th>passed through</th><th>stopped where nothing "
+      "<div class=\"wide\"><table class=\"totals\"><tr><th>surfaces</th><th>passed through</th><th>stopped "
+      "where nothing "
       "is</th><th>contact error, median</th><th>p95</th><th>frame, median</th><th>relative to the "
       "first</th></tr>\n";
   char line[400];
@@ -60,7 +63,7 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
                   millimetres(t.contact_error_p95_m).c_str(), t.frame_median_ms, t.cost_ratio);
     html += line;
   }
-  return html + "</table>\n";
+  return html + "</table></div>\n";
 }
 
 /// Plots the share of scenarios that ended within x of the true contact. Objects that were not stopped count
@@ -123,7 +126,8 @@ void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
   if (path.empty()) return;
   AtomicFile whole(path);
   std::ostream& file = whole.stream();
-  file << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Fall-through</title><style>"
+  file << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
+          "content=\"width=device-width,initial-scale=1\"><title>Fall-through</title><style>"
        << kStyle << "</style><h1>Do virtual objects fall through hidden surfaces?</h1><p>" << escaped(about)
        << "</p><p>An object moves straight onto a surface that the camera cannot see now, but saw in the "
           "prescan. Passed through: more than 2 cm beyond the exact contact. Stopped where nothing is: more "

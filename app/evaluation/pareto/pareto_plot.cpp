@@ -72,13 +72,13 @@ std::string grid(const ParetoPlot& plot, const Axis& x, const Axis& y) {
   for (const double tick : y.ticks())
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" class=\"grid\"/>", x.from_px,
                   x.to_px, y.at(tick), y.at(tick)) +
-           format("<text x=\"%.1f\" y=\"%.1f\" class=\"tick end\">%g</text>", x.from_px - 6.0,
-                  y.at(tick) + 4.0, tick);
+           format("<text x=\"%.1f\" y=\"%.1f\" class=\"tick end\">%s</text>", x.from_px - 6.0,
+                  y.at(tick) + 4.0, readable_number(tick).c_str());
   for (const double tick : x.ticks())
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" class=\"%s\"/>", x.at(tick),
                   x.at(tick), y.from_px, y.to_px, tick == 1.0 ? "grid one" : "grid") +
-           format("<text x=\"%.1f\" y=\"%.1f\" class=\"tick middle\">%g</text>", x.at(tick), y.from_px + 16.0,
-                  tick);
+           format("<text x=\"%.1f\" y=\"%.1f\" class=\"tick middle\">%s</text>", x.at(tick), y.from_px + 16.0,
+                  readable_number(tick).c_str());
   return svg + format("<text x=\"%.1f\" y=\"18\" class=\"title\">", kLeft) + escaped(plot.title) + "</text>" +
          format("<text x=\"%.1f\" y=\"%.1f\" class=\"tick middle\">", 0.5 * (x.from_px + x.to_px),
                 kHeight - 10.0) +

@@ -37,7 +37,8 @@ constexpr char kStyle[] =
     ".preset{fill:var(--mark)}.label{font-weight:600;paint-order:stroke;stroke:var(--paper);stroke-width:"
     "4px}";
 
-std::string page_number(double value, const char* form = "%.3g") {
+std::string page_number(double value) { return std::isfinite(value) ? readable_number(value) : "–"; }
+std::string page_number(double value, const char* form) {
   if (!std::isfinite(value)) return "–";
   char text[40];
   std::snprintf(text, sizeof text, form, value);
@@ -230,7 +231,8 @@ void write_trade_page(const std::vector<TradeResult>& results, const std::vector
   AtomicFile whole(path);
   std::ostream& file = whole.stream();
   file << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
-          "content=\"width=device-width\"><title>roomradar: time against accuracy</title><style>"
+          "content=\"width=device-width,initial-scale=1\"><title>roomradar: time against "
+          "accuracy</title><style>"
        << kStyle << "</style>\n<h1>Time against accuracy</h1>\n<p class=\"about\">";
   for (const std::string& line : about) file << escaped(line) << "<br>";
   file
