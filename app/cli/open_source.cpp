@@ -12,6 +12,7 @@
 #include "app/sources/kinect/fakenect_replay.hpp"
 #include "app/sources/kinect/kinect_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
+#include "app/sources/recordings/read_ahead.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -93,12 +94,10 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
                 (used.empty() ? "a calibration needs frames as the device delivers them"
                               : used.string() + " would correct them a second time; leave it out"));
   if (!used.empty()) opened = calibrated(std::move(opened), read_calibration(used));
-  if (!frames) {
-    if (!opened->frame_count() && !replayed_folder())
-      options.say(opened->name() + ": continues until Ctrl-C is pressed once");
-    return opened;
-  }
-  return limit_frames(std::move(opened), frames->first, frames->last);
+  if (!frames && !opened->frame_count() && !replayed_folder())
+    options.say(opened->name() + ": continues until Ctrl-C is pressed once");
+  if (frames) opened = limit_frames(std::move(opened), frames->first, frames->last);
+  return source.starts_with(kKinect) ? std::move(opened) : read_ahead(std::move(opened));
 }
 
 void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source) {

@@ -25,6 +25,7 @@ bool gives_calibrated_frames(const std::string& source, const std::filesystem::p
 /// Opens `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder. A folder holds a
 /// recording or a recorded session, recognised by its files. With `frames`, delivers only that range. With a
 /// calibration file, or a file calibration.json in the folder, corrects lens and depth errors of the frames.
+/// Recordings and simulated frames are read one frame ahead, on a second thread.
 ///
 /// @throws Error listing the kinds of source if `source` is none of them, if the frames would be corrected
 /// twice, or if source or calibration cannot be opened

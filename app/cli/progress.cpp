@@ -16,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kBarWidth = 30;
 constexpr auto kRedrawEvery = std::chrono::milliseconds(100);
 constexpr auto kLineEvery = std::chrono::seconds(5);
-constexpr auto kRateOver = std::chrono::seconds(3);
+constexpr double kRateOver_s = 15.0;
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -46,12 +46,18 @@ std::string progress_line(const ProgressState& state, bool with_bar) {
   return state.note.empty() ? line : line + ", " + state.note;
 }
 
+void SmoothRate::add(double steps, double seconds) {
+  if (!(seconds > 0.0)) return;
+  const double kept = std::exp(-seconds / kRateOver_s);
+  steps_ = kept * steps_ + steps;
+  seconds_ = kept * seconds_ + seconds;
+}
+
 Progress::Progress(std::string what, std::optional<std::int64_t> total)
     : state_{std::move(what), 0, total, 0.0, {}, false},
       is_terminal_(isatty(STDERR_FILENO) != 0),
       started_(Clock::now()),
-      shown_(started_),
-      counted_(started_) {}
+      shown_(started_) {}
 
 Progress::~Progress() {
   if (state_.done > 0) show(/*last=*/true);
@@ -62,14 +68,10 @@ void Progress::step(const std::string& note) {
   state_.note = note;
   const Time now = Clock::now();
   if (now - shown_ < (is_terminal_ ? Clock::duration(kRedrawEvery) : kLineEvery)) return;
+  rate_.add(static_cast<double>(state_.done - shown_done_), seconds(now - shown_));
+  state_.per_s = rate_.per_s();
   shown_ = now;
-  // Measured over at least a second, except the first time.
-  if (state_.per_s == 0.0 || now - counted_ >= std::chrono::seconds(1))
-    state_.per_s = static_cast<double>(state_.done - counted_from_) / seconds(now - counted_);
-  if (now - counted_ >= kRateOver) {
-    counted_ = now;
-    counted_from_ = state_.done;
-  }
+  shown_done_ = state_.done;
   show(/*last=*/false);
 }
 

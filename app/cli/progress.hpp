@@ -27,6 +27,19 @@ struct ProgressState {
 /// Bar and remaining time appear only if the total is known, and the bar only if requested.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
+/// Speed of the work, averaged over about the last 15 s, so that a single slow or fast step hardly moves the
+/// remaining time.
+class SmoothRate {
+ public:
+  /// Adds steps that took this long.
+  void add(double steps, double seconds);
+  /// Returns steps per second; 0 before the first time that is > 0.
+  [[nodiscard]] double per_s() const { return seconds_ > 0.0 ? steps_ / seconds_ : 0.0; }
+
+ private:
+  double steps_ = 0.0, seconds_ = 0.0;  ///< sums with weights that decay with age
+};
+
 /// Shows a progress line on stderr. Redraws it in place if stderr is a terminal; otherwise prints a line
 /// every few seconds.
 class Progress {
@@ -49,10 +62,8 @@ class Progress {
   bool is_terminal_;
   Time started_;
   Time shown_;
-  /// Start of the interval over which the rate is measured.
-  Time counted_;
-  /// Number of finished steps at the start of that interval.
-  std::int64_t counted_from_ = 0;
+  std::int64_t shown_done_ = 0;  ///< number of finished steps when the line was last shown
+  SmoothRate rate_;
 };
 
 }  // namespace roomradar

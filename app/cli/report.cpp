@@ -47,7 +47,7 @@ nlohmann::json to_json(const Report& report) {
       {"frames_skipped", report.frames_skipped},
       {"stages", stages},
       {"peak_rss_mb", peak_rss_mb()},
-      {"wall_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - report.started).count()},
+      {"wall_s", report.seconds()},
   };
   json.update(report.results);
   return json;

@@ -24,6 +24,11 @@ struct Report {
   StageTimes times;
   nlohmann::json results = nlohmann::json::object();
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
+
+  /// Returns the time since the command began.
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  }
 };
 
 /// Returns the vector as an array [x, y, z].

@@ -2,14 +2,21 @@
 #include "app/commands/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "app/cli/completion.hpp"
+#include "app/cli/help_topics.hpp"
 #include "app/cli/manual_page.hpp"
+#include "app/cli/options/command_tree.hpp"
 #include "app/cli/options/option_checks.hpp"
+#include "app/cli/options/option_groups.hpp"
 #include "app/cli/session_folder.hpp"
+#include "app/cli/usage_fault.hpp"
 #include "app/commands/calibrate_command.hpp"
 #include "app/commands/doctor_command.hpp"
 #include "app/commands/fallthrough_command.hpp"
@@ -25,6 +32,14 @@
 namespace roomradar {
 namespace {
 
+constexpr const char* kMeasure = "Measuring and testing";
+constexpr const char* kFirstSteps =
+    "  roomradar doctor                                    # what of the set-up works\n"
+    "  roomradar prescan kinect:0 --map maps/kitchen       # or a recording, or 'sim:table'\n"
+    "  roomradar run kinect:0 --map maps/kitchen --window\n"
+    "`roomradar COMMAND --help` explains a command, `roomradar help TOPIC` a topic: script, models,\n"
+    "sources, units, calibrate, files.\n";
+
 /// Completes the options of `roomradar run`, which may come from a recorded session.
 void complete_options(const CLI::App& command, RunOptions& options) {
   complete_options(command, options, [](const std::string& source) -> std::optional<RunOptions> {
@@ -33,10 +48,34 @@ void complete_options(const CLI::App& command, RunOptions& options) {
   });
 }
 
+/// Returns the help of a command or a topic. Throws CLI::ValidationError naming the nearest known word.
+std::string help_on(CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty()) return app.help();
+  for (const HelpTopic& topic : help_topics())
+    if (words.size() == 1 && words.front() == topic.name) return std::string(topic.text);
+  CLI::App* command = &app;
+  std::string parents;  // the help adds the command's own name
+  for (const std::string& word : words) {
+    std::vector<std::string> known;
+    for (const CLI::App* part : commands_of(*command)) known.push_back(part->get_name());
+    if (command == &app)
+      for (const HelpTopic& topic : help_topics()) known.emplace_back(topic.name);
+    CLI::App* part = command_named(*command, word);
+    if (part == nullptr) {
+      const std::string nearest = nearest_word(word, known);
+      throw CLI::ValidationError("there is no command or topic '" + word + "'" +
+                                 (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+    }
+    parents += (parents.empty() ? "" : " ") + command->get_name();
+    command = part;
+  }
+  return command->help(parents);
+}
+
 /// Adds the command that run(Options) executes.
 /// @param work  receives that call when the command was parsed; must outlive the parsing
 template <typename Options>
-void add_command(CLI::App& app, const char* name, const char* description, std::function<int()>& work) {
+CLI::App* add_command(CLI::App& app, const char* name, const char* description, std::function<int()>& work) {
   CLI::App* command = app.add_subcommand(name, description);
   const auto options = std::make_shared<Options>();
   add_options(*command, *options);
@@ -44,6 +83,7 @@ void add_command(CLI::App& app, const char* name, const char* description, std::
     if constexpr (requires { complete_options(*command, *options); }) complete_options(*command, *options);
     work = [options] { return run(*options); };
   });
+  return command;
 }
 
 void add_map_commands(CLI::App& app, std::function<int()>& work) {
@@ -63,19 +103,36 @@ void add_map_commands(CLI::App& app, std::function<int()>& work) {
       work);
 }
 
-void add_evaluation_commands(CLI::App& app, std::function<int()>& work) {
+/// Adds `help [COMMAND | TOPIC]`.
+void add_help_command(CLI::App& app) {
+  CLI::App& help =
+      *app.add_subcommand("help", "explain a command, or a topic: script, models, sources, units, calibrate, files");
+  const auto words = std::make_shared<std::vector<std::string>>();
+  help.add_option("WORD", *words, "command or topic (default: the list of commands)");
+  help.callback([&app, words] {
+    std::fputs(help_on(app, *words).c_str(), stdout);
+    throw CLI::Success();
+  });
+}
+
+void add_measuring_commands(CLI::App& app, std::function<int()>& work) {
+  add_command<SimulateOptions>(app, "simulate", "record a simulated Kinect, with ground truth", work)
+      ->group(kMeasure);
   add_command<FallthroughOptions>(
       app, "fallthrough",
-      "drop and push objects behind occluders under each surface policy, and compare with simulated\n"
-      "ground truth. With a SOURCE: drop a ball over each cell of a grid in its map, with the\n"
-      "surfaces of one frame",
-      work);
+      "how often objects pass through hidden surfaces, per surface policy:\n"
+      "drops and pushes objects behind occluders and compares with simulated ground truth. With a SOURCE:\n"
+      "drops a ball over each cell of a grid in its map, with the surfaces of one frame",
+      work)
+      ->group(kMeasure);
   add_command<TradeOptions>(
       app, "trade",
-      "measure time against accuracy: random settings of prescan and run, then greedy combinations of\n"
-      "the best single changes, in simulated rooms with ground truth and in recordings; each setting is\n"
-      "measured between two measurements of the default",
-      work);
+      "measure what accuracy costs on this machine, setting by setting:\n"
+      "random settings of prescan and run, then greedy combinations of the best single changes, in\n"
+      "simulated rooms with ground truth and in recordings; each setting is measured between two\n"
+      "measurements of the default",
+      work)
+      ->group(kMeasure);
 }
 
 void add_commands(CLI::App& app, std::function<int()>& work) {
@@ -85,15 +142,17 @@ void add_commands(CLI::App& app, std::function<int()>& work) {
   add_command<RecordOptions>(app, "record", "write a source's frames as a recording", work);
   add_command<CalibrateOptions>(
       app, "calibrate",
-      "estimate both cameras, their lenses, their relative pose and the depth's errors from a\n"
-      "recording of a checkerboard that is held still in 20 or more places: near, far, tilted, in\n"
-      "every part of the image",
+      "estimate a device's cameras, lenses and depth errors from a recorded checkerboard,\n"
+      "held still in 20 or more places: near, far, tilted, in every part of the image;\n"
+      "`roomradar help calibrate` goes through it step by step",
       work);
   app.add_subcommand(
          "doctor", "check this set-up and say how to repair it; exit status 1 if something must be repaired")
       ->callback([&work] { work = run_doctor; });
-  add_command<SimulateOptions>(app, "simulate", "record a simulated Kinect, with ground truth", work);
-  add_evaluation_commands(app, work);
+  add_help_command(app);
+  add_measuring_commands(app, work);
+  for (CLI::App* command : commands_of(app))
+    if (command->get_group() != kMeasure) command->group("Commands");
 }
 
 }  // namespace
@@ -106,7 +165,6 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
       "roomradar");
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
-  app.get_formatter()->column_width(32);  // before the commands, which copy it
   add_commands(app, work);
   app.add_flag_callback("--manual",
                         [&app] {
@@ -114,12 +172,22 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
                           throw CLI::Success();
                         })
       ->group("");
+  app.add_option_function<std::string>("--completion",
+                                       [&app](const std::string& shell) {
+                                         std::fputs(completion_script(app, shell).c_str(), stdout);
+                                         throw CLI::Success();
+                                       })
+      ->group("");
+  app.footer(kFirstSteps);
+  arrange_help(app);
   refuse_other_bases(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const bool is_help = app.exit(error) == 0;
-    return {{}, is_help ? 0 : 2};
+    if (error.get_exit_code() == 0) return {{}, app.exit(error)};
+    const std::vector<std::string> arguments(argv + 1, argv + std::max(argc, 1));
+    std::fputs(usage_fault(app, error, arguments).c_str(), stderr);
+    return {{}, 2};
   }
   return {work, 0};
 }

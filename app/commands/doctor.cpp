@@ -57,32 +57,32 @@ Finding judge_one(const KinectOnUsb& kinect) {
 }  // namespace
 
 std::vector<Finding> judge_kinects(const std::vector<KinectOnUsb>& on_usb, int seen_by_libfreenect) {
-  std::vector<Finding> hypotheses;
+  std::vector<Finding> findings;
   if (seen_by_libfreenect < 0)
-    hypotheses.push_back({Health::kMissing, "this program was built without Kinect",
-                          "configure it with -DROOMRADAR_WITH_KINECT=ON and libfreenect-dev installed"});
-  for (const KinectOnUsb& kinect : on_usb) hypotheses.push_back(judge_one(kinect));
+    findings.push_back({Health::kMissing, "this program was built without Kinect",
+                        "configure it with -DROOMRADAR_WITH_KINECT=ON and libfreenect-dev installed"});
+  for (const KinectOnUsb& kinect : on_usb) findings.push_back(judge_one(kinect));
   for (std::size_t i = 1; i < on_usb.size(); ++i)
     if (on_usb[i].bus == on_usb[i - 1].bus)  // sorted by their nodes
-      hypotheses.push_back({Health::kBad,
-                            "two Kinects share USB bus " + std::to_string(on_usb[i].bus) +
-                                ", which has room for the images of one",
-                            "plug one into a port of another controller (lsusb -t shows them)"});
+      findings.push_back({Health::kBad,
+                          "two Kinects share USB bus " + std::to_string(on_usb[i].bus) +
+                              ", which has room for the images of one",
+                          "plug one into a port of another controller (lsusb -t shows them)"});
   const auto sees = static_cast<std::size_t>(std::max(seen_by_libfreenect, 0));
   if (on_usb.empty() && sees == 0)
-    hypotheses.push_back({Health::kMissing, "no Kinect is plugged in",
-                          "plug it into USB and into its own power supply; recordings and sim: need none"});
+    findings.push_back({Health::kMissing, "no Kinect is plugged in",
+                        "plug it into USB and into its own power supply; recordings and sim: need none"});
   else if (seen_by_libfreenect >= 0 && sees < on_usb.size() && on_usb.front().has_camera)
-    hypotheses.push_back({Health::kBad,
-                          "of " + std::to_string(on_usb.size()) + " Kinects on the bus libfreenect sees " +
-                              std::to_string(sees),
-                          "unplug it and plug it in again, at a USB 2 port of its own"});
+    findings.push_back({Health::kBad,
+                        "of " + std::to_string(on_usb.size()) + " Kinects on the bus libfreenect sees " +
+                            std::to_string(sees),
+                        "unplug it and plug it in again, at a USB 2 port of its own"});
   else if (sees > 0)
-    hypotheses.push_back({Health::kGood,
-                          "libfreenect sees " + std::to_string(sees) + ": kinect:0" +
-                              (sees > 1 ? " to kinect:" + std::to_string(sees - 1) : ""),
-                          {}});
-  return hypotheses;
+    findings.push_back({Health::kGood,
+                        "libfreenect sees " + std::to_string(sees) + ": kinect:0" +
+                            (sees > 1 ? " to kinect:" + std::to_string(sees - 1) : ""),
+                        {}});
+  return findings;
 }
 
 Finding judge_replay(const std::filesystem::path& recording) {

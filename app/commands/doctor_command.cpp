@@ -12,17 +12,17 @@ namespace roomradar {
 
 int run_doctor() {
   const auto replayed = replayed_folder();
-  std::vector<Finding> hypotheses;
+  std::vector<Finding> findings;
   if (replayed)
-    hypotheses.push_back(judge_replay(*replayed));
+    findings.push_back(judge_replay(*replayed));
   else
-    hypotheses = judge_kinects(kinects_on_usb(), count_kinects());
-  hypotheses.push_back(judge_renderer());
+    findings = judge_kinects(kinects_on_usb(), count_kinects());
+  findings.push_back(judge_renderer());
   const char* path = std::getenv("PATH");
-  hypotheses.push_back(judge_fakenect(path ? path : ""));
+  findings.push_back(judge_fakenect(path ? path : ""));
 
   bool is_well = true;
-  for (const Finding& finding : hypotheses) {
+  for (const Finding& finding : findings) {
     const char* mark = finding.health == Health::kGood  ? "good"
                        : finding.health == Health::kBad ? "BAD"
                                                         : "-";

@@ -1,16 +1,63 @@
 // map_command.cpp: roomradar map info|verify|export: describes, checks and exports a saved map.
 #include "app/commands/map_command.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "app/cli/report.hpp"
+#include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/surface/unknown_surface.hpp"
 
 namespace roomradar {
+namespace {
+
+nlohmann::json json_of(const MapInfo& info, const std::vector<LevelSurface>& surfaces) {
+  nlohmann::json json = nlohmann::json::parse(to_json(info));
+  json["surfaces"] = nlohmann::json::array();
+  const std::optional<std::size_t> floor = floor_among(surfaces);
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    json["surfaces"].push_back({{"floor", i == floor},
+                                {"height_m", surfaces[i].height_m},
+                                {"area_m2", surfaces[i].area_m2},
+                                {"middle_m", to_json(surfaces[i].middle_world)}});
+  return json;
+}
+
+/// Returns a line per level surface, from the lowest to the highest.
+std::string describe(std::vector<LevelSurface> surfaces) {
+  if (surfaces.empty()) return "level surfaces  none of 0.05 m2 and more\n";
+  std::sort(surfaces.begin(), surfaces.end(),
+            [](const auto& a, const auto& b) { return a.height_m < b.height_m; });
+  const std::optional<std::size_t> floor = floor_among(surfaces);
+  std::string text;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Eigen::Vector3d& p = surfaces[i].middle_world;
+    std::array<char, 120> line{};
+    std::snprintf(line.data(), line.size(), "%-16sz %.2f m, %.2f m2, middle at %.2f %.2f %.2f%s\n",
+                  i == 0 ? "level surfaces" : "", surfaces[i].height_m, surfaces[i].area_m2, p.x(), p.y(),
+                  p.z(), i == floor ? " (floor)" : "");
+    text += line.data();
+  }
+  return text;
+}
+
+}  // namespace
 
 int run(const MapInfoOptions& options) {
-  std::printf("%s", describe(load_map_info(options.map)).c_str());
+  const MapInfo info = load_map_info(options.map);
+  const std::vector<LevelSurface> surfaces = level_surfaces(load_map_mesh(options.map));
+  if (options.json)
+    std::printf("%s\n", json_of(info, surfaces).dump(2).c_str());
+  else
+    std::printf("%s%s", describe(info).c_str(), describe(surfaces).c_str());
   return 0;
 }
 

@@ -122,6 +122,8 @@ nlohmann::json settings_of(const PrescanOptions& options) {
   settings.update(to_json(options.quality));
   if (!options.preset.empty()) settings["preset"] = options.preset;
   if (!options.presets.empty()) settings["presets"] = options.presets;
+  if (options.up)
+    settings["up"] = options.up->up_world ? to_json(*options.up->up_world) : nlohmann::json("camera");
   if (options.hold_out > 0) settings["hold_out"] = options.hold_out;
   if (options.max_memory_mb > 0.0) settings["max_memory_mb"] = options.max_memory_mb;
   if (!options.calibration.empty()) settings["calibration"] = options.calibration;
@@ -133,6 +135,7 @@ PrescanConfig config_of(const PrescanOptions& options) {
   PrescanConfig config;
   apply(options.quality, config);
   config.poses = options.poses;
+  config.up = options.up;
   config.hold_out = options.hold_out;
   config.max_memory_bytes = static_cast<std::size_t>(kMB * options.max_memory_mb);
   // Recorded poses may disagree with the depth by more than the threshold that tells a ghost from a wall;

@@ -42,6 +42,9 @@ nlohmann::json results_of(const PrescanResult& scanned) {
       {"surface",
        {{"full_triangles", scanned.surface.full_triangles}, {"deviation_m", scanned.surface.deviation_m}}},
   };
+  results["lost"] = nlohmann::json::array();
+  for (const FrameSpan& span : scanned.lost)
+    results["lost"].push_back({{"from_frame", span.first}, {"until_frame", span.last + 1}});
   results["holes"] = nlohmann::json::array();
   for (const Hole& hole : scanned.holes) results["holes"].push_back(hole_row(hole));
   results["ate_rmse_m"] = nullptr;  // set only for tracked poses of a recording that has poses
@@ -68,6 +71,17 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
               static_cast<long long>(counts.frames_tracked), static_cast<long long>(counts.frames_read),
               static_cast<long long>(counts.frames_fused), scanned.map.mesh.triangles.size(),
               scanned.map.info.up_source.c_str());
+  if (!scanned.lost.empty()) {
+    std::printf("frames without a pose:");
+    constexpr std::size_t kShown = 5;
+    for (std::size_t i = 0; i < std::min(scanned.lost.size(), kShown); ++i) {
+      const FrameSpan& span = scanned.lost[i];
+      std::printf("%s %lld", i > 0 ? "," : "", static_cast<long long>(span.first));
+      if (span.last > span.first) std::printf("-%lld", static_cast<long long>(span.last));
+    }
+    if (scanned.lost.size() > kShown) std::printf(" and %zu more spans", scanned.lost.size() - kShown);
+    std::printf("\n");
+  }
   if (counts.frames_skipped > 0) {
     std::printf("%lld frames could not be read; the last fault: %s\n",
                 static_cast<long long>(counts.frames_skipped), counts.last_fault.c_str());
@@ -94,12 +108,12 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
 
 void print_holes(const std::vector<Hole>& holes) {
   constexpr std::size_t kShown = 5;
-  const std::size_t inside = static_cast<std::size_t>(std::count_if(
-      holes.begin(), holes.end(), [](const Hole& hole) { return hole.kind != HoleKind::kOuterBorder; }));
-  if (inside == 0) std::printf("everything inside the scan was observed\n");
-  for (std::size_t i = 0; i < std::min(inside, kShown); ++i)
-    std::printf("not observed: %s\n", describe(holes[i]).c_str());
-  if (inside > kShown) std::printf("and %zu smaller ones\n", inside - kShown);
+  const auto inside = std::count_if(holes.begin(), holes.end(),
+                                    [](const Hole& hole) { return hole.kind != HoleKind::kOuterBorder; });
+  std::printf("holes: %zu, %td of them inside the scan%s\n", holes.size(), inside,
+              inside > 0 ? "; the largest, numbered as in coverage.png and the report:" : "");
+  for (std::size_t i = 0; i < std::min(static_cast<std::size_t>(inside), kShown); ++i)
+    std::printf("  %zu. %s\n", i + 1, describe(holes[i]).c_str());
 }
 
 }  // namespace roomradar

@@ -8,6 +8,7 @@
 #include "app/cli/deferred_errors.hpp"
 #include "app/run/opened_run.hpp"
 #include "app/run/run_loop.hpp"
+#include "app/run/run_summary.hpp"
 #include "app/window/play_window.hpp"
 #include "mapping/coverage/coverage.hpp"
 #include "mapping/surface/surface_extraction.hpp"
@@ -37,6 +38,21 @@ nlohmann::json report_replay(const ReplayCheck& check) {
   return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
 }
 
+/// Returns true, with a message, if a run that was only to drop its object could not do so.
+bool says_nothing_dropped(const OpenedRun& run) {
+  if (!run.options.script.empty() || run.options.window || run.check) return false;
+  const std::vector<WaitingDrop>& waiting = run.session->waiting_drops();
+  for (const auto& object : run.session->objects())
+    if (object->in_room || object->departures > 0) return false;
+  if (waiting.empty()) return false;
+  std::fprintf(
+      stderr,
+      "roomradar: %s: no object could be dropped: %s. Choose a place with --script and drop NAME at X Y Z; "
+      "`roomradar map info %s` lists the level surfaces\n",
+      run.options.source.c_str(), waiting.front().why.c_str(), run.options.map.c_str());
+  return true;
+}
+
 /// Plays the run, saves, reports and prints its results; returns the exit status.
 int play(OpenedRun& run) {
   const RunOptions& options = run.options;
@@ -62,8 +78,9 @@ int play(OpenedRun& run) {
   if (run.check) run.report.results["replay"] = report_replay(*run.check);
   if (!faults.first().empty()) run.report.results["fault"] = faults.first();
   faults.attempt([&] { write_report(run.report, options.report); });
-  print_summary(totals, *run.session);
+  print_summary(run);
   faults.throw_first();
+  if (totals.located > 0 && says_nothing_dropped(run)) return 1;
   if (totals.located > 0 || run.was_quit) return 0;
   if (options.poses == PoseOrigin::kRecorded) {
     std::fprintf(stderr, "roomradar: %s: no frame has a recorded pose; take --poses tracked\n",
@@ -84,9 +101,10 @@ int run_frames(const RunOptions& options, UiChannel* link) { return play(*open_r
 
 int run(const RunOptions& options) {
   if (!options.window) return run_frames(options, nullptr);
-  std::vector<std::string> meshes;
-  if (options.object != "teapot") meshes.push_back(options.object);
-  return run_in_window("roomradar - " + options.source, meshes, options.budget_ms,
+  std::vector<ObjectSource> meshes;
+  for (const ObjectOption& object : options.objects)
+    if (object.source.mesh != "teapot") meshes.push_back(object.source);
+  return run_in_window("roomradar - " + options.source, meshes, options.budget_ms, options.ui_scale,
                        [&](UiChannel& link) { return run_frames(options, &link); });
 }
 

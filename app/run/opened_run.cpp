@@ -10,6 +10,7 @@
 
 #include "app/cli/open_source.hpp"
 #include "app/quality/quality_json.hpp"
+#include "app/run/object_script.hpp"
 #include "app/session/apply_quality.hpp"
 #include "app/session/script/session_events.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -21,10 +22,17 @@ namespace {
 
 constexpr double kVideoFramesPerS = 30.0;
 
+/// Returns the objects as given; a plain text if there is one.
+nlohmann::json object_texts(const RunOptions& options) {
+  nlohmann::json texts = nlohmann::json::array();
+  for (const ObjectOption& object : options.objects) texts.push_back(object.text);
+  return texts.size() == 1 ? texts[0] : texts;
+}
+
 nlohmann::json settings_of(const RunOptions& options) {
   nlohmann::json settings = {{"map", options.map},
                              {"poses", to_string(options.poses)},
-                             {"object", options.object},
+                             {"object", object_texts(options)},
                              {"script", options.script},
                              {"surfaces", to_string(options.surfaces)},
                              {"unknown", options.unknown_is_solid ? "solid" : "free"},
@@ -42,29 +50,29 @@ nlohmann::json settings_of(const RunOptions& options) {
   return settings;
 }
 
-/// Returns the script used if none is given: the object falls onto the best level surface in view.
-Script drop_over_view(const std::string& object) {
-  ScriptEvent add;
-  add.frame = 0;
-  add.action = Action::kAdd;
-  add.name = "object";
-  add.mesh = object;
-  ScriptEvent drop;
-  drop.frame = 0;
-  drop.action = Action::kDrop;
-  drop.name = add.name;
-  return {{add, drop}};
-}
-
 bool has(const Script& script, Action action) {
   return std::any_of(script.events.begin(), script.events.end(),
                      [action](const ScriptEvent& event) { return event.action == action; });
 }
 
+/// Says which events are due before an event above them, and therefore wait for it.
+void say_what_waits(const Script& script, const std::string& path) {
+  std::int64_t latest_frame = 0;
+  double latest_s = 0.0;
+  for (const ScriptEvent& event : script.events) {
+    if (event.frame.value_or(latest_frame) < latest_frame || event.time_s.value_or(latest_s) < latest_s)
+      std::fprintf(stderr, "roomradar: %s:%d: is due before an event above it, and waits for that\n",
+                   path.c_str(), event.line);
+    latest_frame = std::max(latest_frame, event.frame.value_or(0));
+    latest_s = std::max(latest_s, event.time_s.value_or(0.0));
+  }
+}
+
 Script script_of(const RunOptions& options) {
-  if (options.script.empty()) return drop_over_view(options.object);
+  if (options.script.empty()) return drop_objects(options.objects);
   Script script =
-      read_script(options.script, is_session_events(options.script) ? LastLine::kMayBeCut : LastLine::kWhole);
+      is_session_events(options.script) ? read_session_events(options.script) : read_script(options.script);
+  say_what_waits(script, options.script);
   for (ScriptEvent& event : script.events)
     if (event.action == Action::kQuality) set_fields(event.quality, options.fixed);
   return script;
@@ -96,7 +104,7 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
   if (info.up_source != to_string(UpSource::kNone)) return;
   std::fprintf(stderr,
                "roomradar: %s: the up direction was not known when the room was scanned; objects fall "
-               "downwards in its first camera's view\n",
+               "downwards in its first camera's view. Scan it again with --up\n",
                folder.c_str());
 }
 
@@ -176,6 +184,8 @@ void open_session(OpenedRun& run, bool has_picture) {
   // Objects are loaded now, so an unreadable mesh is reported before the first frame.
   for (const ScriptEvent& event : run.script.events)
     if (event.action == Action::kAdd) apply(*run.session, event);
+  for (const ObjectNotice& notice : run.session->take_notices())
+    std::fprintf(stderr, "roomradar: %s%s\n", notice.name.c_str(), notice.text.c_str());
 }
 
 void open_outputs(OpenedRun& run) {
@@ -187,6 +197,13 @@ void open_outputs(OpenedRun& run) {
   if (failed) throw Error(options.pictures + ": the folder cannot be created: " + failed.message());
 }
 
+/// Returns the model of an object of the session.
+const Model& source_of(const Session& session, const std::string& name) {
+  return (*std::find_if(session.objects().begin(), session.objects().end(),
+                        [&](const auto& object) { return object->body.name == name; }))
+      ->model->source;
+}
+
 /// Wraps the frames so they are recorded, if requested.
 void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
   const RunOptions& options = run.options;
@@ -195,7 +212,8 @@ void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
                        gives_calibrated_frames(options.source, options.calibration));
   // Recorded at the start, where they were loaded: the window's user may use one before its event.
   for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kAdd) run.recorder->write(run.recorder->with_mesh_kept(event), 0);
+    if (event.action == Action::kAdd)
+      run.recorder->write(run.recorder->with_mesh_kept(event, source_of(*run.session, event.name)), 0);
   frames = run.recorder->recorded(std::move(frames));
 }
 

@@ -1,14 +1,18 @@
 // run_loop.cpp: executes due events, processes the frame and stores its results.
 #include "app/run/run_loop.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/progress.hpp"
 #include "app/media/picture_file.hpp"
+#include "app/objects/unknown_support.hpp"
 #include "app/session/script/session_events.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -54,7 +58,7 @@ class RunLoop {
 
   void play() {
     const auto is_past_end = [&] { return run_.last_frame && run_frame_ > *run_.last_frame; };
-    for (; !run_.was_quit && !is_past_end(); ++run_frame_) {
+    for (; !run_.was_quit && !is_past_end() && !repeats_for_ever(); ++run_frame_) {
       const Next next = read();
       if (next == Next::kEnd) break;
       if (next == Next::kSkipped) continue;
@@ -72,9 +76,13 @@ class RunLoop {
   std::size_t next_event_ = 0;
   std::int64_t run_frame_ = 0;
   double run_time_s_ = 0.0;
-  std::set<std::string> departed_;  ///< objects that were reported to have fallen out of the map
-  std::int64_t last_picture_ = -1;  ///< highest index of the source's frames that has a picture
+  std::set<std::string> on_unknown_;      ///< objects that rest on the border of unknown space
+  std::set<std::string> departed_;        ///< objects that were reported to have fallen out of the map
+  double last_event_s_ = 0.0;             ///< run time of the last event
+  std::optional<double> repeats_from_s_;  ///< run time since which the source repeats itself
+  std::int64_t last_picture_ = -1;        ///< highest index of the source's frames that has a picture
 
+  bool repeats_for_ever();
   std::string picture_name();
   void perform(const ScriptEvent& event, bool is_from_script);
   ScriptEvent apply(const ScriptEvent& event);
@@ -82,6 +90,7 @@ class RunLoop {
   void perform_users(const std::vector<ScriptEvent>& events);
   void report(const Departure& departure);
   void say(const std::string& sentence);
+  void say_what_rests_on_unknown();
   void end_budget();
   void count_skipped(const std::string& fault);
   void keep(const FrameResult& result);
@@ -116,7 +125,27 @@ void RunLoop::perform_due() {
   if (run_.host && !run_.was_quit) perform_users(run_.host->take_events());
 }
 
+/// Returns true, with a message, if the camera is held, or its recording stays at its end or loops, and
+/// nothing can end the run: no window, no recorded end, and the last event was 5 s ago.
+bool RunLoop::repeats_for_ever() {
+  constexpr double kAfterLastEvent_s = 5.0;
+  if (run_.host || run_.check || run_.is_live) return false;
+  const PlaybackSource& playback = *run_.playback;
+  const bool repeats = playback.is_repeating() || (playback.at_end() == AtEnd::kLoop && playback.is_again());
+  if (!repeats || next_event_ < run_.script.events.size()) {
+    repeats_from_s_.reset();
+    return false;
+  }
+  if (!repeats_from_s_) repeats_from_s_ = run_time_s_;
+  if (run_time_s_ - std::max(*repeats_from_s_, last_event_s_) < kAfterLastEvent_s) return false;
+  say("the camera repeats its frames and the script has no event left: the run ends here; a quit event says "
+      "when "
+      "it should");
+  return true;
+}
+
 void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
+  last_event_s_ = run_time_s_;
   if (event.action == Action::kAdd && is_from_script)
     return;  // already added and recorded before the first frame
   try {
@@ -129,12 +158,13 @@ void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
 
 /// Applies an event and returns it in the form to be recorded.
 ScriptEvent RunLoop::apply(const ScriptEvent& event) {
-  const ScriptEvent kept = run_.recorder ? run_.recorder->with_mesh_kept(event) : event;
+  ObjectParts parts = event.action == Action::kAdd ? run_.host->take_parts() : ObjectParts{};
+  const ScriptEvent kept = run_.recorder ? run_.recorder->with_mesh_kept(event, parts.source) : event;
   if (event.action == Action::kQuit) run_.was_quit = true;
   if (event.action == Action::kCamera) control(*run_.playback, event.camera);
   if (event.action == Action::kRadar && run_.budget) run_.budget->keep(event.radar);
   if (event.action == Action::kAdd)
-    run_.session->add_object(event.name, run_.host->take_parts());
+    run_.session->add_object(event.name, std::move(parts));
   else
     roomradar::apply(*run_.session, event);
   return kept;
@@ -173,6 +203,7 @@ void RunLoop::step() {
   const bool is_located = result.status == FrameStatus::kDone;
   for (const Departure& departure : result.departures) report(departure);
   for (const ObjectNotice& notice : result.notices) say(notice.name + notice.text);
+  say_what_rests_on_unknown();
   const std::string news = run_.totals.lost.add(frame_.index, is_located);
   if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
   if (run_.host) run_.host->show(run_frame_, run_time_s_, frame_, result);
@@ -189,6 +220,19 @@ void RunLoop::report(const Departure& departure) {
 void RunLoop::say(const std::string& sentence) {
   std::fprintf(stderr, "%s\n", sentence.c_str());
   if (run_.host) run_.host->complain(sentence);
+}
+
+/// Says of each object that came to rest on the border of unknown space, from where to scan what is there.
+void RunLoop::say_what_rests_on_unknown() {
+  const Session& session = *run_.session;
+  for (const auto& object : session.objects()) {
+    if (!rests_on_unknown(*object)) {
+      on_unknown_.erase(object->body.name);
+    } else if (on_unknown_.insert(object->body.name).second) {
+      say(object->body.name +
+          unknown_support_text(*object, session.scene_without(object.get()), camera_position_world(session)));
+    }
+  }
 }
 
 /// Records the qualities that the frame used, so a replay uses the same without a clock.

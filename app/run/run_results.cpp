@@ -7,18 +7,9 @@
 #include <numbers>
 
 #include "app/cli/report.hpp"
+#include "app/objects/unknown_support.hpp"
 
 namespace roomradar {
-namespace {
-
-/// Returns a note on an object placed in unknown space, where it can move freely until it leaves.
-const char* note_on(const VirtualObject& object) {
-  if (!object.began_in_unknown) return "";
-  return object.in_unknown ? "; was placed in unknown space and is still partly inside"
-                           : "; was placed in unknown space and has left it";
-}
-
-}  // namespace
 
 std::string sentence_of(const Departure& departure, const Session& session) {
   const Eigen::Vector3d& p = departure.position_world;
@@ -34,6 +25,24 @@ std::string sentence_of(const Departure& departure, const Session& session) {
          (departure.is_back ? " and is back where it last rested" : " and is taken out of the room") + cure;
 }
 
+Eigen::Vector3d camera_position_world(const Session& session) {
+  if (!session.shown_view()) return Eigen::Vector3d::Zero();
+  return session.shown_view()->T_world_view.translation();
+}
+
+namespace {
+
+/// Returns from where to scan what an object on the border of unknown space rests on; null for other objects,
+/// or if it is hidden from all sides.
+nlohmann::json scan_from(const VirtualObject& object, const Session& session) {
+  if (!rests_on_unknown(object)) return nullptr;
+  const auto from =
+      viewpoint_of_support(object, session.scene_without(&object), camera_position_world(session));
+  return from ? to_json(*from) : nlohmann::json(nullptr);
+}
+
+}  // namespace
+
 nlohmann::json results_of(const RunTotals& totals, const Session& session) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : session.objects()) {
@@ -46,9 +55,11 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                        {"at_rest", object->body.asleep},
                        {"stuck", object->stuck},
                        {"rests_on", to_string(object->body.rests_on)},
+                       {"scan_from_m", scan_from(*object, session)},
                        {"began_in_unknown", object->began_in_unknown},
                        {"left_the_map", object->departures},
                        {"position_m", to_json(object->body.T_world_object.translation())},
+                       {"middle_m", to_json(object->body.T_world_object * object->model->middle)},
                        {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
                        {"turned_deg", turned_deg}});
   }
@@ -88,40 +99,6 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
   };
   if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;
   return results;
-}
-
-void print_summary(const RunTotals& totals, const Session& session) {
-  std::printf(
-      "localised in %lld of %lld frames; %.2f %% of pixels dynamic, meshed as %.0f triangles per frame\n",
-      static_cast<long long>(totals.located), static_cast<long long>(totals.read),
-      100.0 * totals.per_frame(totals.dynamic_fraction), totals.per_frame(totals.dynamic_triangles));
-  print_use(totals.use);
-  for (const CommittedChange& change : session.committed_changes()) {
-    const Eigen::Vector3d p = change.box_world.center(), size = change.box_world.sizes();
-    std::printf("adopted at %.1f s: an object that %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
-                change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
-                p.x(), p.y(), p.z(), size.x(), size.y(), size.z());
-  }
-  const auto why_out = [&](const VirtualObject& object) -> std::string {
-    for (const WaitingDrop& waiting : session.waiting_drops())
-      if (waiting.drop.name == object.body.name)
-        return "; its drop waits: " + (waiting.why.empty() ? "no frame was located since" : waiting.why);
-    return object.departures > 0 ? "; it fell out of the map" : "";
-  };
-  for (const auto& object : session.objects()) {
-    const Eigen::Vector3d p = object->body.T_world_object.translation();
-    if (!object->in_room)
-      std::printf("%s: not in the room%s\n", object->body.name.c_str(), why_out(*object).c_str());
-    else
-      std::printf(
-          "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),
-          object->stuck         ? "stuck in a surface"
-          : object->body.asleep ? "at rest"
-                                : "moving",
-          p.x(), p.y(), p.z(),
-          object->body.rests_on == SurfaceKind::kUnknownFrontier ? ", on the border of unknown space" : "",
-          note_on(*object));
-  }
 }
 
 }  // namespace roomradar

@@ -61,10 +61,10 @@ struct RunTotals {
 /// Returns the message about an object that fell out of the map, with a remedy.
 std::string sentence_of(const Departure& departure, const Session& session);
 
+/// Returns the position of the camera in the last picture; the world's origin if there was none.
+Eigen::Vector3d camera_position_world(const Session& session);
+
 /// Returns the keys that only a run's report has.
 nlohmann::json results_of(const RunTotals& totals, const Session& session);
-
-/// Prints a summary of a few lines to stdout.
-void print_summary(const RunTotals& totals, const Session& session);
 
 }  // namespace roomradar

@@ -61,12 +61,19 @@ void RunUse::add(const FrameUse& use, std::span<const std::unique_ptr<VirtualObj
   flat += static_cast<double>(use.cells.flat);
   cut += static_cast<double>(use.cells.cut);
   full += static_cast<double>(use.cells.full);
-  for (const auto& object : objects)
-    if (object->fine_cells > 0) ++frames_fine[object->body.name];
+  bool is_fine = false;
+  for (const auto& object : objects) {
+    if (object->fine_cells == 0) continue;
+    ++frames_fine[object->body.name];
+    is_fine = true;
+  }
+  frames_fine_near += is_fine ? 1 : 0;
 }
 
 nlohmann::json to_json(const RunUse& use) {
   const double per_frame = use.frames > 0 ? 1.0 / static_cast<double>(use.frames) : 0.0;
+  nlohmann::json fine = nlohmann::json::array();
+  for (const auto& [name, frames] : use.frames_fine) fine.push_back({{"object", name}, {"frames", frames}});
   return {{"room_triangles", use.room_triangles},
           {"room_drawn_mean", use.room_drawn * per_frame},
           {"room_drawn_share", to_json(use.drawn)},
@@ -81,7 +88,8 @@ nlohmann::json to_json(const RunUse& use) {
            {{"frames", use.frames},
             {"frames_view_kept", use.frames_kept},
             {"frames_nothing_moved", use.frames_still},
-            {"frames_fine_near", use.frames_fine}}}};
+            {"frames_fine_near", use.frames_fine_near},
+            {"fine_near", fine}}}};
 }
 
 void print_use(const RunUse& use) {

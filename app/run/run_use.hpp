@@ -39,6 +39,8 @@ struct RunUse {
   /// Number of localised frames; number of frames in which an earlier rendering of the room was reused;
   /// number of frames in which no pixel was meshed.
   std::size_t frames = 0, frames_kept = 0, frames_still = 0;
+  /// Number of frames in which the dynamic mesh had full-resolution cells near some object.
+  std::size_t frames_fine_near = 0;
   /// Number of the room's triangles in the last frame.
   std::size_t room_triangles = 0;
   /// Distributions over the frames: fraction of the room's triangles that were drawn, fraction of the room's

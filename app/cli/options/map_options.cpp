@@ -15,7 +15,10 @@ void add_map_argument(CLI::App& command, std::string& map) {
 
 }  // namespace
 
-void add_options(CLI::App& command, MapInfoOptions& options) { add_map_argument(command, options.map); }
+void add_options(CLI::App& command, MapInfoOptions& options) {
+  add_map_argument(command, options.map);
+  command.add_flag("--json", options.json, "print all of it as JSON, for other programs (default: off)");
+}
 
 void add_options(CLI::App& command, MapVerifyOptions& options) { add_map_argument(command, options.map); }
 

@@ -12,6 +12,8 @@ namespace roomradar {
 struct MapInfoOptions {
   /// Map folder to read.
   std::string map;
+  /// True: prints JSON.
+  bool json = false;
 };
 
 struct MapVerifyOptions {

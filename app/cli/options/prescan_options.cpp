@@ -2,12 +2,29 @@
 #include "app/cli/options/prescan_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
 
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/quality_options.hpp"
 #include "app/cli/options/shared_options.hpp"
 
 namespace roomradar {
+namespace {
+
+GivenUp parse_up(const std::string& text) {
+  if (text == "camera") return {};
+  std::array<double, 3> up{};
+  int used = 0;
+  const bool is_vector = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", up.data(), &up[1], &up[2], &used) == 3 &&
+                         static_cast<std::size_t>(used) == text.size();
+  const Eigen::Vector3d direction(up[0], up[1], up[2]);
+  if (!is_vector || !direction.allFinite() || !(direction.norm() > 1e-6))
+    throw CLI::ValidationError("--up " + text + ": must be camera, or a direction X,Y,Z such as 0,-1,0");
+  return {direction.normalized()};
+}
+
+}  // namespace
 
 void add_options(CLI::App& command, PrescanOptions& options) {
   add_source_argument(command, options.source);
@@ -20,6 +37,13 @@ void add_options(CLI::App& command, PrescanOptions& options) {
                    "(default: tracked)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
+  command
+      .add_option_function<std::string>(
+          "--up", [&options](const std::string& text) { options.up = parse_up(text); },
+          "up direction, where the source measures no gravity and shows no level surface: X,Y,Z in the\n"
+          "first camera's axes (x right, y down, z forward; with --poses recorded: the recording's), or\n"
+          "camera: the cameras' mean upright (default: gravity, otherwise level surfaces)")
+      ->type_name("X,Y,Z|camera");
   command
       .add_option("--hold-out", options.hold_out,
                   "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them\n"

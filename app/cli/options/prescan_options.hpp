@@ -6,6 +6,7 @@
 
 #include "app/quality/quality.hpp"
 #include "app/sources/formats/frame_range.hpp"
+#include "mapping/odometry/up_direction.hpp"
 #include "mapping/types/pose_origin.hpp"
 
 namespace CLI {
@@ -33,6 +34,8 @@ struct PrescanOptions {
   std::optional<FrameRange> frames;
   /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
   std::string calibration;
+  /// Up direction of the map; unset: from gravity, else from level surfaces.
+  std::optional<GivenUp> up;
   /// N > 0: every Nth frame is used to evaluate the map instead of being fused into it.
   std::int64_t hold_out = 0;
   /// True: continues an interrupted scan, or extends an existing map.

@@ -14,8 +14,7 @@ namespace {
 void add_input_options(CLI::App& command, RunOptions& options) {
   add_source_argument(
       command, options.source,
-      "session recorded by --record-session, replayed from its first frame with its own settings\n"
-      "unless given here; or ");
+      ",\nor the folder of a recorded session, replayed with its own settings unless given here");
   command
       .add_option("--map", options.map,
                   "folder of the saved map; not modified (required unless SOURCE is a recorded session)")
@@ -28,12 +27,9 @@ void add_input_options(CLI::App& command, RunOptions& options) {
 }
 
 void add_world_options(CLI::App& command, RunOptions& options) {
+  add_object_options(command, options.given_objects);
   command
-      .add_option("--object", options.object,
-                  "virtual object: teapot (built in) or a mesh file (default: teapot)")
-      ->type_name("MESH");
-  command
-      .add_option("--script", options.script, "events file (default: drop the object over a surface in view)")
+      .add_option("--script", options.script, "events file (default: drop the objects over surfaces in view)")
       ->type_name("FILE");
   add_choice(command, "--surfaces", options.surfaces,
              {{"holes", SurfacePolicy::kHoles},
@@ -66,6 +62,11 @@ void add_playback_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--window", options.window,
                    "open a window: pick, drop, throw and rotate objects, and watch the radar's pictures\n"
                    "(default: off)");
+  command
+      .add_option("--ui-scale", options.ui_scale,
+                  "scale of the window's text and panes (default: the monitor's)")
+      ->check(within(0.5, 4.0, "times"))
+      ->type_name("X");
   command
       .add_option("--record-session", options.record_session,
                   "folder for frames, events and settings; `run DIR` replays them with identical results\n"
@@ -113,12 +114,19 @@ void add_effort_options(CLI::App& command, RunOptions& options) {
                   "(default: not written)")
       ->type_name("FILE");
   add_run_quality_options(command, options.fixed);
+  command.add_flag(
+      "--verbose", options.verbose,
+      "also say how much of the room and of the depth was drawn, tested and meshed (default: off)");
   add_report_option(command, options.report);
 }
 
 void require_consistent(const CLI::App& command, const RunOptions& options) {
   if (command.count("--object") > 0 && command.count("--script") > 0 && !options.window)
     throw CLI::ValidationError("--object: --script says which objects to add; add it there");
+  for (const char* name : {"--object-size", "--object-up"})
+    if (command.count(name) > 0 && command.count("--script") > 0 && !options.window)
+      throw CLI::ValidationError(
+          std::string(name) + ": --script says how objects are added; write 'add NAME MESH size M up AXIS'");
   if (command.count("--presets") > 0 && command.count("--preset") == 0 && !options.budget_ms)
     throw CLI::ValidationError(
         "--presets: used only with --preset NAME or --budget-ms, and neither is given");
@@ -135,9 +143,10 @@ void take_recorded_settings(const CLI::App& command, const RunOptions& recorded,
   if (is_given("--frames"))
     throw CLI::ValidationError(
         "--frames: not allowed for a recorded session, which is replayed from its first frame");
-  if (is_given("--object"))
-    throw CLI::ValidationError(
-        "--object: a recorded session has its own objects; use --script to replace them");
+  for (const char* name : {"--object", "--object-size", "--object-up"})
+    if (is_given(name))
+      throw CLI::ValidationError(std::string(name) +
+                                 ": a recorded session has its own objects; use --script to replace them");
   if (!is_given("--map")) options.map = recorded.map;
   if (!is_given("--poses")) options.poses = recorded.poses;
   if (!is_given("--script")) options.script = recorded.script;
@@ -161,6 +170,7 @@ void add_options(CLI::App& command, RunOptions& options) {
 void complete_options(const CLI::App& command, RunOptions& options,
                       const ReadRecordedOptions& read_recorded) {
   if (options.window && command.count("--at-end") == 0) options.at_end = AtEnd::kStay;
+  options.objects = objects_of(options.given_objects);
   require_consistent(command, options);
   if (const auto recorded = read_recorded(options.source))
     take_recorded_settings(command, *recorded, options);

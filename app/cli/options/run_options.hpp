@@ -4,7 +4,9 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "app/cli/options/object_options.hpp"
 #include "app/quality/quality.hpp"
 #include "app/sources/formats/frame_range.hpp"
 #include "app/sources/recordings/playback_source.hpp"
@@ -28,9 +30,11 @@ struct RunOptions {
   std::optional<FrameRange> frames;
   /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
   std::string calibration;
-  /// Name of a built-in object, or a mesh file.
-  std::string object = "teapot";
-  /// Events file; empty: drops the object over a level surface in view.
+  /// Objects as given on the command line.
+  ObjectOptions given_objects;
+  /// Objects of a run without a script, from given_objects.
+  std::vector<ObjectOption> objects;
+  /// Events file; empty: drops the objects over level surfaces in view, or where they are wanted.
   std::string script;
   /// Surfaces that objects can touch.
   SurfacePolicy surfaces = SurfacePolicy::kMap;
@@ -53,6 +57,8 @@ struct RunOptions {
   AtEnd at_end = AtEnd::kEnd;
   /// True: shows a window, in which the user can act.
   bool window = false;
+  /// Scale of the window's text and panes; unset: the monitor's.
+  std::optional<double> ui_scale;
   /// Folder in which frames, events and settings are recorded; empty: not recorded.
   std::string record_session;
   /// Folder to which the map is saved at the end of the run; empty: not saved.
@@ -66,6 +72,8 @@ struct RunOptions {
   /// CSV file with one line per frame: how much of room and depth the frame used, with reasons. Empty: not
   /// written.
   std::string frames_csv;
+  /// True: the summary also says how much of the room and of the depth the frames needed.
+  bool verbose = false;
   /// JSON file to write; empty: not written.
   std::string report;
 };

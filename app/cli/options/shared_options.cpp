@@ -10,13 +10,9 @@ namespace roomradar {
 
 void add_source_argument(CLI::App& command, std::string& source, const std::string& more) {
   command
-      .add_option(
-          "SOURCE", source,
-          more +
-              "source of frames: kinect:N[?depth=raw|mm|registered], sim:ROOM[?seed=N&...], or a folder with "
-              "a\n"
-              "recording (7-Scenes, TUM RGB-D, fakenect, or numbered color/ and depth/); kinect:N continues\n"
-              "until Ctrl-C (required)")
+      .add_option("SOURCE", source,
+                  "folder with a recording (7-Scenes, TUM RGB-D, fakenect, numbered), kinect:N or sim:ROOM" +
+                      more + ";\n`roomradar help sources` explains them (required)")
       ->required();
 }
 

@@ -32,5 +32,18 @@ TEST(ProgressLine, LongWaitsAreInMinutes) {
   EXPECT_EQ(progress_line({"fuse", 1, 1201, 2.0, {}}, false), "fuse 1/1201, 2.0/s, 10:00 left");
 }
 
+TEST(SmoothRate, OneSlowSecondHardlyMovesTheRemainingTime) {
+  SmoothRate rate;
+  EXPECT_EQ(rate.per_s(), 0.0);
+  rate.add(1.0, 0.0);  // no time has passed
+  EXPECT_EQ(rate.per_s(), 0.0);
+  for (int i = 0; i < 300; ++i) rate.add(2.0, 0.1);
+  EXPECT_NEAR(rate.per_s(), 20.0, 1e-9);
+  rate.add(0.0, 1.0);  // a checkpoint
+  EXPECT_GT(rate.per_s(), 18.0);
+  for (int i = 0; i < 600; ++i) rate.add(1.0, 0.1);  // the speed has halved for a minute
+  EXPECT_NEAR(rate.per_s(), 10.0, 0.3);
+}
+
 }  // namespace
 }  // namespace roomradar::progress_test

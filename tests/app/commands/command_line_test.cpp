@@ -541,7 +541,7 @@ TEST_F(CommandLine, HelpOfEveryOptionEndsWithItsDefault) {
     EXPECT_TRUE(help.find("(default: ") != std::string::npos || help.find("(required") != std::string::npos)
         << option << ": " << help;
   };
-  for (std::string line; std::getline(manual, line) && line != ".SH SOURCES";) {
+  for (std::string line; std::getline(manual, line) && line != ".SH SCRIPT";) {
     if (line == ".TP" || line.starts_with(".SS")) {
       check();
       option.clear();
@@ -553,6 +553,132 @@ TEST_F(CommandLine, HelpOfEveryOptionEndsWithItsDefault) {
   }
   check();
   EXPECT_GT(options, 90);
+}
+
+/// Returns the number of lines that hold a word.
+std::size_t lines_with(const std::string& text, const std::string& word) {
+  std::istringstream lines(text);
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line);) count += line.find(word) != std::string::npos ? 1 : 0;
+  return count;
+}
+
+TEST_F(CommandLine, AMisspeltWordIsAnsweredWithTheNearestOne) {
+  expect_fault(roomradar("hlep"), 2, "roomradar: there is no command 'hlep'; did you mean help?");
+  expect_fault(roomradar("presacn x"), 2, "did you mean prescan?");
+  expect_fault(roomradar("map exprot M x.ply"), 2,
+               "roomradar map: there is no command 'exprot'; did you mean export?");
+  expect_fault(roomradar("run x --map y --objct z"), 2,
+               "roomradar run: there is no option --objct; did you mean --object?");
+  expect_fault(roomradar("run x --map y --vid z"), 2, "did you mean --video?");
+  expect_fault(roomradar("--versoin"), 2, "did you mean --version?");
+  const Outcome unlike = roomradar("qwertyuiop");
+  expect_fault(unlike, 2, "there is no command 'qwertyuiop'");
+  EXPECT_EQ(unlike.out.find("did you mean"), std::string::npos) << unlike.out;
+}
+
+TEST_F(CommandLine, BareCommandsListTheirParts) {
+  const Outcome bare = roomradar("");
+  EXPECT_EQ(bare.status, 2);
+  for (const char* command : {"prescan", "run", "map", "record", "calibrate", "doctor", "help", "simulate"})
+    EXPECT_EQ(lines_with(bare.out, std::string("  ") + command + " "), 1U) << command << "\n" << bare.out;
+  expect_fault(roomradar("map"), 2, "  export ");
+}
+
+TEST_F(CommandLine, AMissingArgumentIsNamedWithItsMeaning) {
+  expect_fault(roomradar("map export " + map()), 2, "roomradar map export: FILE is missing: file to write");
+  expect_fault(roomradar("prescan sim:table"), 2, "--map is missing: folder for the map");
+  expect_fault(roomradar("map verify a b"), 2, "more arguments than it takes: b");
+}
+
+TEST_F(CommandLine, HelpExplainsCommandsAndTopics) {
+  for (const char* topic : {"script", "models", "sources", "units", "calibrate", "files"})
+    EXPECT_GT(roomradar(std::string("help ") + topic).out.size(), 500U) << topic;
+  EXPECT_EQ(roomradar("help run").out, roomradar("run --help").out);
+  EXPECT_EQ(roomradar("help map export").out, roomradar("map export --help").out);
+  expect_fault(roomradar("help scirpt"), 2, "did you mean script?");
+}
+
+TEST_F(CommandLine, EveryHelpHasGroupsOfKnownOptionsAndTwoExamples) {
+  for (const char* command : {"prescan", "run", "record", "simulate", "calibrate", "fallthrough", "trade",
+                              "doctor", "map info", "map verify", "map export", "map merge", "map diff"}) {
+    const std::string help = roomradar(std::string(command) + " --help").out;
+    EXPECT_GE(lines_with(help, std::string("roomradar ") + command + " ") +
+                  lines_with(help, std::string("roomradar ") + command + "\n"),
+              command == std::string("doctor") ? 1U : 3U)
+        << help;  // usage and two examples
+    // Only the help option is left over by the groups.
+    const std::size_t rest = help.find("\nOther:\n");
+    if (rest == std::string::npos) continue;
+    EXPECT_EQ(lines_with(help.substr(rest, help.find("\nExamples:") - rest), "  -"), 1U) << help.substr(rest);
+  }
+}
+
+TEST_F(CommandLine, CompletionKnowsCommandsOptionsAndChoices) {
+  const std::string script = (folder_ / "completion.bash").string();
+  std::ofstream(script) << roomradar("--completion bash").out;
+  const auto completed = [&](const std::string& words) {
+    return shell("bash -c 'source " + script + "; COMP_WORDS=(roomradar " + words +
+                 "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _roomradar; echo ${COMPREPLY[*]}'")
+        .out;
+  };
+  EXPECT_EQ(completed("pre"), "prescan\n");
+  EXPECT_EQ(completed("map ver"), "verify\n");
+  EXPECT_EQ(completed("run x --unk"), "--unknown\n");
+  EXPECT_EQ(completed("run x --unknown \"\""), "free solid\n");
+  EXPECT_EQ(completed("help scr"), "script\n");
+  EXPECT_EQ(completed("map export x --u"), "--unknown\n");
+  EXPECT_EQ(shell("bash -n " + script).status, 0);
+  EXPECT_EQ(roomradar("--completion zsh").out.rfind("#compdef roomradar", 0), 0U);
+  EXPECT_EQ(roomradar("--completion fish").status, 2);
+}
+
+TEST_F(CommandLine, MapInfoListsTheLevelSurfaces) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const nlohmann::json info = nlohmann::json::parse(roomradar("map info --json " + map()).out);
+  ASSERT_GE(info["surfaces"].size(), 2U);
+  bool has_floor = false, has_table = false;
+  for (const nlohmann::json& surface : info["surfaces"]) {
+    if (surface["floor"]) {
+      has_floor = true;
+      EXPECT_NEAR(surface["height_m"], 0.0, 0.02);  // new maps have their floor at z = 0
+    }
+    has_table |= std::abs(surface["height_m"].get<double>() - 0.74) < 0.03 && surface["area_m2"] > 0.3;
+  }
+  EXPECT_TRUE(has_floor);
+  EXPECT_TRUE(has_table);
+  EXPECT_NE(roomradar("map info " + map()).out.find("(floor)"), std::string::npos);
+}
+
+TEST_F(CommandLine, CausesAreTheTrueOnes) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string run = "run 'sim:table?frames=5&width=160' --map " + map();
+  const Outcome video = roomradar(run + " --video /proc/x.mp4");
+  expect_fault(video, 1, "/proc/x.mp4: cannot be written: the system makes no files in /proc");
+  EXPECT_EQ(video.out.find("full"), std::string::npos) << video.out;
+  expect_fault(roomradar(run + " --video /no/such/folder/x.mp4"), 1, "its folder does not exist");
+}
+
+TEST_F(CommandLine, UpIsStatedWhereItIsNotKnown) {
+  const std::string scan =
+      "prescan 'sim:table?frames=20&width=160' --resolution 0.05 --map " + (folder_ / "up").string();
+  expect_fault(roomradar(scan + " --up sideways"), 2, "must be camera, or a direction X,Y,Z");
+  expect_fault(roomradar(scan + " --up 0,0,0"), 2, "must be camera, or a direction X,Y,Z");
+  const Outcome scanned = roomradar(scan + " --up 0,-1,0");
+  EXPECT_EQ(scanned.status, 0) << scanned.out;
+  expect_fault(roomradar("map info " + (folder_ / "up").string()), 0, "up              given");
+}
+
+TEST_F(CommandLine, ACameraThatIsHeldDoesNotRunForEver) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string script = (folder_ / "hold.txt").string();
+  std::ofstream(script) << "frame 3 camera hold\nframe 6 surfaces skirt\nframe 5 surfaces map\n";
+  const std::string report = (folder_ / "hold.json").string();
+  const Outcome held = roomradar("run 'sim:table?frames=10&width=160' --map " + map() + " --script " +
+                                 script + " --report " + report);
+  expect_fault(held, 0, "the camera repeats its frames and the script has no event left");
+  expect_fault(held, 0, "hold.txt:3: is due before an event above it, and waits for that");
+  EXPECT_NEAR(nlohmann::json::parse(read_text(report))["frames_read"].get<double>(), 6 + 150, 3);
 }
 
 TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
@@ -810,6 +936,78 @@ TEST_F(CommandLine, ObjectMeshesThatCannotBeOnesAreNamed) {
   huge.reserve(huge.size() + 10'000'000 * face.size());
   for (int i = 0; i < 10'000'000; ++i) huge += face;
   expect_fault(roomradar(run + object("huge.ply", huge)), 1, "huge.ply");
+}
+
+TEST_F(CommandLine, SeveralObjectsEachWithASizeAPlaceAndAnAxis) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path box = folder_ / "box,1.obj";  // 300 long, 100 high along y
+  std::ofstream(box) << "v 0 0 0\nv 300 0 0\nv 0 100 0\nv 0 0 100\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const std::string run = "run 'sim:table?frames=3&width=160' --map " + map();
+  const std::string report = " --report " + (folder_ / "objects.json").string();
+  const Outcome two = roomradar(run + " --object " + box.string() +
+                                ",size=0.3,at=0.4,-0.1,0.75 --object teapot,at=0,-0.2,1" + report);
+  ASSERT_EQ(two.status, 0) << two.out;
+  const auto objects = nlohmann::json::parse(read_text(folder_ / "objects.json"))["objects"];
+  ASSERT_EQ(objects.size(), 2U);
+  EXPECT_EQ(objects[0]["name"], "box,1");
+  EXPECT_EQ(objects[1]["name"], "teapot");
+  EXPECT_NEAR(objects[0]["position_m"][0].get<double>(), 0.4, 0.1);
+  EXPECT_NEAR(objects[0]["middle_m"][2].get<double>() - objects[0]["position_m"][2].get<double>(), 0.05,
+              0.02);
+
+  expect_fault(roomradar(run + " --object " + box.string()), 1, "millimetres, use --object-size 0.3");
+  expect_fault(roomradar(run + " --object " + box.string() + " --object teapot"), 1, "box,1.obj,size=0.3");
+  EXPECT_EQ(roomradar(run + " --object " + box.string() + " --object-size 0.3 --object-up z").status, 0);
+  std::ofstream(folder_ / "large.txt") << "frame 0 add box " << box.string() << "\n";
+  expect_fault(roomradar(run + " --script " + (folder_ / "large.txt").string()), 1,
+               "use add box " + box.string() + " size 0.3");
+  for (const char* bad : {"teapot,size=0", "teapot,size=big", "teapot,up=w", "teapot,at=1,2",
+                          "teapot,at=1,2,x", "teapot,size=0.2,size=0.3", ",size=0.3"})
+    expect_fault(roomradar(run + " --object " + bad), 2, "--object");
+  expect_fault(roomradar(run + " --object-up w"), 2, "--object-up w");
+  expect_fault(roomradar(run + " --object-size 0.3 --script s.txt"), 2, "--script says how");
+}
+
+TEST_F(CommandLine, ATexturedObjectIsReplayedToTheBit) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path obj = folder_ / "tile.obj";
+  std::ofstream(obj)
+      << "mtllib tile.mtl\nusemtl t\nv 0 0 0\nv 0.2 0 0\nv 0 0.2 0\nv 0 0 0.2\nvt 0 0\nvt 1 0\nvt 0 1\n"
+         "f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n";
+  std::ofstream(folder_ / "tile.mtl") << "newmtl t\nmap_Kd tile.bmp\n";
+  // A bitmap of 2 x 1 pixels, 24 bits.
+  const std::string bmp(
+      "BM\x3e\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\1\0\0\0\1\0\x18\0\0\0\0\0\x08\0\0\0"
+      "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xff\0\0\0\0\xff\0\0",
+      62);
+  std::ofstream(folder_ / "tile.bmp", std::ios::binary) << bmp;
+  const std::string session = (folder_ / "textured").string();
+  const Outcome run = roomradar("run 'sim:table?frames=8&width=160' --map " + map() + " --object " +
+                                obj.string() + ",at=0.4,-0.1,0.75 --record-session " + session +
+                                " --pictures " + (folder_ / "tile").string());
+  ASSERT_EQ(run.status, 0) << run.out;
+  EXPECT_EQ(run.out.find("texture"), std::string::npos) << run.out;
+  for (const char* name : {"tile.obj", "tile.mtl", "tile.bmp"}) fs::remove(folder_ / name);
+  const Outcome replay = roomradar("run " + session + " --pictures " + (folder_ / "again").string());
+  EXPECT_EQ(replay.status, 0) << replay.out;
+  EXPECT_NE(replay.out.find("8 of 8 frames the same"), std::string::npos) << replay.out;
+
+  // A session of version 2 keeps the file of its mesh, and an .obj without an axis has z up.
+  std::string settings = read_text(fs::path(session) / "session.json");
+  const std::size_t at = settings.find("\"format_version\": 3");
+  ASSERT_NE(at, std::string::npos);
+  settings.replace(at, 19, "\"format_version\": 2");
+  std::ofstream(fs::path(session) / "session.json") << settings;
+  std::string events = read_text(fs::path(session) / "events.txt");
+  events.replace(events.find("mesh-1.model"), 12, "mesh-1.obj");
+  std::ofstream(fs::path(session) / "events.txt") << events;
+  std::ofstream(fs::path(session) / "meshes" / "mesh-1.obj")
+      << "v 0 0 0\nv 0.2 0 0\nv 0 0 -0.2\nv 0 0.2 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const Outcome old = roomradar("run " + session + " --report " + (folder_ / "old.json").string());
+  EXPECT_EQ(old.status, 0) << old.out;
+  settings.replace(at, 19, "\"format_version\": 4");
+  std::ofstream(fs::path(session) / "session.json") << settings;
+  expect_fault(roomradar("run " + session), 1, "reads versions 2 and 3");
 }
 
 TEST_F(CommandLine, AFullDiskLosesNothing) {

@@ -38,8 +38,8 @@ struct Bus {
   [[nodiscard]] std::vector<KinectOnUsb> kinects() const { return kinects_on_usb(sys, dev); }
 };
 
-bool says(const std::vector<Finding>& hypotheses, Health health, const std::string& words) {
-  for (const Finding& finding : hypotheses)
+bool says(const std::vector<Finding>& findings, Health health, const std::string& words) {
+  for (const Finding& finding : findings)
     if (finding.health == health && (finding.what + finding.what_to_do).find(words) != std::string::npos)
       return true;
   return false;
@@ -55,10 +55,10 @@ TEST(Doctor, AKinectThatWorksIsGood) {
   EXPECT_EQ(kinects[0].node, bus.dev / "003" / "007");
   EXPECT_TRUE(kinects[0].may_open);
   EXPECT_EQ(kinects[0].has_power, true);
-  const std::vector<Finding> hypotheses = judge_kinects(kinects, 1);
-  EXPECT_TRUE(says(hypotheses, Health::kGood, "Xbox 360"));
-  EXPECT_TRUE(says(hypotheses, Health::kGood, "kinect:0"));
-  for (const Finding& finding : hypotheses) EXPECT_EQ(finding.health, Health::kGood) << finding.what;
+  const std::vector<Finding> findings = judge_kinects(kinects, 1);
+  EXPECT_TRUE(says(findings, Health::kGood, "Xbox 360"));
+  EXPECT_TRUE(says(findings, Health::kGood, "kinect:0"));
+  for (const Finding& finding : findings) EXPECT_EQ(finding.health, Health::kGood) << finding.what;
 }
 
 TEST(Doctor, AKernelDriverInTheWayIsNamedWithTheCommandThatRemovesIt) {
@@ -101,18 +101,18 @@ TEST(Doctor, AMotorWithoutCamerasLacksPower) {
   for (const char* const companion : {"02b0", "02c2"}) {
     const Bus bus;
     bus.plug_in("3-1.1", companion, 6);
-    const std::vector<Finding> hypotheses = judge_kinects(bus.kinects(), 0);
-    ASSERT_EQ(hypotheses.size(), 1U);
-    EXPECT_TRUE(says(hypotheses, Health::kBad, "power supply"));
+    const std::vector<Finding> findings = judge_kinects(bus.kinects(), 0);
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_TRUE(says(findings, Health::kBad, "power supply"));
   }
 }
 
 TEST(Doctor, NoKinectIsNoIllness) {
   const Bus bus;
   EXPECT_TRUE(bus.kinects().empty());
-  const std::vector<Finding> hypotheses = judge_kinects({}, 0);
-  EXPECT_TRUE(says(hypotheses, Health::kMissing, "no Kinect"));
-  for (const Finding& finding : hypotheses) EXPECT_NE(finding.health, Health::kBad);
+  const std::vector<Finding> findings = judge_kinects({}, 0);
+  EXPECT_TRUE(says(findings, Health::kMissing, "no Kinect"));
+  for (const Finding& finding : findings) EXPECT_NE(finding.health, Health::kBad);
   EXPECT_TRUE(says(judge_kinects({}, -1), Health::kMissing, "built without"));
 }
 

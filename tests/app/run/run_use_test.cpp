@@ -128,7 +128,8 @@ TEST_F(FrameUseInASession, WhatMovedIsCountedByPixelsAndCellsAndWhyItIsFine) {
   run.add(fine, session_.objects());
   run.add(FrameUse{}, {});
   const nlohmann::json json = to_json(run);
-  EXPECT_EQ(json["why"]["frames_fine_near"]["pot"], 1);
+  EXPECT_EQ(json["why"]["frames_fine_near"], 1);
+  EXPECT_EQ(json["why"]["fine_near"], nlohmann::json::parse(R"([{"object": "pot", "frames": 1}])"));
   EXPECT_EQ(json["why"]["frames_nothing_moved"], 1);
   EXPECT_NEAR(json["meshed_share"]["mean"], 0.5 * 0.125, 1e-9);
 }

@@ -1,0 +1,146 @@
+// help_topics.cpp: the texts. Tests run every script line and open every source that they show.
+#include "app/cli/help_topics.hpp"
+
+#include <array>
+
+namespace roomradar {
+namespace {
+
+constexpr std::string_view kScript =
+    R"(An events file of `roomradar run --script FILE` has one event per line. An event is due before a frame of
+the run (frame N, from 0) or at a time (time SECONDS, from the first frame). Events happen in the order of
+the file: an event that stands below a later one waits for it. Positions are in the map's world in metres
+(z up), velocities in m/s, angles in degrees. # begins a comment.
+
+  frame 0    add pot teapot size 0.2          # longest side, m
+  frame 0    add chair chair.obj size 0.9 up z   # axis of the file that points up: x, y, z, -x, -y, -z
+  frame 10   drop pot view height 0.3         # on the free level place nearest to the view's middle
+  frame 11   drop pot near 0.4 -0.1 0.7       # on the one nearest to this point, at most 25 cm away
+  time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
+  time 4     place pot 0.4 -0.1 0.9           # drop, place, throw may end: turned YAW PITCH ROLL
+  time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
+  time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0    # rad/s about x y z
+  time 5.5   turn pot 0 0 45                  # about the world's axes
+  time 5.6   carry pot 0.4 -0.1 1.0           # held in the air, on its way there
+  time 5.9   release pot velocity 0 0 0
+  time 6     remove pot
+  time 7     adopt                            # what stands still in view becomes part of the room
+  frame 200  surfaces skirt                   # holes, skirt, border or map
+  frame 210  unknown solid                    # or free
+  frame 220  radar sampled 64                 # exact or sampled; pixels
+  frame 225  quality depth_stride 2 shadows off   # others get their defaults; options keep theirs
+  frame 230  camera hold                      # go, rewind, loop, stay or resume
+  frame 300  quit
+
+A camera that is held, or that stays or loops at the end of its recording, goes on until a quit event.
+Without one, and without a window, the run ends 5 s after the script's last event.
+`roomradar map info DIR` lists the level surfaces of a room with their positions; in the play window the
+position under the mouse is shown, and Ctrl+C copies it.
+)";
+
+constexpr std::string_view kModels =
+    R"(Objects are .glb, .gltf, .obj, .ply, .stl or .dae files, drawn with their base-colour textures, material and
+vertex colours, in their rest pose.
+
+  axes      A .glb, .gltf or .obj stands with its y axis up, a .ply or .stl with z, a .dae as it states. up=AXIS
+            (--object-up; `up` in a script) overrides this.
+  units     Numbers are metres, unless a .dae states another unit. size=M (--object-size; `size` in a script)
+            scales the longest side. A model that is less than 5 mm, more than 5 m or more than half of the room
+            long is refused unless a size is given.
+  textures  are found beside the file, or inside it. One that cannot be read is named on standard error, and the
+            material's colour is drawn.
+
+  roomradar run RECORDING --map maps/kitchen --object chair.glb,size=0.9,at=0.4,-0.1,0.75 --object teapot
+)";
+
+constexpr std::string_view kSources =
+    R"(A SOURCE is one of
+
+  DIR              a recording, recognised by its files:
+                     7-Scenes    frame-XXXXXX.depth.png, .color.jpg (or .png; an empty .none: no colour),
+                                 .pose.txt
+                     TUM RGB-D   depth.txt, rgb.txt, groundtruth.txt, accelerometer.txt
+                     fakenect    INDEX.txt and the raw images of a Kinect
+                     numbered    depth/00000.png (mm), color/00000.jpg
+                   A camera.json in it describes the cameras, a calibration.json their errors.
+  SESSION          a folder that `run --record-session` wrote: replayed with identical results
+  kinect:N         a Kinect v1, numbered from 0. It continues until Ctrl-C is pressed once. kinect:0?depth=mm
+                   and kinect:0?depth=registered let libfreenect convert or register the depth.
+  sim:ROOM[?KEY=VALUE&...]
+                   a simulated Kinect in the room table, shelf, wall, random or board. Keys:
+                     seed=N      the camera's path, the noise, the furniture of `random` (1)
+                     frames=N    number of frames (300)
+                     rate=HZ     frames per second (30)
+                     path=KIND   scan (round the room), view (looking at its focus), swing (a board) (scan)
+                     moving=LIST hand, ball, person, with commas between them (none)
+                     pace=WORD   steady, slow, waits or leaves (steady)
+                     noise=X     0: none; 1: a Kinect's (1)
+                     crate=WORD  0, 1, comes or goes (0)
+                     width=PX    width of the images (640)
+                     colour=WORD registered, separate or none (registered)
+                     faults=0|1  1: the cameras deviate from what they declare (0)
+
+Quote a source that contains ? or &: 'sim:table?seed=3&frames=100'.
+)";
+
+constexpr std::string_view kUnits =
+    R"(Lengths are metres, times seconds, angles degrees, velocities m/s; other units are part of the name (depth_mm).
+
+  world     right-handed, +z up. A new map that was tracked has its floor at z = 0 and its first camera
+            above x = y = 0; with --poses recorded it has the recording's own origin.
+  camera    x right, y down, z forward (as in OpenCV); the centre of the first pixel is (0, 0)
+  depth     distance along the optical axis; 0: nothing was measured
+  T_a_b     maps coordinates in b to coordinates in a
+  R, M, L   the radar's pictures: R is the way of the room's surfaces along the direction of motion, M that
+            of the object, both from the target volume's ends; L = R + M - d is the free way per pixel,
+            with d the length of the target volume
+  --report  JSON; keys end with their unit (_m, _s, _ms, _mb, _px, _deg)
+)";
+
+constexpr std::string_view kCalibrate =
+    R"(A calibration removes what the nominal cameras do not know of your device: focal lengths, lens distortion, the
+pose of the colour camera, and the errors of the depth. It takes five minutes:
+
+1. Print a checkerboard of 9 x 7 squares (8 x 6 inner corners) and fix it to something flat. Measure one
+   square: most printers scale.
+2. Record it. Hold the board still for a second in each of 20 or more places, at 0.5 to 2 m: near and far,
+   tilted in every direction, in every corner of the image.
+     roomradar record kinect:0 board
+3. Estimate the cameras, with the size that you measured:
+     roomradar calibrate board --columns 8 --rows 6 --square 0.03 --out kinect.json --plot kinect.png
+   It says while it reads what is missing, and refuses a fit that the views do not support.
+4. Give it with every later command, or save it as calibration.json in a recording:
+     roomradar prescan kinect:0 --calibration kinect.json --map maps/room
+
+Without a Kinect, the simulated board shows the whole way:
+  roomradar calibrate 'sim:board?path=swing&colour=separate&faults=1&frames=800&rate=15' --square 0.06 \
+      --out kinect.json
+)";
+
+constexpr std::string_view kFiles =
+    R"(  MAP/             a saved map: map.json (facts and checksums), the octree as .ot and .bt, the mesh, the
+                   keyframe database for localisation, trajectory.txt, coverage.png and unknown.bin (the
+                   border of unknown space). It is saved completely or not at all.
+  MAP.unfinished   checkpoint of an interrupted scan, for `prescan --resume`
+  SESSION/         frames, events and results of `run --record-session`
+
+Environment:
+  ROOMRADAR_RENDERER=gpu|software   selects the renderer; otherwise a GPU is used if there is one
+
+Exit status: 0: done. 1: the work failed; standard error says what, where and what to do. 2: wrong usage.
+)";
+
+constexpr std::array<HelpTopic, 6> kTopics = {{
+    {"script", "events of `run --script`: add, drop, throw, ... at a frame or a time", kScript},
+    {"models", "which files can be objects, their axes, units and textures", kModels},
+    {"sources", "recordings, kinect:N and sim:ROOM with all keys", kSources},
+    {"units", "metres, frames of reference, the radar's R, M and L", kUnits},
+    {"calibrate", "how to calibrate a device, step by step", kCalibrate},
+    {"files", "what the program writes, environment, exit status", kFiles},
+}};
+
+}  // namespace
+
+std::span<const HelpTopic> help_topics() { return kTopics; }
+
+}  // namespace roomradar

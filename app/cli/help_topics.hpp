@@ -1,0 +1,17 @@
+// help_topics.hpp: texts of `roomradar help TOPIC`, which are also sections of the manual page.
+#pragma once
+#include <span>
+#include <string_view>
+
+namespace roomradar {
+
+struct HelpTopic {
+  std::string_view name;     ///< word after `roomradar help`
+  std::string_view summary;  ///< one line for the list of topics
+  std::string_view text;     ///< plain text, lines of at most 100 characters, ends with a line end
+};
+
+/// Returns all topics: script, models, sources, units, calibrate, files.
+std::span<const HelpTopic> help_topics();
+
+}  // namespace roomradar

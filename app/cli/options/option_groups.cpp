@@ -1,0 +1,166 @@
+// option_groups.cpp: one table per command: groups in the order of the help, and two examples.
+#include "app/cli/options/option_groups.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/options/command_tree.hpp"
+
+namespace roomradar {
+namespace {
+
+struct OptionGroup {
+  const char* title;
+  std::vector<const char*> options;
+};
+
+struct CommandHelp {
+  const char* command;  ///< name, or the names of command and part
+  std::vector<OptionGroup> groups;
+  const char* examples;
+};
+
+std::vector<CommandHelp> command_helps() {
+  return {
+      {"prescan",
+       {{"Everyday options", {"--map", "--resume", "--preset", "--report"}},
+        {"Source", {"--frames", "--calibration", "--poses"}},
+        {"World", {"--up"}},
+        {"Accuracy, time and memory",
+         {"--resolution", "--deviation", "--tracking-px", "--fuse-every", "--max-memory", "--presets"}},
+        {"Interruption and measurement", {"--checkpoint-every", "--hold-out"}}},
+       "  roomradar prescan kinect:0 --map maps/kitchen\n"
+       "  roomradar prescan 'sim:table?frames=200' --map maps/table --report prescan.json\n"},
+      {"run",
+       {{"Everyday options", {"--map", "--window", "--object", "--script", "--video", "--report"}},
+        {"Source and window", {"--frames", "--calibration", "--poses", "--at-end", "--ui-scale"}},
+        {"Objects", {"--object-size", "--object-up"}},
+        {"What objects touch", {"--surfaces", "--unknown", "--commit-changes", "--save-map"}},
+        {"Files written",
+         {"--pictures", "--pictures-stride", "--record-session", "--frames-csv", "--verbose"}},
+        {"Accuracy and time",
+         {"--budget-ms", "--preset", "--presets", "--depth-stride", "--tracking-px",
+          "--mesh-tolerance-sigmas", "--fine-mesh", "--radar", "--radar-px", "--physics-step", "--move-every",
+          "--object-error", "--soft-edges", "--shadows", "--shadow-every", "--picture-every"}}},
+       "  roomradar run kinect:0 --map maps/kitchen --window\n"
+       "  roomradar run RECORDING --map maps/kitchen --object chair.glb --video ar.mp4 --report run.json\n"},
+      {"map info",
+       {{"Options", {"--json"}}},
+       "  roomradar map info maps/kitchen\n  roomradar map info maps/kitchen --json | jq .surfaces\n"},
+      {"map verify",
+       {},
+       "  roomradar map verify maps/kitchen\n  for m in maps/*/; do roomradar map verify \"$m\"; done\n"},
+      {"map export",
+       {{"Options", {"--unknown"}}},
+       "  roomradar map export maps/kitchen kitchen.glb\n  roomradar map export maps/kitchen kitchen.bt    # "
+       "for octovis\n"},
+      {"map merge",
+       {{"Options", {"--map", "--deviation", "--report"}}},
+       "  roomradar map merge maps/monday maps/tuesday --map maps/both\n"
+       "  roomradar map merge maps/kitchen maps/hall --map maps/flat --report merge.json\n"},
+      {"map diff",
+       {{"Options", {"--picture", "--report"}}},
+       "  roomradar map diff maps/monday maps/tuesday\n"
+       "  roomradar map diff maps/monday maps/tuesday --picture diff.png\n"},
+      {"record",
+       {{"Options", {"--format", "--frames", "--calibration"}}},
+       "  roomradar record kinect:0 recordings/kitchen\n"
+       "  roomradar record 'sim:table?frames=100' recordings/table --format 7scenes\n"},
+      {"simulate",
+       {{"Options", {"--room", "--frames", "--path", "--moving", "--seed", "--format"}}},
+       "  roomradar simulate recordings/table --room table --frames 600\n"
+       "  roomradar simulate recordings/hand --path view --moving hand,ball\n"},
+      {"calibrate",
+       {{"Everyday options", {"--out", "--square", "--columns", "--rows", "--plot"}},
+        {"Source and report", {"--frames", "--report"}}},
+       "  roomradar calibrate recordings/board --square 0.03 --out kinect.json --plot kinect.png\n"
+       "  roomradar calibrate 'sim:board?path=swing&colour=separate&faults=1&frames=800&rate=15' --square "
+       "0.06 \\\n"
+       "      --out kinect.json\n"},
+      {"doctor", {}, "  roomradar doctor\n  roomradar doctor || echo something must be repaired\n"},
+      {"fallthrough",
+       {{"Everyday options", {"--scenarios", "--html", "--report"}},
+        {"Scenarios", {"--seed", "--random-rooms", "--threads", "--maps", "--csv", "--scenario", "--video"}},
+        {"A map instead of scenarios",
+         {"--map", "--reference", "--poses", "--frames", "--calibration", "--cell", "--picture"}}},
+       "  roomradar fallthrough --scenarios 100 --html fallthrough.html\n"
+       "  roomradar fallthrough RECORDING --map maps/kitchen --picture floor.png\n"},
+      {"trade",
+       {{"Everyday options", {"--quick", "--html", "--presets", "--report"}},
+        {"What is measured",
+         {"--rooms", "--only", "--settings", "--repeats", "--objects", "--seed", "--time"}},
+        {"More", {"--csv", "--compare-published"}}},
+       "  roomradar trade --quick --html trade.html\n"
+       "  roomradar trade RECORDING --settings 50 --html trade.html --presets presets.json\n"},
+  };
+}
+
+CLI::App* command_of_path(CLI::App& app, const std::string& path) {
+  const std::size_t blank = path.find(' ');
+  CLI::App* command = command_named(app, path.substr(0, blank));
+  if (command == nullptr || blank == std::string::npos) return command;
+  return command_named(*command, path.substr(blank + 1));
+}
+
+/// The default help with its options in the groups of the table, and without what only the parser needs: a
+/// positional's type, and ranges, which the messages for wrong values state.
+class HelpFormatter final : public CLI::Formatter {
+ public:
+  explicit HelpFormatter(std::vector<OptionGroup> groups = {}) : groups_(std::move(groups)) {
+    column_width(32);
+  }
+
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    return make_description(app) + make_usage(app, std::move(name)) + make_positionals(app) +
+           make_option_groups(*app) + make_subcommands(app, mode) + "\n" + make_footer(app);
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    if (option->get_positional()) return {};
+    std::string type = option->get_type_name();
+    for (const char* range : {":INT", ":FLOAT", ":{"}) type = type.substr(0, type.find(range));
+    return type.empty() ? "" : " " + type;
+  }
+  std::string make_footer(const CLI::App* app) const override {
+    const std::string footer = app->get_footer();
+    return footer.empty() ? "" : "Examples:\n" + footer;
+  }
+
+ private:
+  std::vector<OptionGroup> groups_;
+
+  [[nodiscard]] std::string make_option_groups(const CLI::App& app) const {
+    std::vector<const CLI::Option*> left = app.get_options(
+        [](const CLI::Option* option) { return option->nonpositional() && !option->get_group().empty(); });
+    std::string text;
+    for (const OptionGroup& group : groups_) {
+      std::vector<const CLI::Option*> options;
+      for (const char* name : group.options) {
+        const auto found = std::find_if(left.begin(), left.end(),
+                                        [&](const auto* option) { return option->check_name(name); });
+        if (found == left.end()) continue;
+        options.push_back(*found);
+        left.erase(found);
+      }
+      if (!options.empty()) text += make_group(group.title, false, options);
+    }
+    return left.empty() ? text : text + make_group(groups_.empty() ? "Options" : "Other", false, left);
+  }
+};
+
+}  // namespace
+
+void arrange_help(CLI::App& app) {
+  app.formatter(std::make_shared<HelpFormatter>());
+  for (const CommandHelp& help : command_helps()) {
+    CLI::App* command = command_of_path(app, help.command);
+    if (command == nullptr) continue;
+    command->formatter(std::make_shared<HelpFormatter>(help.groups));
+    command->footer(help.examples);
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,140 @@
+// usage_fault.cpp: follows the words of the command line to the command they name, then to the wrong word.
+#include "app/cli/usage_fault.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "app/cli/options/command_tree.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Edit distance with insertions, deletions, replacements and swaps of adjacent letters.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i)
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] =
+          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group().empty()) continue;
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::string full_name(const CLI::App& app) {
+  return app.get_parent() != nullptr ? full_name(*app.get_parent()) + " " + app.get_name() : app.get_name();
+}
+
+std::string or_nearest(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_word(word, candidates);
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+}
+
+/// Returns the first line of an option's help, without its default.
+std::string meaning_of(const CLI::Option& option) {
+  std::string text = option.get_description();
+  for (const char* end : {"(default", "(required"}) text = text.substr(0, text.find(end));
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && (text.back() == ' ' || text.back() == ';')) text.pop_back();
+  return text;
+}
+
+std::string missing_argument(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_required() && option->count() == 0)
+      return option->get_name(true) + " is missing: " + meaning_of(*option);
+  return {};
+}
+
+std::string unknown_option(const CLI::App& command, std::span<const std::string> rest) {
+  for (const std::string& word : rest) {
+    if (word == "--") break;
+    if (!word.starts_with("--")) continue;
+    const std::string name = word.substr(0, word.find('='));
+    if (command.get_option_no_throw(name) != nullptr) continue;
+    return "there is no option " + name + or_nearest(name, option_names(command));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+  std::vector<std::string> longer;
+  for (const std::string& candidate : candidates)
+    if (word.size() >= 2 && candidate.starts_with(word) && candidate != "--" + std::string(word))
+      longer.push_back(candidate);
+  if (longer.size() == 1) return longer.front();
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+std::string command_list(const CLI::App& app) {
+  std::string list;
+  for (const CLI::App* command : commands_of(app)) {
+    std::string what = command->get_description();
+    what = what.substr(0, what.find_first_of(":;\n"));
+    const std::string& name = command->get_name();
+    list += "  " + name + std::string(name.size() < 13 ? 13 - name.size() : 1, ' ') + what + "\n";
+  }
+  return list;
+}
+
+std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
+                        const std::vector<std::string>& arguments) {
+  const CLI::App* command = &app;
+  std::size_t at = 0;
+  while (at < arguments.size() && !commands_of(*command).empty()) {
+    const std::string& word = arguments[at];
+    const CLI::App* part = command_named(*command, word);
+    if (part == nullptr) break;
+    command = part;
+    ++at;
+  }
+  const std::string name = full_name(*command);
+  const std::string see_help = "\n" + name + " --help lists " +
+                               (commands_of(*command).empty() ? "all options" : "all commands") + "\n";
+  const std::vector<const CLI::App*> parts = commands_of(*command);
+  if (!parts.empty()) {
+    std::vector<std::string> names;
+    for (const CLI::App* part : parts) names.push_back(part->get_name());
+    if (at < arguments.size() && arguments[at].starts_with("-")) {
+      const std::string fault = unknown_option(*command, std::span(arguments).subspan(at));
+      if (!fault.empty()) return name + ": " + fault + see_help;
+    }
+    const std::string fault = at == arguments.size()
+                                  ? " needs a command:\n"
+                                  : ": there is no command '" + arguments[at] + "'" +
+                                        or_nearest(arguments[at], names) + " The commands are\n";
+    return name + fault + command_list(*command) + see_help.substr(1);
+  }
+  std::string fault = unknown_option(*command, std::span(arguments).subspan(at));
+  if (fault.empty() && error.get_name() == "RequiredError") fault = missing_argument(*command);
+  if (fault.empty() && error.get_name() == "ExtrasError") {
+    const std::string what = error.what();
+    fault = "more arguments than it takes" + what.substr(std::min(what.find(':'), what.size()));
+  }
+  if (fault.empty()) fault = error.what();
+  return name + ": " + fault + see_help;
+}
+
+}  // namespace roomradar
