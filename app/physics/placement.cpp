@@ -9,114 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "app/physics/height_grid.hpp"
 #include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/config_check.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr float kUnseen = -std::numeric_limits<float>::infinity();
-
-/// Height map of the view: the height of the topmost surface in each cell of a horizontal grid around the
-/// visible points, padded by `margin` unseen cells on each side; without cells if nothing is visible.
-class HeightGrid {
- public:
-  HeightGrid(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-             const PlacementConfig& config, int margin)
-      : cell_m_(config.cell_m), origin_world_(T_world_camera.translation()) {
-    std::vector<Seen> points;
-    const Eigen::AlignedBox2i seen = collect(depth_m, camera, T_world_camera, config, points);
-    if (!points.empty()) fill(points, seen, config, margin);
-  }
-
-  [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] std::size_t index(int i, int j) const {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
-  }
-  /// Returns a pointer to a cell's height above the camera (m), usually negative; kUnseen if nothing was
-  /// seen. Row by row: from a seen cell, cells up to the margin away can be addressed relative to it.
-  [[nodiscard]] const float* top_m(int i, int j) const { return &top_m_[index(i, j)]; }
-  [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {
-    return origin_world_ + Eigen::Vector3d((i - half_) * cell_m_, (j - half_) * cell_m_, height_m);
-  }
-
- private:
-  struct Seen {
-    int i, j;  // cell indices relative to the camera
-    float height_m;
-  };
-
-  /// Appends the visible points within range, relative to the camera; returns the bounds of their cells.
-  [[nodiscard]] Eigen::AlignedBox2i collect(const DepthImage& depth_m, const Intrinsics& camera,
-                                            const Eigen::Isometry3d& T_world_camera,
-                                            const PlacementConfig& config, std::vector<Seen>& points) const {
-    // Subsampling: enough pixels per row for the farthest cells; more per column, since floors are seen at a
-    // slant.
-    constexpr double kOfCell = 0.75;
-    const double apart_px = kOfCell * cell_m_ * camera.fx_px / config.max_range_m;
-    const int across = static_cast<int>(std::clamp(apart_px, 1.0, static_cast<double>(camera.width_px)));
-    const int down = std::max(across / 2, 1);
-    points.reserve(depth_m.pixels.size() / static_cast<std::size_t>(across * down));
-    const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
-    const Eigen::Vector3f step = R.col(0) / static_cast<float>(camera.fx_px);
-    const auto per_m = static_cast<float>(1.0 / cell_m_);
-    const auto nearest_m = static_cast<float>(config.min_range_m),
-               farthest_m = static_cast<float>(config.max_range_m);
-    // A wide-angle lens sees farther to the sides.
-    const int most = static_cast<int>(std::ceil(1.5 * config.max_range_m / cell_m_));
-    Eigen::AlignedBox2i seen;
-    for (int y = 0; y < camera.height_px; y += down) {
-      const Eigen::Vector3f row = R * back_project(camera, 0.0, y, 1.0).cast<float>();
-      for (int x = 0; x < camera.width_px; x += across) {
-        const float z_m = depth_m.at(x, y);
-        if (!(z_m >= nearest_m && z_m <= farthest_m)) continue;
-        const Eigen::Vector3f p = z_m * (row + static_cast<float>(x) * step);
-        const int i = static_cast<int>(std::floor(p.x() * per_m + 0.5F));
-        const int j = static_cast<int>(std::floor(p.y() * per_m + 0.5F));
-        if (std::max(std::abs(i), std::abs(j)) > most) continue;
-        points.push_back({i, j, p.z()});
-        seen.extend(Eigen::Vector2i(i, j));
-      }
-    }
-    return seen;
-  }
-
-  /// Lays the grid around the visible points and sets the height of each cell.
-  void fill(const std::vector<Seen>& points, const Eigen::AlignedBox2i& seen, const PlacementConfig& config,
-            int margin) {
-    // A square around the visible points.
-    half_ = (seen.sizes().maxCoeff() + 1) / 2 + margin;
-    size_ = 2 * half_ + 1;
-    const Eigen::Vector2i middle = seen.min() + seen.sizes() / 2;
-    origin_world_.head<2>() += cell_m_ * middle.cast<double>();
-    const std::size_t cells = static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_);
-    std::vector<float> highest_m(cells, kUnseen);
-    std::vector<float> sum_m(cells, 0.0F);
-    std::vector<int> count(cells, 0);
-    const auto cell_of = [&](const Seen& point) {
-      return index(point.i - middle.x() + half_, point.j - middle.y() + half_);
-    };
-    for (const Seen& point : points)
-      highest_m[cell_of(point)] = std::max(highest_m[cell_of(point)], point.height_m);
-    // The mean of the topmost layer; its highest point would be the noisiest.
-    const auto layer_m = static_cast<float>(2.0 * config.flatness_m);
-    for (const Seen& point : points) {
-      const std::size_t cell = cell_of(point);
-      if (point.height_m < highest_m[cell] - layer_m) continue;
-      sum_m[cell] += point.height_m;
-      ++count[cell];
-    }
-    top_m_.assign(cells, kUnseen);
-    for (std::size_t cell = 0; cell < cells; ++cell)
-      if (count[cell] > 0) top_m_[cell] = sum_m[cell] / static_cast<float>(count[cell]);
-  }
-
-  double cell_m_;
-  Eigen::Vector3d origin_world_;  // above the middle cell, at the camera's height
-  int half_ = 0;
-  int size_ = 0;
-  std::vector<float> top_m_;
-};
+constexpr float kUnseen = HeightGrid::kUnseen;
 
 /// Cells of the grid that an object covers, relative to its centre.
 struct FootprintCells {
@@ -273,7 +173,8 @@ Support find_support(const DepthImage& depth_m, const Intrinsics& camera,
   if (query.near_world && !query.near_world->allFinite()) return {};
 
   const double radius_m = query.footprint_radius_m + config.room_to_spare_m;
-  const HeightGrid grid(depth_m, camera, T_world_camera, config,
+  const HeightGrid grid(depth_m, camera, T_world_camera,
+                        {config.cell_m, config.flatness_m, config.min_range_m, config.max_range_m},
                         std::max(static_cast<int>(radius_m / config.cell_m), 2) + 1);
   if (grid.size() == 0) return {SupportStatus::kNothingMeasured};
   const auto is_level = [](const Footprint& footprint) { return footprint.is_level; };

@@ -38,7 +38,11 @@ bool is_fall_free(const VirtualObject& object, const Eigen::Isometry3d& T_world_
   const Contact around = scene.radar.query({at_start, down, height_m + kClearance_m, kClearance_m}, surfaces);
   if (!(around.lower_m >= height_m - kClearance_m - early_m)) return false;
   const Contact below = scene.radar.query({at_start, down, height_m + kUnevenness_m + early_m}, surfaces);
-  return below.status == ContactStatus::kContact && below.touched == SurfaceKind::kStatic;
+  // Without the map, the frame's own surfaces are all that there is.
+  const bool has_map = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                                   [](const SceneTree& s) { return s.kind == SurfaceKind::kStatic; });
+  return below.status == ContactStatus::kContact &&
+         below.touched == (has_map ? SurfaceKind::kStatic : SurfaceKind::kDynamic);
 }
 
 /// Returns the end of a sentence that says why there is no place.
@@ -82,7 +86,8 @@ void require_small_enough(const VirtualObject& object, const DropRequest& drop) 
   std::snprintf(
       text.data(), text.size(),
       ": reaches %.3g m sideways from its middle, and only what reaches at most %.0f m is dropped in view. "
-      "Meshes are in metres: give it a size (--object FILE,size=0.2; add NAME FILE size 0.2) or a place (at=X,Y,Z; drop NAME at X Y Z)",
+      "Meshes are in metres: give it a size (--object FILE,size=0.2; add NAME FILE size 0.2) or a place "
+      "(at=X,Y,Z; drop NAME at X Y Z)",
       reach_m, kMostFootprint_m);
   throw Error(object.body.name + text.data());
 }

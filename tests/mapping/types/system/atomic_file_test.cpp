@@ -103,7 +103,7 @@ TEST(AtomicFile, APipeByItsNameIsWrittenAsItComes) {
 TEST(AtomicFile, AFolderThatIsNotThereIsSaid) {
   const test::TemporaryFolder folder;
   const std::string error = test::error_of([&] { write(folder.path() / "no" / "r.json", "x"); });
-  EXPECT_NE(error.find("No such file"), std::string::npos) << error;
+  EXPECT_NE(error.find("/no does not exist; make it first"), std::string::npos) << error;
 }
 
 TEST(AtomicFile, AFileThatStdoutGoesToIsWrittenOn) {
