@@ -23,7 +23,7 @@ struct ConnectedComponent {
   std::uint32_t ambiguous = 0;  ///< number of pixels with the ambiguous but not the strong bit
   std::uint32_t before = 0;     ///< number of pixels with the before bit
   std::uint32_t core = 0;       ///< number of pixels with the core bit
-  float depth2_m2 = 0.0F;       ///< sum of squared depths; sum / (fx fy) is the frontal area
+  float depth2_m2 = 0.0F;       ///< sum of squared depths; sum / (fx fy): area if it faces the camera
 };
 
 /// Masks of the evidence bits that find_components() reads. A pixel with the weak or the strong bit is part

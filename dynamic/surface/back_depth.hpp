@@ -45,7 +45,7 @@ struct BackLattice {
 /// in front of the static model, but always behind the front. Where a nearer surface or the image's edge cuts
 /// the object off, the object has no outline, and the thickness does not decrease towards the cut.
 ///
-/// @param depth_m           live depth of all pixels, dynamic or not
+/// @param depth_m           measured depth of all pixels, dynamic or not
 /// @param expected_depth_m  depth of the static model; 0: unknown, so it does not limit the back
 void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
                const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,

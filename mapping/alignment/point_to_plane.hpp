@@ -21,7 +21,8 @@ struct NormalEquations {
   void mirror() { H.triangularView<Eigen::StrictlyLower>() = H.transpose(); }
 };
 
-/// Brightness relation to one reference: reference intensity = gain * live intensity + offset.
+/// Brightness relation to one reference: reference intensity = gain * live intensity + offset. Live: of the
+/// image that is aligned.
 struct Exposure {
   float gain = 1.0F;
   float offset = 0.0F;

@@ -36,7 +36,8 @@ struct SceneMeshConfig {
 /// or the scene has more than kMaxMeshTriangles triangles.
 SceneMesh scene_mesh(const std::filesystem::path& path, const aiScene& scene, const SceneMeshConfig& config);
 
-/// Convert colour channels in 0..1 between sRGB and linear. Source: IEC 61966-2-1.
+/// Convert a colour channel in 0..1 from sRGB to linear (linear_of) and back (srgb_of). Source: IEC
+/// 61966-2-1.
 float linear_of(float srgb01);
 float srgb_of(float linear01);
 /// Converts a colour channel in 0..1 to a byte; values outside 0..1 are clamped.

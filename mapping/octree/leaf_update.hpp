@@ -105,8 +105,8 @@ class LeafUpdate {
   /// Without `clear`, most samples are kept: beside edges and on obliquely seen surfaces, seeing through a
   /// voxel is caused by noise more often than by a change. The exceptions are samples behind a surface, since
   /// frames see through such samples only if the surface has gone. Each frame that sees through such a sample
-  /// subtracts kCancelled times its own weight. Otherwise an object that was too close to a wall for `clear`
-  /// would leave its back side in the map after it moved away.
+  /// subtracts kCancelled times the frame's weight from the sample's weight. Otherwise an object that was too
+  /// close to a wall for `clear` would leave its back side in the map after it moved away.
   Slot mark_free(Slot node, float weight, bool clear) {
     LeafBlock& block = tree_.leaves(node);
     add_log_odds(block, 0, 0xFFU);

@@ -25,9 +25,9 @@ struct GhostConfig {
   /// Min fraction of frames that see through a ghost's sample, among all frames that measure the sample or
   /// see through it.
   float min_through_share = 0.1F;
-  /// Edge of a square, m. A connected group of samples that frames see through is a ghost if it has as many
-  /// samples as the square, at two samples per voxel of area. Smaller groups are tracking errors at the edges
-  /// of static objects.
+  /// Edge of a square, m. A connected group of samples that frames see through is a ghost if it has at least
+  /// as many samples as the square would have, at two samples per voxel of area. Smaller groups are tracking
+  /// errors at the edges of static objects.
   float min_extent_m = 0.15F;
   int max_looks = 170;  ///< max number of frames used, evenly spaced over the recording
 };

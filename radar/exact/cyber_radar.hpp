@@ -28,8 +28,8 @@ struct RadarSearch;
 ///      box. For a triangle, the bound is computed from the triangle's plane in each pixel of M.
 ///   3. L: the triangle with the least bound gets the exact test, in double, against all object triangles
 ///      that overlap it in projection (search_column, find_gap, classify_pair). The least distance found is
-///      an upper bound of the result, and the least untested bound a lower one. Once the two bounds agree,
-///      they are the exact result.
+///      an upper bound of the result, and the least bound of the untested triangles is a lower bound. Once
+///      the two bounds agree, they are the exact result.
 ///
 /// Triangles thinner than a pixel enter M and R with their whole bounding boxes, so the bounds include them.
 /// A scene surface inside a concavity of the object is behind M. Its gap to M is negative, which is not a

@@ -19,7 +19,7 @@ namespace roomradar {
 struct PairBox {
   Eigen::Vector3f centre, half;
   std::uint32_t first, count;  ///< as in TreeNode; count 0 means an inner node
-  bool is_within_faces;        ///< true if all triangles in the box lie within flat faces
+  bool is_within_faces;        ///< true if all triangles in the box lie within flat faces (TriangleTree)
 };
 struct PendingPair {
   PairBox object, scene;

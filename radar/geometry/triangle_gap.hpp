@@ -56,7 +56,7 @@ enum class PairContact {
 ///
 /// If low_m > touching_m, contact is ahead. If high_m < -touching_m, the scene triangle is behind the object
 /// triangle. Otherwise the triangles touch or intersect now. They touch if they overlap by less than
-/// touching_m along the normal of one of them; the plane of that normal lies between them. Touching is a
+/// touching_m along the normal of one of them; that triangle's plane then lies between them. Touching is a
 /// contact if the scene triangle is ahead of this plane. It is no contact if the scene triangle is behind
 /// this plane or the plane is parallel to the motion.
 ///

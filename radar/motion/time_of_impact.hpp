@@ -37,7 +37,7 @@ enum class TimeOfImpactStatus {
   kNoAnswer,
   /// The whole duration is free of contact.
   kFree,
-  /// The object stopped at safe_s: no point of it is farther than tolerance_m of its path from contact.
+  /// The object stopped at safe_s. It may make contact before any point moves tolerance_m farther.
   kContact,
   /// The object overlaps the scene at the start.
   kOverlap,
