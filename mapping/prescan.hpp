@@ -30,8 +30,8 @@ struct PrescanConfig {
   bool remove_ghosts = true;  ///< remove surfaces of objects that moved during the scan
   GhostConfig ghosts;
   SurfaceConfig surface;
-  /// Cap on the process's memory; 0: none. The scan stops before reaching the cap; the map then holds the
-  /// frames fused so far.
+  /// Cap on the process's memory; 0: no cap. The scan stops before it reaches the cap; the map then contains
+  /// the frames fused so far.
   std::size_t max_memory_bytes = 0;
 };
 
@@ -52,27 +52,31 @@ struct PrescanResult {
   SurfaceStats surface;
 };
 
-/// Called after each frame with the stage ("track", "fuse" or "ghosts") and a note on the frame's outcome.
-/// While tracking, the note also gives the surface area observed in total and in the last second.
+/// Callback after each frame. `stage` is "track", "fuse" or "ghosts", and `note` states the frame's outcome.
+/// While tracking, the note also states the surface area observed in total and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
 class Checkpoints;
 
-/// Optional inputs: a checkpoint to resume from, a map to extend.
+/// Optional inputs: checkpoints to resume from, and a map to extend.
 struct PrescanInput {
-  /// Receives the prescan's state at intervals. If it already holds a checkpoint, the prescan resumes from
-  /// it, and the source must deliver the same frames again. Null: no checkpoints.
+  /// Receives the prescan's state at intervals. If a checkpoint exists already, the prescan resumes from it,
+  /// and the source must deliver the same frames again. Null: no checkpoints.
   Checkpoints* checkpoints = nullptr;
-  /// Map to extend with the source's frames. Its world frame and resolution are kept.
+  /// Map to extend with the source's frames. The map's world frame and resolution are kept.
   std::optional<SavedMap> map;
 };
 
-/// Scans a room. Reads the source once to track the camera and again to fuse with the final poses; if
-/// something moved, reads parts of it twice more to remove ghosts. Without start.map, the map's world has +z
-/// up; its origin is the recording's (recorded poses), or on the floor below the first camera (tracked; at
-/// the height of that camera if no level surface is measured). Stages timed: read, track, optimise, fuse,
-/// ghosts, surface, coverage, checkpoint (time the work is blocked), and frame (track plus fuse of one frame,
-/// without reading).
+/// Scans a room. Reads the source once to track the camera, and a second time to fuse the frames with their
+/// final poses. To remove ghosts (surface of objects that moved), reads selected frames a third time and, if
+/// there are ghosts, a fourth time.
+///
+/// A new map's world has +z up. With recorded poses, the world's origin is the recording's. With tracked
+/// poses, the origin is on the floor below the first camera, or at the height of the first camera if no level
+/// surface is measured. With start.map, the map's world is kept.
+///
+/// Stages timed: read, track, optimise, fuse, ghosts, surface, coverage, checkpoint (time for which the work
+/// is blocked), and frame (track plus fuse of one frame, without reading).
 ///
 /// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface; also
 ///         if start.map shows another room, or overlaps the source too little for a reliable registration

@@ -17,11 +17,11 @@ struct PrescanCounts {
   std::int64_t frames_lost = 0;  ///< readable, but without a trusted pose; not fused
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
-  std::int64_t ghost_voxels = 0;  ///< surface voxels removed because earlier or later frames see through them
-  std::int64_t frames_resumed = 0;  ///< frames of the interrupted pass that its checkpoint already covered
+  std::int64_t ghost_voxels = 0;    ///< surface voxels removed by ghost removal
+  std::int64_t frames_resumed = 0;  ///< frames of the interrupted pass that the checkpoint contained
   bool stopped_for_memory = false;  ///< memory cap reached: part of the source is not in the map
   std::string last_fault;           ///< reason why the last skipped frame was unreadable
-  /// Only for tracked poses, and if at least 3 of their frames have recorded poses.
+  /// Set if the poses were tracked and at least 3 tracked frames have recorded poses.
   std::optional<TrajectoryError> trajectory_error;
 };
 

@@ -28,19 +28,19 @@ struct PrescanWork {
   }
 };
 
-/// Runs the first pass, from its start or from a checkpoint. Returns the initial state of the second pass, or
-/// its stored state if the checkpoint is of that pass.
+/// Runs the first pass (tracking), from its beginning or from a checkpoint. Returns the initial state of the
+/// second pass (fusion). If the checkpoint is of the second pass, returns the state stored in it instead.
 /// @param map  map to extend; its octree moves into the result
 /// @throws Error as prescan() does
 FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map);
 
-/// Runs the second pass, from its start or from a checkpoint. Does nothing if the checkpoint was written
-/// after fusion.
+/// Runs the second pass (fusion). Starts the pass from its beginning or resumes it from a checkpoint. Does
+/// nothing if the checkpoint was written after fusion.
 /// @param trajectory  poses of the frames to fuse, in the map's world
 void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory, FusionPass& pass);
 
-/// Removes ghosts, and fuses their surroundings again, from the start or from a checkpoint. Does nothing if
-/// the checkpoint was written after this stage. Sets pass.ghost_voxels.
+/// Removes ghosts, then fuses their surroundings again. Starts this stage from its beginning or resumes it
+/// from a checkpoint. Does nothing if the checkpoint was written after this stage. Sets pass.ghost_voxels.
 void run_ghost_removal(PrescanWork& work, FusionPass& pass);
 
 }  // namespace roomradar

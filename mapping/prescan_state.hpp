@@ -14,7 +14,7 @@
 
 namespace roomradar {
 
-/// First pass: estimates the camera poses.
+/// State of the first pass, which estimates the camera poses.
 struct TrackingPass {
   explicit TrackingPass(const OdometryConfig& config) : odometry(config) {}
   PrescanCounts counts;  ///< over the frames read so far
@@ -31,7 +31,7 @@ struct TrajectoryEstimate {
   std::vector<TimedPose> recorded;
 };
 
-/// Second pass: fuses the frames, then removes ghosts.
+/// State of the second pass, which fuses the frames and then removes ghosts.
 struct FusionPass {
   PrescanCounts counts;  ///< counts of the first pass
   TrajectoryEstimate found;
@@ -54,9 +54,9 @@ void write_state(TrackingPass& pass, const std::filesystem::path& into,
                  const std::filesystem::path& previous);
 void write_state(FusionPass& pass, const std::filesystem::path& into, const std::filesystem::path& previous);
 
-/// Reads a checkpoint of the matching stage. The second pass resumes exactly; the first differs by the
-/// rounding of stored keyframe views (about 1 mm). The files are not trusted. Throws Error naming the file
-/// and the fault.
+/// Reads and validates a checkpoint of the matching stage. A resumed second pass gives exactly the result of
+/// an uninterrupted one. A resumed first pass differs by the rounding of stored keyframe views (about 1 mm).
+/// Throws Error naming the file and the fault.
 TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConfig& config);
 FusionPass read_fusing_pass(const Checkpoint& checkpoint);
 

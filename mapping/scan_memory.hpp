@@ -1,4 +1,4 @@
-// scan_memory.hpp: estimates the memory of a prescan before it begins.
+// scan_memory.hpp: estimates the memory that a prescan will need.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,16 +12,16 @@ namespace roomradar {
 inline constexpr double kSurfaceMemory = 3.0;
 
 struct MemoryEstimate {
-  std::int64_t frames = 0;  ///< frames assumed: the source's, or one minute's if the length is unknown
+  std::int64_t frames = 0;  ///< number of frames in the source; one minute's if unknown
   bool length_known = false;
   double octree_bytes = 0.0;
   double process_bytes = 0.0;  ///< peak of the whole process
 };
 
-/// Fuses four frames spread over the source, or only the first if the source cannot seek. Assumes that the
-/// octree grows by one frame's size every 80 frames, up to 20 times. Accurate within a factor of 1.5 for
-/// walks round rooms and tables. Rewinds the source. Returns nullopt if rewinding fails or no frame there is
-/// readable.
+/// Estimates the memory from four single frames, evenly spread over the source, or from the first frame if
+/// the source cannot seek. Assumes that the octree grows by the mean size of one frame's octree every 80
+/// frames, up to 20 times this size. The estimate is accurate within a factor of 1.5 for walks round rooms
+/// and tables. Rewinds the source. Returns nullopt if rewinding fails or none of these frames is readable.
 std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolution_m);
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// change_clusters.hpp: groups points of changed surfaces into objects, by connected cells.
+// change_clusters.hpp: groups points of changed surfaces into objects, which are connected components of grid
+// cells.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -12,13 +13,14 @@
 namespace roomradar {
 
 enum class LastingKind : std::uint8_t {
-  kCame,  ///< present where the static model has nothing
-  kWent,  ///< in the static model, but the sensor sees through it
+  kCame,  ///< object that is new: the static model has no surface at its position
+  kWent,  ///< object that was removed: the sensor sees through its surface in the model
 };
 /// Returns the kind's name in reports.
 std::string_view to_string(LastingKind kind);
 
-/// An object that came or went, as points of its surface about spacing_m apart.
+/// An object that came or went, given as points of its surface. The points are about
+/// ChangeTrackerConfig::spacing_m apart.
 struct LastingChange {
   LastingKind kind = LastingKind::kCame;
   std::vector<Eigen::Vector3d> points_world;
@@ -30,28 +32,28 @@ struct LastingChange {
 struct ChangePoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the tracker's origin, world axes
   float steady_s = 0.0F;                               ///< total time in frames that confirmed the point
-  float unseen_s = 0.0F;                               ///< time since it was last seen
+  float unseen_s = 0.0F;                               ///< time since a frame last showed its position
   std::uint32_t id = 0;
   std::uint16_t sightings = 1;     ///< number of frames averaged into position
-  std::uint8_t contradiction = 0;  ///< score of contradicting frames; the point is dropped above a limit
+  std::uint8_t contradiction = 0;  ///< +2 per contradicting frame, -1 per confirming one; dropped above 7
   bool as_it_was = true;           ///< confirmed by the last frame
   LastingKind kind = LastingKind::kCame;
 };
 
-/// A cube of edge link_m that contains points.
+/// A cell of the grid (a cube of edge link_m) that contains points.
 struct ChangeCell {
   std::uint64_t code = 0;       ///< voxel_key() of the cube
-  std::uint32_t joined_to = 0;  ///< parent in a union-find forest; a root is its own parent
+  std::uint32_t joined_to = 0;  ///< parent cell in a union-find forest; a root is its own parent
   bool steady = false;          ///< contains a point that was confirmed for long enough
   std::uint8_t neighbours = 0;  ///< number of touching cells, corners included
 };
 
-/// Sums over the connected cells of one object. Steady cells have ChangeCell::steady, core cells have at
-/// least 7 neighbours, seen points were confirmed by the last frame.
+/// Sums over the connected cells of one object. Steady cells have ChangeCell::steady set, core cells have at
+/// least 7 neighbours, and seen points were confirmed by the last frame.
 struct ChangeObject {
   int cells = 0, steady_cells = 0, core_cells = 0;
   std::size_t points = 0, seen_points = 0;
-  std::size_t change = 0;  ///< 1 + index among the changes found; 0: none
+  std::size_t change = 0;  ///< 1 + index among the changes found; 0: rejected
 };
 
 /// Buffers of the grouping, reused from call to call.
@@ -65,14 +67,16 @@ struct ChangeClusters {
 /// Reserves memory for max_points points, so later calls do not allocate.
 void reserve(std::size_t max_points, ChangeClusters& clusters);
 
-/// Fills `cells` and `cell_of` from the points of one kind, and connects touching cells, corners included.
-/// @param seconds  a cell with a point confirmed for this long is steady
+/// Fills `cells` and `cell_of` from the points of one kind, and connects cells that touch, even at a corner
+/// only.
+/// @param seconds  min steady_s of a point that makes its cell steady
 /// @param link_m   edge of the cells
 void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, float seconds, float link_m,
                      ChangeClusters& clusters);
 
-/// Appends the objects that have enough cells, and large enough fractions of steady cells, core cells (kWent
-/// only) and seen points. Call after sort_into_cells() with the same points and kind.
+/// Appends the objects that have enough cells, and large enough fractions of steady cells, core cells (for
+/// kWent only) and seen points; see ChangeTrackerConfig. Call after sort_into_cells() with the same points
+/// and kind.
 void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Eigen::Vector3d& origin_world,
                  const ChangeTrackerConfig& config, ChangeClusters& clusters,
                  std::vector<LastingChange>& changes);

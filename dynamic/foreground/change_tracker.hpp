@@ -13,30 +13,32 @@
 
 namespace roomradar {
 
-/// Stores points, in the world, on dynamic and on removed surfaces, and projects them into every depth image.
-/// A frame confirms a point if its surface is still there or, for a removed surface, is still seen through;
-/// only then does the point's steady_s grow. A frame that shows the opposite contradicts the point; after a
-/// few such frames the point is dropped. Hidden points and points out of view do not change, so the result
-/// does not depend on the camera's motion. Allocates nothing after the first frame except the changes it
-/// returns. Not thread safe.
+/// Stores points, in the world, on dynamic and on removed surfaces, and projects the points into every depth
+/// image. A frame confirms a point on a dynamic surface if it measures the surface at the point. A frame
+/// confirms a point on a removed surface if it sees through the point. Only confirming frames add to the
+/// point's steady_s. A frame that shows the opposite contradicts the point. The point is dropped once its
+/// contradiction score exceeds 7 (ChangePoint::contradiction). Hidden points and points out of view do not
+/// change, so the result does not depend on the camera's motion. Allocates nothing after the first frame
+/// except the changes it returns. Not thread safe.
 class ChangeTracker {
  public:
   explicit ChangeTracker(const ChangeTrackerConfig& config = {});
 
-  /// Processes one frame. Images must have the camera's size; labels are those of mark_foreground() for this
-  /// depth and expected depth. stamp_s is the frame's time; a gap counts as at most 0.5 s.
+  /// Processes one frame. Images must have the camera's size. `labels` must be the result of
+  /// mark_foreground() for this depth and expected depth. stamp_s is the frame's time; a gap between two
+  /// frames counts as at most 0.5 s.
   void update(const DepthImage& depth_m, const DepthImage& expected_depth_m, const LabelImage& labels,
               const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, double stamp_s);
 
-  /// Returns the objects that were unchanged for this many seconds of observation and are seen now. Later
-  /// calls return the same object again, until it is forgotten, moves, or agrees with the expected depth.
+  /// Returns the objects that were confirmed for at least this many seconds and are seen now. Later calls
+  /// return an object again until it is forgotten, moves, or agrees with the expected depth.
   [[nodiscard]] std::vector<LastingChange> settled(double seconds);
 
   /// Returns the fraction of a change's points that have not been dropped.
   [[nodiscard]] double still_true(const LastingChange& change) const;
   /// Returns the fraction of a change's points that the last frame confirmed.
   [[nodiscard]] double seen_now(const LastingChange& change) const;
-  /// Drops a change's points.
+  /// Drops a change's points, so settled() no longer returns the change.
   void forget(const LastingChange& change);
 
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }
@@ -44,7 +46,7 @@ class ChangeTracker {
  private:
   struct View;  // images, camera and pose of one frame
 
-  /// Updates a point from the frame; returns false if it is to be dropped.
+  /// Updates a point from the frame. Returns false if the point must be dropped.
   bool review(const View& view, float dt_s, ChangePoint& point);
   void add_points(const View& view);
   void cover(const View& view, LastingKind kind, float u_px, float v_px, float depth_m);
@@ -55,7 +57,7 @@ class ChangeTracker {
   double last_stamp_s_ = 0.0;
   std::uint32_t next_id_ = 1;
   std::vector<ChangePoint> points_;  ///< sorted by id
-  /// Per pixel of the sampling grid; bit 1 << kind: a point of that kind covers it.
+  /// Bits per pixel of the sampling grid. Bit 1 << kind: a point of that kind covers the pixel.
   std::vector<std::uint8_t> covered_;
   ChangeClusters clusters_;
 };

@@ -1,4 +1,4 @@
-// expected_bounds.hpp: per block of pixels, bounds of the static model's depth, given its errors.
+// expected_bounds.hpp: bounds, per block of pixels, of the static model's depth under pose and map errors.
 #pragma once
 #include <cmath>
 #include <vector>
@@ -11,18 +11,20 @@
 
 namespace roomradar {
 
-/// One value per block of 4 x 4 pixels, and scratch buffers. Metres along the optical axis.
+/// Bounds of the expected depth (the static model's depth), with one value per block of 4 x 4 pixels, and
+/// scratch buffers. Depths are in metres along the optical axis.
 struct ExpectedBounds {
   BlockGrid grid;
-  std::vector<float> nearest_m, farthest_m;  ///< of the expected depths in the block; kNoDepth_m and 0: none
-  /// Standard deviation of live minus expected depth, all errors combined.
+  std::vector<float> nearest_m, farthest_m;  ///< of the block's expected depths; kNoDepth_m, 0: none
+  /// Standard deviation of measured minus expected depth, from all errors combined.
   std::vector<float> sigma_m;
-  /// Range of the expected depths within `reach` of the block: edges of these surfaces could be shifted into
-  /// it. Nearest is kNoDepth_m if nothing within reach is nearer than the block's own surface continued;
-  /// farthest is 0 if nothing is farther. Then only the pixel's own expected depth counts. Farthest is
-  /// kNoDepth_m if a hole of the model is within reach.
+  /// Range of the expected depths within `reach` of the block. Pose and map errors could shift the edges of
+  /// these surfaces into the block. The nearest depth is kNoDepth_m if no surface within reach is nearer than
+  /// the continuation of the block's own surface. The farthest depth is 0 if none is farther. In these cases,
+  /// only the pixel's own expected depth counts. The farthest depth is kNoDepth_m if a hole of the model
+  /// (pixels without expected depth) is within reach.
   std::vector<float> nearest_in_reach_m, farthest_in_reach_m;
-  std::vector<float> nearest_around_hole_m;  ///< within hole_reach_px of the block; kNoDepth_m: none
+  std::vector<float> nearest_around_hole_m;  ///< nearest within hole_reach_px; kNoDepth_m: none
   std::vector<int> reach;                    ///< max shift of an edge, in blocks to each side
 
   // Scratch.
@@ -33,8 +35,8 @@ struct ExpectedBounds {
 /// Largest float: "no surface" as a nearest depth, "unbounded" as a farthest depth.
 inline constexpr float kNoDepth_m = 3.402823e38F;
 
-/// Returns the standard deviation of sensor and model combined, for a surface at depth_m that faces the
-/// camera.
+/// Returns the combined standard deviation of sensor noise and model error, for a surface at depth_m that
+/// faces the camera.
 /// @param misfit_per_m  error of the model's inverse depth (StaticResidual::misfit_per_m)
 inline float facing_sigma_m(float depth_m, float model_sigma_m, float misfit_per_m) {
   const float sensor = depth_sigma_m(depth_m);
@@ -43,7 +45,8 @@ inline float facing_sigma_m(float depth_m, float model_sigma_m, float misfit_per
 }
 
 /// Computes all values of `bounds`.
-/// @param expected_m  depth of the static model in the camera's view, 0 = nothing there; not empty
+/// @param expected_m  depth of the static model in the camera's view, 0 = no surface; must not be an empty
+///                    image
 void find_bounds(const DepthImage& expected_m, const Intrinsics& camera, const ForegroundConfig& config,
                  float misfit_per_m, ExpectedBounds& bounds);
 

@@ -16,28 +16,29 @@
 
 namespace roomradar {
 
-/// History of the previous frame, and reused buffers. A new state has no history.
+/// Regions found in the previous frame, and buffers that are reused from frame to frame. A new state has no
+/// previous frame.
 struct ForegroundState {
   ForegroundHistory memory;
   StaticResidual fit;
 
   ExpectedBounds bounds;
-  std::vector<std::uint8_t> before;  // history bits per block, warped into this frame
+  std::vector<std::uint8_t> before;  // `memory` warped into this frame: bits per block
   PixelEvidence evidence;
   ConnectedComponents regions;
 };
 
 struct ForegroundCounts {
-  std::size_t valid = 0;  ///< pixels with live depth
+  std::size_t valid = 0;  ///< number of pixels with measured depth
   std::size_t moved = 0;
   std::size_t revealed = 0;
-  std::size_t not_known = 0;  ///< pixels with live depth that are kNotKnown
+  std::size_t not_known = 0;  ///< number of pixels with measured depth that are kNotKnown
 };
 
 /// Compares a depth frame with the static model's depth at the same pose.
 ///
-/// @param depth_m           live depth, height x width, metres along the axis, 0 = no measurement
-/// @param expected_depth_m  the static model seen by the same camera, same size, 0 = nothing there
+/// @param depth_m           measured depth, height x width, metres along the optical axis, 0 = no measurement
+/// @param expected_depth_m  depth of the static model at the camera pose, same size, 0 = no surface
 /// @param camera            intrinsics of both images
 /// @param T_world_camera    camera pose; used to warp the previous frame's regions into this frame
 /// @param state             one per camera; only the first frame of a size allocates
@@ -45,15 +46,19 @@ struct ForegroundCounts {
 /// @param dynamic_mask        255 where the label is kMoved, else 0; resized and set
 /// The two images and the camera must agree in size (asserted).
 ///
-/// A pixel seeds a dynamic region only if it is clearly nearer than the model at that pixel. In addition, it
-/// must be nearer than every model surface within reach (the max shift of an edge by pose and map errors), or
-/// at a depth where no surface within reach is expected. So edges shifted by a pose error stay static, and
-/// objects between two near edges are found. From its seeds a region grows along the live surface over pixels
-/// nearer than the model. No region starts in a hole of the model, but a region can grow into a hole over
-/// pixels nearer than all expected depths within hole_reach_px. All other pixels in holes, and all of an
-/// unmapped view, are kNotKnown: a hole proves nothing. A region is accepted if it is large enough and has a
-/// sufficient fraction of strong pixels. Both thresholds are lower where the previous frame had a region; a
-/// small new region waits for a second frame.
+/// A pixel seeds a dynamic region only if it is clearly nearer than the model at that pixel. In addition, the
+/// pixel must be nearer than every model surface within reach (the max shift of an edge by pose and map
+/// errors), or at a depth at which no surface within reach is expected. So edges shifted by a pose error stay
+/// static, and objects between two near edges are found. A region grows from its seeds along the measured
+/// surface, over pixels nearer than the model.
+///
+/// A hole of the model is an area without expected depth. No region starts in a hole, but a region can grow
+/// into a hole over pixels nearer than all expected depths within hole_reach_px. All other pixels in holes
+/// are kNotKnown, since a hole does not prove a difference. In an unmapped view, all pixels are kNotKnown.
+///
+/// A region is accepted if it is large enough and has a sufficient fraction of strong pixels. Both thresholds
+/// are lower where the previous frame had a region. A new region of less than three times min_region_px or
+/// min_region_m2 is accepted only if it persists for a second frame.
 ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
                                  const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                                  const ForegroundConfig& config, ForegroundState& state, LabelImage& labels,

@@ -1,4 +1,5 @@
-// foreground_history.hpp: blocks in which the previous frame differed from the static model.
+// foreground_history.hpp: history of the foreground: blocks of pixels in which the previous frame differed
+// from the static model.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -10,12 +11,13 @@
 
 namespace roomradar {
 
-/// Bits of a block of 4 x 4 pixels: an accepted dynamic or revealed region covers part of it.
+/// Bits of a block of 4 x 4 pixels: an accepted dynamic or revealed region (nearer or farther than the static
+/// model) covers part of the block.
 inline constexpr std::uint8_t kBlockMoved = 1, kBlockRevealed = 2;
-/// The same for regions so small that they are accepted only if they persist for a second frame.
+/// Bits for regions so small that they are accepted only if they persist for a second frame.
 inline constexpr std::uint8_t kBlockMaybeMoved = 4, kBlockMaybeRevealed = 8;
 
-/// History of one camera; ignored if the intrinsics change.
+/// History of one camera. It is ignored if the intrinsics change.
 struct ForegroundHistory {
   BlockGrid grid;
   Intrinsics camera;  ///< size 0 x 0: no history
@@ -25,14 +27,14 @@ struct ForegroundHistory {
   std::vector<std::uint8_t> along_rows;  ///< scratch
 };
 
-/// Warps the history into this frame: back-projects each block's centre by its live depth, projects it into
-/// the previous frame and copies the bits of the block there.
-/// @param before  bits per block, resized and set; 0 without depth or history
+/// Warps the history into this frame: back-projects each block's centre with its measured depth, projects the
+/// point into the previous frame, and copies the bits of the block to which it projects.
+/// @param before  bits per block, resized and set; 0 for blocks without depth or history
 void warp_history(const ForegroundHistory& memory, const DepthImage& depth_m, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, std::vector<std::uint8_t>& before);
 
-/// Stores camera and pose, and dilates `memory.blocks`, which the caller has filled, by one block, since
-/// things move between frames.
+/// Stores camera and pose, and dilates `memory.blocks` by one block, since objects move between frames. The
+/// caller must have filled `memory.blocks`.
 void store_history(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                    ForegroundHistory& memory);
 

@@ -1,4 +1,4 @@
-// pixel_blocks.hpp: an image in blocks of 4 x 4 pixels, and extremes over neighbouring blocks.
+// pixel_blocks.hpp: grid of blocks of 4 x 4 pixels over an image, and extremes over neighbouring blocks.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -11,7 +11,7 @@ inline constexpr int kBlock_px = 4;
 /// Returns the number of blocks that cover this many pixels.
 inline int blocks_along(int size_px) { return (size_px + kBlock_px - 1) / kBlock_px; }
 
-/// columns x rows blocks, row by row; the last block of a row or column may extend beyond the image.
+/// Grid of columns x rows blocks, row by row. The last block of a row or column may extend beyond the image.
 struct BlockGrid {
   int columns = 0;
   int rows = 0;
@@ -21,7 +21,7 @@ struct BlockGrid {
   }
 };
 
-/// Repeats each block's value for its pixels in one row.
+/// Expands the values of one row of blocks to one value per pixel of a row of width_px pixels.
 template <typename Value>
 void stretch(const Value* blocks, int width_px, Value* pixels) {
   const int whole = width_px / kBlock_px;
@@ -31,10 +31,10 @@ void stretch(const Value* blocks, int width_px, Value* pixels) {
   for (int x = whole * kBlock_px; x < width_px; ++x) pixels[x] = blocks[whole];
 }
 
-/// Sets each block to the best of itself and the eight blocks `step` away along rows, columns and diagonals.
-/// If every block already holds the best within a radius of r blocks, the result is the best within r + step,
-/// provided step <= 2 r + 1. `better(a, b)` selects one of two values; `along_rows` is scratch. `from` may be
-/// `to`.
+/// Sets each block to the best value of itself and the eight blocks that are `step` away along rows, columns
+/// and diagonals. If every block already has the best value within a radius of r blocks, and step <= 2 r + 1,
+/// the result is the best value within r + step. `better(a, b)` returns the better of two values;
+/// `along_rows` is scratch. `from` and `to` may be one vector.
 template <typename Value, typename Better>
 void spread(const BlockGrid& grid, const std::vector<Value>& from, int step, const Better& better,
             std::vector<Value>& along_rows, std::vector<Value>& to) {

@@ -1,4 +1,4 @@
-// pixel_evidence.hpp: evidence, per pixel, of a difference from the static model.
+// pixel_evidence.hpp: evidence, per pixel, that the measured depth differs from the static model.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,32 +12,33 @@
 namespace roomradar {
 
 enum class PixelLabel : std::uint8_t {
-  kNotKnown,  ///< no live depth, no static model, or a difference too small or too new to decide
+  kNotKnown,  ///< no measured or expected depth, or a region too small or too new to decide
   kStatic,    ///< agrees with the static model within noise and pose error
-  kMoved,     ///< nearer than the static model: something came in front of it
-  kRevealed,  ///< farther than the static model: something was taken away
+  kMoved,     ///< nearer than the static model: an object came in front of it
+  kRevealed,  ///< farther than the static model: an object was removed
 };
 using LabelImage = Image<PixelLabel>;
 
-/// Bits of one pixel. Weak, strong: differs from the model by more than RowBounds::weak_m, strong_m.
-/// Ambiguous: the difference is strong, but an edge of the model displaced by its error could explain it.
-/// Before: the previous frame had a region of that kind here.
+/// Evidence bits of one pixel. Weak: the depth differs from the model by more than RowBounds::weak_m. Strong:
+/// it differs by more than RowBounds::strong_m. Ambiguous: the difference is strong, but could be explained
+/// by a model edge that is displaced within its error. Before: the previous frame had a region of that kind
+/// at this position.
 inline constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kAmbiguousMoved = 4, kWeakRevealed = 8,
                               kStrongRevealed = 16, kAmbiguousRevealed = 32, kMovedBefore = 64,
                               kRevealedBefore = 128;
 
-/// Set with kWeakMoved: the pixel is in a hole of the model. Shares a bit, since nothing is revealed in a
-/// hole.
+/// Set together with kWeakMoved if the pixel is in a hole of the model (without expected depth). Shares a bit
+/// with kAmbiguousRevealed, since no pixel is farther than the model in a hole.
 inline constexpr std::uint8_t kInHole = kAmbiguousRevealed;
 
-/// Set on revealed pixels by mark_revealed_cores(). Shares a bit, since a revealed pixel is not nearer than
-/// the model.
+/// Set on revealed pixels by mark_revealed_cores(). Shares a bit with kAmbiguousMoved, since a revealed pixel
+/// is never nearer than the model.
 inline constexpr std::uint8_t kRevealedCore = kAmbiguousMoved;
 
-/// Thresholds, depth bounds and scratch for one row of pixels; one value per pixel.
+/// Thresholds, depth bounds and scratch for one row of pixels. Each vector has one value per pixel.
 struct RowBounds {
   std::vector<float> weak_m, strong_m;  ///< min differences from the model for weak and strong evidence
-  std::vector<float> nearest_m, farthest_m, around_hole_m;  ///< from ExpectedBounds, of the pixel's block
+  std::vector<float> nearest_m, farthest_m, around_hole_m;  ///< of the pixel's block, from ExpectedBounds
   std::vector<std::uint8_t> keep, bits;                     ///< scratch
 };
 
@@ -59,24 +60,24 @@ struct PixelEvidence {
   void resize(int width_px, int height_px);
 };
 
-/// Computes the evidence of all pixels. Labels them kStatic where live depth and model are known, else
-/// kNotKnown.
-/// @param depth_m, expected_m  live depth and the model's depth, m, height x width, 0 = unknown
+/// Computes the evidence of all pixels. Labels a pixel kStatic if its measured and expected depth are both
+/// known, else kNotKnown.
+/// @param depth_m, expected_m  measured depth and the static model's depth, m, height x width, 0 = unknown
 /// @param bounds       depth range of the static room per block, for expected_m
-/// @param misfit_per_m  1 sigma of live minus expected inverse depth where nothing moves
-/// @param before       the previous frame's history bits per block, see warp_history()
+/// @param misfit_per_m  standard deviation of measured minus expected inverse depth of static surfaces
+/// @param before       history bits per block, see warp_history()
 void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& settings,
                   const ExpectedBounds& bounds, float misfit_per_m, const std::vector<std::uint8_t>& before,
                   PixelEvidence& evidence, LabelImage& labels);
 
-/// Sets kRevealedCore in blocks that are surrounded by revealed blocks for more than half the max edge error,
-/// rounded up to blocks. A model edge displaced by an error reveals a strip of background only as wide as the
-/// error; a removed object is wider.
+/// Sets kRevealedCore in blocks that are surrounded by revealed blocks (farther than the model) over a
+/// distance of more than half the max edge error, rounded up to blocks. If a model edge is displaced by an
+/// error, the revealed strip of background is only as wide as the error. A removed object is wider.
 void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m,
                          const ExpectedBounds& bounds, PixelEvidence& evidence);
 
-/// Clears the weak bits of pixels farther than reach_px, rounded up to blocks, from strong evidence of that
-/// kind.
+/// Clears the weak bit of a pixel if no pixel with strong evidence of that kind (moved or revealed) is within
+/// reach_px, rounded up to blocks.
 void drop_far_weak(const DepthImage& depth_m, int reach_px, const BlockGrid& grid, PixelEvidence& evidence);
 
 }  // namespace roomradar

@@ -9,48 +9,50 @@
 
 namespace roomradar {
 
-/// Limits on the back; for the last four see DynamicSurfaceConfig.
+/// Limits on the assumed back. For the four numbers, see DynamicSurfaceConfig.
 struct BackRules {
   DepthDiscontinuity jump;  ///< test between neighbouring lattice points
   float least_thickness_m, most_thickness_m, least_roundness, clearance_m;
 };
 
-/// One value per lattice point. Buffers, reused from frame to frame.
+/// Result and buffers of make_back(), reused from frame to frame. Most vectors have one value per lattice
+/// point (DynamicLattice).
 struct BackLattice {
   std::vector<float> thickness_m;    ///< 0 where not dynamic
-  std::vector<float> inverse_depth;  ///< of the back, 1/m; 0 where not dynamic
+  std::vector<float> inverse_depth;  ///< inverse depth of the back, 1/m; 0 where not dynamic
   std::vector<float> tolerance;      ///< 1/m: max deviation of the back's mesh
 
-  std::vector<std::uint8_t> joined;  // bit k: same surface as the neighbour in direction k
+  std::vector<std::uint8_t> joined;  // bit k: one surface with the neighbour in direction k
   std::vector<float> rim_px;         // distance to the object's outline in the image; very large: none
-  std::vector<std::size_t> rim_at;   // index of that outline point
-  std::vector<float> width_px;       // half width: greatest rim_px reached by ascending rim_px from here
+  std::vector<std::size_t> rim_at;   // lattice point from which rim_px is measured
+  std::vector<float> width_px;       // half width: greatest rim_px on paths of ascending rim_px
   std::vector<std::uint32_t> part;   // connected component, an index into parts; 0: none
   std::vector<std::size_t> stack;    // scratch
-  /// Sums of the least-squares fit of a component's roundness: products of front bulge and round bulge, and
-  /// squared round bulges, m2.
+  /// Sums, over the points of a component, for the least-squares fit of its roundness. bulge_by_round sums
+  /// the products of the front's bulge and a round object's bulge, and round2 the squares of a round object's
+  /// bulge, m2.
   struct Part {
     double bulge_by_round = 0.0, round2 = 0.0;
   };
   std::vector<Part> parts;
 };
 
-/// Computes a back that bulges away as the visible front bulges towards the camera, as for a ball or a
-/// finger. A round object of half width r bulges by sqrt(d (2 r - d)) at a distance d inside its outline.
-/// Roundness is the ratio of the front's bulge to that of a round object (1: round, 0: flat), fitted per
-/// connected component and limited to least_roundness..1. The thickness is least_thickness_m plus twice the
-/// round bulge times the roundness, at most most_thickness_m. The back stays clearance_m in front of the
-/// static model, but behind the front. Where a nearer surface or the image's edge cuts the object off, there
-/// is no outline, and the thickness does not decrease.
+/// Computes an assumed back that bulges away from the camera as the visible front bulges towards it, as for a
+/// ball or a finger. A round object of half width r bulges by sqrt(d (2 r - d)) at a distance d inside its
+/// outline. Roundness is the ratio of the front's bulge to that of a round object (1: round, 0: flat). It is
+/// fitted per connected component and limited to least_roundness..1. The thickness is least_thickness_m plus
+/// twice the round object's bulge times the roundness, at most most_thickness_m. The back stays clearance_m
+/// in front of the static model, but always behind the front. Where a nearer surface or the image's edge cuts
+/// the object off, the object has no outline, and the thickness does not decrease towards the cut.
 ///
-/// @param depth_m           live depth of all pixels, dynamic or not
-/// @param expected_depth_m  depth of the static model; 0: unknown, no limit
+/// @param depth_m           measured depth of all pixels, dynamic or not
+/// @param expected_depth_m  depth of the static model; 0: unknown, so it does not limit the back
 void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
                const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
                BackLattice& back);
 
-/// Returns the inverse depth of the back, 1/m, at the dynamic pixel (x, y) whose front has the given inverse
-/// depth.
+/// Returns the inverse depth of the back, 1/m, at a dynamic pixel (x, y) whose front has inverse depth
+/// front_inverse_depth.
 float back_at(int x, int y, float front_inverse_depth, const DynamicLattice& lattice,
               const DepthImage& expected_depth_m, const BackRules& rules, const BackLattice& back);
 

@@ -1,4 +1,4 @@
-// cell_jumps.hpp: depth discontinuities within a cell, and the surfaces that they separate.
+// cell_jumps.hpp: depth discontinuities within a cell of 4 x 4 pixels, and the surfaces that they separate.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,12 +14,12 @@ using CellValues = std::array<float, 25>;
 /// Returns a pixel's index in CellValues and its bit in CellBits.
 constexpr int place(CellPixel p) { return 5 * p.y + p.x; }
 
-/// Discontinuities between adjacent dynamic pixels. Bit k of `right`: between pixel k and its right
-/// neighbour. Bit k of `down`: between pixel k and the pixel below.
+/// Discontinuities between adjacent dynamic pixels. Bit k of `right` is set if there is one between pixel k
+/// and its right neighbour, and bit k of `down` if there is one between pixel k and the pixel below.
 struct CellJumps {
   CellBits right = 0, down = 0;
   [[nodiscard]] bool any() const { return (right | down) != 0; }
-  /// Returns true if a discontinuity separates two pixels that are adjacent in a row or column.
+  /// Returns true if a discontinuity separates the pixels a and b, which must be adjacent in a row or column.
   [[nodiscard]] bool between(CellPixel a, CellPixel b) const {
     const int first = std::min(place(a), place(b));
     return ((a.y == b.y ? right : down) >> first & 1U) != 0;
@@ -29,7 +29,8 @@ struct CellJumps {
 /// Returns the discontinuities between adjacent pixels of `in`.
 CellJumps find_jumps(CellBits in, const CellValues& values, const DepthDiscontinuity& rule);
 
-/// Returns all pixels connected to the lowest bit of `in` without crossing a discontinuity.
+/// Returns the pixels of `in` that are connected to the pixel of its lowest bit without crossing a
+/// discontinuity.
 CellBits take_surface(CellBits in, const CellJumps& jumps);
 
 }  // namespace roomradar

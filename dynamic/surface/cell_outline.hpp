@@ -1,12 +1,13 @@
-// cell_outline.hpp: convex polygon of a surface in a cell of 4 x 4 pixels that is cut by its outline.
+// cell_outline.hpp: convex polygon for the part of a cell of 4 x 4 pixels that a surface covers at its
+// outline.
 #pragma once
 #include <array>
 #include <cstdint>
 
 namespace roomradar {
 
-/// A set of pixels of a cell: bit 5 * y + x. A cell is 4 pixels wide but has 5 x 5 pixels, as neighbouring
-/// cells share those on their sides.
+/// A set of pixels of a cell: bit 5 * y + x. A cell is 4 pixels wide but has 5 x 5 pixels, since neighbouring
+/// cells share the pixels on their sides.
 using CellBits = std::uint32_t;
 constexpr int kCell_px = 4;
 constexpr CellBits kWholeCell = (CellBits{1} << 25) - 1;
@@ -15,8 +16,9 @@ constexpr CellBits kWholeCell = (CellBits{1} << 25) - 1;
 struct CellPixel {
   std::int8_t x, y;
 };
-/// The ring: the 16 pixels on a cell's sides, counter-clockwise as seen by the camera (x right, y down), from
-/// the top left: down the left side (0 to 4), along the bottom, up the right side, back along the top.
+/// The ring of the 16 pixels on a cell's sides, counter-clockwise as seen by the camera (x right, y down). It
+/// begins at the top left and runs down the left side (indices 0 to 4), along the bottom, up the right side
+/// and back along the top.
 constexpr std::array<CellPixel, 16> kRing{{{0, 0},
                                            {0, 1},
                                            {0, 2},
@@ -34,23 +36,24 @@ constexpr std::array<CellPixel, 16> kRing{{{0, 0},
                                            {2, 0},
                                            {1, 0}}};
 
-/// `count` consecutive pixels of the ring from `first` on; 16: the whole ring.
+/// `count` consecutive pixels of the ring, beginning with `first`. A count of 16 is the whole ring.
 struct RingArc {
   int first = 0, count = 0;
 };
 
-/// Returns true if a convex polygon can represent the pixels of one surface in a cell. Those on the ring must
-/// be consecutive, and are returned in `arc`. The line between the ends of the arc may cut off pixels, or
-/// include empty ones, only up to about one pixel from the line. If all of the ring is set, the polygon is
-/// the whole cell, with any empty pixels inside.
+/// Returns true if a convex polygon can represent the pixels of one surface in a cell. The pixels on the ring
+/// must be consecutive, and are returned in `arc`. The line between the ends of the arc bounds the polygon;
+/// pixels of the surface beyond the line, and empty pixels inside it, must be within about one pixel of the
+/// line. If all pixels of the ring are set, the polygon is the whole cell, including empty pixels inside.
 bool find_outline(CellBits pixels, RingArc& arc);
 
-/// Triangles of a polygon, as indices into its list of corners.
+/// Triangles of a polygon. The numbers are indices into the polygon's list of corners.
 struct CellTriangles {
   std::array<std::array<std::uint8_t, 3>, 14> triangles;
   int count = 0;
 };
-/// @param corners  0 to 16 indices into kRing, in ring order
+/// Triangulates a convex polygon.
+/// @param corners  corners of the polygon: 0 to 16 indices into kRing, in ring order
 /// @return counter-clockwise triangles of positive area; none if all corners are collinear
 CellTriangles triangulate(const int* corners, int count);
 

@@ -10,11 +10,11 @@
 
 namespace roomradar {
 
-/// Two pixels are on one surface if their depths differ by no more than the noise of both plus a plane's
-/// slope.
+/// Decides whether two pixels are on one surface. They are if their depths differ by at most the noise of
+/// both plus the depth change of the steepest plane.
 class DepthDiscontinuity {
  public:
-  /// @param sigmas         max noise in the difference, in sigmas
+  /// @param sigmas         max noise of the difference, in standard deviations
   /// @param incidence_deg  angle between view ray and normal of the steepest plane that counts as one surface
   /// @param apart_px       distance of the two pixels along a row or a column
   DepthDiscontinuity(float sigmas, float incidence_deg, float apart_px, const Intrinsics& camera)
@@ -22,19 +22,19 @@ class DepthDiscontinuity {
         slope_(std::tan(incidence_deg * std::numbers::pi_v<float> / 180.0F) * apart_px /
                static_cast<float>(std::min(camera.fx_px, camera.fy_px))) {}
 
-  /// For two pixels that are apart_px apart along a row or a column (is_one_surface_diagonally(): along
-  /// both). Depths, > 0, are in metres.
+  /// Returns true for two pixels on one surface. The pixels are apart_px apart along a row or a column; for
+  /// is_one_surface_diagonally(), along both. Depths are in metres and > 0.
   [[nodiscard]] bool is_one_surface(float a_m, float b_m) const { return is_one_surface(a_m, b_m, slope_); }
   [[nodiscard]] bool is_one_surface_diagonally(float a_m, float b_m) const {
     return is_one_surface(a_m, b_m, slope_ * std::numbers::sqrt2_v<float>);
   }
-  /// The same as is_one_surface() for inverse depths, 1/m.
+  /// Returns the result of is_one_surface(), for inverse depths, 1/m.
   [[nodiscard]] bool is_one_surface_inverse(float a, float b) const {
     const float nearest = std::max(a, b), farthest = std::min(a, b);
     if (nearest - farthest <= least_jump() * farthest) return true;
     return nearest - farthest <= (sigmas_ * depth_sigma_m(1.0F / nearest) * nearest + slope_) * farthest;
   }
-  /// Returns the relative difference of inverse depths up to which two pixels are one surface at any depth.
+  /// Returns the greatest relative difference of inverse depths that counts as one surface at any depth.
   [[nodiscard]] float least_jump() const {
     constexpr float kLeastNoise = 0.0018F;  // minimum of depth_sigma_m(z) / z, at 0.9 m
     return sigmas_ * kLeastNoise + slope_;

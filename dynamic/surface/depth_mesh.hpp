@@ -12,11 +12,11 @@
 namespace roomradar {
 
 struct DepthMeshConfig {
-  int stride_px = 2;  ///< every stride-th pixel becomes a vertex; silhouettes lose up to stride - 1 pixels
-  float jump_sigmas = 4.0F;          ///< depths that differ by up to this much noise are one surface
-  float jump_incidence_deg = 80.0F;  ///< planes seen at up to this angle from their normal are one surface
+  int stride_px = 2;  ///< every stride-th pixel becomes a vertex; outlines lose up to stride - 1 pixels
+  float jump_sigmas = 4.0F;          ///< max noise, in sigmas, between the depths of one surface
+  float jump_incidence_deg = 80.0F;  ///< max angle between view ray and normal of one surface
   int skirt_gap_px = 64;             ///< max width of unmeasured gaps (projector shadow) that a skirt closes
-  /// Policy kBorder: distance by which vertices on the image's border are moved outwards and also nearer.
+  /// Distance by which SurfacePolicy::kBorder moves vertices on the image's border outwards, and also nearer.
   float border_push_m = 0.5F;
 };
 /// Throws Error naming the field, its value and the rule.
@@ -28,10 +28,11 @@ struct DepthMeshScratch {
   std::vector<float> filled_m;                           // image with its gaps filled, for skirts
 };
 
-/// Meshes the dynamic pixels: a vertex at each measured pixel of the mask (on the stride grid), triangles
-/// between neighbours on one surface. No triangle spans a depth discontinuity or the mask's edge.
+/// Meshes the dynamic pixels. Each measured pixel of the mask that is on the stride grid becomes a vertex,
+/// and triangles connect neighbours on one surface. No triangle spans a depth discontinuity or the mask's
+/// edge.
 ///
-/// @param depth_m         height x width, metres along the axis, 0 = no measurement
+/// @param depth_m         height x width, metres along the optical axis, 0 = no measurement
 /// @param dynamic_mask      same size; not 0: dynamic
 /// @param T_world_camera  pose of the depth camera
 /// @param mesh            overwritten, allocations kept; origin at the camera's position, world axes,
@@ -43,10 +44,10 @@ void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const
 
 /// Meshes the whole frame, as a system without a map would. kHoles and kMap leave depth discontinuities open.
 /// kSkirt connects both sides of each discontinuity, and of each unmeasured gap within a row, by polygons.
-/// kBorder also adds these polygons, and extends each row's first and last depth over unmeasured pixels
-/// beside them. It also moves vertices on the image's border by border_push_m outwards in the image plane and
-/// by the same distance nearer, so objects that leave the view do not fall. Parameters as for mesh_masked().
-/// Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
+/// kBorder adds these polygons, too. It also extends each row's first and last depth over the unmeasured
+/// pixels at the row's ends, and moves vertices on the image's border by border_push_m outwards in the image
+/// plane and by border_push_m nearer, so objects that leave the view do not fall. Parameters as for
+/// mesh_masked(). Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
 void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);
 

@@ -15,9 +15,9 @@ namespace roomradar {
 
 enum class CellKind : std::uint8_t {
   kEmpty,
-  kFlat,  ///< all pixels dynamic, all four corners flat: may be part of larger triangles
-  kCut,   ///< one polygon for each of up to four surfaces
-  kFull,  ///< a vertex at every pixel
+  kFlat,  ///< all pixels dynamic and all four lattice points flat: may join larger triangles
+  kCut,   ///< meshed as one polygon for each of up to four surfaces
+  kFull,  ///< meshed with a vertex at every pixel
 };
 
 /// A ball in the camera frame, m, in which every pixel becomes a vertex.
@@ -32,33 +32,34 @@ struct CellCounts {
   std::size_t flat = 0, cut = 0, full = 0;
 };
 
-/// Vertices are pixels, as indices into the image. Counter-clockwise as seen by the camera.
+/// Triangle whose vertices are pixels, given as indices into the image. Counter-clockwise as seen by the
+/// camera.
 using PixelTriangle = std::array<std::uint32_t, 3>;
 
-/// A square below is a block of 8 x 8 cells (kSquareCells).
+/// Cells of one frame. In the comments of the members, a square is a block of 8 x 8 cells (kSquareCells).
 struct DynamicCells {
-  std::vector<CellKind> kinds;                 ///< one per cell, between four lattice points
+  std::vector<CellKind> kinds;                 ///< one per cell; a cell is between four lattice points
   std::vector<std::uint8_t> is_flat;           ///< 1 if the kind is kFlat
-  std::vector<std::array<CellBits, 4>> parts;  ///< of cut cells: the pixels of each surface
+  std::vector<std::array<CellBits, 4>> parts;  ///< pixels of each surface of a cut cell
   std::vector<std::uint8_t> must_be_vertex;    ///< one per lattice point; 1 at all corners of cut and full
                                                ///< cells
   CellCounts counts;
-  /// Full cells per region; counted for the first ball that reaches the cell.
+  /// Number of full cells per region. A cell that several balls reach is counted for the first of them.
   std::vector<std::uint32_t> fine_of_region;
-  std::vector<PixelTriangle> triangles;       ///< of cut and full cells, square by square
+  std::vector<PixelTriangle> triangles;       ///< triangles of cut and full cells, square by square
   std::vector<std::uint8_t> has_flat;         ///< one per square; 1: contains flat cells
-  std::vector<std::uint32_t> first_triangle;  ///< per square: index into triangles; one extra entry: end
+  std::vector<std::uint32_t> first_triangle;  ///< per square, index into triangles; the last entry is the end
 };
 
 struct CellRules {
-  DepthDiscontinuity jump;  ///< between neighbouring pixels
+  DepthDiscontinuity jump;  ///< test between neighbouring pixels
   float most_sigmas;  ///< max RMS distance of a cut cell's pixels from its triangles; above it the cell is
                       ///< full
 };
 
 /// Classifies the cells and makes the triangles of cut and full cells.
-/// @param fine     cells that a ball reaches become full
-/// @param regions  number of regions; FineBall::region is less
+/// @param fine     balls; every cell that a ball reaches becomes full
+/// @param regions  number of regions; each FineBall::region must be less
 void make_cells(const DynamicPixels& pixels, const DynamicLattice& lattice, const Intrinsics& camera,
                 std::span<const FineBall> fine, std::size_t regions, const CellRules& rules,
                 DynamicCells& cells);

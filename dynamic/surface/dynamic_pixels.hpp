@@ -7,15 +7,16 @@
 
 namespace roomradar {
 
-/// Stores inverse depths, since a plane's inverse depth is linear over the image.
+/// Dynamic pixels of one frame. Depths are stored as inverse depths, since a plane's inverse depth is linear
+/// over the image.
 struct DynamicPixels {
-  PixelBits measured;  ///< in the mask and with depth
-  /// `measured` with a smooth outline: majority of the surrounding 3 x 3 pixels. Every pixel of `measured` is
-  /// in `smooth`, has a neighbour in it, or is in `thin`.
+  PixelBits measured;  ///< pixels in the mask that have depth
+  /// `measured` with a smooth outline: a pixel is set if most of the surrounding 3 x 3 pixels are in
+  /// `measured`. Every pixel of `measured` is in `smooth`, has a neighbour in `smooth`, or is in `thin`.
   PixelBits smooth;
-  PixelBits thin;  ///< lines and specks too thin for `smooth`
-  /// 1/m per pixel. In `smooth` but not `measured`: mean of the measured neighbours; outside both:
-  /// meaningless.
+  PixelBits thin;  ///< lines and specks that are too thin for `smooth`
+  /// Inverse depth per pixel, 1/m. For a pixel in `smooth` but not in `measured`, the mean of the measured
+  /// neighbours. For a pixel in neither, meaningless.
   std::vector<float> inverse_depth;
 };
 

@@ -1,4 +1,4 @@
-// dynamic_surface.hpp: dynamic surfaces as few triangles, the visible front and an assumed back.
+// dynamic_surface.hpp: meshes dynamic surfaces with few triangles: the visible front and an assumed back.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -16,12 +16,12 @@
 
 namespace roomradar {
 
-/// Both meshes have their origin at the camera's position, world axes and no colours; both are empty if
-/// nothing is dynamic. If has_back, they are closed together: every edge is used equally often in both
-/// directions.
+/// Meshes of a frame's dynamic surfaces. Both have their origin at the camera's position, world axes and no
+/// colours. Both are empty if no pixel is dynamic. If DynamicSurfaceConfig::has_back is set, the two meshes
+/// together are closed: their triangles use every edge equally often in both directions.
 struct DynamicSurface {
   Mesh seen_world;  ///< counter-clockwise towards the camera, unit normals
-  /// Back and side walls, counter-clockwise from outside, no normals. Assumed, never observed.
+  /// Assumed (never observed) back and side walls, counter-clockwise seen from outside, without normals.
   Mesh inferred_world;
 };
 
@@ -34,7 +34,7 @@ struct DynamicSurfaceScratch {
   std::vector<FineBall> fine;
   std::vector<float> values, tolerances;       // one per lattice point
   std::vector<std::uint8_t> needed;            // one per lattice point
-  std::vector<float> smoothed;                 // per pixel, 1/m; set for seen vertices off the lattice
+  std::vector<float> smoothed;                 // per pixel, 1/m; set for front vertices off the lattice
   std::vector<std::uint32_t> vertex_of_pixel;  // vertex index per pixel; 0xFFFFFFFF: none
   std::vector<std::uint32_t> pixel_of_vertex;  // pixel of each vertex of the mesh being assembled
   std::vector<std::uint32_t> seen_pixels;      // pixel of each vertex of the seen mesh
@@ -48,26 +48,27 @@ struct DynamicSurfaceScratch {
 
 /// Meshes the dynamic pixels and adds an assumed back.
 ///
-///   1. Selects the mask's pixels with depth; smooths the outline by a 3 x 3 majority. Lines and specks that
-///      the majority removes become slabs one pixel wide.
+///   1. Selects the mask's pixels with depth, and smooths their outline by a 3 x 3 majority filter. Lines and
+///      specks that the filter removes become slabs one pixel wide.
 ///   2. Makes a lattice of every fourth pixel. At flat points, inverse depth is averaged over 5 x 5 pixels,
-///      then with flat neighbours. At bends and outlines, and at vertices off the lattice, it is averaged
-///      with those pairs of opposite pixels that are on a line with the point, within noise.
+///      then with flat neighbours. At bends and outlines, and at vertices off the lattice, inverse depth is
+///      averaged with those pairs of opposite pixels that, within noise, are on a line with the point.
 ///   3. Classifies cells of 4 x 4 pixels as flat, cut or full. In cut cells, straight lines follow outlines
 ///      and discontinuities to about a pixel. In full cells, every pixel is a vertex. Cells in `regions` are
-///      full, and so are cells that lines do not cut well enough.
-///   4. Meshes flat cells as an RTIN: right triangles with legs of up to 32 pixels, bisected until every
-///      lattice point is within deviation_sigmas of them. Adjacent triangles share whole edges, so there are
-///      no cracks.
-///   5. Makes the back: the same outline, farther away (make_back). Walls connect it to the front.
+///      full, and so are cells whose outlines straight lines do not follow well enough.
+///   4. Meshes flat cells as an RTIN (rtin.hpp): right triangles with legs of up to 32 pixels, bisected until
+///      every lattice point is within deviation_sigmas of its triangle. Adjacent triangles share whole edges,
+///      so there are no cracks.
+///   5. Makes the back, which has the front's outline but is farther away (make_back()). Walls connect the
+///      back to the front.
 ///
-/// Error bound: over flat cells no averaged point is farther than deviation_sigmas from the mesh. Averaging
-/// with neighbours adds at most 0.7 sigmas at bends: four pairs, each off a line by up to 1.5 sigmas, over
-/// nine values. The pixels of a cut cell have an RMS distance from the mesh of at most cut_sigmas. In the
-/// image, the mesh comes within a pixel of every pixel of the mask, except specks whose neighbours are at
+/// Error bound: over flat cells, no averaged point is farther than deviation_sigmas from the mesh. Averaging
+/// with neighbours adds at most 0.7 sigmas at bends (four pairs, each off a line by up to 1.5 sigmas, divided
+/// by nine values). The pixels of a cut cell have an RMS distance from the mesh of at most cut_sigmas. In the
+/// image, the mesh comes within a pixel of every pixel of the mask, except for specks whose neighbours are at
 /// other depths.
 ///
-/// @param depth_m           height x width, metres along the axis, 0 = no measurement
+/// @param depth_m           height x width, metres along the optical axis, 0 = no measurement
 /// @param dynamic_mask        same size; not 0: dynamic
 /// @param expected_depth_m  same size; depth of the static model, which limits the back; 0: unknown
 /// @param T_world_camera    pose of the depth camera

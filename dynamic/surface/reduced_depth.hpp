@@ -1,4 +1,4 @@
-// reduced_depth.hpp: downsamples a frame's depth without mixing surfaces.
+// reduced_depth.hpp: downsamples a frame's depth without averaging across surfaces.
 #pragma once
 #include "mapping/types/frame.hpp"
 
@@ -7,11 +7,12 @@ namespace roomradar {
 /// Returns `stride`, halved until the reduced image has at least 32 rows and columns, or 1.
 int usable_stride(const Intrinsics& depth_camera, int stride);
 
-/// Replaces each stride x stride pixels by one, and scales the camera to match. Of the surfaces among the
-/// measured pixels, the one with the most pixels is chosen, on a tie the nearer one. The new depth is the
-/// mean over its pixels, in inverse depth. So no pixel gets a depth between a near edge and its background,
-/// and a fully measured plane keeps its depth. If the surface has less than half of the pixels, as at the rim
-/// of a hole, the depth is 0; so slivers thinner than half a reduced pixel are lost.
+/// Replaces each block of stride x stride pixels by one pixel, and scales the camera to match. Chooses the
+/// surface that has the most measured pixels in the block or, on a tie, the nearer one. The new depth is the
+/// mean over this surface's pixels, in inverse depth. So no pixel gets a depth between a near edge and its
+/// background, and a fully measured plane keeps its depth. If the chosen surface has less than half of the
+/// block's pixels, as at the border of a gap, the depth is 0, so slivers thinner than half a reduced pixel
+/// are lost.
 /// @param stride   1, 2 or 4, from usable_stride()
 /// @param reduced  depth_m and depth_camera are overwritten; its other fields stay
 void reduce_depth(const Frame& frame, int stride, Frame& reduced);

@@ -7,13 +7,14 @@
 
 namespace roomradar {
 
-/// Each square of 8 x 8 cells is two right triangles, which are bisected at the middle of their hypotenuse,
-/// down to half a cell. The two triangles at a hypotenuse are bisected together, and every bisection includes
-/// the coarser ones that lead to it, so there are no T-junctions. Source: Evans, Kirkpatrick, Townsend,
-/// Right-triangulated irregular networks, Algorithmica 2001.
+/// RTIN over a grid of points. Each square of 8 x 8 cells is two right triangles. Triangles are bisected at
+/// the middle of their hypotenuse, down to half a cell. The two triangles that share a hypotenuse are
+/// bisected together, and every bisection includes the coarser bisections above it, so there are no
+/// T-junctions. Source: Evans, Kirkpatrick, Townsend, Right-triangulated irregular networks, Algorithmica
+/// 2001.
 struct Rtin {
   int columns = 0, rows = 0;            ///< number of points: multiples of 8, plus one
-  std::span<const std::uint8_t> cells;  ///< (columns - 1) * (rows - 1) values; 1: cell to be meshed
+  std::span<const std::uint8_t> cells;  ///< (columns - 1) * (rows - 1) values; 1: the cell is wanted
 
   [[nodiscard]] std::size_t point(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
@@ -25,12 +26,12 @@ struct Rtin {
   }
 };
 
-/// Marks the points at which triangles are bisected so that all values are within tolerance.
+/// Marks the points at which triangles must be bisected for all values to be within tolerance.
 ///
 /// @param values      one per point, valid at the corners of wanted cells
-/// @param tolerances  one per point: max difference between the value and the triangle there
-/// @param needed      in and out, one per point. Must be 1 at all corners of unwanted cells beside a
-///                    wanted one, else 0; entries of 1 stay 1.
+/// @param tolerances  one per point: max difference between the value and the triangle at this point
+/// @param needed      input and output, one per point. Must be 1 at all corners of unwanted cells beside a
+///                    wanted cell, else 0. Entries of 1 stay 1; those of marked points become 1.
 void find_needed(const Rtin& grid, std::span<const float> values, std::span<const float> tolerances,
                  std::span<std::uint8_t> needed);
 
@@ -40,7 +41,8 @@ struct GridPoint {
 
 namespace rtin {
 
-/// Descends into a triangle a, b, c with the right angle at c, counter-clockwise with y down.
+/// Calls take() for each leaf triangle on wanted cells below a triangle a, b, c. The triangle has its right
+/// angle at c and is counter-clockwise with y down.
 template <typename Take>
 void descend(const Rtin& grid, std::span<const std::uint8_t> needed, GridPoint a, GridPoint b, GridPoint c,
              const Take& take) {
@@ -59,7 +61,7 @@ void descend(const Rtin& grid, std::span<const std::uint8_t> needed, GridPoint a
 
 }  // namespace rtin
 
-/// Calls take(a, b, c) for each triangle on wanted cells in the square with this top left point.
+/// Calls take(a, b, c) for each triangle on wanted cells in the square whose top left point is (column, row).
 template <typename Take>
 void walk_square(const Rtin& grid, std::span<const std::uint8_t> needed, int column, int row,
                  const Take& take) {

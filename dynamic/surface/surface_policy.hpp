@@ -1,14 +1,14 @@
-// surface_policy.hpp: the surfaces of a frame that a virtual object can touch.
+// surface_policy.hpp: choices of the surfaces that a virtual object can touch in a frame.
 #pragma once
 #include <string_view>
 
 namespace roomradar {
 
 enum class SurfacePolicy {
-  kHoles,   ///< this frame's depth pixels only; open at depth discontinuities and where unmeasured
-  kSkirt,   ///< kHoles, plus polygons across depth discontinuities that connect near and far side
-  kBorder,  ///< kSkirt, plus the image's border pushed outwards and nearer: a tray around the view
-  kMap,     ///< the saved map's static mesh, and this frame's pixels where something is dynamic
+  kHoles,   ///< only this frame's depth; open at depth discontinuities and unmeasured pixels
+  kSkirt,   ///< kHoles, plus polygons that connect both sides of depth discontinuities
+  kBorder,  ///< kSkirt, with vertices on the image's border moved outwards and nearer
+  kMap,     ///< the saved map's static mesh, and this frame's dynamic pixels
 };
 
 /// Returns the name used by the command line and reports.

@@ -1,5 +1,5 @@
-// keyframe.hpp: keyframes in compact form, with which later frames are aligned and into which depth is
-// averaged.
+// keyframe.hpp: keyframes in compact form. Later frames are aligned with keyframes, and their depth is
+// averaged into them.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace roomradar {
 
-/// Compact form of a ViewPyramid: 4 bytes per pixel, a tenth of the size of the pyramid and its TargetView.
+/// Compact form of a ViewPyramid (depth and intensity at several resolutions). Takes 4 bytes per pixel, a
+/// tenth of the size of the pyramid and its TargetView.
 struct StoredView {
   Intrinsics camera;                   ///< camera of the finest level, the only level stored
   Image<std::uint16_t> inverse_depth;  ///< in units of kInverseDepthStep_per_m; 0: no depth
@@ -18,17 +19,17 @@ struct StoredView {
 };
 
 /// Step of the 16-bit inverse depth, 1/m. Depths from 0.27 m upwards can be represented. The step corresponds
-/// to 0.06 mm at 1 m and 2 mm at 6 m, where it is a thirtieth of a Kinect's noise.
+/// to 0.06 mm at 1 m and 2 mm at 6 m. At 6 m, this is a thirtieth of a Kinect's noise.
 constexpr float kInverseDepthStep_per_m = 5.7e-5F;
 
 struct Keyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::shared_ptr<const StoredView> view;  ///< never null; immutable: refined depth becomes a new view
+  std::shared_ptr<const StoredView> view;  ///< never null; refined depth is stored as a new view
   std::uint32_t revision = 0;              ///< number of times that `view` was replaced
-  /// Length of the camera's path up to this keyframe, m; a rotation by 1 rad counts as 1 m, and motion while
-  /// tracking was degenerate counts tenfold. The assumed drift between two keyframes grows with the path
-  /// between them.
+  /// Length of the camera's path up to this keyframe, m. A rotation by 1 rad counts as 1 m, and motion while
+  /// tracking was degenerate counts tenfold. The assumed drift between two keyframes grows with the length of
+  /// the path between them.
   double path_length_m = 0.0;
 };
 
@@ -38,8 +39,8 @@ StoredView store(const ViewPyramid& pyramid, const Image<std::uint8_t>& measured
 /// Rebuilds the pyramid from the stored finest level.
 void restore(const StoredView& view, const ViewConfig& config, ViewPyramid& pyramid);
 
-/// Averages the depth of `other` into the finest level of `pyramid` where both show the same surface, and
-/// increments those pixels of `measured`.
+/// Averages the depth of `other` into the finest level of `pyramid`, in the pixels where both show the same
+/// surface. Increments `measured` in these pixels.
 void improve_depth(ViewPyramid& pyramid, Image<std::uint8_t>& measured, const ViewPyramid& other,
                    const Eigen::Isometry3d& T_other_pyramid);
 

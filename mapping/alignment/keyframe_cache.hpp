@@ -8,22 +8,22 @@
 
 namespace roomradar {
 
-/// Keyframe prepared for alignment, as a reference and as a source of points. The pose is in the Keyframe;
-/// reference.T_world_view is the identity. 4 MB at 320 x 240, including 0.7 MB for `live`.
+/// Keyframe prepared for alignment, as a reference and as a source of points. Keyframe holds the pose;
+/// reference.T_world_view is the identity. Takes 4 MB at 320 x 240 pixels, including 0.7 MB for `live`.
 struct CachedKeyframe {
   TargetView reference;
   SourcePoints live;
 };
 
-/// Parts of a CachedKeyframe to prepare; the other part stays empty.
+/// Members of a CachedKeyframe to prepare; the other member stays empty.
 enum class PreparedParts { kAll, kLive, kReference };
 
 std::shared_ptr<const CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
                                                        PreparedParts parts = PreparedParts::kAll);
 
 /// Caches at most `capacity` keyframes and evicts the least recently used. A returned entry stays valid after
-/// its eviction, as long as the caller keeps the pointer. Copies of a cache share entries, but are otherwise
-/// independent. Not thread safe.
+/// its eviction, as long as the caller keeps the pointer. Copies of a cache share their present entries, but
+/// are otherwise independent. Not thread safe.
 class KeyframeCache {
  public:
   explicit KeyframeCache(std::size_t capacity, PreparedParts parts = PreparedParts::kAll)

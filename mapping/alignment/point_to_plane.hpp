@@ -9,18 +9,20 @@
 
 namespace roomradar {
 
-/// Normal equations of the weighted least squares over residuals r, with r linear in the camera's twist
-/// (Jacobian J, weights w): H = J^T w J, g = J^T w r.
+/// Normal equations of weighted least squares: H = J^T w J, g = J^T w r. r are the residuals, J their
+/// Jacobian by the camera's twist, w their weights.
 struct NormalEquations {
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
   double weight = 0.0;
 
-  /// Copies the upper triangle of H to the lower; needed after match_points(), which fills the upper only.
+  /// Copies the upper triangle of H to the lower. Call it after match_points(), which fills only the upper
+  /// triangle.
   void mirror() { H.triangularView<Eigen::StrictlyLower>() = H.transpose(); }
 };
 
-/// Brightness difference to one reference: reference intensity = gain * live intensity + offset.
+/// Brightness relation to one reference: reference intensity = gain * live intensity + offset. Live: of the
+/// image that is aligned.
 struct Exposure {
   float gain = 1.0F;
   float offset = 0.0F;
@@ -31,12 +33,12 @@ struct Exposure {
 struct PointMatches {
   NormalEquations depth, colour;
   std::size_t met = 0;  ///< number of points that project to a pixel with a surface
-  /// Number of correspondences whose distance is within the gate and within three standard deviations of the
+  /// Number of correspondences whose distance is below the gate and below three standard deviations of the
   /// difference between two measurements.
   std::size_t inliers = 0;
   double squares = 0.0;  ///< sum of the inliers' squared distances, m^2
-  /// Weighted sums over the correspondences in which both intensities are known: sum of the weights (n), of
-  /// the live and reference intensities, and of their squares.
+  /// Weighted sums over the correspondences with two known intensities: n sums the weights, live and
+  /// reference the intensities, and live_live and reference_reference their squares.
   double n = 0.0, live = 0.0, reference = 0.0, live_live = 0.0, reference_reference = 0.0;
 };
 
@@ -48,10 +50,10 @@ struct MatchLimits {
   float inverse_intensity_sigma;  ///< 1 / standard deviation, in grey levels; 0: intensity is not used
 };
 
-/// Projects the points into the reference to find correspondences, and sums the residuals of each: distance
-/// to the reference's plane and, if exposure.known, difference of intensity. Residuals are linearised in the
-/// twist of the camera, in the camera frame.
-/// @param[in,out] pass  the residuals are added to its sums; of H, only to the upper triangle
+/// Projects the points into the reference to find correspondences, and sums their residuals: distance to the
+/// reference's plane and, if exposure.known, difference of intensity. Residuals are linearised in the
+/// camera's twist, which is given in the camera frame.
+/// @param[in,out] pass  sums to which the residuals are added; of H, only the upper triangle is filled
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
                   PointMatches& pass);

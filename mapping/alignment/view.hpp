@@ -1,4 +1,4 @@
-// view.hpp: the two sides of an alignment: planes of a target view, points of a source view.
+// view.hpp: the two inputs of an alignment: planes of a target view, and points of a source view.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// Plane and intensity at one pixel of a target view. 32 bytes, so a lookup touches one cache line.
+/// Plane and intensity at one pixel of a target view. Takes 32 bytes, so a lookup touches one cache line.
 struct alignas(32) TargetPixel {
   Eigen::Vector3f normal;        ///< unit, towards the camera; zero: no surface at this pixel
   float offset_m;                ///< m, < 0: normal . p = offset_m for all points p of the plane
@@ -23,7 +23,7 @@ struct TargetLevel {
   Image<TargetPixel> pixels;
 };
 
-/// View of known pose, with levels from fine to coarse.
+/// View of known pose. `levels` are resolutions from fine to coarse.
 struct TargetView {
   std::vector<TargetLevel> levels;
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
@@ -39,15 +39,15 @@ struct SourcePoint {
   float intensity;           ///< 0..255; -1: unknown
 };
 
-/// Points of an image that is to be aligned, with levels from fine to coarse. The finest level may be
-/// subsampled.
+/// Points of an image that is to be aligned. `levels` are resolutions from fine to coarse. The finest level
+/// may be subsampled.
 struct SourcePoints {
   std::vector<std::vector<SourcePoint>> levels;
 };
 
 /// Extracts the points of all levels. The finest level uses every `finest_step_px`-th pixel of every
-/// `finest_step_px`-th row. `ignore` is empty or has the depth image's size; pixels where it is not 0 are
-/// left out.
+/// `finest_step_px`-th row. `ignore` is empty or has the depth image's size; pixels where `ignore` is not 0
+/// are left out.
 void make_source_points(const ViewPyramid& pyramid, SourcePoints& live, const MaskImage& ignore = {},
                         int finest_step_px = 2);
 

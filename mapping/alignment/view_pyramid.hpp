@@ -7,19 +7,20 @@
 
 namespace roomradar {
 
-/// Max relative difference between two depths on the same surface. Corresponds to 5 cm at 1 m, or to a plane
-/// seen at 75 degrees over four pixels of a 320 pixel wide image.
+/// Max relative difference between two depths that count as one surface: 5 cm at 1 m. Four pixels apart in a
+/// 320 pixel wide image, the depths of a plane seen at 75 degrees differ by this much.
 inline constexpr float kSameSurface = 0.05F;
 
 struct ViewConfig {
   int finest_width_px = 320;  ///< wider images are halved until they are at most this wide
   int levels = 3;             ///< number of pyramid levels, each half the width and height of the previous
   float min_depth_m = 0.3F;
-  float max_depth_m = 6.0F;  ///< larger depths are not used: a Kinect v1's noise exceeds 6 cm there
-  /// Half the side of the neighbourhood to which a pixel's plane is fitted, at the finest level. The
-  /// neighbourhood is sampled at 5 x 5 pixels.
+  float max_depth_m = 6.0F;  ///< larger depths are not used; a Kinect v1's noise exceeds 6 cm beyond
+  /// Half the side of the square around a pixel to which the pixel's plane is fitted, at the finest level.
+  /// The square is sampled at 5 x 5 pixels.
   int normal_reach_px = 4;
-  /// False for rendered depth: planes are then fitted to 3 x 3 neighbouring pixels, in a third of the time.
+  /// Set to false for rendered depth. Planes are then fitted to 3 x 3 neighbouring pixels, in a third of the
+  /// time.
   bool noisy = true;
 };
 
@@ -32,11 +33,11 @@ struct ViewPyramid {
     Image<float> intensity;            ///< 0..255; -1: unknown; empty image: no colour
   };
   std::vector<Level> levels;
-  /// Scratch: grey-scale colour image, averaged down to about the finest level's size.
+  /// Scratch: the colour image in grey levels, averaged down to about the finest level's size.
   Image<float> grey;
 };
 
-/// Builds the pyramid of a frame's depth, and of its intensity registered to the depth camera. The finest
+/// Builds the pyramid of a frame: its depth, and its intensity registered to the depth camera. The finest
 /// level is at most finest_width_px wide. Leaves out depths outside min_depth_m..max_depth_m, and intensity
 /// outside the colour camera's view. The frame's images must have their cameras' sizes. Reuses memory
 /// allocated in `pyramid`.
@@ -49,8 +50,8 @@ void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const Vie
 /// Recomputes the depth of all coarser levels from the finest level.
 void halve_depth(ViewPyramid& pyramid);
 
-/// Recomputes the intensity of all coarser levels, if the finest level has any. Needs the depth of all
-/// levels.
+/// Recomputes the intensity of all coarser levels from the finest level, if the finest level has intensity.
+/// Requires the depth of all levels.
 void halve_intensity(ViewPyramid& pyramid);
 
 }  // namespace roomradar

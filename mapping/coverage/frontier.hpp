@@ -9,13 +9,13 @@ namespace roomradar {
 
 struct FrontierConfig {
   double cell_m = 0.08;       ///< edge of the search grid's cells; at least the map's resolution
-  double min_area_m2 = 0.06;  ///< smaller areas result from noise and edges
-  double max_size_m = 1.5;    ///< larger holes are split
-  /// A border cell is inside the scan if at least this fraction of rays from it into the unknown end at a
-  /// surface.
+  double min_area_m2 = 0.06;  ///< smaller holes are ignored: they result from noise and edges
+  double max_size_m = 1.5;    ///< max distance of a hole's cells from its first cell
+  /// A border cell is inside the scan if, of the rays from the cell into the unknown, at least this fraction
+  /// end at a surface.
   double min_enclosed = 0.5;
-  /// A border cell with fewer such rays is still inside if its connected component's area is at most this
-  /// fraction of the scan's cross section.
+  /// A border cell with a smaller fraction is inside, too, if its connected component is small: at most
+  /// max_open_part times the area of the scan's bounding box, seen along the component's mean normal.
   double max_open_part = 0.08;
 };
 
@@ -34,11 +34,11 @@ struct Frontier {
   std::vector<FrontierCell> cells;
 };
 
-/// Reads the octree once into a grid of cells (coarser ones if there would be more than 16 million). A cell
-/// is occupied if any of its voxels is, else free if half of it is. Border cells are unknown and share a face
-/// with a free cell; adjacent border cells form one hole. Each face's area is projected along the border's
-/// normal, so a slanted border's area is not that of its staircase. Returns no holes for an empty map. Throws
-/// Error if the config is invalid.
+/// Copies the octree into a grid of cells, with larger cells if there would be more than 16 million. A cell
+/// is occupied if any of its voxels is occupied, else free if at least half of its volume is free. Border
+/// cells are unknown cells that share a face with a free cell; adjacent border cells form one hole. Each
+/// face's area is projected along the border's normal, so the area of a slanted border is not that of its
+/// staircase. Returns no holes for an empty map. Throws Error if the config is invalid.
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config = {});
 
 }  // namespace roomradar

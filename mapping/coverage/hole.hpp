@@ -7,7 +7,7 @@
 namespace roomradar {
 
 enum class HoleKind {
-  kUnknownSpace,   ///< space inside the scan that no ray crossed: an occluded region, a corner
+  kUnknownSpace,   ///< space inside the scan that no ray crossed, e.g. occluded space
   kSurfaceBorder,  ///< the surface ends although the space on both sides was observed
   kOuterBorder,    ///< end of the scan as a whole
 };
@@ -17,11 +17,12 @@ std::string_view to_string(HoleKind kind);
 struct Hole {
   HoleKind kind = HoleKind::kUnknownSpace;
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();  ///< centre, m
-  double size_m = 0.0;                                       ///< distance between its farthest points
-  double area_m2 = 0.0;                                      ///< area of the border between known and unknown
+  double size_m = 0.0;                                       ///< diagonal of its bounding box
+  double area_m2 = 0.0;                                      ///< area of its border with the known space
   /// Unit viewing direction, from known space into the hole.
   Eigen::Vector3d look_direction_world = Eigen::Vector3d::UnitX();
-  /// Free position to look from, m; unset if none has a free line of sight.
+  /// Free position from which a camera can observe the hole, m; unset if no position with a free line of
+  /// sight was found.
   std::optional<Eigen::Vector3d> viewpoint_world;
 };
 

@@ -1,4 +1,4 @@
-// holes.hpp: unobserved regions of a scan, with places from which a person can observe them.
+// holes.hpp: unobserved regions of a scan, with positions from which a person can observe them.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,9 +11,9 @@ namespace roomradar {
 class StaticMap;
 struct Frontier;
 
-/// Returns the frontier's holes, and the holes of the surface: border loops surrounded by surface, at least
-/// min_border_size_m across. Loops whose centre is within three cells of a frontier hole's cell are left out.
-/// Sorted by kind, then largest first.
+/// Returns the frontier's holes, and the holes of the surface: border loops that are surrounded by surface
+/// and whose extent is at least min_border_size_m. Leaves out loops whose centre is within three cell widths
+/// of a frontier hole's cell. Sorts by kind, then largest area first.
 std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                              double min_border_size_m = 0.12);
 

@@ -22,14 +22,14 @@ struct ShapeGrid {
   static constexpr int kReach_cells = 3;  ///< distance from a surface, in cubes, at which nearness is 0
 };
 
-/// Surfaces in the downsampled depth images of all keyframes of a database, for search_by_shape(): a coarse
-/// grid for the search over the whole room, and a fine grid for refining poses.
+/// Surfaces in the downsampled depth images of all keyframes of a database, for search_by_shape(). The coarse
+/// grid is for the search over the whole room, the fine grid for refining poses.
 struct ShapeIndex {
   ShapeGrid coarse, fine;
   [[nodiscard]] bool empty() const { return coarse.nearness.empty(); }
 };
-/// Builds the index. The cubes' edges are 15 cm (coarse) and 7.5 cm (fine). They are longer in a room that
-/// would need more than 500,000 coarse cubes.
+/// Builds the index. The cubes' edges are 15 cm (coarse) and 7.5 cm (fine), or longer if a room would need
+/// more than 500,000 coarse cubes.
 ShapeIndex shape_index(const KeyframeDatabase& keyframe_database);
 
 struct ShapeCandidate {
@@ -37,10 +37,10 @@ struct ShapeCandidate {
   double nearness = 0.0;  ///< mean nearness of the image's points, 0..1; 1: all are on surfaces
 };
 
-/// Returns at most `most` distinct poses at which the most points of the depth image are on known surfaces,
-/// best first. Searches all positions in the room and all headings on the coarse grid; tilt and roll come
-/// from gravity. Deterministic. Returns an empty vector if almost no depth is valid or down_camera is not a
-/// unit vector. Source: Olson, Real-Time Correlative Scan Matching, ICRA 2009.
+/// Returns at most `most` distinct poses with the highest mean nearness of the depth image's points to known
+/// surfaces, best first. Searches all positions in the room and all headings on the coarse grid; tilt and
+/// roll come from gravity. Deterministic. Returns an empty vector if almost no depth is valid or down_camera
+/// is not a unit vector. Source: Olson, Real-Time Correlative Scan Matching, ICRA 2009.
 ///
 /// @param down_camera  unit direction of gravity in the camera's frame; in the world's frame it is -z
 std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Intrinsics& camera,

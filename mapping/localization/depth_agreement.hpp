@@ -1,4 +1,4 @@
-// depth_agreement.hpp: agreement of a depth image with the depth that the map's model predicts at a pose.
+// depth_agreement.hpp: measures how well a depth image agrees with the depth that the map predicts at a pose.
 #pragma once
 #include "mapping/types/image.hpp"
 
@@ -7,21 +7,23 @@ namespace roomradar {
 /// Pixel counts, over every fourth pixel of every fourth row of a depth image.
 struct DepthAgreement {
   int valid = 0;  ///< number of pixels with a measurement
-  int both = 0;   ///< number of measured pixels where the model has a surface, too
-  /// Number of pixels in `both` whose two depths agree within the noise and the distortion of the map.
+  int both = 0;   ///< number of those pixels where the map's model has a surface, too
+  /// Number of pixels in `both` whose two inverse depths differ by less than 0.02 / m, which covers sensor
+  /// noise and distortion of the map.
   int alike = 0;
-  /// Number of pixels in `both` whose measured depth is clearly beyond the model's surface.
+  /// Number of pixels in `both` whose measured depth is beyond the model's surface by more than this
+  /// tolerance.
   int farther = 0;
 
   [[nodiscard]] double alike_part() const { return both > 0 ? static_cast<double>(alike) / both : 0.0; }
   [[nodiscard]] double farther_part() const { return both > 0 ? static_cast<double>(farther) / both : 0.0; }
-  /// Returns the agreement, at most 1. Pixels beyond the model's surface count against the pose twice,
-  /// because the camera cannot look through a wall; only a removed object explains them. Nearer pixels count
-  /// once, because an object may have come into the room.
+  /// Returns the agreement, at most 1. Each pixel beyond the model's surface reduces the score by 2 / valid,
+  /// since the camera cannot look through a wall; only a removed object explains such a pixel. Nearer pixels
+  /// only fail to add to the score, since an object may have come into the room.
   [[nodiscard]] double score() const { return valid > 0 ? (alike - 2.0 * farther) / valid : 0.0; }
 };
 
-/// Counts the pixels of the measured and the expected image. Both images must have the same size.
+/// Compares the measured with the expected depth. Both images must have the same size.
 DepthAgreement depth_agreement_of(const DepthImage& depth_m, const DepthImage& expected_m);
 
 }  // namespace roomradar

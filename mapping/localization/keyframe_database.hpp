@@ -1,4 +1,4 @@
-// keyframe_database.hpp: keyframes of a map, for relocalisation in a known room.
+// keyframe_database.hpp: keyframes of a map, used for relocalisation in a known room.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -17,12 +17,12 @@ namespace roomradar {
 struct MapKeyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the depth camera
-  /// Surface point of each descriptor, in this keyframe's depth camera, m.
+  /// Surface point of each descriptor, in the frame of this keyframe's depth camera, m.
   std::vector<Eigen::Vector3f> points_camera;
   /// ORB descriptors; empty if the source has no colour. Source: Rublee et al., ORB: an efficient alternative
   /// to SIFT or SURF, ICCV 2011.
   std::vector<Descriptor> descriptors;
-  std::vector<SurfacePatch> patches;  ///< surface patches, in this keyframe's depth camera
+  std::vector<SurfacePatch> patches;  ///< in the frame of this keyframe's depth camera
   Intrinsics preview_camera;
   Image<std::uint16_t> preview_depth_mm;  ///< preview: downsampled depth, mm; 0: none
 };
@@ -31,7 +31,7 @@ struct KeyframeDatabase {
   std::vector<MapKeyframe> keyframes;
 };
 
-/// Max number of features, and of patches, per keyframe. Bounds the cost of matching all pairs.
+/// Max number of features, and of patches, per keyframe. The limit bounds the cost of matching all pairs.
 inline constexpr int kMostDescribed = 10'000;
 
 struct KeyframeDatabaseConfig {

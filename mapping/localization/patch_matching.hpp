@@ -30,22 +30,22 @@ PatchIndex build_patch_index(const KeyframeDatabase& keyframe_database);
 
 struct PoseCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  /// Number of the frame's patches that, at this pose, coincide with known patches of similar appearance.
+  /// Number of the frame's patches that coincide, at this pose, with known patches of similar appearance.
   int agreeing = 0;
-  /// Centres of the coinciding patches, as in PatchAgreement::alike.
+  /// Pairs of centres of the coinciding patches; see PatchAgreement::alike.
   std::vector<PointPair> pairs;
 };
 
 /// Returns at most `most` distinct poses that at least `min_agreeing` patches of the frame support, best
 /// first. Each pair of similar patches (one of the frame, one known) votes for the approximate pose that the
-/// pair implies. RANSAC over triples of patch centres, among the pairs that agree with a pose, then refines
-/// it. Deterministic.
+/// pair implies. RANSAC over triples of patch centres then refines each pose, using the pairs that agree with
+/// the pose. Deterministic.
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing);
 
 /// Comparison of a frame's patches with the known patches at a pose. `compared` is the number of the frame's
-/// patches that coincide with known patches, regardless of appearance. `alike` lists those that also look
-/// similar.
+/// patches that coincide with known patches, regardless of appearance. `alike` lists the coinciding pairs
+/// that also look similar.
 struct PatchAgreement {
   int compared = 0;
   /// Pairs of patch centres: a in the world (known patch), b in the camera frame (frame's patch).

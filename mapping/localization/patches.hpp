@@ -21,26 +21,26 @@ inline int distance_bits(const Descriptor& a, const Descriptor& b) {
          std::popcount(p[3] ^ q[3]);
 }
 
-/// Square surface patch: position, orientation, and its appearance when viewed frontally (rectified with
-/// depth). A single patch matched between two views gives their full relative pose.
+/// Square surface patch: position, orientation, and appearance in a frontal view, to which the image is
+/// rectified with depth. A single patch matched between two views gives their full relative pose.
 struct SurfacePatch {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();    ///< centre, m
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit, towards the camera
-  /// Unit vector in the surface, from the centre towards the patch's brighter side.
+  /// Unit vector in the patch's plane, from the centre towards the patch's brighter side.
   Eigen::Vector3f along = Eigen::Vector3f::UnitX();
   std::uint8_t size = 0;  ///< 0..kPatchSizes - 1; see patch_width_m()
   Descriptor bits{};
 };
 
 inline constexpr int kPatchSizes = 4;
-/// Returns the edge length of patches of a size, m. Patches have four fixed edge lengths on the surface, so a
-/// camera at another distance extracts the same patches.
+/// Returns the edge length of patches of this size, m. Patches have four fixed edge lengths, measured on the
+/// surface, so cameras at different distances extract the same patches.
 inline float patch_width_m(int size) { return 0.06F * static_cast<float>(1 << size); }
 
-/// Returns at most `most` patches at a frame's strongest corners, in the frame's depth camera. Returns an
-/// empty vector if the frame has no colour or no flat surface. Deterministic. Source: Wu, Clipp, Li, Frahm,
-/// Pollefeys, 3D model matching with viewpoint-invariant patches, CVPR 2008; Calonder, Lepetit, Strecha, Fua,
-/// BRIEF, ECCV 2010.
+/// Returns at most `most` patches at a frame's strongest image corners, in the depth camera's frame. Returns
+/// an empty vector if the frame has no colour or no flat surface. Deterministic. Source: Wu, Clipp, Li,
+/// Frahm, Pollefeys, 3D model matching with viewpoint-invariant patches, CVPR 2008; Calonder, Lepetit,
+/// Strecha, Fua, BRIEF, ECCV 2010.
 std::vector<SurfacePatch> describe_patches(const Frame& frame, int most);
 
 }  // namespace roomradar

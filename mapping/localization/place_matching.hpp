@@ -9,8 +9,8 @@
 
 namespace roomradar {
 
-/// Returns the indices, in `keyframe_database`, of the keyframes with the most features in common with
-/// `place`: at most `count`, best first, each with at least `min_matches` matches. Compares only the first
+/// Returns the indices, in `keyframe_database`, of the keyframes with the most feature matches to `place`: at
+/// most `count` keyframes, best first, each with at least `min_matches` matches. Compares only the first
 /// `strongest` features of each keyframe.
 std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const MapKeyframe> keyframe_database,
                                     std::size_t count, int min_matches, std::size_t strongest = 300);
@@ -18,15 +18,15 @@ std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const Ma
 /// Relative pose of two keyframes a and b, from their matched features.
 struct KeyframeMatch {
   int inliers = 0;
-  /// Rigid motion that maps surface points of features of b onto the matching points of a, for `inliers`
-  /// matches; valid only if inliers > 0.
+  /// Rigid motion that maps the features' surface points from b to a; it fits `inliers` of the matches. Valid
+  /// only if inliers > 0.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
 };
 
-/// The same point in two frames a and b.
+/// One point, measured in two frames a and b.
 struct PointPair {
   Eigen::Vector3d a, b;  ///< the point in frame a and in frame b, m
-  double gate_m;         ///< max distance between the two after alignment, m
+  double gate_m;         ///< max distance between a and T_a_b * b after alignment, m
 };
 
 /// Computes the rigid motion T_a_b with the most inliers, by RANSAC over `samples` triples, then refines it

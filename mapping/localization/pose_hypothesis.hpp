@@ -1,4 +1,5 @@
-// pose_hypothesis.hpp: camera poses tried by a search of the map, and the tests that accept or reject them.
+// pose_hypothesis.hpp: camera pose hypotheses of a search of the map, and the tests that accept or reject
+// them.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>
@@ -10,10 +11,11 @@
 
 namespace roomradar {
 
-/// Pose tried by a search of the map, with its agreement in appearance and depth.
+/// Camera pose tried by a search of the map, with its agreement in appearance and depth.
 struct PoseHypothesis {
   Tracking tracking;
-  /// uncertainty_m() after alignment and after moving the pose to fit the patches.
+  /// Result of uncertainty_m() after alignment and, in directions that depth leaves unconstrained, after
+  /// fitting the pose to the patches.
   double uncertainty_m = 0.0;
   PatchAgreement appearance;
   DepthAgreement agreement;
@@ -22,8 +24,8 @@ struct PoseHypothesis {
 bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
              double reach_rad);
 
-/// Returns the depth agreement, at most 1, over the pixels where the model has a surface. Pixels that see
-/// through the model's surface count against the pose twice.
+/// Returns the depth agreement, at most 1, over the pixels where the model has a surface: the fraction that
+/// agrees, minus twice the fraction that sees through the model's surface.
 inline double fit_of(const DepthAgreement& agreement) {
   return agreement.alike_part() - 2.0 * agreement.farther_part();
 }
@@ -35,22 +37,25 @@ double support_of(const PoseHypothesis& hypothesis);
 /// direction is unconstrained.
 double uncertainty_m(const Tracking& tracking);
 
-/// Returns true if enough patches match known patches at this pose. Where floorboards or tiles repeat, about
-/// twenty patches match even at a wrong pose. If depth leaves a direction unconstrained, 40 must therefore
-/// match, or 25 if almost nothing contradicts the pose; otherwise 15 suffice.
+/// Returns true if enough patches match known patches at this pose. If depth constrains all directions, 15
+/// suffice. Where floorboards or tiles repeat, about twenty patches match even at a wrong pose. If depth
+/// leaves a direction unconstrained, 40 patches must therefore match, or 25 if almost nothing contradicts the
+/// pose.
 bool is_verified_by_patches(const PoseHypothesis& hypothesis);
 
-/// Returns true if at least 12 patches were compared, and a larger fraction of them is alike than at wrong
-/// poses.
+/// Returns true if at least 12 patches were compared, and more than 20 % of them are alike (more than at
+/// wrong poses).
 bool is_supported_by_patches(const PatchAgreement& appearance);
 
-/// Returns true if the pose is certain, without regard to other hypotheses. There are two ways. Either many
-/// patches match known ones, and the depth does not contradict the pose. Or depth alone constrains the pose,
-/// almost no pixel sees through the model, and the patches do not contradict the pose.
+/// Returns true if the pose is certain, without regard to other hypotheses. One of two conditions must hold.
+/// Either many patches match known ones, and the depth does not contradict the pose. Or depth alone
+/// constrains the pose, at most 3 % of the pixels see through the model, and the patches do not contradict
+/// the pose.
 bool is_certain(const PoseHypothesis& hypothesis);
 
 /// Returns true if another hypothesis, at a different pose, explains the frame about as well as `best`. With
-/// few compared patches, `best` needs a larger lead, because the fraction alike then varies more by chance.
+/// few compared patches, `best` needs a larger lead, since the fraction of alike patches then varies more by
+/// chance.
 bool is_ambiguous(const PoseHypothesis& best, const std::vector<PoseHypothesis>& hypotheses);
 
 /// Returns true if two poses differ by less than 0.1 m and 0.1 rad.

@@ -14,7 +14,7 @@ enum class RelocalisationStatus {
   kNoKeyframes,  ///< the database is empty
   kNoDepth,      ///< the frame has almost no valid depth
   kNoMatch,      ///< no keyframe looks similar to this frame
-  kNotVerified,  ///< a keyframe looks similar, but its depth disagrees with the frame's depth
+  kNotVerified,  ///< a keyframe looks similar, but its depth disagrees with the frame's
 };
 std::string_view to_string(RelocalisationStatus status);
 
@@ -25,8 +25,8 @@ struct [[nodiscard]] Relocalisation {
   std::int64_t keyframe = -1;
   int feature_inliers = 0;  ///< number of matched features that agree with the pose; 0 if found by depth
                             ///< alone
-  /// Fraction of pixels whose depths agree within the noise, among those measured both in the frame and in
-  /// the keyframe's downsampled depth image.
+  /// Fraction of pixels whose depths agree within the noise, among the pixels that are measured both in the
+  /// frame and in the keyframe's downsampled depth image.
   double depth_agreement = 0.0;
   explicit operator bool() const { return status == RelocalisationStatus::kFound; }
 };
@@ -38,10 +38,10 @@ struct RelocaliseConfig {
   double min_depth_agreement = 0.7;
 };
 
-/// Localises a frame in the keyframe database. ORB matches select keyframes; RANSAC over their 3D points
-/// gives a pose; alignment with the keyframe's downsampled depth image refines and verifies the pose. If the
+/// Localises a frame in the keyframe database. ORB matches select keyframes, and RANSAC over their 3D points
+/// gives a pose. Alignment with the keyframe's downsampled depth image refines and verifies the pose. If the
 /// frame or the database has no colour, alignment is tried with the 40 keyframes most similar in depth, and
-/// the test is stricter. Deterministic. Does not throw, even for corrupt frames.
+/// verification is stricter. Deterministic. Does not throw, even for corrupt frames.
 Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_database,
                           const RelocaliseConfig& config = {});
 

@@ -14,21 +14,21 @@ namespace roomradar {
 struct LevelSurface {
   double height_m = 0.0;  ///< mean z
   double area_m2 = 0.0;
-  Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();  ///< point of the surface nearest to its centroid
+  Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();  ///< centre of the triangle nearest to the centroid
 };
 
 /// Returns the level surfaces of a mesh, largest first. Triangles count as level if their normal is within 10
-/// degrees of +z; surfaces are connected over shared vertices and split where the height changes by more than
-/// 3 cm from the surface's largest part. Surfaces under min_area_m2 are left out.
+/// degrees of +z. Level triangles that share vertices form one surface, but only those within 3 cm of the
+/// surface's most frequent height are counted. Surfaces under min_area_m2 are left out.
 std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area_m2 = 0.05);
 
-/// Returns the index of the floor: the lowest surface with at least a tenth of the largest surface's area;
-/// nullopt if there is no surface.
+/// Returns the index of the floor: the lowest surface with at least a tenth of the largest surface's area.
+/// Returns nullopt if there is no surface.
 std::optional<std::size_t> floor_among(std::span<const LevelSurface> surfaces);
 
-/// Returns the height of the floor above the keyframes' world origin along `up_world`, m: the lowest height
-/// at which the keyframes' depth shows level surface, with at least a tenth of the area of the most frequent
-/// height. nullopt if no level surface is measured.
+/// Returns the height of the floor above the keyframes' world origin along `up_world`, m. The floor is the
+/// lowest height at which the keyframes' depth shows at least a tenth as much level surface as at the most
+/// frequent height. Returns nullopt if no level surface is measured.
 /// @param up_world  unit vector
 std::optional<double> floor_height_m(const KeyframeDatabase& keyframe_database,
                                      const Eigen::Vector3d& up_world);

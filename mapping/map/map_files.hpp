@@ -1,4 +1,4 @@
-// map_files.hpp: the files of a map's folder, and which folders can become a map.
+// map_files.hpp: names of the files in a map's folder, and checks whether a folder can become a map.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -18,27 +18,28 @@ inline constexpr const char* kMapTrajectoryFile = "trajectory.txt";
 inline constexpr std::array<const char*, 5> kMapParts = {kMapOctreeFile, kMapPlainOctreeFile, kMapMeshFile,
                                                          kMapKeyframesFile, kMapTrajectoryFile};
 inline constexpr const char* kMapCoverageFile = "coverage.png";  ///< optional
-inline constexpr const char* kMapUnknownFile = "unknown.bin";    ///< optional: earlier versions saved none
+inline constexpr const char* kMapUnknownFile = "unknown.bin";    ///< optional: missing in older maps
 
-/// Returns true if a map's folder may contain a file of this name besides map.json.
+/// Returns true for the names of the files, other than map.json, that a map's folder may contain.
 bool is_map_part(const std::string& name);
 
 /// Throws Error unless `folder` is missing, empty, or contains a map and nothing else.
 void require_replaceable(const std::filesystem::path& folder);
 
-/// Returns the path without dot components and trailing slash. Throws Error if the result is not usable as a
-/// map's name.
+/// Returns the path without "." and ".." components and without trailing slash. Throws Error if the result is
+/// not usable as a map's name.
 std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
 
 /// Throws Error if the file or folder would be directly in a map's folder, which may contain only the map's
 /// files. An empty path is allowed.
 void require_outside_maps(const std::filesystem::path& path);
-/// The same check for files to be written into `folder`; also throws if `folder` itself is a map.
+/// Checks the path of a folder into which files will be written, as require_outside_maps() does. Also throws
+/// if `folder` itself is a map.
 void require_contents_outside_maps(const std::filesystem::path& folder);
 
-/// Checks, before minutes of work, whether a map can be saved to `folder`. Throws Error if save_map would
-/// refuse its name or its content, or if one of `outputs` would be in `folder`. `outputs` are other files and
-/// folders that the caller will write; empty paths are ignored.
+/// Checks, before minutes of work, whether a map can be saved to `folder`. Throws Error if save_map() would
+/// reject the folder's name or present content, or if one of `outputs` would be in `folder`. `outputs` are
+/// other files and folders that the caller will write; empty paths are ignored.
 void require_can_become_map(const std::filesystem::path& folder,
                             std::initializer_list<std::filesystem::path> outputs);
 

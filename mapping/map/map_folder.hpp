@@ -25,19 +25,20 @@ struct SavedMap {
   KeyframeDatabase keyframe_database;
   std::vector<TimedPose> trajectory;
   std::vector<std::uint8_t> coverage_png;  ///< coverage picture; empty: none
-  /// Border of unknown space, set by load_map(); null: not yet saved, or saved by an earlier version.
+  /// Border of unknown space, set by load_map(). Null if the map was not saved before, or was saved by an
+  /// earlier version.
   std::shared_ptr<const UnknownSurface> unknown;
 };
 
-/// Returns the settings for extracting the map's surface again, with prescan's max deviation if info.settings
-/// has it. Throws Error if this setting is invalid.
+/// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if
+/// info.settings has one, else the default. Throws Error if the stored value is invalid.
 SurfaceConfig surface_config_of(const MapInfo& info);
 
-/// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step.
-/// Extracts the border of unknown space from map.octree and map.mesh for the file unknown.bin.
+/// Writes the map to a folder beside `folder` (folder.partial-PID), syncs it, and renames it to `folder` in
+/// one step. Extracts the border of unknown space from map.octree and map.mesh, and writes it to unknown.bin.
 /// Afterwards `folder` is the complete new map or, after an Error, unchanged. Creates parent folders. Throws
-/// Error if `folder` exists and is not a map (its files are not touched), the map has no surface or too many
-/// triangles, or the disk fails.
+/// Error if `folder` exists and is not a map, the map has no surface or too many triangles, or the disk
+/// fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);
 
 /// Reads a map after verifying the checksum of every file. Throws Error naming the file and the fault.

@@ -14,7 +14,7 @@ inline constexpr int kMapFormatVersion = 1;
 // Keys of MapInfo::settings that are read back.
 inline constexpr const char* kDeviationSetting = "deviation_m";       ///< SurfaceConfig::max_deviation_m
 inline constexpr const char* kPosesSetting = "poses";                 ///< name of the PoseOrigin
-inline constexpr const char* kStoppedSetting = "stopped_for_memory";  ///< a source that did not fit in memory
+inline constexpr const char* kStoppedSetting = "stopped_for_memory";  ///< source that did not fit in memory
 
 /// Entry of one file in map.json.
 struct MapFile {
@@ -22,7 +22,7 @@ struct MapFile {
   std::string sha256;  ///< 64 hexadecimal digits
 };
 
-/// Content of map.json. save_map() and load_map() set `format_version` and all fields below it.
+/// Content of map.json. save_map() and load_map() set format_version and all fields declared after it.
 struct MapInfo {
   std::string source;  ///< recordings (full paths) or devices, separated by "; "
   std::int64_t frames_read = 0;
@@ -40,13 +40,13 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
-  /// By file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt; coverage.png and unknown.bin
-  /// if present.
+  /// Size and checksum by file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt, and, if
+  /// present, coverage.png and unknown.bin.
   std::map<std::string, MapFile> files;
 };
 
-/// Returns true if info.T_world_recorded is known: the map was scanned with recorded poses, or from a
-/// recording that had them.
+/// Returns true if info.T_world_recorded is known: the map was scanned with recorded poses, or the recording
+/// had poses.
 bool knows_recorded_world(const MapInfo& info);
 
 /// Returns the output of `roomradar map info`.

@@ -8,9 +8,9 @@ namespace roomradar {
 
 std::string to_json(const MapInfo& info);
 
-/// Parses map.json; the text is not trusted. Throws Error that starts with `where` (the file's path) and
-/// names the fault: not JSON, not a map, a later format version, or a field that is missing, of the wrong
-/// type or out of range.
+/// Parses and validates the text of map.json. Throws Error whose message starts with `where` (the file's
+/// path) and names the fault: not JSON, not a map, a later format version, or a field that is missing, of the
+/// wrong type or out of range.
 MapInfo parse_map_info(const std::string& text, const std::string& where);
 
 }  // namespace roomradar

@@ -8,17 +8,18 @@
 
 namespace roomradar {
 
-/// Adds `from` to `into`: log-odds are added, signed distances averaged by weight. Each voxel of `into` takes
-/// the log-odds at its centre, and the distance interpolated from the eight samples around it. Exact if the
-/// grids coincide. If `into` is coarser than `from`, parts of thin surfaces are lost. Throws Error if a part
-/// of `from` is outside the octree of `into`.
+/// Adds map `from` to map `into`: log-odds are added, signed distances averaged by weight. For each voxel of
+/// `into`, the log-odds are those of `from` at the voxel's centre, and the distance is interpolated from the
+/// eight samples of `from` around it. The result is exact if the grids coincide. If `into` is coarser than
+/// `from`, parts of thin surfaces are lost. Throws Error if a part of `from` is outside the octree of `into`.
 void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, StaticMap& into);
 
-/// Appends another session's keyframes, poses and counts to a map. The session must be in the map's world;
-/// its stamps are shifted to follow the map's. Octree and mesh are unchanged.
+/// Appends another session's keyframes, poses and counts to a map. The session must be in the map's world.
+/// The session's time stamps are shifted so that they follow the map's. Octree and mesh are unchanged.
 void append_session(SavedMap& map, const SavedMap& session);
 
-/// Estimates T_a_b between two maps' worlds; b's surface must fit a, and a's surface must fit b.
+/// Estimates T_a_b between two maps' worlds. b's surface must agree with a's surface and free space, and a's
+/// surface with b's.
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config = {});
 
 /// Merges two maps in a's world, at the finer of their resolutions, and extracts the surface again with a's

@@ -12,13 +12,13 @@
 namespace roomradar {
 
 struct RegistrationConfig {
-  int views = 60;            ///< max number of keyframes of b that are searched for in a, evenly spaced
+  int views = 60;            ///< max number of keyframes of b, evenly spaced, that are matched with a
   int candidates = 3;        ///< number of keyframes of a that are compared with each keyframe of b
   int min_inliers = 20;      ///< min number of features that agree on the relative pose of two keyframes
   int min_agreeing = 3;      ///< min number of keyframes of b that agree on T_a_b
   double min_overlap = 0.1;  ///< min fraction of b's surface that is in space known to a
-  /// Of b's surface in space known to a: min fraction that is on a's surface, not in a's free space. 0.75
-  /// tolerates moved objects, but rejects another room with the same picture on its wall.
+  /// Min fraction that is on a's surface, not in a's free space, among b's surface in space known to a. The
+  /// default tolerates moved objects, but rejects another room with the same picture on its wall.
   double min_agreement = 0.75;
   std::size_t points = 12'000;  ///< number of points of b's surface that are tested
 };
@@ -36,18 +36,18 @@ struct [[nodiscard]] Registration {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< valid only if the status is kRegistered
   int agreeing_views = 0;   ///< number of keyframes of b whose match in a agrees with T_a_b
   double overlap = 0.0;     ///< fraction of b's surface that is in space known to a
-  double agreement = 0.0;   ///< fraction of b's surface in space known to a that is on a's surface
-  double residual_m = 0.0;  ///< median distance of b's points on a's surface to this surface, m
+  double agreement = 0.0;   ///< fraction that RegistrationConfig::min_agreement limits
+  double residual_m = 0.0;  ///< median distance to a's surface, over b's points on it, m
   explicit operator bool() const { return status == RegistrationStatus::kRegistered; }
 };
-/// Returns the end of a sentence for the user: the result or the reason for failure, with views, overlap and
-/// agreement.
+/// Returns the end of a sentence for the user, which states the result or the reason for failure, with the
+/// numbers of agreeing keyframes, overlap and agreement.
 std::string describe(const Registration& registration);
 
 /// Computes T_a_b. Each keyframe of b that matches a keyframe of a votes for a transform. The transform on
-/// which most keyframes agree is refined by aligning b's surface with a's signed distances; unconstrained
-/// directions keep the keyframes' value. The result must then agree with a's surface and free space.
-/// Deterministic.
+/// which most keyframes agree is refined by aligning b's surface with a's signed distances. In directions
+/// that the surfaces do not constrain, the keyframes' transform is kept. The result must then agree with a's
+/// surface and free space. Deterministic.
 ///
 /// @param surface_b  points sampled uniformly on the surface of b, in the world of b (see surface_points.hpp)
 Registration register_to(const StaticMap& octree_a, const KeyframeDatabase& database_a,

@@ -1,4 +1,4 @@
-// tsdf_interpolation.hpp: signed distance between the voxels' centres.
+// tsdf_interpolation.hpp: interpolates signed distances between voxel centres.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// Signed distance and its gradient at a point, interpolated trilinearly from the eight samples around it.
-/// distance_at() returns nullopt if one of them is unknown.
+/// Signed distance and its gradient at a point, interpolated trilinearly from the eight samples around the
+/// point. distance_at() returns nullopt if one of the eight samples is unknown.
 struct DistanceAt {
   double distance_m = 0.0;                             ///< m, along the viewing rays, as in SurfaceSample
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< direction in which the distance grows: towards the

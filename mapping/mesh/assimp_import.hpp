@@ -26,9 +26,10 @@ std::string lower_extension(const std::filesystem::path& path);
 /// kMaxMeshTriangles or than it can hold. Allocates nothing for the mesh.
 void require_plausible_size(const std::filesystem::path& path);
 
-/// Reads a file as triangles, without animations, lights and cameras. assimp crashes or hangs on damaged
-/// files: call this within run_sandboxed(). The corners of an .stl are joined and its facet normals dropped.
-/// Coordinates are in the file's own axes; those of a .dae are converted to metres, as the file states.
+/// Reads a file as triangles, without animations, lights and cameras. assimp crashes or hangs on some damaged
+/// files, so call this function within run_sandboxed(). In an .stl, vertices at equal positions are joined
+/// and facet normals dropped. Coordinates are in the file's own axes. Those of a .dae are converted to metres
+/// by the unit that the file states.
 /// @param dropped  further assimp components (aiComponent) to drop
 /// @return the scene, owned by the importer
 /// @throws Error naming the file and the fault

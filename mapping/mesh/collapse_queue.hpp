@@ -18,9 +18,9 @@ struct Candidate {
   std::uint32_t gone_version = 0;
 };
 
-/// Bucket queue: pops candidates in order of cost, rounded to a quarter of an octave. Candidates of equal
-/// cost are popped first in, first out, so flat areas thin out evenly. A heap would take longer than all
-/// other work of the simplification.
+/// Bucket queue. Pops candidates in order of cost, rounded to four steps per factor of two. Candidates of
+/// equal rounded cost are popped first in, first out, so flat areas thin out evenly. A heap would take longer
+/// than all other work of the simplification.
 class CandidateQueue {
  public:
   void push(const Candidate& candidate) {

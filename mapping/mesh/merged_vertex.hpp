@@ -1,4 +1,4 @@
-// merged_vertex.hpp: edge collapse: accumulated data of merged vertices, and linked lists of indices.
+// merged_vertex.hpp: accumulated data of the vertices that edge collapses merge, and linked lists of indices.
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// Stands for no vertex, triangle or corner.
+/// Index that stands for "no vertex", "no triangle" or "no corner of a triangle".
 inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
 
 /// Accumulated data of all vertices merged into one.

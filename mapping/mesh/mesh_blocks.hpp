@@ -14,13 +14,13 @@ namespace roomradar {
 /// mesh.triangles.
 std::vector<std::span<Triangle>> sort_into_blocks(Mesh& mesh, std::size_t max_triangles);
 
-/// Returns, per vertex, true if triangles of more than one block use it.
+/// Returns, per vertex, true if triangles of more than one block use the vertex.
 std::vector<bool> seam_vertices(const Mesh& mesh, const std::vector<std::span<Triangle>>& blocks);
 
 /// A block as a separate mesh.
 struct BlockMesh {
   Mesh mesh;
-  std::vector<std::uint32_t> name;  ///< for each vertex its index in the whole mesh, ascending
+  std::vector<std::uint32_t> name;  ///< index of each vertex in the whole mesh, ascending
 };
 BlockMesh block_mesh(const Mesh& whole, std::span<const Triangle> block);
 

@@ -1,4 +1,4 @@
-// mesh_distance.hpp: nearest-surface queries on a mesh, and measured distances between two meshes.
+// mesh_distance.hpp: nearest-surface queries on a mesh, and measurement of the distance between two meshes.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,22 +15,23 @@ class MeshDistanceQuery {
   /// @param reach_m  max distance (> 0) that queries can find
   MeshDistanceQuery(const Mesh& mesh, float reach_m);
 
-  /// Returns the distance (m) from a point, relative to the mesh's origin, to the nearest surface; infinity
-  /// if above reach_m. The search stops at the first distance not above enough_m, so with enough_m > 0 the
-  /// result need not be the smallest.
+  /// Returns the distance (m) from a point, given relative to the mesh's origin, to the nearest surface.
+  /// Returns infinity if the distance exceeds reach_m. The search stops at the first distance that is at most
+  /// enough_m, so with enough_m > 0 the result need not be the smallest distance.
   [[nodiscard]] float distance_m(const Eigen::Vector3f& p, float enough_m = 0.0F) const;
 
   /// Returns the nearest triangle within reach_m whose normal is less than 90 degrees from `facing` (any
-  /// length); so the far side of a thin sheet is skipped. nullopt if there is none.
+  /// length), so the far side of a thin sheet is skipped. Returns nullopt if there is none.
   [[nodiscard]] std::optional<std::uint32_t> nearest_facing(const Eigen::Vector3f& p,
                                                             const Eigen::Vector3f& facing) const;
 
  private:
   struct Entry {
-    std::uint32_t cube;  // some bits of the cube's hashed code
+    std::uint32_t cube;  // some bits of the cube's hash
     std::uint32_t triangle;
   };
-  /// Calls visit(code) for each cube that the triangle's pieces overlap, by bounding box.
+  /// Calls visit(key) for the grid cubes that the triangle may overlap. Splits a large triangle, and visits
+  /// the cubes that the bounding boxes of its parts overlap.
   template <typename Visit>
   void for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                      const Visit& visit) const;
@@ -54,12 +55,12 @@ class MeshDistanceQuery {
 /// A point of one mesh that is farther than a limit from the surface of another.
 struct FarPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the mesh's origin
-  float distance_m = 0.0F;                             ///< infinity if beyond the reach of `other`
+  float distance_m = 0.0F;                             ///< infinity if it exceeds the reach of `other`
 };
 
-/// Measures the distance to `other` (same origin) at all corners of `mesh` and on a lattice over its
-/// triangles with at most spacing_m between points. Returns the greatest distance not above limit_m; points
-/// farther away are appended to beyond_limit.
+/// Measures the distance to `other` (same origin) at all used vertices of `mesh`, and on a lattice over its
+/// triangles with at most spacing_m between points. Returns the greatest distance that is at most limit_m.
+/// Points farther away are appended to beyond_limit.
 float greatest_distance_m(const Mesh& mesh, const MeshDistanceQuery& other, float spacing_m, float limit_m,
                           std::vector<FarPoint>& beyond_limit);
 

@@ -6,9 +6,10 @@
 
 namespace roomradar {
 
-/// Returns the bytes of a little-endian .ply: x y z and, if present, nx ny nz as float, red green blue as
-/// uchar; triangles as `vertex_indices`. The origin is added back. Hand-written because assimp 5.2 declares
-/// colours as bytes but writes floats, which no reader can parse.
+/// Returns the bytes of a little-endian .ply. Its properties are x y z and, if present, nx ny nz as float,
+/// red green blue as uchar, and triangles as `vertex_indices`. The mesh's origin is added to the vertices.
+/// Not written through assimp, since assimp 5.2 declares colours as bytes but writes floats, which no reader
+/// can parse.
 std::string ply_bytes(const Mesh& mesh);
 
 }  // namespace roomradar

@@ -5,8 +5,8 @@
 
 namespace roomradar {
 
-/// Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics, SIGGRAPH 1997,
-/// section 5.
+/// Quadric error p^T A p + 2 b . p + c. Source: Garland and Heckbert, Surface Simplification Using Quadric
+/// Error Metrics, SIGGRAPH 1997, section 5.
 struct Quadric {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -28,14 +28,16 @@ struct Quadric {
     weight += other.weight;
     return *this;
   }
-  /// Weighted sum of squared distances from p to the planes, >= 0.
+  /// Returns the weighted sum of squared distances from p to the planes, >= 0.
   [[nodiscard]] double at(const Eigen::Vector3d& p) const {
     const double sum = p.dot(A * p) + 2.0 * b.dot(p) + c;
     return sum > 0.0 ? sum : 0.0;
   }
-  /// Least-squares point of all planes; stays near `guess` along poorly constrained directions.
+  /// Returns the least-squares intersection of all planes. Along poorly constrained directions, the result
+  /// stays near `guess`.
   [[nodiscard]] Eigen::Vector3d nearest_to_all(const Eigen::Vector3d& guess) const {
-    // Regularisation relative to trace(A); exceeds the effect of noise on a flat wall.
+    // Regularisation relative to trace(A); large enough that noise on a flat wall does not constrain the
+    // point along the wall.
     constexpr double kHardly = 5e-3;
     const double trace = A.trace();
     if (!(trace > 0.0)) return guess;

@@ -10,7 +10,7 @@ struct aiScene;
 
 namespace roomradar {
 
-/// Vertices and triangles that come from one mesh of the scene.
+/// Range of vertices and triangles that come from one mesh of the assimp scene.
 struct ScenePart {
   unsigned source = 0;  ///< index in aiScene::mMeshes
   std::uint32_t first_vertex = 0, vertex_count = 0;
@@ -19,27 +19,28 @@ struct ScenePart {
 
 struct SceneMesh {
   Mesh mesh;
-  std::vector<ScenePart> parts;  ///< in order; they cover all vertices and triangles
+  std::vector<ScenePart> parts;  ///< in order; together they contain all vertices and triangles
 };
 
 struct SceneMeshConfig {
   bool y_up_to_z_up = false;
   bool has_linear_colours = false;  ///< vertex colours are linear, not sRGB
-  /// True: the mesh has normals if any part has them, zero where a part has none. False: only if all parts
-  /// have them.
+  /// True: the mesh has normals if any part has them; the normals of other parts are zero. False: the mesh
+  /// has normals only if all parts have them.
   bool mixes_normals = false;
 };
 
-/// Applies the transforms of the nodes, and the bones of skinned meshes in their rest pose. The mesh has
-/// colours if all parts have them. Degenerate triangles (two equal corners, no area) are dropped. Throws
-/// Error naming the file if a vertex is not finite, an index is out of range, or the scene has more than
-/// kMaxMeshTriangles triangles.
+/// Merges the scene's meshes. Applies the transforms of the nodes, and the bones of skinned meshes in their
+/// rest pose. The merged mesh has colours if all parts have them. Degenerate triangles (two equal vertices,
+/// or no area) are dropped. Throws Error naming the file if a vertex is not finite, an index is out of range,
+/// or the scene has more than kMaxMeshTriangles triangles.
 SceneMesh scene_mesh(const std::filesystem::path& path, const aiScene& scene, const SceneMeshConfig& config);
 
-/// Conversions of colour channels in 0..1. Source: IEC 61966-2-1.
+/// Convert a colour channel in 0..1 from sRGB to linear (linear_of) and back (srgb_of). Source: IEC
+/// 61966-2-1.
 float linear_of(float srgb01);
 float srgb_of(float linear01);
-/// Returns a channel of 0..1 as a byte; values outside are clamped.
+/// Converts a colour channel in 0..1 to a byte; values outside 0..1 are clamped.
 std::uint8_t channel_of(float value01);
 
 }  // namespace roomradar

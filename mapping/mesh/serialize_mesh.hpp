@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// Copies all items as one block; item by item, a large mesh would take seconds.
+/// Copies all items as one block, since copying a large mesh item by item would take seconds.
 template <typename Archive, typename Item>
 void serialize_items(Archive& archive, std::vector<Item>& items) {
   static_assert(std::is_standard_layout_v<Item>);
@@ -22,7 +22,7 @@ void serialize_items(Archive& archive, std::vector<Item>& items) {
   archive.raw(items.data(), count * sizeof(Item));
 }
 
-/// Checks sizes only; triangles may name vertices that are not there.
+/// Reads or writes a mesh. Reading checks sizes only; triangles may have indices past the last vertex.
 template <typename Archive>
 void serialize(Archive& archive, Mesh& mesh) {
   archive.raw(mesh.origin.data(), 3 * sizeof(double));

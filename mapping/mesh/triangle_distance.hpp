@@ -5,15 +5,15 @@
 
 namespace roomradar {
 
-/// Squared distance from p to the segment from a to a + ab, in the inputs' units squared.
+/// Returns the squared distance from p to the segment from a to a + ab, in the inputs' units squared.
 inline float squared_distance_to_segment(const Eigen::Vector3f& p, const Eigen::Vector3f& a,
                                          const Eigen::Vector3f& ab) {
   const float along = ab.dot(p - a) / std::max(ab.squaredNorm(), 1e-30F);
   return (p - a - std::clamp(along, 0.0F, 1.0F) * ab).squaredNorm();
 }
 
-/// Squared distance from p to the triangle a, b, c, in the inputs' units squared; also correct for degenerate
-/// triangles. Source: Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
+/// Returns the squared distance from p to the triangle a, b, c, in the inputs' units squared. Also correct
+/// for degenerate triangles. Source: Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 inline float squared_distance_to_triangle(const Eigen::Vector3f& p, const Eigen::Vector3f& a,
                                           const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   const Eigen::Vector3f ab = b - a;

@@ -1,7 +1,7 @@
 // block_octree.hpp: octree into which depth frames are fused. Private to StaticMap. Keys, depth, log-odds and
-// pruning are OctoMap's, and static_map_file.cpp writes it in OctoMap's file formats. Eight siblings share
-// one block of one cache line; in OctoMap they take nine separate allocations. Memory access dominates the
-// time of a frame, which changes about 50,000 groups of eight voxels.
+// pruning are OctoMap's, and static_map_file.cpp writes the octree in OctoMap's file formats. Eight siblings
+// share one block of one cache line, where OctoMap makes nine separate allocations. This matters because a
+// frame changes about 50,000 groups of eight voxels, and memory access dominates its time.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -19,10 +19,11 @@ inline constexpr unsigned kLeafDepth = 16;  // depth of the voxels, as in OctoMa
 inline constexpr int kKeyOrigin = 32768;    // key of the voxel whose lower corner is at the world's origin
 
 /// Log-odds in units of BlockUnits::log_odds; 0 means unknown. A known voxel whose log-odds round to 0 stores
-/// 1, because OctoMap treats a probability of one half as occupied.
+/// 1, since OctoMap treats a probability of one half as occupied.
 using LogOdds = std::int16_t;
 
-/// State of a node: unknown, a cube of uniform log-odds, or a block of children.
+/// State of a node: unknown, a cube (a node of uniform log-odds without children), or a block of eight
+/// children.
 class Slot {
  public:
   Slot() = default;
@@ -47,7 +48,7 @@ class Slot {
   std::uint32_t bits_ = 0;
 };
 
-/// The eight children of a node above depth 15. Child index, as in OctoMap: x has weight 1, y 2, z 4.
+/// The eight children of a node above depth 15. The child index is OctoMap's: x has weight 1, y 2, z 4.
 struct alignas(32) InnerBlock {
   std::array<Slot, 8> slots;
 };
@@ -71,9 +72,9 @@ struct ColourBlock {
   std::array<Rgb, 8> colours;
 };
 
-/// Step sizes of the integers in the blocks; 15 or 16 bits cover the range that the config allows. With
-/// default settings and 1 cm voxels, the steps are: log-odds 1e-4, distance 3 micrometres, weight half the
-/// weight of a frame at 5 m.
+/// Step sizes of the integers in the blocks, such that 15 or 16 bits cover the range that the config allows.
+/// With default settings and 1 cm voxels, the steps are 1e-4 for log-odds, 3 micrometres for distance, and
+/// half the weight of a frame at 5 m for weight.
 struct BlockUnits {
   BlockUnits(double resolution_m, const FusionConfig& config);
   float log_odds;
@@ -100,7 +101,7 @@ struct NodePlace {
   }
 };
 
-/// Keys of the voxels whose centres are in a box.
+/// Range of the keys of all voxels whose centres are in a box.
 struct KeyRange {
   Eigen::Array3i first = Eigen::Array3i::Zero();
   Eigen::Array3i last = Eigen::Array3i::Constant(65535);
@@ -112,7 +113,7 @@ struct KeyRange {
     return (place.key <= last).all() && (place.key + (place.edge_voxels() - 1) >= first).all();
   }
 };
-/// Returns the range for a box in the world, m; a range without keys if the box is empty.
+/// Returns the range for a box in the world, m. The range has no keys if the box is empty.
 KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m);
 
 class BlockOctree {
@@ -140,9 +141,9 @@ class BlockOctree {
     return (block.coloured >> i & 1U) != 0 ? colours_[block.colours].colours[i] : Rgb{};
   }
 
-  /// Prunes `node`, whose children are `block`, and returns its new state. If all eight children are equal,
-  /// their block is freed and the node becomes a cube or unknown. Otherwise the node keeps its block, which
-  /// must then be `block`, or gets a new block with a copy of `block`.
+  /// Prunes `node`, whose children are `block`, and returns the node's new state. If all eight children are
+  /// equal, the node's block is freed and the node becomes a cube or unknown. Otherwise, a node that is a
+  /// block keeps it (`block` must be that block), and any other node gets a new block with a copy of `block`.
   Slot prune(Slot node, const InnerBlock& block) {
     if (alike(block)) {
       if (node.is_block()) inner_.give_back(node.number());
@@ -167,8 +168,8 @@ class BlockOctree {
   }
 
  private:
-  // Returns true if all children are unknown or equal cubes. Equal block numbers do not occur, because no two
-  // nodes share a block.
+  // Returns true if all children are unknown, or all are equal cubes. Children that are blocks never compare
+  // equal, since no two nodes share a block.
   static bool alike(const InnerBlock& block) {
     bool same = true;
     for (const Slot slot : block.slots) same &= slot == block.slots[0];
@@ -235,8 +236,8 @@ void for_each_leaf(const BlockOctree& tree, const Visit& visit) {
   });
 }
 
-/// Calls change(LeafBlock&) on the eight voxels of a node at depth 15; splits the node first if it is not a
-/// block. Returns the node's pruned new state.
+/// Calls change(LeafBlock&) on the eight voxels of a node at depth 15. Splits the node first if it is not a
+/// block. Returns the node's new state after pruning.
 template <typename Change>
 Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
   LeafBlock made;
@@ -246,8 +247,9 @@ Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
   return tree.prune(node, block);
 }
 
-/// Replaces the node at `target` by change(slot), and creates the nodes between `place` and `target`.
-/// `target` must be at or below `place`, the position of `node`. Returns the pruned new state of `node`.
+/// Replaces the state of the node at `target` by change(state), and creates the nodes between `node` and
+/// `target`. `place` is the location of `node`; `target` must be in its subtree. Returns the new state of
+/// `node` after pruning.
 template <typename Change>
 Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const NodePlace& target,
                  const Change& change) {

@@ -40,7 +40,7 @@ class BlockPool {
   const Block& operator[](std::uint32_t number) const { return chunks_[number / kChunk][number % kChunk]; }
 
   [[nodiscard]] std::size_t in_use() const { return next_ - 1 - free_.size(); }
-  /// Returns the memory of all blocks ever allocated, because freed blocks are kept for reuse.
+  /// Returns the memory of all blocks ever allocated, since the pool keeps freed blocks for reuse.
   [[nodiscard]] std::size_t memory_bytes() const {
     return chunks_.size() * kChunk * sizeof(Block) + free_.capacity() * sizeof(std::uint32_t);
   }

@@ -1,5 +1,5 @@
-// depth_pyramid.hpp: min/max pyramid of a depth image, which bounds free and occluded space in the frustum of
-// a pixel rectangle.
+// depth_pyramid.hpp: min/max pyramid of a depth image. It bounds free and occluded space in the frustum of a
+// pixel rectangle.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -13,15 +13,15 @@
 
 namespace roomradar {
 
-/// Returns the half-width of the truncation band, m: signed distance is fused up to this far in front of and
-/// behind a surface measured at depth_m.
+/// Returns the half-width of the truncation band, m: the distance in front of and behind a surface measured
+/// at depth_m within which signed distances are fused.
 float half_layer_m(float depth_m, double resolution_m, const FusionConfig& config);
 
 /// Bounds of the depth, along the optical axis, over all pixels of a rectangle. Space nearer than `front` is
 /// free along every pixel's ray. Space nearer than `nearest` is free along the rays of all pixels with depth.
 /// Space farther than -`behind` is occluded or unmeasured along every ray. A surface is possible only between
-/// `front` and -`behind`. The unit is 1 / steps_per_m of the pyramid, and values are rounded conservatively.
-/// `behind` is negated, so every bound of a rectangle is the minimum of its pixels' bounds.
+/// `front` and -`behind`. The unit is 1 / DepthPyramid::steps_per_m, and values are rounded conservatively.
+/// `behind` is stored negated, so each bound of a rectangle is the minimum of that bound over its pixels.
 struct DepthBounds {
   std::int16_t front = 0;
   std::int16_t nearest = 0;
@@ -30,7 +30,7 @@ struct DepthBounds {
 };
 
 /// Pyramid of DepthBounds. Level i has cells of 2^i x 2^i pixels, i = 1..levels. All levels are stacked in
-/// one array, so computing a cell's index is cheap. Unused array elements hold the largest values, so they do
+/// one array, so computing a cell's index is cheap. Unused array elements hold the largest value, so they do
 /// not affect a minimum.
 struct DepthPyramid {
   float steps_per_m = 0.0F;
@@ -48,26 +48,26 @@ struct DepthPyramid {
   [[nodiscard]] int cells_down(int level) const { return ((height_px - 1) >> level) + 1; }
 };
 
-/// Builds the pyramid, reusing its memory. Pixels without depth prove nothing free or occluded. Holes smaller
-/// than 4 x 4 pixels (2 x 2 for query rectangles up to six pixels wide) take the bounds of the pixels around
-/// them, so single dropouts do not leave the space in front of a wall unknown. Pixels with more depth than
-/// max_range_m make space free up to max_range_m.
+/// Builds the pyramid, reusing its memory. Pixels without depth prove no space free or occluded. Gaps (pixels
+/// without depth) smaller than 4 x 4 pixels (2 x 2 for query rectangles up to six pixels wide) take the
+/// bounds of the pixels around them, so single dropouts do not leave the space in front of a wall unknown. A
+/// pixel whose depth exceeds max_range_m makes space free up to max_range_m.
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid);
 
-/// Rectangle of up to 4 x 4 cells of one level, as offsets into the pyramid's array. Always eight pairs of
-/// neighbouring cells are read, some of them twice, because a branch would cost more.
+/// Rectangle of up to 4 x 4 cells of one level, as offsets into the pyramid's array. bounds_within() always
+/// reads eight pairs of neighbouring cells, some of them twice, since a branch would cost more.
 struct CellRect {
   int at = 0;      ///< index of the first cell in the array
   int column = 0;  ///< offset from the first pair of columns to the last pair; 0 if there is one pair
-  /// Offsets in the array from the first row of the rectangle to its second, its last but one, and its last
-  /// row.
+  /// Offsets in the array from the rectangle's first row to its second (`second`), last but one (`third`) and
+  /// last row.
   int second = 0, third = 0, last = 0;
 };
 
 /// Returns the bounds over all cells of the rectangle.
 inline DepthBounds bounds_within(const DepthPyramid& pyramid, const CellRect& rect) {
-  // bounds of two neighbouring cells
+  // Bounds of two neighbouring cells.
   using Pair = std::int16_t __attribute__((vector_size(2 * sizeof(DepthBounds))));
   const DepthBounds* first = pyramid.cells.data() + rect.at;
   const auto least = [](const Pair& a, const Pair& b) { return a < b ? a : b; };

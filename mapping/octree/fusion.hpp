@@ -1,4 +1,5 @@
-// fusion.hpp: fuses one depth frame into the octree, whole nodes at a time. Private to StaticMap.
+// fusion.hpp: fuses one depth frame into the octree. Updates whole nodes where possible. Private to
+// StaticMap.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -9,17 +10,18 @@
 
 namespace roomradar {
 
-/// Version of the arithmetic on eight siblings: the fastest SIMD version that the processor supports, or the
-/// portable one. Both give bit-identical results.
+/// Version of the arithmetic on eight siblings: the fastest SIMD version that this compilation supports, or
+/// the portable version. Both give bit-identical results.
 enum class Arithmetic { kFastest, kPortable };
 
 /// Fuses the frame in one descent from the root. Call collect_hits() for this frame and `scratch` first. A
-/// node wholly in front of the measured depth becomes free. A node wholly occluded or outside the image is
-/// unchanged. All other nodes are split down to leaves. A leaf that contains a ray endpoint is a hit. A leaf
-/// whose centre is in front of the depth of the pixel it projects to is a miss. Signed distance, weight and
-/// colour are averaged into leaves within the truncation band. Source: log-odds and clamping: Hornung et al.,
-/// OctoMap, Autonomous Robots 2013, equations (2) and (4); projective signed distance: Curless and Levoy,
-/// SIGGRAPH 1996, equations (3) and (4), with 1/sigma^2 as weight.
+/// node wholly in front of the measured depth is a miss as a whole. A node wholly occluded or outside the
+/// image is unchanged. All other nodes are split down to leaves. A leaf that contains a ray endpoint is a
+/// hit. A leaf whose centre is in front of the depth of the pixel to which it projects is a miss. Hits and
+/// misses add to the log-odds. Signed distance, weight and colour are averaged into leaves within the
+/// truncation band. Source: log-odds and clamping: Hornung et al., OctoMap, Autonomous Robots 2013, equations
+/// (2) and (4); projective signed distance: Curless and Levoy, SIGGRAPH 1996, equations (3) and (4), with
+/// 1/sigma^2 as weight.
 void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                 const FusionConfig& config, FusionScratch& scratch,
                 Arithmetic arithmetic = Arithmetic::kFastest);

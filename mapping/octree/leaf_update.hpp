@@ -19,17 +19,17 @@ inline float weight_at(float depth_m) {
   return std::min(ratio * ratio, 1.0F);
 }
 
-/// Measurements of eight voxels, each from the pixel to which the voxel's centre projects.
+/// Measurements of eight voxels. Each comes from the pixel to which the voxel's centre projects.
 template <typename Float8>
 struct Observed {
   EightPoints<Float8> p_camera;  ///< voxel centres, m
   Float8 distance_m;             ///< measured depth minus depth of the voxel's centre
   Float8 sigma_m;                ///< standard deviation of the measured depth
-  unsigned free = 0;             ///< bit i: the centre of voxel i is seen through
+  unsigned free = 0;             ///< bit i: the frame sees through the centre of voxel i
   unsigned sampled = 0;          ///< bit i: the centre of voxel i is within the truncation band
 };
 
-/// Updates leaf blocks with one frame. A sample is a voxel's signed distance, weight and colour.
+/// Updates leaf blocks with one frame. The sample of a voxel is its signed distance, weight and colour.
 template <typename Float8>
 class LeafUpdate {
  public:
@@ -79,8 +79,8 @@ class LeafUpdate {
 
   /// Updates the eight voxels of `node`, and returns the node's new state.
   /// @param hit  bit i: a ray ends in voxel i
-  /// @param refresh_colour  true: also updates colours where this frame's share of the weight is under
-  ///                        kSettledPart
+  /// @param refresh_colour  true: also updates colours of voxels to whose weight this frame contributes less
+  ///                        than kSettledPart
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
@@ -96,16 +96,17 @@ class LeafUpdate {
     return tree_.prune(node, block);
   }
 
-  /// Adds a miss to all voxels of a block that a frame of this weight sees through. `clear` means that the
-  /// frame also sees through the space around the block. Then the samples fade: their distance is averaged
-  /// with the truncation distance, and they are erased once their voxel has the minimum log-odds and the
-  /// distance nears truncation. The voxels can then merge with the free space around them.
+  /// Adds a miss to all voxels of a block through which a frame of this weight sees. `clear` means that the
+  /// frame also sees through the space around the block. If `clear`, each sample's distance is averaged with
+  /// the truncation distance. The sample is erased once its voxel has the minimum log-odds and its distance
+  /// exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free space around
+  /// them.
   ///
-  /// Without `clear`, samples are kept: beside edges and on obliquely seen surfaces, seeing through a voxel
-  /// is caused by noise more often than by a change. Samples behind a surface are the exception, because they
-  /// can be seen through only if the surface has gone. Each frame that sees through them cancels frames that
-  /// measured them. Otherwise an object that was too close to a wall for `clear` would leave its back side in
-  /// the map after moving away.
+  /// Without `clear`, most samples are kept: beside edges and on obliquely seen surfaces, seeing through a
+  /// voxel is caused by noise more often than by a change. The exceptions are samples behind a surface, since
+  /// frames see through such samples only if the surface has gone. Each frame that sees through such a sample
+  /// subtracts kCancelled times the frame's weight from the sample's weight. Otherwise an object that was too
+  /// close to a wall for `clear` would leave its back side in the map after it moved away.
   Slot mark_free(Slot node, float weight, bool clear) {
     LeafBlock& block = tree_.leaves(node);
     add_log_odds(block, 0, 0xFFU);
@@ -117,20 +118,20 @@ class LeafUpdate {
   }
 
  private:
-  // Only samples within this many voxels of the surface take its colour, because only these are used to
-  // interpolate the colours of mesh vertices.
+  // Max distance from the surface, in voxels, of samples that take the surface's colour. The colours of mesh
+  // vertices are interpolated from these samples only.
   static constexpr float kColourVoxels = 1.5F;
   // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
-  // refresh. On a refresh it is given this fraction, because smaller changes would be lost in rounding to 8
-  // bits.
+  // refresh. On a refresh, the measurement is weighted with this fraction, since smaller changes would be
+  // lost in rounding to 8 bits.
   static constexpr float kSettledPart = 1.0F / 8.0F;
 
-  // Min distance behind a surface, in voxels, at which a sample counts as behind it. Samples nearer to the
-  // surface are seen past too often, because of noise and pose errors.
+  // Min distance, in voxels, at which a sample counts as behind a surface. Frames see past samples nearer to
+  // the surface too often, because of noise and pose errors.
   static constexpr float kBehind_voxels = 0.5F;
-  // One frame that sees through a sample cancels this many frames that measured the sample. Above 1, because
-  // the first such frames only make the voxel free, and because an object present in half of the frames
-  // should disappear.
+  // A frame that sees through a sample subtracts this many times its own weight from the sample's weight.
+  // Above 1, since the first such frames only make the voxel free, and since an object that was present in
+  // half of the frames should disappear.
   static constexpr float kCancelled = 2.0F;
 
   static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
@@ -156,12 +157,12 @@ class LeafUpdate {
   }
 
   // Returns the voxels (bit i: voxel i) that have a sample behind a surface and are not occupied. Occupied
-  // voxels keep their samples, because ghost removal cannot see voxels without samples.
+  // voxels keep their samples, since ghost removal ignores voxels without samples.
   [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
     return ((Float8::load(block.distance) < Float8(behind_)) & (Float8::load(block.log_odds) <= 0.0F)).bits();
   }
-  // Returns those voxels of behind_surface() whose surface this frame sees past by more than the truncation
-  // distance.
+  // Returns those voxels of behind_surface() at which this frame measures a depth farther than the voxel's
+  // stored surface by more than the truncation distance.
   [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
     const Float8 further =
         observed.distance_m * (1.0F / tree_.units().distance_m) - Float8::load(block.distance);

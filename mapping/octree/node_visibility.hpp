@@ -1,4 +1,4 @@
-// node_visibility.hpp: visibility of eight sibling nodes in a depth image. Private to the fusion. The
+// node_visibility.hpp: visibility of eight sibling nodes in a depth image. Private to fusion.cpp. The
 // template parameter Float8 selects a SIMD version from simd8f.hpp.
 #pragma once
 #include <Eigen/Geometry>
@@ -12,7 +12,8 @@
 
 namespace roomradar {
 
-/// Smaller depths count as not measured, because no depth camera measures at such short range.
+/// Min measured depth, m. Smaller values count as not measured, since no depth camera measures at such short
+/// range.
 inline constexpr float kLeastDepth_m = 0.05F;
 
 inline constexpr float kNearest_m = 0.01F;  // min depth, m, of points that are projected into the image
@@ -35,8 +36,8 @@ struct EightPoints {
   Float8 x, y, z;
 };
 
-/// Offsets from the centre of a node to the centres of its children, in the camera frame, by the node's depth
-/// in the tree.
+/// Table of the offsets from a node's centre to its children's centres, in the camera frame. The index is the
+/// node's depth in the tree.
 class ChildOffsets {
  public:
   ChildOffsets(const Eigen::Matrix3d& R_camera_world, double resolution_m) {
@@ -56,10 +57,11 @@ class ChildOffsets {
   [[nodiscard]] const Eigen::Vector3d& to_child(unsigned depth, unsigned i) const {
     return to_child_[depth][i];
   }
-  /// Returns the half extents, in the camera frame, of the bounding box of all voxel centres in a child of a
-  /// node at `depth`, m. Only centres count, because voxels are classified by their centres.
+  /// Returns half the size of the box around all voxel centres in a child of a node at `depth`, along the
+  /// camera's axes, m. The box contains only the centres, since voxels are classified by their centres.
   [[nodiscard]] const Eigen::Vector3f& half_extent(unsigned depth) const { return half_extent_[depth]; }
-  /// Returns the centres of a node's children. `depth` and `parent_camera` are the node's depth and centre.
+  /// Returns the centres of a node's children, in the camera frame. `depth` and `parent_camera` are the
+  /// node's depth in the tree and centre.
   template <typename Float8>
   [[nodiscard]] EightPoints<Float8> centres(unsigned depth, const Eigen::Vector3d& parent_camera) const {
     const auto along = [&](unsigned axis) {
@@ -74,18 +76,18 @@ class ChildOffsets {
   std::array<std::array<std::array<float, 8>, 3>, kLeafDepth> eight_;
 };
 
-/// Visibility of eight siblings that contain no ray endpoint, as bit masks (bit i: sibling i). A sibling in
-/// none of the masks may contain a surface.
+/// Visibility of eight siblings that contain no ray endpoint, as bit masks (bit i: sibling i). A sibling that
+/// is in none of the masks may contain a surface.
 struct NodeVisibility {
-  unsigned nothing = 0;  ///< sibling is occluded, out of view, or beyond 2 max_range_m
-  unsigned free = 0;     ///< sibling is wholly seen through
-  /// The measured part of the sibling is seen through; the rest is out of view or has no depth.
+  unsigned nothing = 0;  ///< occluded, out of view, or beyond 2 max_range_m
+  unsigned free = 0;     ///< wholly in front of the measured depth
+  /// bit i: the frame sees through sibling i where depth is measured; the rest is out of view or has no depth
   unsigned part_free = 0;
 };
 
 /// Classifies eight siblings by their boxes in the camera frame and by the image rectangles to which the
-/// boxes project. Not split into several functions, so the eight-wide values stay in registers.
-/// @param half  half extents of each box, m
+/// boxes project. Written as one function, so the eight-wide values stay in registers.
+/// @param half  half the size of each box, m
 template <typename Float8>
 NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,
                      float max_range_m, const DepthPyramid& pyramid) {
@@ -94,8 +96,8 @@ NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& 
   const Float8 low_y = centres.y - half.y(), high_y = centres.y + half.y();
   unsigned nothing = ((far_z <= kNearest_m) | (Float8(2.0F * max_range_m) < near_z)).bits();
 
-  // A box that straddles the camera plane counts as outside only if it is wholly outside one of the planes
-  // through the image borders.
+  // A box that straddles the camera plane counts as out of view only if it is wholly outside one of the
+  // planes that the camera centre and the image borders span.
   const unsigned straddles = (near_z <= kNearest_m).bits();
   if (straddles != 0) {
     const auto outside = (far_z * (camera.width - camera.cx) < low_x * camera.fx) |

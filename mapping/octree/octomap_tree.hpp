@@ -1,6 +1,7 @@
 // octomap_tree.hpp: node type of the project's .ot map files, and an OctoMap octree that reads and writes
-// them. StaticMap itself writes this format node by node. The class OctoMapTree is for programs that open the
-// file with OctoMap's AbstractOcTree::read(). Only static_map_file.cpp includes this header and OctoMap.
+// these files. StaticMap itself writes the format node by node. The class OctoMapTree is for programs that
+// open the file with OctoMap's AbstractOcTree::read(). Only static_map_file.cpp includes this header and
+// OctoMap.
 #pragma once
 #include <octomap/OcTreeNode.h>
 #include <octomap/OccupancyOcTreeBase.h>
@@ -13,9 +14,9 @@
 
 namespace roomradar {
 
-/// Node with log-odds and, at the finest depth only, a signed distance (if weight > 0). Log-odds of exactly 0
-/// (probability one half) mean unknown. Leaves behind a surface may have a signed distance although their
-/// occupancy is unknown. Leaves with neither are not stored.
+/// Node with log-odds. Nodes at the finest depth may have a signed distance, too (if weight > 0). Log-odds of
+/// exactly 0 (probability one half) mean unknown. Leaves behind a surface may have a signed distance although
+/// their occupancy is unknown. Unknown leaves without signed distance are not stored.
 class OctoMapNode : public octomap::OcTreeNode {
  public:
   float distance_m = 0.0F;

@@ -19,8 +19,7 @@ class BlockHits {
   BlockHits(std::uint64_t block_code, unsigned voxels) : bits_(block_code << 8U | voxels) {}
   [[nodiscard]] std::uint64_t block_code() const { return bits_ >> 8U; }
   [[nodiscard]] unsigned voxels() const { return bits_ & 0xFFU; }
-  /// Returns the child index that a descent from the root takes at a node of depth `depth` to reach the
-  /// block.
+  /// Returns the index of the child on the path from the root to the block, below the path's node at `depth`.
   [[nodiscard]] unsigned child(unsigned depth) const {
     return static_cast<unsigned>(bits_ >> (8U + 3U * (kLeafDepth - 1 - depth))) & 7U;
   }
@@ -37,7 +36,7 @@ struct FusionScratch {
   // The rest is scratch of collect_hits().
   std::vector<BlockHits> sort_buffer;
   std::vector<float> ray_x;
-  std::vector<int> row_keys[2][3];  ///< [previous row, current row][x, y, z]: keys of the row's endpoints
+  std::vector<int> row_keys[2][3];  ///< keys of endpoints: [previous, current row][x, y, z]
   std::vector<std::uint8_t> is_new;
   std::vector<std::uint32_t> columns;
 };
@@ -45,7 +44,8 @@ struct FusionScratch {
 enum class HitStatus { kCollected, kNone, kOutOfBounds };
 
 /// Sets scratch.hits to the ray endpoints of all pixels with a depth of at most max_range_m. Returns kNone if
-/// no pixel has depth, even beyond max_range_m, and kOutOfBounds if an endpoint is outside the octree.
+/// no pixel has any depth (including depths beyond max_range_m), and kOutOfBounds if an endpoint is outside
+/// the octree.
 HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double resolution_m,
                        const FusionConfig& config, FusionScratch& scratch);
 

@@ -1,5 +1,5 @@
-// simd8f.hpp: vector of eight floats, one per sibling voxel, in an AVX2 and a portable version. Both give
-// bit-identical results: neither fuses multiply and add, and files that use them are compiled with
+// simd8f.hpp: vector of eight floats, one per sibling voxel, in an AVX2 and a portable version. Both versions
+// give bit-identical results, since neither fuses multiply and add; files that use them must be compiled with
 // -ffp-contract=off. Maps are therefore bit-identical on every machine.
 #pragma once
 #include <algorithm>
@@ -101,7 +101,8 @@ inline PortableFloat8 max(const PortableFloat8& a, const PortableFloat8& b) {
 inline PortableFloat8 floor(const PortableFloat8& a) {
   return plain::each(a, a, [](float x, float) { return std::floor(x); });
 }
-/// Returns the largest power of two that is at most |a|, by lane. Requires normal numbers.
+/// Returns, per lane, the largest power of two that is at most |a|. Requires normal numbers (not zero,
+/// denormal, infinite or NaN).
 inline PortableFloat8 power_of_two_within(const PortableFloat8& a) {
   return plain::each(a, a, [](float x, float) {
     return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0x7F80'0000U);

@@ -1,5 +1,5 @@
-// static_map.hpp: octree of the static room: occupancy (occupied, free, unknown), and signed distance near
-// surfaces.
+// static_map.hpp: octree of the static room. It stores occupancy (occupied, free, unknown) and, near
+// surfaces, signed distance.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -42,7 +42,7 @@ struct SurfaceSample {
   bool has_colour = false;
 };
 
-/// A leaf of the octree, of any size: a cube of uniform occupancy.
+/// A leaf of the octree: a cube of uniform occupancy, one voxel or larger.
 struct MapLeaf {
   VoxelIndex lowest_voxel = VoxelIndex::Zero();  ///< lower corner; each coordinate is a multiple of
                                                  ///< edge_voxels
@@ -50,7 +50,7 @@ struct MapLeaf {
   float log_odds = 0.0F;                         ///< > 0: occupied; < 0: free; 0: unknown
 };
 
-/// Action of a map revision on a voxel and its sample (signed distance and colour).
+/// Action of revise_samples() on a voxel and its sample (signed distance and colour).
 enum class SampleAction {
   kKeep,
   kEraseSample,  ///< sample erased, occupancy kept
@@ -61,7 +61,7 @@ enum class SampleAction {
 struct MapCounts {
   std::size_t occupied_leaves = 0;
   std::size_t free_leaves = 0;
-  std::size_t sampled_leaves = 0;  ///< number of finest leaves with a signed distance, of any occupancy
+  std::size_t sampled_leaves = 0;  ///< number of voxels with a signed distance, of any occupancy
   std::size_t nodes = 0;
   std::size_t memory_bytes = 0;     ///< memory of the blocks in use; depends only on the map's content
   Eigen::AlignedBox3d known_world;  ///< bounding box of all free and occupied leaves, m; empty if none
@@ -87,36 +87,35 @@ class StaticMap {
   [[nodiscard]] Occupancy occupancy_at(const Eigen::Vector3d& p_world) const;
   /// Returns the sample of the voxel that contains p_world; nullopt if the voxel has no sample.
   [[nodiscard]] std::optional<SurfaceSample> sample_at(const Eigen::Vector3d& p_world) const;
-  /// Calls `visit` for each voxel with a signed distance, in Morton order, so the order is deterministic.
+  /// Calls `visit` for each voxel with a signed distance, in Morton order (deterministic).
   void visit_samples(const std::function<void(const SurfaceSample&)>& visit) const;
 
   /// Calls `visit` for each voxel with a signed distance whose centre is in the box, in Morton order.
   void visit_samples(const Eigen::AlignedBox3d& box_world,
                      const std::function<void(const SurfaceSample&)>& visit) const;
 
-  /// Calls `visit` for each free or occupied leaf, at its stored size, in Morton order, so the order is
-  /// deterministic.
+  /// Calls `visit` for each free or occupied leaf, at its stored size, in Morton order (deterministic).
   void visit_leaves(const std::function<void(const MapLeaf&)>& visit) const;
 
   /// Adds the log-odds of a leaf of another map to all voxels of the leaf's cube, clamped as in fuse(). The
   /// other map must have the same resolution. Throws Error if the cube is not a valid octree node or the
   /// log-odds are not finite.
   void add_evidence(const MapLeaf& leaf);
-  /// Averages a sample of another map with the voxel's own sample: signed distance and colour, by weight. The
-  /// sample's occupancy is ignored. Throws Error if the voxel is outside the octree, the distance or weight
-  /// is not finite, or the weight is not > 0.
+  /// Averages signed distance and colour of another map's sample into the voxel's own sample, by weight. The
+  /// given sample's occupancy is ignored. Throws Error if the voxel is outside the octree, the distance or
+  /// weight is not finite, or the weight is not > 0.
   void add_evidence(const SurfaceSample& sample);
 
-  /// Calls `decide` for each voxel that has a signed distance, or is occupied without one (weight 0), in
-  /// Morton order, and applies the returned action. Pruned nodes are not visited, because they have no
-  /// samples.
+  /// Calls `decide` for each voxel that has a signed distance or is occupied (weight 0 if it has no signed
+  /// distance), in Morton order, and applies the returned action. Pruned nodes are not visited, since they
+  /// have no samples.
   void revise_samples(const std::function<SampleAction(const SurfaceSample&)>& decide);
-  /// Does the same as the function above, but only for voxels whose centre is in the box.
+  /// Revises only voxels whose centre is in the box.
   void revise_samples(const Eigen::AlignedBox3d& box_world,
                       const std::function<SampleAction(const SurfaceSample&)>& decide);
 
   [[nodiscard]] double resolution_m() const;
-  /// Returns half the edge length of the cube, centred at the world's origin, that the octree covers, m.
+  /// Returns half the edge length of the octree's cube, which is centred at the world's origin, m.
   [[nodiscard]] double reach_m() const;
   [[nodiscard]] const FusionConfig& config() const;
   /// Returns the memory of the nodes. O(1), so callers can enforce a limit every frame.
@@ -130,9 +129,9 @@ class StaticMap {
   /// Writes the occupancy only (free and occupied leaves), in the .bt format of OctoMap's plain OcTree, which
   /// octovis opens. Throws Error if the file cannot be written.
   void write_bt(const std::filesystem::path& path) const;
-  /// Reads a file from write_ot(). The file is not trusted: format, depth, sizes and numbers are checked
-  /// while it is read. Cubes that no sensor produces are rejected: free cubes with an edge above 8,192
-  /// voxels, and occupied cubes with an edge above 4 m. Throws Error naming the file and the problem.
+  /// Reads a file written by write_ot(). Validates format, depth, sizes and numbers while reading. Rejects
+  /// cubes that no sensor produces: free cubes with an edge above 8,192 voxels, and occupied cubes with an
+  /// edge above 4 m. Throws Error naming the file and the problem.
   static StaticMap read_ot(const std::filesystem::path& path, const FusionConfig& config = {});
 
  private:

@@ -1,4 +1,5 @@
-// tsdf_bricks.hpp: signed distances of a static map (TSDF) in dense bricks, for fast access to neighbours.
+// tsdf_bricks.hpp: signed distances of a static map (TSDF), copied into dense bricks of 8 x 8 x 8 voxels for
+// fast access to neighbours.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -58,8 +59,8 @@ inline VoxelIndex brick_of(const VoxelIndex& voxel) {
   return voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
 }
 
-/// Returns the index into a brick's samples of the voxel at `offset` from the lowest voxel, each coordinate
-/// in 0..kBrickEdge-1.
+/// Returns the index into Brick::samples of the voxel at `offset` from the brick's lowest voxel. Each
+/// coordinate must be in 0..kBrickEdge-1.
 inline std::size_t brick_offset(const Eigen::Vector3i& offset) {
   return static_cast<std::size_t>((offset.z() * kBrickEdge + offset.y()) * kBrickEdge + offset.x());
 }
@@ -73,8 +74,8 @@ class BrickNeighbourhood {
     std::size_t brick = TsdfBricks::kNone;
     std::size_t offset = 0;
   };
-  /// Returns the brick and index of a voxel given relative to the centre brick's lowest voxel, each
-  /// coordinate in -kBrickEdge..2*kBrickEdge-1.
+  /// Returns the brick and index of the voxel at `relative` from the centre brick's lowest voxel. Each
+  /// coordinate must be in -kBrickEdge..2*kBrickEdge-1.
   [[nodiscard]] Place place(const Eigen::Vector3i& relative) const;
 
  private:

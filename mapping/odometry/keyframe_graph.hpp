@@ -18,13 +18,12 @@ struct KeyframeGraphConfig {
   double furthest = 1.5;       ///< max view_distance() between two connected keyframes
   double min_overlap = 0.25;   ///< min fraction of a keyframe's points with a correspondence
   double min_inliers = 0.5;    ///< min fraction of a pair's correspondences that are inliers
-  /// Max difference between the results of aligning a pair in both directions: translation, m, and rotation,
-  /// rad.
+  /// Max difference between the two results of aligning a pair in both directions.
   double max_gap_m = 0.05;
   double max_gap_rad = 0.05;
-  /// Max assumed drift between two keyframes, m and rad: drift_m plus drift_part times the length of the path
-  /// between them, m. An edge that would change the relative pose by more is rejected as a false match
-  /// between places that look alike.
+  /// Max assumed drift between two keyframes: drift_m plus drift_part times the length of the path between
+  /// them in m. The sum limits the translation in m and the rotation in rad. An edge that would change the
+  /// relative pose by more is rejected as a false match between different parts of the room that look alike.
   double drift_m = 0.15;
   double drift_part = 0.05;
   std::size_t cached_keyframes = 8;  ///< capacity of the keyframe cache; 4 MB per keyframe
@@ -60,17 +59,19 @@ std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen:
 bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t newer,
                      const Eigen::Isometry3d& T_older_newer, const KeyframeGraphConfig& config);
 
-/// Aligns two keyframes in both directions, starting from T_older_newer. If both results agree with each
+/// Aligns two keyframes in both directions, starting from T_older_newer. If the two results agree with each
 /// other and are within the assumed drift of the current poses, adds both as constraints and returns true. A
-/// pair at least three keyframes apart in sequence counts as a loop, found or rejected.
+/// pair that is at least three keyframes apart in sequence is counted as a loop, in loops_found or
+/// loops_rejected.
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const ConnectConfig& config, KeyframeCache& cache);
 
-/// Connects the newest keyframe to older keyframes near it; if there are more than max_edges_new, to this
-/// many, spread over all view distances.
+/// Connects the newest keyframe to older keyframes near it. If there are more than max_edges_new, chooses
+/// max_edges_new of them, spread evenly over the order of view_distance().
 void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache);
 
-/// Rebuilds all constraints from the keyframes' current depth, on two threads. Deterministic.
+/// Replaces all constraints by new ones, computed from the keyframes' current depth on two threads.
+/// Deterministic.
 void close_loops(KeyframeGraph& graph, const ConnectConfig& config);
 
 /// Optimises all keyframe poses to fit the constraints and anchors.
@@ -78,12 +79,14 @@ void solve(KeyframeGraph& graph);
 
 /// Computes the final poses of all keyframes in two steps, to reduce the effect of the sensor's depth
 /// distortion. Distortion is constant in the camera frame, so it does not average out over many points as
-/// noise does. It cancels between similar views. Between different views it biases the relative pose, mostly
-/// by a rotation about the observed surface, which alignment wrongly reports as well constrained.
+/// noise does. Distortion cancels between similar views. Between different views, it biases the relative
+/// pose, mostly by a rotation about the observed surface. Alignment wrongly reports this rotation as well
+/// constrained.
 ///
-/// The first step therefore finds the positions. It weights constraints by the similarity of their views
-/// (view_distance()), and uses their information only to exclude unconstrained directions. The second step
-/// finds the rotations that best fit these positions, with constraints weighted by their information.
+/// The first step therefore computes the positions. It weights constraints by the similarity of their views
+/// (view_distance()), and uses their information matrices only to exclude unconstrained directions. The
+/// second step keeps the positions and computes the rotations, with constraints weighted by their
+/// information.
 void solve_positions_then_turns(KeyframeGraph& graph);
 
 /// Optimises only the keyframes whose view_distance() to the newest is less than `furthest`; all other poses

@@ -15,7 +15,7 @@ struct KeyframeJobConfig {
   RelocaliseConfig relocalise;
 };
 
-/// Input of run(). Owns its data except the two keyframe databases, which must not change while run()
+/// Input of run(). Owns its data, except for the two keyframe databases; these must not change while run()
 /// executes.
 struct KeyframeJob {
   Frame frame;          ///< frame of the newest keyframe
@@ -32,9 +32,9 @@ struct KeyframeJobResult {
   std::optional<Eigen::Isometry3d> T_known_camera;
 };
 
-/// Connects the newest keyframe to keyframes near it, and to distant keyframes with similar features, which
-/// show the same place if the poses have drifted. Then optimises the poses near the newest keyframe, or all
-/// poses if a distant keyframe was connected.
+/// Connects the newest keyframe to keyframes near it. Also connects it to distant keyframes with similar
+/// features, which may show the same part of the room if the poses have drifted. Then optimises the poses
+/// near the newest keyframe, or all poses if a distant keyframe was connected.
 KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config);
 
 }  // namespace roomradar

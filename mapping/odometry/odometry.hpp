@@ -14,9 +14,9 @@ namespace roomradar {
 struct OdometrySnapshot;
 
 /// Tracks a camera against keyframes, closes loops, and returns all poses at the end. The world frame is the
-/// camera frame of the first usable frame, unless frames come with poses (add_posed) or the camera is
-/// localised in a known map. A second thread connects new keyframes to older ones. Its results are applied
-/// after a fixed number of frames, so poses do not depend on timing. Not thread safe.
+/// camera frame of the first usable frame, unless frames come with poses (add_posed()) or the camera is
+/// localised in a known map. A second thread connects new keyframes to older ones. The thread's results are
+/// applied after a fixed number of frames, so poses do not depend on timing. Not thread safe.
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config = {});
@@ -25,22 +25,23 @@ class Odometry {
   ~Odometry();
 
   /// Sets the keyframe database of an earlier map; call before the first frame. Each new keyframe is
-  /// localised in it if possible. Once this succeeds, all poses, including those of earlier frames, are in
-  /// the earlier map's world. The earlier map's own poses stay constant.
+  /// localised in the earlier map if possible. Once a keyframe was localised, all poses, including those of
+  /// earlier frames, are in the earlier map's world. The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
   /// Returns true if poses are in the world of the map given to set_prior_map().
   [[nodiscard]] bool is_located() const;
 
-  /// Tracks the next frame and returns its current pose estimate. After a loss, tries the last pose first,
-  /// then all keyframes. The images must have the sizes of the frame's cameras.
+  /// Tracks the next frame and returns its current pose estimate. While tracking is lost, tries the last pose
+  /// first, then a search over all keyframes (relocalise()). The images must have the sizes of the frame's
+  /// cameras.
   Tracking track(const Frame& frame);
 
-  /// Adds a frame with a given pose. Adds a database keyframe if the view is new, but aligns and optimises
-  /// nothing.
+  /// Adds a frame with a given pose. Adds a keyframe to the database if the view is new. Does not align or
+  /// optimise.
   void add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Rebuilds all constraints from the keyframes' current depth, optimises the keyframes' poses, and returns
-  /// all frames so far with their final poses.
+  /// Recomputes all constraints from the keyframes' current depth, optimises the keyframes' poses, and
+  /// returns all frames so far with their final poses.
   std::vector<TrackedFrame> optimise();
 
   /// Moves the keyframe database out, with current poses. Call optimise() first.
@@ -48,11 +49,11 @@ class Odometry {
 
   [[nodiscard]] OdometryCounts counts() const;
 
-  /// Waits until the second thread is idle; call before snapshot() or a fork of the process. Changes no pose:
-  /// the thread's result is still applied at the frame where it is due.
+  /// Waits until the second thread is idle. Call before snapshot() or a fork of the process. Changes no pose:
+  /// the thread's result is applied later, at the frame where it is due.
   void finish_jobs();
-  /// Returns the complete state, with the second thread's result already applied. Views are shared, not
-  /// copied. Call only after finish_jobs().
+  /// Returns a copy of the complete state, to which the second thread's result has been applied. Views are
+  /// shared, not copied. Call only after finish_jobs().
   [[nodiscard]] OdometrySnapshot snapshot() const;
   /// Resumes from a snapshot, which must be consistent (load_odometry() checks this). Call set_prior_map()
   /// again if it was used.

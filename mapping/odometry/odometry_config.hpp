@@ -13,28 +13,28 @@ namespace roomradar {
 
 struct OdometryConfig {
   ViewConfig view;
-  /// Settings for aligning frames with keyframes. Intensity has less weight than its noise justifies, because
+  /// Settings for aligning frames with keyframes. Intensity has less weight than its noise justifies, since
   /// the calibration of the colour camera is inexact and walls are glossy.
   AlignConfig align = {.intensity_sigma = 16.0F, .max_correction_m = 0.25F};
   /// Settings for aligning keyframes with each other. Keyframes are farther apart than consecutive frames, so
-  /// the distortion of depth matters; a wide robust kernel averages the distortion out. Both intensity_sigma
-  /// values and robust_sigma were chosen on the kitchen recording; each changes the ATE and the RPE over 30
-  /// frames by at most 0.3 mm.
+  /// the distortion of depth matters; a wide robust kernel averages the distortion out. robust_sigma and the
+  /// intensity_sigma of both AlignConfigs were chosen on the kitchen recording. Each changes the absolute
+  /// trajectory error and the relative pose error over 30 frames by at most 0.3 mm.
   AlignConfig align_keyframes = {.robust_sigma = 4.0F, .intensity_sigma = 8.0F, .max_correction_m = 0.25F};
   KeyframeGraphConfig graph;
   KeyframeDatabaseConfig place;
   RelocaliseConfig relocalise;
-  /// A frame becomes a keyframe if every existing keyframe is farther away than this, or rotated by more than
-  /// keyframe_angle_deg.
+  /// A frame becomes a keyframe if every existing keyframe is farther away than keyframe_distance_m or
+  /// rotated by more than keyframe_angle_deg.
   double keyframe_distance_m = 0.10;
   double keyframe_angle_deg = 8.0;
-  /// Min overlap with the current keyframe. Below it, another keyframe becomes the current one, or a new one
-  /// is added.
+  /// Min overlap with the current keyframe. At a smaller overlap, another keyframe becomes the current one,
+  /// or a new keyframe is added.
   double keyframe_overlap = 0.7;
   int references = 2;  ///< max number of keyframes that a frame is aligned with
   /// Number of frames averaged into a keyframe's depth before its points and normals are recomputed.
   int improve_every = 5;
-  /// Number of frames after which the background result for a new keyframe is applied.
+  /// Number of frames after which the second thread's result for a new keyframe is applied.
   int apply_result_after_frames = 4;
 };
 

@@ -14,7 +14,7 @@
 
 namespace roomradar {
 
-/// Frame with a pose relative to a keyframe, so the frame's pose changes when the keyframe's pose does.
+/// Frame with a pose relative to a keyframe, so the frame moves with the keyframe.
 struct KeptFrame {
   std::int64_t frame_index = 0;
   double stamp_s = 0.0;
@@ -28,7 +28,7 @@ struct KeptFrame {
 struct OdometrySnapshot {
   OdometryCounts counts;
   KeyframeGraph graph;
-  /// One entry per keyframe of `graph`. add_posed() adds entries for which there is no keyframe.
+  /// One entry per keyframe of `graph`. Entries added by Odometry::add_posed() have no keyframe in `graph`.
   KeyframeDatabase keyframe_database;
   std::vector<KeptFrame> frames;
   /// Index of the current keyframe: the keyframe with which the next frame is aligned first.
@@ -39,15 +39,17 @@ struct OdometrySnapshot {
   Eigen::Isometry3d T_world_last = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< predicted motion to the next frame
   double path_length_m = 0.0;  ///< length of the camera's path; see Keyframe::path_length_m
-  /// Intensity image of the last frame before the camera became stationary; empty if its pose is not trusted.
+  /// Intensity image of the last frame before the camera became stationary; empty if that frame's pose is not
+  /// trusted.
   Image<float> last_moved_grey;
   Tracking last_moved;   ///< tracking result of the frame of last_moved_grey
   bool located = false;  ///< true if poses are in the world of the prior map
 };
 
-/// Sets new keyframe poses and moves all poses that depend on them. The camera pose moves with the current
-/// keyframe.
-/// @param moved  the keyframes of kept.graph with new poses; the newest keyframes may be missing
+/// Sets new poses of keyframes and moves all poses that depend on them. The camera pose moves with the
+/// current keyframe.
+/// @param moved  keyframes of kept.graph with new poses, in the same order; the newest keyframes may be
+///               missing
 /// @return the motion of the current keyframe, in the world
 Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept);
 

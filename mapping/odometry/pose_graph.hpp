@@ -17,7 +17,7 @@ struct PoseConstraint {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   /// Inverse covariance of T_a_b, as a twist (translation m, rotation rad) in the frame of camera b.
   Matrix6d information = Matrix6d::Identity();
-  /// True if the measurement may be an outlier, e.g. a loop closure: the solver then uses a robust kernel.
+  /// True if the measurement may be an outlier, e.g. a loop closure. The solver then uses a robust kernel.
   bool robust = false;
 };
 
@@ -34,7 +34,7 @@ enum class PoseGraphStatus {
   kSolved,
   /// Solved; unconstrained poses and directions stay near their initial values.
   kUnderdetermined,
-  kNothingToSolve,  ///< no usable measurement involves a pose that is not constant; poses unchanged
+  kNothingToSolve,  ///< no valid measurement involves a pose that may move; poses unchanged
   kNotFinite,       ///< a pose is not finite; poses unchanged
   kFailed,          ///< the solver failed; poses unchanged
 };
@@ -50,10 +50,10 @@ struct PoseGraphResult {
   std::size_t untied = 0;
   /// Number of unconstrained directions, summed over the poses that are connected.
   std::size_t free_directions = 0;
-  /// Initial cost: half the sum of squared residuals, in standard deviations.
+  /// Initial cost: half the sum of the squared residuals, which are in standard deviations.
   double cost_before = 0.0;
   double cost_after = 0.0;
-  /// Norm of the final residual by constraint, in standard deviations; -1: the constraint was left out.
+  /// Norm of each constraint's final residual, in standard deviations; -1: the constraint was left out.
   std::vector<double> residual_sigma;
 };
 
@@ -61,8 +61,9 @@ struct PoseGraphResult {
 std::string describe(const PoseGraphResult& result);
 
 /// Moves the poses T_world_camera to minimise the residuals of constraints and anchors. Poses that no chain
-/// of measurements connects to a constant pose or an anchor do not change, nor do poses in unconstrained
-/// directions; both are counted in the result. Does not throw.
+/// of measurements connects to a constant pose or an anchor do not change. Connected poses do not change in
+/// unconstrained directions. The result counts such poses (untied) and directions (free_directions). Does not
+/// throw.
 ///
 /// Leaves out measurements between two constant poses, and invalid measurements: index out of range, a number
 /// that is not finite, or information that is not positive semidefinite. Their residual_sigma is -1.

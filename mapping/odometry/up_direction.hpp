@@ -12,7 +12,7 @@ namespace roomradar {
 enum class UpSource {
   kNone,           ///< neither gravity nor a plane was usable; up_world is the cameras' mean -y axis
   kAccelerometer,  ///< mean gravity measured by the device
-  kPlane,          ///< normal of the dominant plane within 60 degrees of the cameras' mean -y axis
+  kPlane,          ///< most frequent normal within 60 degrees of the cameras' mean -y axis
   kGiven,          ///< stated by the user
 };
 std::string_view to_string(UpSource source);
@@ -20,8 +20,8 @@ std::string_view to_string(UpSource source);
 struct UpDirection {
   UpSource source = UpSource::kNone;
   Eigen::Vector3d up_world = Eigen::Vector3d::UnitZ();  ///< unit vector
-  /// kPlane: fraction of all normals that are within 5 degrees of up_world. kAccelerometer, kGiven: 1. kNone:
-  /// 0.
+  /// Fraction of all normals that are within 5 degrees of up_world, for kPlane. 1 for kAccelerometer and
+  /// kGiven, 0 for kNone.
   double support = 0.0;
 };
 
@@ -31,19 +31,21 @@ struct GivenUp {
   std::optional<Eigen::Vector3d> up_world;
 };
 
-/// Accumulates measurements frame by frame. Callers should add only frames with trusted poses.
+/// Estimates the up direction from measurements, which it accumulates frame by frame. Callers should add only
+/// frames with trusted poses.
 class UpEstimator {
  public:
-  /// Adds the frame's gravity, if it has one, and normals of its depth image, sampled on a grid of 20
-  /// columns. Both are rotated into the world.
+  /// Adds the frame's gravity, if measured, and normals of its depth image, sampled on a grid of 20 columns.
+  /// Both are rotated into the world.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   /// Returns the up direction from the first usable source: (1) mean gravity, if at least half of the frames
   /// have gravity; (2) the most frequent normal within 60 degrees of the cameras' mean -y axis, if at least 5
-  /// % of all normals are within 5 degrees of it; (3) the mean -y axis, with kNone. The limit of 60 degrees
-  /// assumes that a hand-held camera may look down at a table, but is rarely upside down.
+  /// % of all normals are within 5 degrees of this normal; (3) the mean -y axis, with kNone. The limit of 60
+  /// degrees allows for a hand-held camera that looks down at a table, and assumes that cameras are rarely
+  /// upside down.
   [[nodiscard]] UpDirection estimate() const;
-  /// Returns the stated direction, with kGiven.
+  /// Returns the direction that the user stated, with kGiven.
   [[nodiscard]] UpDirection take(const GivenUp& given) const;
 
   /// Writes the complete state to a ByteWriter, or reads it from a ByteReader.
@@ -64,8 +66,8 @@ class UpEstimator {
  private:
   /// Returns the cameras' mean -y axis.
   [[nodiscard]] Eigen::Vector3d camera_up() const;
-  /// Stores every keep_every_-th normal. When the buffer is full, drops every second stored normal and
-  /// doubles keep_every_, so early and late frames have equal weight.
+  /// Stores the normal if it is a keep_every_-th one. When the buffer is full, drops every second stored
+  /// normal and doubles keep_every_, so early and late frames have equal weight.
   void keep(const Eigen::Vector3f& normal_world);
 
   std::vector<Eigen::Vector3f> normals_world_;
@@ -77,7 +79,7 @@ class UpEstimator {
   std::size_t frames_with_gravity_ = 0;
 };
 
-/// Returns the shortest rotation that turns `up_world` to +z. If up_world is -z, rotates about x.
+/// Returns the rotation by the smallest angle that maps `up_world` to +z. If up_world is -z, rotates about x.
 Eigen::Isometry3d level_rotation(const Eigen::Vector3d& up_world);
 
 }  // namespace roomradar

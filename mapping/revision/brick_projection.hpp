@@ -27,10 +27,11 @@ inline bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_
          pixel.y() < camera.height_px + margin_px;
 }
 
-/// A brick of 8 x 8 x 8 voxels, and the range of its voxels' entries in a list kept by the caller.
+/// A brick of 8 x 8 x 8 voxels. The caller has a list of voxel entries, in which the entries of each brick
+/// form a contiguous range.
 struct VoxelBrick {
   VoxelIndex first = VoxelIndex::Zero();
-  std::size_t end = 0;  ///< end of the range; it begins at the previous brick's end
+  std::size_t end = 0;  ///< end of the brick's range, which begins at the previous brick's end
 };
 
 class BrickProjection {
@@ -54,9 +55,9 @@ class BrickProjection {
   }
   [[nodiscard]] float fx() const { return fx_; }
 
-  /// Calls visit(entry index, voxel centre in the camera frame, pixel x, y) for voxels in the image nearer
-  /// than farthest_m.
-  /// @param offset_of  returns, for an entry index, brick_offset() of the voxel
+  /// Calls visit(entry index, voxel centre in the camera frame, pixel x, y) for each voxel that projects into
+  /// the image and is nearer than farthest_m.
+  /// @param offset_of  callable that returns brick_offset() of the voxel at an entry index
   template <typename OffsetOf, typename Visit>
   void for_each_nearer(float farthest_m, std::span<const VoxelBrick> bricks, const OffsetOf& offset_of,
                        const Visit& visit) const {
@@ -91,7 +92,8 @@ class BrickProjection {
   Eigen::Isometry3d T_camera_world_;
   double resolution_m_;
   float fx_, fy_, cx_, cy_, width_, height_;
-  /// Offsets from the centre of a brick's first voxel, per axis.
+  /// Offsets from the centre of a brick's first voxel to the centres of the voxels along each axis, in the
+  /// camera frame, m.
   std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps_;
 };
 

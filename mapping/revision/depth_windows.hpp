@@ -1,4 +1,5 @@
-// depth_windows.hpp: minimum depth of any square window of a depth image, by four lookups (sparse table).
+// depth_windows.hpp: sparse table that gives the minimum depth in any square window of a depth image by four
+// lookups.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -14,19 +15,19 @@ inline constexpr int kMaxWindowRadius_px = 31;
 /// side is at least 2^k and less than 2^(k+1).
 struct DepthWindows {
   std::vector<DepthImage> nearest_m;
-  Image<std::int32_t> measured;  ///< integral image: number of pixels with depth above and left
+  Image<std::int32_t> measured;  ///< integral image: number of pixels with depth above and to the left
 };
 
 struct WindowDepth {
   float nearest_m = 0.0F;  ///< infinity if no pixel of the window has depth
   float measured_share =
-      0.0F;  ///< pixels with depth / all pixels of the window, including those outside the image
+      0.0F;  ///< fraction of the window's pixels with depth; pixels outside the image count as without
 };
 
 /// Builds the sparse table and the integral image, reusing the memory of `windows`.
 void build_windows(const DepthImage& depth_m, DepthWindows& windows);
 
-/// Queries the window of (2 radius + 1)^2 pixels around pixel x, y of the image, with a radius in
+/// Queries the window of (2 radius_px + 1)^2 pixels around pixel (x, y). radius_px must be in
 /// 0..kMaxWindowRadius_px. At the image's border, nearest_m may include some pixels just outside the window.
 WindowDepth window_depth(const DepthWindows& windows, int x, int y, int radius_px);
 

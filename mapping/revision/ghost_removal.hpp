@@ -1,4 +1,4 @@
-// ghost_removal.hpp: removes ghosts from the static map: surface of objects that moved during the scan.
+// ghost_removal.hpp: removes ghosts (surface of objects that moved during the scan) from the static map.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -19,9 +19,9 @@ struct FusedFrame {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Voxels removed from the map, and the progress of refuse_surroundings() there.
+/// Voxels removed from the map, and the progress of refuse_surroundings() around them.
 struct GhostRevision {
-  GhostVotes::Verdicts verdicts;  ///< the lists `still` and `unseen` keep only voxels near removed ones
+  GhostVotes::Verdicts verdicts;  ///< `still` and `unseen` contain only voxels near removed ones
   std::uint64_t next = 0;  ///< index of the first fused frame that refuse_surroundings() has not processed
 
   [[nodiscard]] std::int64_t voxels() const {
@@ -32,18 +32,18 @@ struct GhostRevision {
 /// Called after each processed frame.
 using GhostProgress = std::function<void(const std::string& note)>;
 
-/// Reads the source again and removes departed objects from the map. Surface that frames see through becomes
-/// free. Surface that is gone, with nothing measured behind, becomes unknown. Also erases signed distances
-/// around both. Stages timed: read, ghosts (per frame).
+/// Reads the source again and removes departed objects from the map. Surface through which frames see becomes
+/// free. Departed surface behind which no depth is measured becomes unknown. Signed distances around both are
+/// erased. Stages timed: read, ghosts (per frame).
 ///
 /// @throws Error if the source cannot be rewound or the config is invalid
 GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fused, const GhostConfig& config,
                             StaticMap& map, StageTimes& times, const GhostProgress& progress = {});
 
 /// Fuses the surroundings of the removed voxels again, starting with frame revision.next. Leaves out pixels
-/// that measured the departed objects, because these had shifted the surface behind them. Between frames,
-/// e.g. when `progress` is called, `map` and `revision` are the complete state needed to resume. Reads
-/// nothing if nothing was removed.
+/// that measured the departed objects, since their measurements had shifted the surface behind them. Between
+/// frames, e.g. when `progress` is called, `map` and `revision` are the complete state needed to resume.
+/// Reads no frame if no voxel was removed.
 ///
 /// @throws Error if the source cannot be rewound
 void refuse_surroundings(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,

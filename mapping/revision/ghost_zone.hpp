@@ -1,4 +1,4 @@
-// ghost_zone.hpp: the space around ghosts, in which samples are erased and measured again.
+// ghost_zone.hpp: the space around removed voxels, in which samples are erased and measured again.
 #pragma once
 #include <Eigen/Geometry>
 #include <bitset>
@@ -10,24 +10,25 @@
 
 namespace roomradar {
 
-/// All cells of 4^3 voxels that contain a ghost, and their neighbours. The zone extends at least four voxels
-/// around each ghost, which is the width of the truncation band for surfaces measured from up to 2.5 m.
+/// All cells of 4^3 voxels that contain a ghost or absent voxel (GhostVotes::Verdicts), and the neighbours of
+/// these cells. The zone extends at least four voxels around each such voxel. This is the width of the
+/// truncation band for surfaces measured from up to 2.5 m.
 class GhostZone {
  public:
   GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m);
 
   /// Returns the action for a voxel. Ghosts become free, absent voxels become unknown. Other samples of the
   /// zone are erased so they can be measured again, except at surface of an earlier scan that no frame
-  /// measures. An occupied voxel without a sample becomes unknown if a ghost is within two voxels and no
-  /// remaining surface is.
+  /// measures. An occupied voxel without a sample becomes unknown if a ghost or absent voxel, but no
+  /// remaining surface, is within two voxels.
   [[nodiscard]] SampleAction fate_of(const SurfaceSample& sample) const;
-  /// Returns true if a voxel is within two voxels of a brick of the zone.
+  /// Returns true if the voxel is at most two voxels from a brick that the zone overlaps or touches.
   [[nodiscard]] bool reaches(const VoxelIndex& voxel) const;
   /// Returns true if any part of the zone may be in the camera's image.
   [[nodiscard]] bool in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const;
 
-  /// Clears the depth of all pixels except those whose ray ends within two voxels of remaining surface near
-  /// the zone and not within two voxels of a ghost. Only these pixels measure the zone's erased samples.
+  /// Sets the depth of a pixel to 0 unless its ray ends within two voxels of remaining surface near the zone,
+  /// and not within two voxels of a removed voxel. The remaining pixels measure the zone's erased samples.
   void mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m) const;
 
  private:

@@ -1,4 +1,4 @@
-// ghosts.hpp: finds ghosts in the static map: surface of objects that moved away during the scan.
+// ghosts.hpp: finds ghosts (surface of objects that moved away during the scan) in the static map.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,25 +12,26 @@
 
 namespace roomradar {
 
-/// Counts, for each surface voxel of the map, the frames that see it and the frames that see through it. A
-/// hand that rested on a table for half of the recording is measured in as many frames as the table; only the
-/// frames that see the table through the hand distinguish it from static surface. Frames without depth at the
-/// voxel count as AbsenceVotes.
+/// Counts, for each surface voxel of the map, the frames that measure the voxel and the frames that see
+/// through it. A hand that rested on a table for half of the recording is measured in as many frames as the
+/// table. Only the frames that see the table through the hand distinguish the hand from static surface.
+/// Frames without depth at the voxel count as AbsenceVotes.
 class GhostVotes {
  public:
-  /// Copies the map's current surface: samples within a voxel of the surface, and occupied ones. Throws Error
-  /// if the config is invalid.
+  /// Copies the map's surface voxels: those with a sample that are occupied or whose signed distance is at
+  /// most one voxel. Throws Error if the config is invalid.
   explicit GhostVotes(const StaticMap& map, const GhostConfig& config = {});
 
   /// Adds one frame's votes; the frame must have been fused at this pose.
   void look(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// A departed object is a large enough connected group of voxels with enough evidence, plus voxels with
-  /// weaker evidence that are connected to the group. These may extend farther from groups that are too large
-  /// to be tracking errors.
+  /// Classification of the surface voxels. A departed object is a large enough connected group of voxels with
+  /// enough evidence, plus voxels with weaker evidence that are connected to the group. Around groups of at
+  /// least 0.5 x 0.5 m, which are too large to be tracking errors, even weaker evidence suffices within 10
+  /// cm.
   struct Verdicts {
-    std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects that are seen through
-    std::vector<VoxelIndex> absent;  ///< voxels of departed objects with nothing measured behind
+    std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects through which frames see
+    std::vector<VoxelIndex> absent;  ///< voxels of departed objects without measured depth behind
     std::vector<VoxelIndex> still;   ///< other occupied surface that a frame observed
     std::vector<VoxelIndex> unseen;  ///< surface of an earlier scan, which no frame measured or saw through
   };
@@ -45,7 +46,7 @@ class GhostVotes {
     std::uint16_t occupied : 1 = 0;
     std::uint16_t seen = 0;
     std::uint16_t through = 0;
-    // Frames that see through it in the centre pixel, but not in the whole window.
+    // Number of frames that see through the voxel in its pixel, but not in the whole window.
     std::uint16_t glimpsed = 0;
   };
   // Returns the voxels for which are_such(votes, absence votes) is true.

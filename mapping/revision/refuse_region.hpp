@@ -1,4 +1,4 @@
-// refuse_region.hpp: erases a region of the static map and fuses it again from current frames.
+// refuse_region.hpp: erases samples in a region of the static map, and fuses current frames there.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -15,7 +15,8 @@ namespace roomradar {
 /// Region around a set of points: all grid cells that contain a point, and their 26 neighbours.
 class WorldRegion {
  public:
-  /// @param cell_m  edge of a cell, m, > 0; every point is one to two cells inside the region's border
+  /// @param cell_m  edge of a cell, m, > 0; the distance of every point from the region's border is one to
+  ///                two cells
   WorldRegion(std::span<const Eigen::Vector3d> points_world, double cell_m);
 
   [[nodiscard]] bool contains(const Eigen::Vector3d& p_world) const;
@@ -28,22 +29,23 @@ class WorldRegion {
   std::unordered_set<std::uint64_t> cells_;
 };
 
-/// A frame, its pose, and the depth that the map predicts at this pose before it is revised.
+/// A frame, its pose, and the depth that the map predicts at this pose before the revision.
 struct RegionView {
   Frame frame;
-  DepthImage expected_depth_m;  ///< same size as the frame's depth image; 0: the map has no surface there
+  DepthImage expected_depth_m;  ///< same size as the frame's depth image; 0: no surface in the map
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Updates a region of the map from the frames. Uses only pixels whose measured point is in the region, or
-/// whose expected point is in the region and whose measured depth is beyond it.
+/// Updates a region of the map from the frames. Uses only pixels whose measured point is in the region, and
+/// pixels whose expected point is in the region and whose measured depth is larger than the expected depth.
 ///
-/// Samples that more frames see through than measure become free, even behind the region, e.g. on the far
-/// side of a removed object. Samples in the region that at least one frame measures, within the truncation
-/// distance, are erased. Then the pixels are fused as in StaticMap::fuse(), which measures the erased samples
-/// again.
+/// A sample becomes free if more frames see through it than measure it. This includes samples behind the
+/// region, e.g. on the far side of a removed object. A sample in the region is erased if at least one frame
+/// measures a surface within the truncation distance of it. Then the selected pixels are fused as in
+/// StaticMap::fuse(), which measures the erased samples again.
 ///
-/// @param views  frames of one static scene; pass several, because a single frame's noise becomes surface
+/// @param views  frames of one static scene; pass several, since the noise of a single frame would become
+///               surface
 /// @return the box (world, m) in which surface may have changed; empty if nothing changed
 Eigen::AlignedBox3d refuse_region(StaticMap& map, const WorldRegion& region,
                                   std::span<const RegionView> views);

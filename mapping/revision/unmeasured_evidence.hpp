@@ -1,5 +1,5 @@
-// unmeasured_evidence.hpp: finds map surface of departed objects where no depth is measured behind them, such
-// as in front of glass or beyond the sensor's range.
+// unmeasured_evidence.hpp: finds surface of departed objects in the map where no depth is measured behind the
+// objects, such as in front of glass or of walls beyond the sensor's range.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -12,9 +12,10 @@
 
 namespace roomradar {
 
-/// Evidence from frames that do not measure a voxel's surface. Missing depth alone is no proof: dark and
-/// glossy surfaces give no depth at grazing angles. But seen from the same place a moment later, such
-/// surfaces keep their colour, and departed objects do not.
+/// Evidence from frames that do not measure a voxel's surface. Missing depth alone does not prove that the
+/// surface is gone, since dark and glossy surfaces give no depth at grazing angles. Colour distinguishes the
+/// two. Seen from the same camera position a moment later, the pixels of a dark or glossy surface keep their
+/// colour; the pixels of a departed object do not.
 struct AbsenceVotes {
   enum class State : std::uint8_t { kUnknown, kMeasured, kGone };
 
@@ -24,24 +25,25 @@ struct AbsenceVotes {
   std::uint16_t last_look = 0;      ///< index of the frame that last measured it or found it gone
   std::uint16_t turn_change = 0;    ///< sum over `turns` of the largest change of a colour channel
   std::uint16_t steady_change = 0;  ///< sum over `steadies` of the largest change of a colour channel
-  /// Switches between measured and gone, each between consecutive observations from one place.
+  /// Number of switches between measured and gone, in consecutive observations from one camera position.
   std::uint8_t turns = 0;
-  std::uint8_t steadies = 0;      ///< pairs of consecutive observations from one place, both measured
+  std::uint8_t steadies = 0;      ///< pairs of consecutive measured observations from one position
   State state = State::kUnknown;  ///< state in frame last_look
   Rgb colour{};                   ///< colour in frame last_look
 };
 
-/// Converts frames into votes. Use one instance per map, and pass frames in the order of the recording.
+/// Adds a frame's evidence to the votes of voxels. Use one instance per map, and pass frames in the order of
+/// the recording.
 class AbsenceVoter {
  public:
-  /// Call first for each frame.
+  /// Begins a frame. Call before measured() and unmeasured().
   void begin(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
-  /// Call if the frame measures the voxel's surface in the pixel to which the voxel projects.
+  /// Adds the vote of a frame that measures the voxel's surface in the pixel to which the voxel projects.
   void measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const;
-  /// Call if the frame has no depth in pixel x, y, to which the voxel projects.
+  /// Adds the vote of a frame that has no depth in pixel (x, y), to which the voxel projects.
   /// @param measured_share  fraction of pixels with depth, within about 3 cm of the voxel
-  /// @param beside_nearer   true if one of these pixels is nearer than the voxel: it may shadow the
-  ///                        projector's light
+  /// @param beside_nearer   true if one of these pixels is nearer than the voxel, so its surface may shadow
+  ///                        the projector's light
   /// @param has_colour      true if the voxel's colour is tracked
   void unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera, float measured_share,
                   bool beside_nearer, bool has_colour, AbsenceVotes& votes) const;
@@ -61,18 +63,20 @@ struct VotedVoxel {
   std::uint32_t position = 0;
 };
 
-/// Returns true if a voxel that `seen` frames measured is gone in enough frames to be in the core of a
-/// departed object.
+/// Returns true if a voxel that `seen` frames measured is gone in enough frames (at least 3, and at least
+/// twice as many as measured it) to be in the core of a departed object.
 bool may_be_absent(const AbsenceVotes& votes, int seen);
-/// Returns true if the evidence suffices for a voxel that is connected to such a core.
+/// Returns true if the voxel's evidence suffices to remove it together with a connected core voxel of a
+/// departed object.
 bool may_go_along(const AbsenceVotes& votes, int seen);
 
-/// Returns the candidates in connected groups of at least min_group_voxels whose colour changed between
-/// measured and gone. `votes` is indexed by VotedVoxel::position.
+/// Returns the candidates that are in connected groups of at least min_group_voxels and whose group changed
+/// colour between measured and gone. `votes` is indexed by VotedVoxel::position.
 std::vector<VotedVoxel> find_absent(std::span<const VotedVoxel> candidates,
                                     std::span<const AbsenceVotes> votes, double min_group_voxels);
 
-/// Returns the cores and all voxels connected to them through `going_along`, at most max_steps voxels away.
+/// Returns the core voxels, and those voxels of `going_along` that are connected to a core voxel within
+/// max_steps steps.
 std::vector<VotedVoxel> spread(std::vector<VotedVoxel> cores, std::span<const VotedVoxel> going_along,
                                int max_steps = std::numeric_limits<int>::max());
 

@@ -9,11 +9,13 @@ namespace roomradar {
 /// Waits until a file's content, or a folder's list of names, is on disk. Throws Error on failure.
 void sync_to_disk(const std::filesystem::path& path);
 
-/// New folder beside `target` (target.partial-PID); the destructor removes it unless commit() succeeded.
+/// New folder beside `target`, named target.partial-PID. The destructor removes the folder unless commit()
+/// succeeded.
 class AtomicFolder {
  public:
   /// Creates the folder and its parents. Removes partial folders that killed processes left beside `target`.
-  /// If interrupted_replacement_of() returns a folder, renames it back to `target`. Throws Error on failure.
+  /// If interrupted_replacement_of() returns a folder, renames that folder back to `target`. Throws Error on
+  /// failure.
   explicit AtomicFolder(const std::filesystem::path& target);
   ~AtomicFolder();
   AtomicFolder(const AtomicFolder&) = delete;
@@ -30,21 +32,21 @@ class AtomicFolder {
   std::filesystem::path partial_;
 };
 
-/// On a file system that cannot exchange two names, commit() needs two renames. If a process was killed
-/// between them, returns the old version of `target` (target.before-PID). Empty if `target` exists or there
-/// is none.
+/// Returns the old version of `target` (target.before-PID) if a process was killed during commit() and left
+/// no `target`. This can happen on a file system that cannot exchange two names, where commit() needs two
+/// renames. Returns an empty path if `target` exists or there is no old version.
 std::filesystem::path interrupted_replacement_of(const std::filesystem::path& target);
 
 /// Returns an identifier that changes when the folder is replaced by another of the same name. Empty if there
 /// is no folder.
 std::string folder_version(const std::filesystem::path& folder);
 
-/// Throws Error: the folder is replaced faster than it can be read.
+/// Throws an Error that says that the folder is replaced faster than it can be read.
 [[noreturn]] void fail_replaced_too_often(const std::filesystem::path& folder);
 
-/// Returns read()'s result from a single version of a folder that another process may replace meanwhile.
-/// Retries if the folder was replaced during read(), at most 100 times. Rethrows exceptions of read() only if
-/// the folder was not replaced.
+/// Calls read() until the folder was not replaced during the call, and returns that call's result. The result
+/// is thus from a single version of a folder that another process may replace. Makes at most 100 attempts.
+/// Rethrows an exception of read() only if the folder was not replaced during that call.
 template <typename Read>
 auto read_consistent(const std::filesystem::path& folder, const Read& read) {
   constexpr int kAttempts = 100;

@@ -1,4 +1,4 @@
-// binary_file.hpp: writes numbers to binary files and reads them without trusting the file.
+// binary_file.hpp: writes numbers to binary files, and reads and validates such files.
 #pragma once
 #include <bit>
 #include <cstddef>
@@ -47,7 +47,7 @@ class BinaryReader {
     take(&number, 1, what);
     return number;
   }
-  /// Takes a double; also fails if it is not finite.
+  /// Takes a double. Also throws if the number is not finite.
   double take_finite(const char* what);
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
   [[nodiscard]] std::string path() const { return path_.string(); }

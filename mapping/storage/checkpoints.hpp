@@ -16,11 +16,11 @@
 
 namespace roomradar {
 
-/// Folder of one unfinished piece of work: `work.json` (identity of the work), `lock`, and the last two
-/// checkpoints. Each checkpoint is a folder that appears atomically, after everything written earlier in the
-/// folder (such as a live scan's frames) is on disk. A forked child writes the checkpoint from a snapshot of
-/// the state while the work continues; the child dies with its parent. The folder is created with the first
-/// checkpoint. Only one process at a time can own it.
+/// Folder of one unfinished piece of work. It contains `work.json` (identity of the work), `lock`, and the
+/// last two checkpoints. Each checkpoint is a folder that appears atomically, after all files written earlier
+/// in the work's folder (such as a live scan's frames) are on disk. A forked child writes the checkpoint from
+/// a snapshot of the state while the work continues; the child dies with its parent. The work's folder is
+/// created with the first checkpoint. Only one process at a time can own it.
 class Checkpoints {
  public:
   using WriteFiles = WriteCheckpointFiles;
@@ -35,42 +35,44 @@ class Checkpoints {
   Checkpoints(const Checkpoints&) = delete;
   Checkpoints& operator=(const Checkpoints&) = delete;
 
-  /// Returns the newest intact checkpoint, or nullopt if there is none. Deletes damaged ones and lists them
-  /// in faults(). Throws Error if the folder's identity differs (naming the difference) or another process
-  /// has the lock.
+  /// Returns the newest intact checkpoint, or nullopt if there is none. Deletes damaged checkpoints that are
+  /// newer and lists them in faults(). Throws Error if the folder's identity differs (naming the difference)
+  /// or another process has the lock.
   std::optional<Checkpoint> resume();
 
   /// Throws Error naming the difference if the folder belongs to work with another identity.
   void require_same_work() const;
 
-  /// Returns true if `every_s` has passed since the last checkpoint began, and that checkpoint is complete.
+  /// Returns true if `every_s` has passed since the last checkpoint began, and no checkpoint is being
+  /// written.
   bool is_due();
-  /// For the end of a stage: waits for the last checkpoint to complete, and returns true if a third of
-  /// `every_s` has passed.
+  /// Waits for the last checkpoint to complete, and returns true if a third of `every_s` has passed since it
+  /// began. Call at the end of a stage.
   bool is_due_at_end();
   /// Starts a child process that writes a checkpoint; returns after a few milliseconds. If the child fails
-  /// (disk full), the previous checkpoint stays and failures() increases; only the first failure is reported
-  /// (tell_failure()).
+  /// (disk full), the previous checkpoint stays and failures() increases. Only the first failure is reported,
+  /// through the callback of tell_failure().
   void write(const std::string& stage, const WriteFiles& write_files);
-  /// Returns true if there is a checkpoint to resume from; waits for one that is being written.
+  /// Waits for a checkpoint that is being written. Returns true if there is a checkpoint to resume from.
   [[nodiscard]] bool has_any();
   /// Removes the folder of completed work.
   void remove();
-  /// Deletes the checkpoints, so the work starts from the beginning; other files in the folder stay.
+  /// Deletes the checkpoints, so the work restarts from its beginning. Other files in the folder stay.
   void forget();
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// Creates and locks the folder now, for callers that store their own files in it.
   void ensure_folder();
-  /// One sentence per damaged checkpoint that resume() skipped.
+  /// Returns one sentence per damaged checkpoint that resume() skipped.
   [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
   [[nodiscard]] std::int64_t failures() const { return failures_; }
-  /// Sets a callback for the first checkpoint that cannot be written; none by default.
+  /// Sets a callback that is called when a checkpoint cannot be written for the first time. There is none by
+  /// default.
   void tell_failure(std::function<void(const std::string& sentence)> tell) { tell_ = std::move(tell); }
 
  private:
   void take_lock();
-  /// Time since the last checkpoint began, or since construction.
+  /// Returns the time since the last checkpoint began, or since construction if there is none.
   [[nodiscard]] double since_last_s() const;
   void note_written(bool is_written);
   void fail_to_write();

@@ -5,7 +5,7 @@
 
 namespace roomradar {
 
-/// SHA-256 as 64 lower-case hexadecimal digits. Throws Error if the file cannot be read.
+/// Returns the SHA-256 as 64 lower-case hexadecimal digits. Throws Error if the file cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// bit_grid.hpp: a 3D bit grid, 64 voxels of a row per word, with set and morphological operations.
+// bit_grid.hpp: a 3D grid of bits, with set operations and morphological operations on 64 voxels of a row at
+// a time.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -9,8 +10,8 @@
 
 namespace roomradar {
 
-/// Rows run along x. All functions treat voxels outside the grid as clear. Unused bits in the last word of a
-/// row are always clear.
+/// 3D grid with one bit per voxel. Rows run along x, with 64 voxels per word. All functions treat voxels
+/// outside the grid as clear. Unused bits in the last word of a row are always clear.
 class BitGrid {
  public:
   BitGrid() = default;
@@ -20,7 +21,7 @@ class BitGrid {
   [[nodiscard]] const Eigen::Vector3i& size() const { return size_; }
   [[nodiscard]] std::size_t memory_bytes() const { return words_.size() * sizeof(std::uint64_t); }
   [[nodiscard]] bool at(const Eigen::Vector3i& p) const;
-  /// p must be in the grid.
+  /// Sets one voxel, which must be in the grid.
   void set(const Eigen::Vector3i& p, bool value) { set_box(p, p + Eigen::Vector3i::Ones(), value); }
   /// Sets the voxels in [low, high), clipped to the grid.
   void set_box(const Eigen::Vector3i& low, const Eigen::Vector3i& high, bool value);
@@ -34,8 +35,9 @@ class BitGrid {
   /// Returns a grid in which each voxel has the value of its neighbour `step` (-1 or 1) along the axis.
   [[nodiscard]] BitGrid shifted(int axis, int step) const;
 
-  /// Dilates by one step along the axes, restricted to `where`. A voxel set in blocked[axis] blocks the step
-  /// between it and the next voxel along that axis, in both directions. All grids have the same size.
+  /// Dilates by one step along the axes, restricted to the voxels set in `where`. A voxel set in
+  /// blocked[axis] blocks the step between that voxel and the next voxel along the axis, in both directions.
+  /// All grids must have the same size.
   void spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
   /// Repeats spread() until nothing changes.
   void flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
@@ -51,8 +53,8 @@ class BitGrid {
             if (x < size_.x()) visit(Eigen::Vector3i(x, y, z));
           }
   }
-  /// Calls visit(first voxel, length) for each run of set voxels along x, in the same order. A run longer
-  /// than 64 voxels may be visited as several consecutive runs.
+  /// Calls visit(first voxel, length) for each run of set voxels along x, in the order of for_each_set(). A
+  /// run that crosses a multiple of 64 in x is visited as several consecutive runs.
   template <typename Visit>
   void for_each_run(const Visit& visit) const {
     for (int z = 0; z < size_.z(); ++z)
@@ -79,7 +81,8 @@ class BitGrid {
     return words_.data() + row_index(y, z) * words_a_row_;
   }
   void clear_row_ends();
-  /// Dilates `source`, which may be this grid, into one row. Returns true if a voxel was added.
+  /// Adds to one row the voxels that dilating `source` sets in it. `source` may be this grid. Returns true if
+  /// a voxel was added.
   bool spread_to_row(const BitGrid& source, const BitGrid& where, const std::array<BitGrid, 3>& blocked,
                      int y, int z);
 
@@ -88,9 +91,9 @@ class BitGrid {
   std::vector<std::uint64_t> words_;
 };
 
-/// Morphological opening by a cube: keeps the voxels that are in a cube of edge x edge x edge set voxels and
-/// removes thinner parts. With lattice > 1, only cubes whose lowest voxel's coordinates are multiples of
-/// `lattice` are considered. edge and lattice must be >= 1.
+/// Returns the morphological opening by a cube: keeps the voxels that are in a cube of edge x edge x edge set
+/// voxels, and removes thinner structures. With lattice > 1, considers only cubes whose lowest voxel's
+/// coordinates are multiples of `lattice`. edge and lattice must be >= 1.
 BitGrid opened(const BitGrid& bits, int edge, int lattice = 1);
 
 }  // namespace roomradar

@@ -5,19 +5,20 @@
 
 namespace roomradar {
 
-/// Each cell of eight neighbouring samples gets one vertex per surface sheet, at the mean of the sheet's zero
-/// crossings on the cell's edges. Each crossed edge whose four cells have vertices gets a quad (two
-/// triangles). A cell with an unknown corner has no vertex, so unobserved areas stay open. Extrapolated
-/// samples count as corners, but an edge with an extrapolated end gets no quad, and its crossing has little
-/// weight in a vertex. Vertices are in the world (mesh.origin + vertex). Triangles and normals (gradient of
-/// the trilinear distance) face the free side. Colours are the samples', grey if they have none.
+/// Extracts the surface by dual marching cubes. A cell is a cube whose eight corners are neighbouring
+/// samples. Each cell gets one vertex per surface sheet, at the mean of the sheet's zero crossings on the
+/// cell's edges. Each crossed edge whose four cells have vertices gets a quad (two triangles). A cell with an
+/// unknown corner has no vertex, so unobserved areas stay open. Extrapolated samples count as known corners,
+/// but an edge with an extrapolated end gets no quad, and a crossing on such an edge has little weight in a
+/// vertex. Vertices are in the world (mesh.origin + vertex). Triangles and normals (gradient of the trilinear
+/// distance) face the free side. Colours come from the samples, or are grey if the samples have none.
 ///
-/// Edges are manifold: each has two triangles, or one where the samples end. The crossings on a cell's faces
-/// determine its sheets; an ambiguous face (equal signs on each diagonal) separates its two inside corners.
-/// If all four crossings of such a face then belong to one sheet in both adjacent cells, the face separates
-/// its outside corners instead. Source: Gibson, Constrained Elastic Surface Nets, MICCAI 1998 (placement);
-/// Nielson, Dual Marching Cubes, IEEE Visualization 2004 (sheets); Wenger, Isosurfaces, CRC Press 2013,
-/// chapter 3 (manifold faces).
+/// Edges of the mesh are manifold: each has two triangles, or one where the samples end. The crossings on a
+/// cell's faces determine the cell's sheets. An ambiguous face (equal signs on each diagonal) separates its
+/// two inside corners. If all four crossings of an ambiguous face then belong to one sheet in both adjacent
+/// cells, the face separates its outside corners instead. Source: Gibson, Constrained Elastic Surface Nets,
+/// MICCAI 1998 (placement); Nielson, Dual Marching Cubes, IEEE Visualization 2004 (sheets); Wenger,
+/// Isosurfaces, CRC Press 2013, chapter 3 (manifold faces).
 Mesh dual_marching_cubes(const TsdfBricks& bricks, double resolution_m);
 
 }  // namespace roomradar

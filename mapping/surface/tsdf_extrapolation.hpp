@@ -4,11 +4,11 @@
 
 namespace roomradar {
 
-/// Extrapolates a distance to each unknown voxel that shares a face with a known voxel, in two rounds, and
-/// marks the sample as extrapolated. The distance is the mean of the linear extrapolations from the sides
-/// with two known voxels in line, or else the mean of the known face neighbours. Adds no bricks. Afterwards
-/// all eight corners of every cell around a measured zero crossing are known, so the surface extends as far
-/// as the measurements.
+/// Extrapolates, in two rounds, a distance to each unknown voxel that shares a face with a known voxel, and
+/// marks the sample as extrapolated. The distance is the mean of the linear extrapolations from those of the
+/// six directions in which the next two voxels are known. If there is no such direction, the distance is the
+/// mean of the known face neighbours. Adds no bricks. Afterwards all eight corners of every cell around a
+/// measured zero crossing are known, so the surface extends as far as the measurements.
 void extrapolate_neighbours(TsdfBricks& bricks);
 
 }  // namespace roomradar

@@ -7,10 +7,10 @@ namespace roomradar {
 /// Smooths each known distance x_i from its measured value d_i towards its axis neighbours, by in-place
 /// sweeps:
 ///   x_i = (w_i d_i + s sum over axes (x_before + x_after) / 2) / (w_i + s count of axes),
-/// with w_i the sample's weight and s `strength` (> 0, in units of one measurement from 1 m). Axes with an
-/// unknown neighbour are left out, so flat surfaces stay in place at any strength. The smoothing radius is
-/// sqrt(s / w) voxels: a wall scanned from 1 m keeps its detail, a wall glimpsed from 4 m is averaged over
-/// several voxels. Source: weighted diffusion, the Gauss-Seidel steps of a screened Poisson equation.
+/// where w_i is the sample's weight and s is `strength` (> 0, in units of one measurement from 1 m). Axes
+/// with an unknown neighbour are left out, so flat surfaces do not move at any strength. The smoothing radius
+/// is sqrt(s / w) voxels: a wall scanned from 1 m keeps its detail, a wall measured once from 4 m is averaged
+/// over several voxels. Source: weighted diffusion, the Gauss-Seidel steps of a screened Poisson equation.
 void smooth(TsdfBricks& bricks, float strength, int sweeps);
 
 }  // namespace roomradar

@@ -10,20 +10,20 @@
 namespace roomradar {
 
 struct UnknownSurfaceConfig {
-  /// Edge of a cube, voxels, 1 to 16. Unknown space counts only where such a cube of it fits. Objects can
-  /// pass through thinner unknown space (gaps between rays, slivers beside depth edges, single voxels). The
-  /// search for reachable unknown space starts in free space where such a cube fits.
+  /// Edge of a cube, voxels, 1 to 16. Unknown space counts only where the cube fits into it. Objects can pass
+  /// through thinner unknown space (gaps between rays, slivers beside depth edges, single voxels). The search
+  /// for reachable unknown space starts in free space into which the cube fits.
   int least_voxels = 3;
   /// Edge, voxels, 1 to 6, of the wholly unknown cubes whose faces form the surface. The surface is less than
-  /// one such cube behind the border of the unknown space that counts.
+  /// one cube edge behind the border of the unknown space that counts.
   int cube_voxels = 2;
-  /// The surface continues for this many voxels past the border of observed surfaces, and through occupied
-  /// voxels for which the static mesh has no surface. 1 to 16, and at least 3 * (cube_voxels - 1), the max
-  /// number of steps from the border to the nearest cube.
+  /// Number of voxels by which the surface continues past the border of observed surfaces, and through
+  /// occupied voxels for which the static mesh has no surface. 1 to 16, and at least 3 * (cube_voxels - 1),
+  /// which is the max number of steps from the border to the nearest cube.
   int rim_voxels = 4;
-  /// Connected components of unknown space with fewer voxels do not count if no occupied voxel is within
-  /// cube_voxels steps: rays passed them on all sides, and only depth was missing, as in front of a dark
-  /// object. 0 to 10^9.
+  /// Min number of voxels, 0 to 10^9, of a connected component of unknown space that has no occupied voxel
+  /// within cube_voxels steps. Smaller such components do not count: rays passed them on all sides, and only
+  /// depth was missing, as in front of a dark object.
   int pocket_voxels = 1000;
 };
 
@@ -34,25 +34,26 @@ inline constexpr double kMaxUnknownCells = 2e8;  ///< max cells of the grid: 25 
 
 struct UnknownSurface {
   Mesh mesh_world;  ///< no colours, no normals; triangles face away from unknown space
-  CellGrid grid;    ///< cells of one voxel each, or of several if the map exceeds kMaxUnknownCells
+  CellGrid grid;    ///< cells of one voxel each, or larger if the map exceeds kMaxUnknownCells
   BitGrid unknown;  ///< cells of unknown space that counts; all space outside the grid is unknown, too
   std::size_t memory_bytes = 0;  ///< approximate temporary memory of the extraction, without the mesh
 };
 
-/// Extracts the border of the unknown space that counts (see UnknownSurfaceConfig), where it can be reached
-/// from free space without crossing `surface_world`, the map's own surface. Space outside the known bounds of
-/// the map is unknown, too.
+/// Extracts the border of the unknown space that counts (see UnknownSurfaceConfig), as far as the border can
+/// be reached from free space without crossing `surface_world`, the map's own surface. Space outside the
+/// known bounds of the map is unknown, too.
 ///
-/// The result is inside unknown space, never in free space: less than cube_voxels voxels behind its border
-/// along each axis. A straight path from the starting free space into unknown cubes crosses this surface or
-/// the static one; the two overlap at the border. Only an object thinner than a voxel may slip through an
-/// equally small hole of the static surface. Rectangles are as large as the cubes allow. Empty for a map
-/// without free space. Takes about 0.4 s for 50 million voxels. Throws Error if the config is invalid.
+/// The resulting surface is inside unknown space, never in free space. Along each axis, it is less than
+/// cube_voxels voxels behind the border of unknown space. A straight path from the free space in which the
+/// search started into unknown cubes crosses this surface or the static surface; the two overlap at the
+/// border of observed surfaces. Only an object thinner than a voxel may slip through an equally small hole of
+/// the static surface. Cube faces are merged into rectangles as large as possible. The result is empty for a
+/// map without free space. Takes about 0.4 s for 50 million voxels. Throws Error if the config is invalid.
 UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
                                const UnknownSurfaceConfig& config = {});
 
-/// Returns true if a point is in unknown space that counts, or is not finite. Always false if the map had no
-/// free space.
+/// Returns true if a point is in unknown space that counts, or is not finite. Returns false for every point
+/// if the map had no free space.
 bool is_unknown(const UnknownSurface& surface, const Eigen::Vector3d& p_world);
 
 }  // namespace roomradar

@@ -5,18 +5,18 @@
 
 namespace roomradar {
 
-/// Standard deviation (m) of a Kinect v1 depth measurement along the optical axis. sigma(z) = 0.0012 + 0.0019
-/// (z - 0.4)^2, for surfaces seen at up to 60 degrees from the normal; constant below 0.4 m. Source: Nguyen,
-/// Izadi, Lovell, Modeling Kinect Sensor Noise for Improved 3D Reconstruction and Tracking, 3DIMPVT 2012,
-/// equation (3) without the angular term.
+/// Returns the standard deviation (m) of a Kinect v1 depth measurement along the optical axis: sigma(z) =
+/// 0.0012 + 0.0019 (z - 0.4)^2, constant below 0.4 m. Valid for surfaces seen at up to 60 degrees from the
+/// normal. Source: Nguyen, Izadi, Lovell, Modeling Kinect Sensor Noise for Improved 3D Reconstruction and
+/// Tracking, 3DIMPVT 2012, equation (3) without the angular term.
 inline float depth_sigma_m(float depth_m) {
   const float beyond_m = std::max(depth_m - 0.4F, 0.0F);
   return 0.0012F + 0.0019F * beyond_m * beyond_m;
 }
 
-/// The same, plus the term for the angle between viewing ray and surface normal, which matters beyond 60
-/// degrees: sigma(z, theta) = sigma(z) + 0.0001 / sqrt(z) * theta^2 / (pi/2 - theta)^2. The angle is clamped
-/// to 85 degrees; z in the added term is at least 0.1 m.
+/// Returns depth_sigma_m(depth_m) plus the term for the angle between viewing ray and surface normal, which
+/// matters beyond 60 degrees: sigma(z, theta) = sigma(z) + 0.0001 / sqrt(z) * theta^2 / (pi/2 - theta)^2. The
+/// angle is clamped to 85 degrees, and z in the added term to at least 0.1 m.
 inline float depth_sigma_m(float depth_m, float incidence_rad) {
   const float theta = std::clamp(incidence_rad, 0.0F, 1.4835F);
   const float from_grazing = 1.5707963F - theta;

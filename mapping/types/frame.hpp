@@ -1,4 +1,4 @@
-// frame.hpp: depth, colour, cameras and pose delivered by a sensor at one instant.
+// frame.hpp: depth, colour, cameras and pose that a sensor delivers at one instant.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// In names, `camera` alone means the depth camera.
+/// One frame of a sensor. In names, `camera` alone means the depth camera.
 struct Frame {
   std::int64_t index = 0;  ///< index in the recording from 0, skipped frames included
   double stamp_s = 0.0;    ///< sensor time; index / 30 in a recording without timestamps
@@ -27,7 +27,7 @@ struct Frame {
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame
 };
 
-/// Copies index, times, cameras and poses; the images of `to` stay.
+/// Copies index, times, cameras, pose and gravity; the images of `to` stay.
 inline void copy_all_but_images(const Frame& from, Frame& to) {
   to.index = from.index;
   to.stamp_s = from.stamp_s;

@@ -17,7 +17,7 @@ enum class ReadStatus {
 struct [[nodiscard]] ReadResult {
   ReadStatus status = ReadStatus::kEnd;
   std::string fault;     ///< a sentence; only with kSkipped
-  bool waiting = false;  ///< with kSkipped: no frame was lost; a live source delivered none in time
+  bool waiting = false;  ///< only with kSkipped: a live source delivered no frame in time; none was lost
 };
 
 /// Delivers frames in the order of their timestamps. Not thread safe.
@@ -32,17 +32,18 @@ class FrameSource {
   /// the source cannot continue: device gone, disk error, or ten unreadable frames in a row.
   virtual ReadResult next(Frame& frame) = 0;
 
-  /// Goes back to the first frame and returns true; returns false if this source cannot (a live device).
+  /// Goes back to the first frame and returns true. Returns false if the source cannot rewind (a live
+  /// device).
   virtual bool rewind() = 0;
 
-  /// Jumps to frame `index` (0 .. frame_count() - 1) without reading the frames between; next() then delivers
-  /// it. Returns false and changes nothing if this source only reads sequentially.
+  /// Jumps to frame `index` (0 .. frame_count() - 1), which next() then delivers, without reading the frames
+  /// between. Returns false and changes nothing if this source only reads sequentially.
   virtual bool seek(std::int64_t /*index*/) { return false; }
 
-  /// Total number of frames, bad ones included; nullopt if unknown in advance.
+  /// Returns the total number of frames, unreadable ones included; nullopt if unknown in advance.
   [[nodiscard]] virtual std::optional<std::int64_t> frame_count() const = 0;
 
-  /// The source as the user named it, for messages and reports.
+  /// Returns the source's name as the user gave it, for messages and reports.
   [[nodiscard]] virtual std::string name() const = 0;
 };
 

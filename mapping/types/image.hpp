@@ -12,7 +12,7 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// height x width pixels, row-major from the top left, without padding between rows.
+/// Image of height x width pixels, row-major from the top left, without padding between rows.
 template <typename Pixel>
 struct Image {
   int width = 0;
@@ -40,11 +40,11 @@ struct Image {
   const Pixel* row(int y) const { return pixels.data() + index(0, y); }
 };
 
-/// Depth along the optical axis, m; 0: no measurement. Never NaN, negative or infinite: frame sources
-/// guarantee this and all other code relies on it.
+/// Depth along the optical axis, m; 0: no measurement. Always finite and >= 0: frame sources guarantee these
+/// limits, and all other code relies on them.
 using DepthImage = Image<float>;
 using ColourImage = Image<Rgb>;
-/// One byte per pixel, 0 or 255.
+/// Mask with one byte per pixel, 0 or 255.
 using MaskImage = Image<std::uint8_t>;
 
 }  // namespace roomradar

@@ -4,21 +4,21 @@
 
 namespace roomradar {
 
-/// Radial and tangential distortion, OpenCV's k1 k2 p1 p2 k3; all 0 means a pinhole. Source: Brown,
-/// Decentering distortion of lenses, Photogrammetric Engineering 1966.
+/// Radial and tangential distortion with OpenCV's coefficients k1 k2 p1 p2 k3. All 0 means a pinhole camera.
+/// Source: Brown, Decentering distortion of lenses, Photogrammetric Engineering 1966.
 struct Lens {
   double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;
   friend bool operator==(const Lens&, const Lens&) = default;
 };
 
-/// Normalised image coordinates: the image plane at z = 1, x right, y down, no unit.
+/// Point in normalised image coordinates: on the image plane at z = 1, x right, y down, without unit.
 template <typename Scalar>
 struct PlanePoint {
   Scalar x{}, y{};
 };
 
-/// Distorts the normalised point `p`. Scalar and Coefficient may each be an automatic-differentiation type,
-/// so the coefficients are separate parameters.
+/// Distorts the normalised point `p`. The coefficients are separate parameters rather than a Lens, since
+/// Scalar and Coefficient may be automatic-differentiation types.
 template <typename Scalar, typename Coefficient>
 PlanePoint<Scalar> distorted(const PlanePoint<Scalar>& p, const Coefficient& k1, const Coefficient& k2,
                              const Coefficient& p1, const Coefficient& p2, const Coefficient& k3) {
@@ -31,8 +31,8 @@ inline PlanePoint<double> distorted(const PlanePoint<double>& p, const Lens& len
   return distorted(p, lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
 }
 
-/// Inverse of distorted(), by a fixed number of Newton steps. Accurate to 1e-12 for lenses that move no image
-/// point by more than a tenth of its distance from the centre.
+/// Inverts distorted() by a fixed number of Newton steps. Accurate to 1e-12 for lenses that move no image
+/// point by more than a tenth of the point's distance from the centre.
 template <typename Scalar, typename Coefficient>
 PlanePoint<Scalar> undistorted(const PlanePoint<Scalar>& p_distorted, const Coefficient& k1,
                                const Coefficient& k2, const Coefficient& p1, const Coefficient& p2,
@@ -49,7 +49,8 @@ PlanePoint<Scalar> undistorted(const PlanePoint<Scalar>& p_distorted, const Coef
     const Scalar xy = p.x * p.y * growth + 2.0 * p1 * p.x + 2.0 * p2 * p.y;
     const Scalar yy = radial + p.y * p.y * growth + 6.0 * p1 * p.y + 2.0 * p2 * p.x;
     const Scalar determinant = xx * yy - xy * xy;
-    // The model folds the image here. No real lens does, but a file may contain such coefficients.
+    // At this point, the model folds the image. No real lens does so, but a file may contain such
+    // coefficients.
     if (!(determinant > Scalar(0.1))) {
       p = {p.x + missing_x, p.y + missing_y};
       continue;

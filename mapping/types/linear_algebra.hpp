@@ -1,4 +1,5 @@
-// linear_algebra.hpp: small dense problems solved by Eigen, compiled once.
+// linear_algebra.hpp: solvers for small dense problems, which wrap Eigen's so that these are compiled only
+// once.
 //
 // Eigen's decompositions take seconds to compile in every source that instantiates them.
 #pragma once
@@ -18,17 +19,17 @@ struct SymmetricEigen {
   Eigen::Matrix<double, N, N> vectors;
 };
 
-/// Eigendecomposition of a symmetric matrix; only its lower triangle is read. Matrices that are not finite do
-/// not converge.
+/// Returns the eigendecomposition of a symmetric matrix, of which only the lower triangle is read. Matrices
+/// that are not finite do not converge.
 SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A);
 SymmetricEigen<6> symmetric_eigen(const Matrix6d& A);
 
-/// Returns x with A x = b, for A symmetric and positive or negative semidefinite (LDLT with pivoting). Not
-/// finite if A or b is not.
+/// Returns the x that solves A x = b, for A symmetric and positive or negative semidefinite (LDLT with
+/// pivoting). The result is not finite if A or b is not.
 Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
 Vector6d solve_symmetric(const Matrix6d& A, const Vector6d& b);
 
-/// Returns the inverse by LU decomposition; not finite if A is singular.
+/// Returns the inverse, by LU decomposition. The result is not finite if A is singular.
 Matrix6d inverse(const Matrix6d& A);
 
 /// Returns the orthogonal matrix nearest to A in the least-squares sense: U V' of A's singular value

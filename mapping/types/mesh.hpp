@@ -1,4 +1,5 @@
-// mesh.hpp: triangle meshes with float vertices relative to a local origin, which keeps them precise.
+// mesh.hpp: triangle meshes. Vertices are floats relative to a local origin, so they stay precise far from
+// zero.
 #pragma once
 #include <Eigen/Core>
 #include <array>

@@ -14,8 +14,9 @@ constexpr std::uint64_t spread_bits(std::uint32_t key) {
   return x;
 }
 
-/// Returns the Morton code of coordinates in 0..65535. Its octal digits are the child indices from an
-/// octree's root down (x has weight 1, y 2, z 4), which is OctoMap's child numbering for 16-bit keys.
+/// Returns the Morton code of coordinates in 0..65535. The code's octal digits are the child indices on the
+/// path from an octree's root to the voxel (x has weight 1, y 2, z 4). This is OctoMap's child numbering for
+/// 16-bit keys.
 constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return spread_bits(x) | spread_bits(y) << 1U | spread_bits(z) << 2U;
 }

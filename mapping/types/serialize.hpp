@@ -1,4 +1,5 @@
-// serialize.hpp: binary serialization; serialize() lists each type's fields once, for writing and reading.
+// serialize.hpp: binary serialization. For each type, one function serialize() lists the fields for both
+// writing and reading.
 #pragma once
 #include <Eigen/Geometry>
 #include <bit>
@@ -30,8 +31,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads bytes written by a ByteWriter. The input is not trusted: sizes are checked before memory is
-/// allocated. Invalid values throw Error naming the file.
+/// Reads and validates bytes written by a ByteWriter. Sizes are checked before memory is allocated. Invalid
+/// values throw Error naming the file.
 class ByteReader {
  public:
   static constexpr bool kReads = true;
@@ -79,7 +80,7 @@ void serialize(Archive& archive, Number& number) {
   }
 }
 
-/// Enumeration whose values run from 0 to `last`.
+/// Serializes an enumeration whose values run from 0 to `last`.
 template <typename Archive, typename Enum>
 requires std::is_enum_v<Enum>
 void serialize(Archive& archive, Enum& value, Enum last) {
@@ -102,7 +103,7 @@ void serialize(Archive& archive, std::string& text) {
   archive.raw(text.data(), size);
 }
 
-/// Fixed-size matrices, as raw scalars in Eigen's storage order.
+/// Serializes a fixed-size matrix as raw scalars in Eigen's storage order.
 template <typename Archive, typename Scalar, int kRows, int kColumns>
 void serialize(Archive& archive, Eigen::Matrix<Scalar, kRows, kColumns>& matrix) {
   static_assert(kRows > 0 && kColumns > 0);

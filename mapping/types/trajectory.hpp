@@ -1,4 +1,4 @@
-// trajectory.hpp: poses over time, and their file in the TUM RGB-D benchmark's format.
+// trajectory.hpp: poses over time, their file in the TUM RGB-D benchmark's format, and trajectory errors.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -18,9 +18,9 @@ struct TimedPose {
 /// digits to restore values within 1e-9. Throws Error if the file cannot be written.
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory);
 
-/// Reads a file of this format; lines starting with # are comments. frame_index counts the poses, from 0.
-/// Throws Error naming file and line if a line does not have 8 finite numbers or its quaternion is not a unit
-/// quaternion.
+/// Reads a file written by write_trajectory(); lines starting with # are comments. frame_index counts the
+/// poses, from 0. Throws Error naming file and line if a line does not have 8 finite numbers or its
+/// quaternion is not a unit quaternion.
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& path);
 
 struct TrajectoryError {
@@ -30,20 +30,20 @@ struct TrajectoryError {
   Eigen::Isometry3d T_reference_estimate = Eigen::Isometry3d::Identity();
 };
 
-/// Computes the absolute trajectory error: distances of positions matched by frame index, after the best
-/// rigid alignment (scale 1). TrajectoryError::poses is 0 if fewer than 3 match. Source: Horn 1987; Sturm et
-/// al., IROS 2012.
+/// Computes the absolute trajectory error: the distances between positions matched by frame index, after the
+/// best rigid alignment (scale 1). TrajectoryError::poses is 0 if fewer than 3 positions match. Source: Horn
+/// 1987; Sturm et al., IROS 2012.
 TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
                                           const std::vector<TimedPose>& reference);
 
-/// Returns the T_reference_estimate that best aligns whole poses matched by frame index: the camera's
-/// position, and the points 1 m along its axes. Positions alone would not constrain the rotation if the
-/// camera hardly moved or moved along a line. Returns nullopt if no pose matches.
+/// Returns the T_reference_estimate that best aligns poses matched by frame index. Each pose contributes the
+/// camera's position and the points 1 m along its axes, since positions alone would not constrain the
+/// rotation if the camera hardly moved or moved along a line. Returns nullopt if no pose matches.
 std::optional<Eigen::Isometry3d> pose_alignment(const std::vector<TimedPose>& estimate,
                                                 const std::vector<TimedPose>& reference);
 
-/// Returns the distance between the two last positions, m, after aligning the first poses; 0 if a trajectory
-/// is empty. The first poses must be of the same frame, and so must the last poses.
+/// Returns the distance between the last positions of both trajectories, m, after aligning their first poses;
+/// 0 if a trajectory is empty. Both first poses must belong to one frame, and both last poses to one frame.
 double end_gap_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference);
 
 }  // namespace roomradar

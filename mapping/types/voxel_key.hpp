@@ -5,10 +5,10 @@
 
 namespace roomradar {
 
-/// a / b rounded towards minus infinity; b > 0.
+/// Returns a / b rounded towards minus infinity; b > 0.
 inline int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
-/// Hash key of a cell; distinct for cells less than 2^21 apart along each axis.
+/// Returns the hash key of a cell. Keys are distinct for cells less than 2^21 apart along each axis.
 inline std::uint64_t voxel_key(std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto field = [](std::int64_t i) { return static_cast<std::uint64_t>(i + (1 << 20)) & 0x1F'FFFFU; };
   return field(x) | field(y) << 21U | field(z) << 42U;
@@ -19,7 +19,7 @@ inline std::uint64_t voxel_key(const Eigen::Vector3i& cell) {
 
 inline constexpr int kCellsRound = 27;
 inline constexpr int kOwnCell = 13;
-/// Offset from a cell to its i-th neighbour, 0 <= i < 27; kOwnCell is the offset zero.
+/// Returns the offset from a cell to its i-th neighbour, 0 <= i < 27; for i = kOwnCell, the offset is zero.
 inline Eigen::Vector3i neighbour_offset(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
 
 }  // namespace roomradar

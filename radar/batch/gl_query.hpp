@@ -20,14 +20,14 @@ enum class GlMinimum {
 struct GlRadarConfig {
   /// Number of samples along the longer side of the object's outline, 1 to 4096.
   int resolution_px = 128;
-  /// Surfaces more than this behind the object's front surface, in a pixel, are ignored.
+  /// In each pixel, surfaces more than this distance behind the object's front surface are ignored.
   double overlap_tolerance_m = 0.03;
   /// Side of the textures shared by many queries, 1 to 16384.
   int atlas_px = 2048;
   GlMinimum minimum = GlMinimum::kAuto;
-  /// Runs CyberRadar for a query whose lower_m would be 0 for lack of resolution (see GlRadar), so the result
-  /// is exact. Requires that all meshes that intersect the query's volume share a triangle tree
-  /// (GpuMesh::tree()).
+  /// True: a query whose lower_m would be 0 for lack of resolution (see GlRadar) gets an exact result from
+  /// CyberRadar. Requires a triangle tree (GpuMesh::tree()) for the object and for every mesh that intersects
+  /// the query's volume.
   bool exact_fallback = true;
 };
 /// Checks that all values are in their ranges.
@@ -43,11 +43,12 @@ struct GlQuery {
   Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();
   /// Max distance to search, > 0, at most 10 km.
   double distance_m = 0.0;
-  /// Index in the scene of the object itself, which is skipped.
+  /// Index of the object itself in the scene; the query skips this mesh. kNotInScene if it is not in the
+  /// scene.
   std::size_t own_index = kNotInScene;
 };
 
-/// Returns false for a query that GlRadar rejects for every scene.
+/// Returns false if GlRadar rejects the query whatever the scene is.
 bool is_usable(const GlQuery& query);
 
 }  // namespace roomradar

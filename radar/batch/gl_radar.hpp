@@ -22,8 +22,8 @@
 
 namespace roomradar {
 
-/// An object that moves along a line first touches the scene at the pixel with the least gap ahead of its
-/// front.
+/// An object that moves along a line first touches the scene in the pixel where the gap between the object's
+/// front and the scene ahead of it is least.
 ///
 ///     rear plane                                                  far plane
 ///        |<------------------------ d ------------------------------->|
@@ -32,32 +32,36 @@ namespace roomradar {
 ///        |                               |<--------------- M -------->|      L = R + M - d
 ///
 /// u is the direction of motion. M is the object's depth image (its mask) seen from the far plane. R is the
-/// scene's depth image seen from the rear plane, limited to the object's outline. L is the gap between them
-/// in each pixel; the least L is the distance to contact. L is defined only in pixels that both the object
-/// and the scene cover. R is the first surface not behind the object's front. A surface behind the front is
-/// ignored in a pixel if it
+/// scene's depth image seen from the rear plane, limited to the object's outline. L is the gap between object
+/// and scene in each pixel; the least L is the distance to contact. L is defined only in pixels that both the
+/// object and the scene cover. In each pixel, R shows the first scene surface that is not behind the object's
+/// front. A surface behind the front is ignored in a pixel if it
 ///   - is back-facing, since the object moves away from it (for example the table that a plate is
 ///     lifted from), or
-///   - is behind by more than overlap_tolerance_m or the object's own length, whichever is less, or
-///   - is not certainly inside the front slab, the object's material between its front and the next rear
-///     surface (it may be in a concavity, such as the hole of a handle).
+///   - is farther behind the front than overlap_tolerance_m or than the object's length along u, or
+///   - is not certainly inside the front slab (the solid between the object's front and its next surface
+///     behind the front), since it may be in a concavity such as the hole of a handle.
 ///
 /// contact_distance_m is sampled, so it can be wrong in three ways. A spike or sheet thinner than a pixel may
-/// be missed. A surface in a concavity is compared with the object's front only. And contact_distance_m is
-/// too large by about half a pixel's diagonal times the sum of both surfaces' slopes.
+/// be missed. A surface in a concavity is compared with the object's front only. On sloped surfaces,
+/// contact_distance_m is too large by about half a pixel's diagonal times the sum of the two surfaces'
+/// slopes.
 ///
-/// lower_m and upper_m are guaranteed bounds. They come from the same two passes: each pixel also stores
-/// depth bounds of the surfaces that may touch its square, and of those that certainly cross its sample line.
-/// lower_m is 0 if, in one of the object's pixels, scene is neither certainly ahead of the object nor
-/// certainly behind it, for example a wall passed closer than a pixel, or a peg in a hole. Such a query gets
-/// the exact test on the CPU if possible (GlRadarConfig::exact_fallback); then lower_m = upper_m.
+/// lower_m and upper_m are guaranteed bounds. Both come from the same two passes. Each pixel also stores
+/// depth bounds of two sets of surfaces: those that may touch the pixel's square, and those that certainly
+/// cross its sample line (the line along u through its sample position). lower_m is 0 if, in one of the
+/// object's pixels, a scene surface is neither certainly ahead of the object nor certainly behind it.
+/// Examples are a wall that the object passes at less than a pixel's distance, and a peg in a hole. Such a
+/// query is repeated with the exact test on the CPU if possible (GlRadarConfig::exact_fallback); then lower_m
+/// = upper_m.
 ///
-/// One-sided surfaces (is_one_sided(), for example the frontier of observed space) block from both sides
-/// here; use CyberRadar if they must not.
+/// One-sided surfaces (is_one_sided(), for example the frontier of observed space) block GlRadar's objects
+/// from both sides. Use CyberRadar if they must block from their outside only.
 ///
-/// Overlaps and concavities are recognised only if the object is closed, with triangles counter-clockwise
-/// seen from outside. Masks are cached by object and direction in the object's frame. Source of R, M and L:
-/// the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread safe.
+/// Overlaps and concavities are recognised only if the object's mesh is closed and its triangles are
+/// counter-clockwise seen from outside. Masks are cached; their key is the object's mesh and the direction in
+/// the object's frame. R, M and L are the Range, Mask and LookAt Distance Scopes of the Cyber Radar paper.
+/// Not thread safe.
 class GlRadar {
  public:
   /// @throws Error if config is invalid or the renderer lacks a required feature
@@ -72,26 +76,27 @@ class GlRadar {
   /// @param direction_world  direction of motion; any length except 0
   /// @param distance_m       max distance to search, > 0, at most 10 km
   /// @param scene            surfaces that can be touched; instances with a null or empty mesh are skipped
-  /// @return see Contact. A gap L within 10 um + 1e-6 d of zero counts as touching: kContact with distance 0.
-  ///         If several pixels are equally near (a face that lands flat), the point is the one nearest to the
-  ///         centre of their bounding box.
+  /// @return see Contact. A gap L within 10 um + 1e-6 d of zero counts as touching: the result is kContact
+  ///         with distance 0. If several pixels are equally near (a face that lands flat), the point is the
+  ///         one nearest to the centre of their bounding box.
   Contact query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
                 std::span<const SceneMesh> scene);
 
-  /// Runs many queries at once. They are drawn into shared textures and read back together.
-  /// @param scene     surfaces that can be touched, including the queried objects: each is scene for the
+  /// Runs many queries at once. The queries are drawn into shared textures, and their results are read back
+  /// together.
+  /// @param scene     surfaces that can be touched, including the queried objects: each object can touch the
   ///                  others
   /// @param[out] contacts  one per query; must have the size of `queries`
   void query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
                  std::span<Contact> contacts);
 
-  /// Returns the images of the last call's last valid query (not kInvalidInput); all images are empty if
-  /// there is none. If no scene intersects the query's volume, nothing was drawn, and R and M equal depth_m
-  /// in all pixels.
+  /// Returns the images of the last call's last valid query (not kInvalidInput). All images are empty if the
+  /// call had no valid query. If no scene surface intersects the query's volume, nothing was drawn: R and M
+  /// equal RadarVolume::depth_m in all pixels.
   [[nodiscard]] RadarPictures pictures() const;
 
  private:
-  /// A query that was drawn, and its scene triangles: run_count entries of runs_ from first_run on.
+  /// A query that was drawn. Its scene triangles are the run_count entries of runs_ that begin at first_run.
   struct Drawn {
     std::size_t query = 0;
     RadarOutline outline;

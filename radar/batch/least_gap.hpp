@@ -1,4 +1,4 @@
-// least_gap.hpp: minimum gap over each query's pixels, computed on the GPU or the CPU.
+// least_gap.hpp: computes the minimum gap over each query's pixels, on the GPU or the CPU.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@ struct TileResult {
   float lower_m = 0.0F, upper_m = 0.0F, contact_distance_m = 0.0F;
   /// Nearest pixel, relative to the tile's corner; -1 if nothing was found.
   std::int32_t x_px = -1, y_px = -1;
-  /// Number of the triangle touched in that pixel, see SceneRun.
+  /// Key of the triangle touched in the nearest pixel, see SceneRun.
   std::uint32_t key = 0;
   /// Padding.
   std::uint32_t unused = 0;
@@ -27,13 +27,13 @@ inline constexpr float kNothingMet = 1e38F;
 /// Value of pixels without a surface (kNothing in tile_shaders.hpp).
 inline constexpr float kClearValue = 3e38F;
 
-/// Computes, for many queries at once, the minimum over the tile (region of the scene texture) that belongs
-/// to each query. Owns its shader programs and buffers, which grow to the largest call. Not thread safe.
+/// Computes the minimum over each query's tile (a region of the scene texture), for many queries at once.
+/// Owns its shader programs and buffers; the buffers grow to the largest call. Not thread safe.
 class LeastGap {
  public:
   /// @param on_renderer  true: a compute shader takes the minimum. false: the tiles are read back and the CPU
-  ///                     takes the minimum; reading back is free if the renderer is this CPU. Both give the
-  ///                     same results.
+  ///                     takes the minimum; reading back costs nothing if the renderer runs on this CPU. Both
+  ///                     ways give the same results.
   LeastGap(GlContext& context, bool on_renderer);
   ~LeastGap();
   LeastGap(const LeastGap&) = delete;
@@ -44,12 +44,12 @@ class LeastGap {
   /// Computes the minima over the scene tiles of a batch. The result of `queries[i]` has the index
   /// `queries[i].query`.
   void reduce(std::span<const TileQuery> queries, const TileAtlas& scene_tiles);
-  /// Finds the touched triangles: runs the vertex and geometry stages of the scene's draws again, without
-  /// rasterisation.
+  /// Finds the touched triangle of every query. Runs the vertex and geometry stages of the scene's draws
+  /// again, without rasterisation.
   void find_keys(const TileDraws& draws, const TileAtlas& object_tiles) const;
   /// Returns the first `count` results since begin(); empty if the renderer failed to return them.
   std::span<const TileResult> read(std::size_t count);
-  /// Makes the next call reallocate the buffers. For use after the renderer failed.
+  /// Makes the next call reallocate the buffers. Call it after the renderer failed.
   void forget() { queries_capacity_ = results_capacity_ = 0; }
 
  private:

@@ -14,15 +14,15 @@ namespace roomradar {
 struct MaskKey {
   /// GpuMesh::revision() of the mesh.
   std::uint64_t revision = 0;
-  /// Direction, rounded to multiples of 2^-40. Directions with equal rounded values share a mask, which
-  /// causes an error of at most 0.1 nm after 100 m.
+  /// Direction, rounded to multiples of 2^-40. Directions with equal rounded values share a mask; after 100 m
+  /// of motion, the resulting error is at most 0.1 nm.
   std::array<std::int64_t, 3> direction{};
   friend bool operator==(const MaskKey&, const MaskKey&) = default;
 };
 MaskKey mask_key(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh);
 
-/// A fixed number of tiles (regions of the mask texture), each with its key and outline. Tiles used since
-/// begin_round() are never evicted. Allocates in reset() only. Not thread safe.
+/// Cache of a fixed number of tiles (regions of the mask texture), each with its key and outline. Tiles used
+/// since begin_round() are never evicted. Allocates memory in reset() only. Not thread safe.
 class MaskCache {
  public:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -31,9 +31,10 @@ class MaskCache {
   void reset(std::size_t tiles);
   /// Starts a round: tiles used in earlier rounds may now be evicted.
   void begin_round() { ++round_; }
-  /// Returns the tile with this key and protects it from eviction in this round; kNone if there is none.
+  /// Returns the tile with this key and protects it from eviction in this round. Returns kNone if no tile has
+  /// this key.
   std::size_t find(const MaskKey& key);
-  /// Assigns a tile to a key that find() did not have. Returns kNone if this round uses all tiles.
+  /// Assigns a tile to a key that find() did not find. Returns kNone if this round uses all tiles.
   std::size_t claim(const MaskKey& key);
   struct Mask {
     /// Set by the caller of claim().
@@ -42,7 +43,7 @@ class MaskCache {
     bool is_drawn = false;
   };
   Mask& mask(std::size_t tile) { return tiles_[tile].mask; }
-  /// Removes all keys, for example because the renderer lost the contents of the tiles.
+  /// Removes all keys. Call it when the tiles' contents are lost, for example because the renderer failed.
   void forget();
 
  private:

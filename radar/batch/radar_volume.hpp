@@ -1,4 +1,4 @@
-// radar_volume.hpp: an object's outline along its motion, the outline's pixels, and the swept volume.
+// radar_volume.hpp: outline of an object seen along its motion, the outline's pixels, and the swept volume.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -7,12 +7,12 @@
 
 namespace roomradar {
 
-/// An object's outline along a direction u, in the frame of its mesh. Valid while the object's orientation
-/// relative to u is unchanged. Defines the outline coordinates. x and y are perpendicular to u, in pixels
-/// from the outline's corner. z is along u, in metres from the object's foremost point. The object lies in z
-/// = -length_m..0.
+/// Bounding rectangle of an object seen along a direction u, given in the frame of the object's mesh. Valid
+/// while the object's orientation relative to u is unchanged. Defines the outline coordinates: x and y are
+/// perpendicular to u, in pixels from the rectangle's corner, and z is along u, in metres from the object's
+/// foremost point. The object extends from z = -length_m to z = 0.
 struct RadarOutline {
-  /// Rotation from the mesh's frame. Its rows are the axes x, y and u, right-handed.
+  /// Rotation from the mesh's frame to the outline's. Its rows are the right-handed axes x, y and u.
   Eigen::Matrix3d R_outline_mesh = Eigen::Matrix3d::Identity();
   /// Origin of the outline coordinates relative to the mesh's origin: components along x, y and u, m.
   Eigen::Vector3d corner_m = Eigen::Vector3d::Zero();
@@ -24,14 +24,14 @@ struct RadarOutline {
 };
 
 /// Fits square pixels to the object's outline: resolution_px along the longer side, at least 1 along the
-/// other. The mesh must have a triangle, and u_mesh must have length 1.
+/// shorter. The mesh must have at least one triangle, and u_mesh must have length 1.
 RadarOutline fit_outline(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh, int resolution_px);
 
 /// Returns the affine 3 x 4 matrix from the object's local points (relative to its mesh's origin) to outline
 /// coordinates.
 Eigen::Matrix<double, 3, 4> outline_from_object(const RadarOutline& outline);
 /// Returns the matrix from any instance's local points (relative to its mesh's origin) to the outline
-/// coordinates of `object`, with `object` at its pose in the world. Keeps full precision far from the world's
+/// coordinates of `object`, with both at their poses in the world. Keeps full precision far from the world's
 /// origin.
 Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, const MeshInstance& object,
                                                const MeshInstance& instance);
@@ -39,11 +39,11 @@ Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, cons
 /// Returns the box that contains the object and the volume it sweeps, in the world.
 RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m);
 
-/// Returns the max rounding error of the object's vertices on the renderer, perpendicular to u, px; same
-/// formula as in kTileVertexShader.
+/// Returns the max error, perpendicular to u and in pixels, by which rounding on the renderer displaces the
+/// object's vertices. The formula is that of kTileVertexShader.
 double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline);
 
-/// Returns the distance from 0 within which a gap L counts as touching, m.
+/// Returns the greatest |L| of a gap L that counts as touching: 10 um + 1e-6 (length_m + distance_m), m.
 double touching_m(const RadarOutline& outline, double distance_m);
 
 }  // namespace roomradar

@@ -18,7 +18,7 @@ inline bool has_surface(const SceneMesh& s) {
   return s.instance.mesh != nullptr && s.instance.mesh->triangle_count() > 0;
 }
 
-/// Builds the hierarchy over the boxes of a scene's meshes, as SceneBoxes::build() does.
+/// Builds the hierarchy over the bounding boxes of a scene's meshes, as SceneBoxes::build() does.
 inline void build(SceneBoxes& boxes, std::span<const SceneMesh> scene) {
   boxes.clear();
   for (std::size_t i = 0; i < scene.size(); ++i)

@@ -16,8 +16,8 @@ class TileAtlas {
   TileAtlas(const TileAtlas&) = delete;
   TileAtlas& operator=(const TileAtlas&) = delete;
 
-  /// Makes columns x rows tiles of tile_px x tile_px pixels; the contents are lost. Returns false if the
-  /// renderer has no memory; then there are no tiles.
+  /// Resizes to columns x rows tiles of tile_px x tile_px pixels; the earlier contents are lost. If the
+  /// renderer has no memory, returns false and leaves the atlas without tiles.
   [[nodiscard]] bool resize(int columns, int rows, int tile_px);
   [[nodiscard]] std::size_t tile_count() const {
     return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
@@ -33,7 +33,8 @@ class TileAtlas {
   void bind(bool least) const;
   /// Restores default blending and the default framebuffer.
   static void unbind();
-  /// Sets every pixel of at least the first `tiles` tiles to `value`. The atlas must be bound.
+  /// Sets every pixel of the first `tiles` tiles to `value`, and possibly pixels of later tiles. The atlas
+  /// must be bound.
   void clear(std::size_t tiles, float value) const;
   /// Reads a rectangle of pixels into `out`, row by row, four floats per pixel. Writes nothing if the context
   /// is lost.

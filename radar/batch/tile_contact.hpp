@@ -12,8 +12,9 @@
 
 namespace roomradar {
 
-/// A contiguous range of triangles of a scene mesh whose boxes intersect a query's volume. Keys number the
-/// scene triangles of a call: triangle first_triangle + k has the key first_key + k.
+/// A contiguous range of a scene mesh's triangles whose boxes intersect a query's volume. Every triangle in a
+/// range has a key, unique within the query: triangle first_triangle + k of the mesh has the key first_key +
+/// k.
 struct SceneRun {
   /// Index of the mesh in the scene.
   std::size_t scene_index = 0;

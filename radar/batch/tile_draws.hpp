@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// Per-query input of the tile shaders. Coordinates are outline coordinates, see RadarOutline.
+/// Input of the tile shaders for one query. Coordinates are outline coordinates, see RadarOutline.
 struct TileQuery {
   /// Corners of the query's tiles: x and y in the object texture, then x and y in the scene texture.
   std::array<std::int32_t, 4> corners_px{};
@@ -21,12 +21,12 @@ struct TileQuery {
   std::int32_t width_px = 0, height_px = 0;
   /// Index of the query in the call.
   std::int32_t query = 0;
-  /// Key of the draw's first triangle; following triangles have the following keys.
+  /// Key of the draw's first triangle (see SceneRun). Triangle k of the draw has the key first_key + k.
   std::uint32_t first_key = 0;
-  /// In this order: greatest z to draw; gap that counts as touching; overlap tolerance; object's length along
-  /// the motion.
+  /// far_m: greatest z to draw. touching_m: gap that counts as touching. tolerance_m: see
+  /// GlRadarConfig::overlap_tolerance_m. length_m: the object's length along the motion.
   float far_m = 0.0F, touching_m = 0.0F, tolerance_m = 0.0F, length_m = 0.0F;
-  /// Twice the error of the object's vertices perpendicular to the motion.
+  /// Twice vertex_error_px(), the max rounding error of the object's vertices perpendicular to the motion.
   float margin_px = 0.0F;
   /// Padding.
   std::array<float, 3> unused{};
@@ -47,7 +47,7 @@ struct TileDraw {
   TileQuery query;
 };
 
-/// Owns the buffers with the draws of one pass, which grow to the largest pass. Not thread safe.
+/// Owns the buffers with the draws of one pass. The buffers grow to the largest pass. Not thread safe.
 class TileDraws {
  public:
   explicit TileDraws(GlContext& context);
@@ -55,11 +55,11 @@ class TileDraws {
   TileDraws(const TileDraws&) = delete;
   TileDraws& operator=(const TileDraws&) = delete;
 
-  /// Sorts the draws, so each mesh takes one GL call, and uploads them.
+  /// Sorts the draws by mesh, so each mesh takes one GL call, and uploads them.
   void upload(std::span<TileDraw> draws);
   /// Draws the triangles with the current program. Vertex attributes are those of kTileVertexShader.
   void draw() const;
-  /// Makes the next call reallocate the buffers. For use after the renderer failed.
+  /// Makes the next call reallocate the buffers. Call it after the renderer failed.
   void forget() { capacity_bytes_ = {}; }
   /// Draws a rectangle (a strip of 4 vertices) for each draw.
   void draw_rectangles() const;

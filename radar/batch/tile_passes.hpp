@@ -1,5 +1,5 @@
-// tile_passes.hpp: the two depth passes of GlRadar: objects into mask tiles, then the scene, compared with
-// the masks, into scene tiles.
+// tile_passes.hpp: the two depth passes of GlRadar. The first draws objects into mask tiles; the second
+// compares the scene with the masks and draws the gaps into scene tiles.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace roomradar {
 /// Queries that are drawn together, and their draws.
 struct TileBatch {
   std::vector<TileQuery> queries;
-  /// Draws of the masks that are not cached.
+  /// Draws of the objects whose masks are not cached.
   std::vector<TileDraw> object_draws;
   /// Draws of the scene.
   std::vector<TileDraw> scene_draws;
@@ -43,7 +43,7 @@ class TilePasses {
   /// Draws both passes for the queries of the batch, and writes the minimum over each scene tile to `least`.
   /// Sorts the batch's draws. Requires at least one query.
   void draw(TileBatch& batch, LeastGap& least);
-  /// Makes the next call reallocate the buffers. For use after the renderer failed.
+  /// Makes the next call reallocate the buffers. Call it after the renderer failed.
   void forget();
 
  private:

@@ -6,24 +6,25 @@ namespace roomradar {
 
 // For every triangle, the geometry shader emits the rectangle of its tile's pixels that the triangle may
 // touch. The fragment shader computes coverage and depth of each pixel from the triangle's three vertices.
-// Nothing depends on how a driver snaps vertices or interpolates depth, so all renderers give the same
-// results, within guaranteed bounds. The bounds include all float errors, beginning with the product of
-// matrix and vertex. Fragments of a pixel are combined by GL_MIN blending, which needs no depth buffer and no
-// drawing order.
+// The results do not depend on how a driver snaps vertices or interpolates depth, so all renderers agree
+// within the guaranteed bounds. The bounds include all float errors, from the product of matrix and vertex
+// on. GL_MIN blending combines the fragments of a pixel, so the passes need no depth buffer and no drawing
+// order.
 //
 // A tile's coordinates are its query's outline coordinates (RadarOutline): x and y in pixels, z in metres
-// along the motion. The sample line of a pixel is the line along z through its sample position. kNothing
-// marks pixels without a fragment.
+// along the motion. The sample line of a pixel is the line along z through its sample position (kSample).
+// kNothing marks pixels without a fragment.
 //
 // Object tiles, by colour channel (z is along the motion):
-//   r: -z, z an upper bound of the foremost point in the pixel's square
-//   g: -z, z a lower bound of the foremost surface on the sample line
-//   b:  z, z a lower bound of the rearmost point in the square
-//   a: -z, z an upper bound of the foremost rear surface that may be near the sample line. g and a enclose
-//      the front slab of the object's solid.
+//   r: -z, where z is an upper bound of the object's foremost point in the pixel's square
+//   g: -z, where z is a lower bound of the foremost surface on the sample line
+//   b:  z, a lower bound of the rearmost point in the square
+//   a: -z, where z is an upper bound of the foremost rear surface (facing against the motion) that may be
+//      near the sample line. g and a enclose the front slab: the object's solid between its front and that
+//      rear surface.
 // Scene tiles, by colour channel:
-//   r: lower bound of the distance until a surface in the square may touch the object
-//   g: upper bound of the distance until a surface on the sample line certainly touches the object
+//   r: lower bound of the distance to contact with any surface in the square
+//   g: upper bound of the distance to contact with a surface that certainly crosses the sample line
 //   b: distance to contact on the sample line; negative for an overlap
 
 /// First piece of every shader in this file.
@@ -34,7 +35,7 @@ const vec2 kSample = vec2(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // sample positi
 #define TILE_VERTEX Vertex { vec3 p; vec3 error; ivec4 corners; ivec4 item; vec4 limits_m; float margin; }
 )";
 
-/// Transforms vertices to outline coordinates, and bounds their rounding errors.
+/// Transforms vertices to outline coordinates, and computes bounds of their rounding errors.
 inline constexpr const char* kTileVertexShader = R"(layout(location = 0) in vec3 p_local;
 layout(location = 1) in vec4 outline_x;  // rows: pixels, pixels, m
 layout(location = 2) in vec4 outline_y;
@@ -59,7 +60,8 @@ void main() {
 }
 )";
 
-/// Computes the relation of a triangle to a pixel, from the triangle and its vertices' errors only.
+/// Computes whether a triangle covers a pixel, and at which depths, from the triangle's vertices and their
+/// errors only.
 inline constexpr const char* kSpanSource = R"(
 struct Span {
   bool in_square;  // may touch the pixel's square
@@ -207,8 +209,8 @@ void main() {
 }
 )";
 
-/// Compares a scene surface with the object in one pixel. A surface behind the object's front is ignored (see
-/// GlRadar) unless it is certainly inside the front slab of the object's solid.
+/// Compares a scene surface with the object in one pixel. A surface behind the object's front is ignored
+/// unless it is certainly inside the front slab; see GlRadar.
 inline constexpr const char* kGapSource = R"(
 bool is_in_the_way(Span s, vec4 object, vec4 limits_m, out float gap_m) {
   gap_m = s.line + object.g;
@@ -302,8 +304,8 @@ void main() {
 }
 )";
 
-/// Finds the triangle touched at the pixel that kLeastShader chose. If there are several, chooses the one
-/// with the least key.
+/// Finds the triangle touched at the pixel that kLeastShader chose. If several triangles are touched in that
+/// pixel, chooses the one with the least key.
 inline constexpr const char* kWhichShader = R"(
 layout(points, max_vertices = 1) out;
 struct Result { uint stamp; float lower_m, upper_m, travel_m; int x, y; uint key, unused; };

@@ -8,10 +8,11 @@
 
 namespace roomradar {
 
-/// Inverse depth (1/m) of the nearest surface per pixel; 0 if there is no surface. The result does not depend
-/// on the drawing order.
+/// Image of the inverse depth (1/m) of the nearest surface per pixel; 0 if there is no surface. The image
+/// does not depend on the order in which triangles are drawn.
 struct DepthCanvas {
-  /// Number of pixels written at once. Rows are padded by at least this many pixels.
+  /// Number of pixels that draw_triangles() writes at once (SIMD). Each row is padded by at least this many
+  /// pixels.
   static constexpr int kLanes = 8;
 
   int width_px = 0, height_px = 0, stride_px = 0;
@@ -35,34 +36,37 @@ struct ProjectedVertices {
 /// Indices of a triangle's projected vertices.
 using PieceTriangle = std::array<std::uint16_t, 3>;
 
-/// Scratch buffers of draw_triangles(). A Lane holds one value per triangle.
+/// Scratch buffers of draw_triangles(). Each Lane holds one value per triangle.
 struct TriangleSetup {
   /// Number of triangles processed together.
   static constexpr std::size_t kMost = 256;
   template <typename Value>
   using Lane = std::array<Value, kMost>;
 
-  // Corners of the triangles: u and v in pixels relative to pixel (first_x, first_y), q the inverse depth,
+  // Vertices of the triangles: u and v in pixels relative to pixel (first_x, first_y), q the inverse depth in
   // 1/m.
   alignas(32) std::array<Lane<float>, 3> u, v, q;
   /// Twice the signed area, px^2.
   alignas(32) Lane<float> area;
   // Rectangle of pixels that a triangle may cover.
   alignas(32) Lane<int> first_x, first_y, columns, rows;
-  /// Inverse depth, 1/m: value at pixel (first_x, first_y), slope per pixel, and range of the corners.
+  /// Inverse depth, 1/m: its value at pixel (first_x, first_y), its slopes per pixel in x and y, and its
+  /// range over the three vertices.
   alignas(32) Lane<float> q_first, q_per_x, q_per_y, least_q, most_q;
-  // Pixels of a row that a triangle covers. Row y covers the pixels from the maximum of left_slope * (y - v)
-  // + left over the three edges to the minimum of right_slope * (y - v) + right. v is the row coordinate of a
-  // corner of the edge; `left` and `right` are measured there, since a nearly horizontal edge has a huge
-  // slope.
+  // Edges, which give the span of pixels that a triangle covers in row y. The span begins at the maximum over
+  // the three edges of left_slope * (y - v) + left, and ends at the minimum of right_slope * (y - v) + right.
+  // v is the row coordinate of one of the edge's vertices. `left` and `right` are the edge's x at row v
+  // rather than at row 0, since a nearly horizontal edge has a huge slope.
   alignas(32) std::array<Lane<float>, 3> left, left_slope, right, right_slope;
 };
 
-/// Draws triangles: both sides, or only triangles that are counter-clockwise as seen by the camera.
+/// Draws triangles. If cull_back_faces is true, draws only those that are counter-clockwise as seen by the
+/// camera.
 ///
-/// Inverse depth is linear over a triangle, sampled at pixel centres and clamped to the range of its corners.
-/// Triangles are enlarged by 1/1024 pixel, so neighbours leave no gap. Coordinates must be finite, and within
-/// 16,000 pixels for the enlargement to be effective. Corners must be in front of the camera.
+/// Inverse depth is linear over a triangle, sampled at pixel centres and clamped to the range of the
+/// triangle's vertices. Triangles are enlarged by 1/1024 pixel, so neighbours leave no gap. Coordinates must
+/// be finite; the enlargement works only for coordinates within 16,000 pixels. Vertices must be in front of
+/// the camera.
 void draw_triangles(const ProjectedVertices& vertices, std::span<const PieceTriangle> triangles,
                     bool cull_back_faces, TriangleSetup& setup, DepthCanvas& canvas);
 

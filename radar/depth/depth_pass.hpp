@@ -15,7 +15,7 @@
 namespace roomradar {
 
 enum class DepthRenderer {
-  /// OpenGL on a GPU; the CPU if OpenGL would run in software.
+  /// OpenGL if it runs on a GPU, else DepthRaster on the CPU.
   kAuto,
   /// OpenGL, on a GPU or in software.
   kOpenGl,
@@ -44,9 +44,9 @@ class DepthPass {
 
   /// Renders the nearest surface of all instances, sampled at pixel centres. There is no far plane.
   ///
-  /// Error against the exact ray: 1/256 pixel times the surface's slope (OpenGL snaps vertices; the CPU
-  /// enlarges triangles by less), and about 1e-7 of the depth along the ray. On the CPU, triangles that reach
-  /// near_m have an error of 4e-6 / m of inverse depth: 0.3 mm at 8 m.
+  /// The depth differs from that of the pixel's exact ray by two errors: 1/256 pixel times the surface's
+  /// slope, since OpenGL snaps vertices (the CPU enlarges triangles by less), and about 1e-7 of the depth. On
+  /// the CPU, a triangle that reaches near_m has an inverse-depth error of 4e-6 / m, which is 0.3 mm at 8 m.
   ///
   /// @param scene           meshes with their poses; instances with a null mesh are skipped
   /// @param camera          intrinsics of the image; if invalid (require_valid), depth_m becomes empty
@@ -58,8 +58,8 @@ class DepthPass {
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 
   /// Renders only a rectangle of the image; pixels of `depth_m` outside it are unchanged. If depth_m does not
-  /// have the camera's size, it is first resized and set to 0. Parts of meshes (chunks) outside the rectangle
-  /// are not drawn.
+  /// have the camera's size, it is first resized and set to 0. Chunks of meshes (contiguous ranges of
+  /// triangles) outside the rectangle are not drawn.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, DepthImage& depth_m);
 
@@ -79,9 +79,8 @@ class DepthPass {
                              DepthImage& depth_m);
 };
 
-/// Returns the smallest rectangle of whole pixels that contains the projection of the instance's bounding box
-/// into the image. Returns the whole image if part of the box is behind near_m. Width and height are 0 if the
-/// box is out of view.
+/// Returns a rectangle of whole pixels that contains the projection of the instance's bounding box into the
+/// image; see pixels_of() in projection.hpp. Width and height are 0 if the instance has no mesh.
 PixelRect pixels_of(const MeshInstance& instance, const Intrinsics& camera,
                     const Eigen::Isometry3d& T_world_camera, double near_m);
 

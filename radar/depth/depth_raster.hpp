@@ -20,9 +20,9 @@
 namespace roomradar {
 
 /// Renders the images of DepthPass without OpenGL. Several times as fast as software OpenGL, whose cost per
-/// triangle is too high for images of this size. Two threads share the pieces of the meshes; each draws on
-/// its own canvas, and the nearest surface wins, so the result does not depend on which thread drew a piece.
-/// Not thread safe.
+/// triangle is too high for depth images. Two threads divide the meshes' pieces (RasterPiece) between them.
+/// Each thread draws on its own canvas, and the nearest surface of both canvases is kept, so the result does
+/// not depend on which thread drew a piece. Not thread safe.
 class DepthRaster {
  public:
   /// Renders a rectangle of an image. Parameters are those of DepthPass::render() and DepthPassConfig. `rect`
@@ -36,7 +36,7 @@ class DepthRaster {
   /// Matrix from local points to (u * depth, v * depth, depth).
   using Projection = Eigen::Matrix<double, 3, 4>;
 
-  /// A mesh that was drawn before, cut into pieces.
+  /// A mesh drawn by an earlier call, cut into pieces.
   struct KnownMesh {
     const GpuMesh* mesh = nullptr;
     std::uint64_t revision = 0;
@@ -51,7 +51,7 @@ class DepthRaster {
     /// Index in visible_meshes_.
     std::uint32_t mesh = 0;
     std::uint32_t piece = 0;
-    /// True if the piece needs clipping: it may reach behind the near plane or far outside the image.
+    /// True if the piece must be clipped, since it may reach behind the near plane or far outside the image.
     bool is_cut = false;
   };
   /// Buffers of one thread.

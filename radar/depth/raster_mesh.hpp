@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-/// A contiguous range of nearby triangles, with their own copies of their vertices.
+/// A contiguous range of nearby triangles. Each piece has its own copies of the vertices it uses.
 struct RasterPiece {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_vertex = 0, vertex_count = 0;
@@ -19,7 +19,7 @@ struct RasterPiece {
   Eigen::AlignedBox3f bounds_local;
 };
 
-/// A mesh as pieces. Vertices of a piece are contiguous, so each is projected once, with SIMD.
+/// A mesh cut into pieces. The vertices of a piece are contiguous, so each is projected only once, with SIMD.
 struct RasterMesh {
   /// Max number of triangles of a piece.
   static constexpr std::uint32_t kPieceTriangles = 256;
@@ -36,8 +36,8 @@ struct RasterMesh {
   std::vector<std::uint32_t> places;
 };
 
-/// Cuts triangles into pieces. All triangles must be valid and in an order that keeps neighbours together.
-/// Allocates nothing once `out` has held this many triangles.
+/// Cuts triangles into pieces. All triangles must be valid, and neighbours must be close together in the
+/// order of triangles. Allocates nothing once `out` has held this many triangles.
 void cut_into_pieces(std::span<const Eigen::Vector3f> vertices, std::span<const Triangle> triangles,
                      RasterMesh& out);
 

@@ -10,13 +10,13 @@
 
 namespace roomradar {
 
-/// Intersection of two projected triangles (object and scene), restricted to the points that are equally
-/// near: at most a tolerance farther than the nearest point of the query. The frame of the motion has the
-/// direction of motion as its z axis.
+/// Intersection of two triangles (object and scene) projected along the motion, restricted to the equally
+/// near points: those whose gap is at most a tolerance larger than the pair's distance to contact. In the
+/// frame of the motion, z is the direction of motion.
 struct PatchPiece {
   double contact_distance_m = 0.0;
-  // Points on the scene's triangle before the motion, in the frame of the motion, m. Only the first `count`
-  // are set.
+  // Vertices of the intersection, as points on the scene's triangle, in the frame of the motion, m. Only the
+  // first `count` are set.
   std::array<Eigen::Vector3d, 18> corners;
   std::size_t count = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -39,8 +39,9 @@ struct PlaceSum {
   }
 };
 
-/// Collects pieces while the search for the least distance continues. Stores up to kCapacity pieces. Earlier
-/// pieces are kept as sums only, so the centroid still includes them.
+/// Collects the equally near pieces while the search for the least distance continues. Stores up to kCapacity
+/// pieces. When the store is full, its pieces are replaced by their sums, so the centroid still includes
+/// them.
 class ContactPatch {
  public:
   static constexpr std::size_t kCapacity = 512;
@@ -53,17 +54,17 @@ class ContactPatch {
   /// Adds the intersection of one pair of triangles.
   /// @param gap  vertices of the intersection, with the gap at each
   /// @param contact_distance_m  distance to contact of this pair
-  /// @param equally_m  points at most this much farther than the nearest point count as equally near
+  /// @param equally_m  points at most this much farther than contact_distance_m count as equally near
   /// @param scene  the scene's triangle
   /// @param best_m  least distance to contact found so far
   void add(const TriangleGap& gap, double contact_distance_m, double equally_m, const FrameTriangle& scene,
            SurfaceKind kind, double best_m);
-  /// Returns the x and y of the centroid of the pieces at most equally_m farther than best_m. Pieces are
+  /// Returns x and y of the centroid of the pieces that are at most equally_m farther than best_m. Pieces are
   /// weighted by area; if none has area, by length; if none has length, all are weighted equally. Requires at
   /// least one piece.
   [[nodiscard]] Eigen::Vector2d middle(double best_m, double equally_m);
-  /// Returns the point nearest to `place` (perpendicular to the motion) on the stored pieces that are at most
-  /// equally_m farther than best_m. Requires at least one stored piece.
+  /// Among the stored pieces at most equally_m farther than best_m, returns the point whose x and y are
+  /// nearest to `place`. Requires at least one such piece.
   [[nodiscard]] PatchPoint nearest(const Eigen::Vector2d& place, double best_m, double equally_m);
   /// Returns true if every collected piece is still stored.
   [[nodiscard]] bool has_all() const { return summed_count_ == 0; }
@@ -76,14 +77,14 @@ class ContactPatch {
     void add(PatchPiece& piece);
   };
   std::vector<PatchPiece> pieces_;
-  // Sums over the pieces that are no longer stored.
+  // Sums over the pieces that were removed from pieces_ when it was full.
   Sums sums_;
-  // Least distance to contact when those pieces were added to the sums, m.
+  // Least distance to contact found when the last pieces were added to sums_, m.
   double summed_m_ = 0.0;
   /// Number of pieces in the sums.
   std::size_t summed_count_ = 0;
 
-  /// Removes stored pieces farther than limit_m, and the sums if they are farther.
+  /// Removes the stored pieces farther than limit_m, and the sums if summed_m_ > limit_m.
   void leave_out_what_is_farther(double limit_m);
   /// Moves all stored pieces into the sums.
   void sum_up(double best_m);

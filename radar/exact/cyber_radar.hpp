@@ -1,4 +1,4 @@
-// cyber_radar.hpp: distance an object can move along a line before contact, exact or between bounds.
+// cyber_radar.hpp: computes how far an object can move along a line before contact, exactly or within bounds.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -17,55 +17,57 @@ namespace roomradar {
 
 struct RadarSearch;
 
-/// Cyber Radar on the CPU. M is the object's height map: the leading surface as seen from ahead. R is the
-/// scene ahead of it. L is the gap between them; its minimum is the distance to contact. Below, u is the
-/// direction of motion and n a scene triangle's normal.
+/// Cyber Radar on the CPU. M is the object's height map: its leading surface, seen against the motion. R is
+/// the scene ahead of M. L is the gap between M and R; its minimum is the distance to contact. Below, u is
+/// the direction of motion and n a scene triangle's normal.
 ///
-///   1. M: per pixel, an upper bound of the object's height along u (ObjectHeightMap). Kept while the
-///      object's tree and the direction in its frame are unchanged.
+///   1. M: per pixel, an upper bound of the object's height along u (ObjectHeightMap). M is kept while the
+///      object's tree and the direction in the object's frame are unchanged.
 ///   2. R: the scene's bounding boxes, from large to small, nearest first (SceneInFrame). A box's least
-///      height minus the greatest M under the box is a lower bound of the distance to every contact in it.
-///      For a triangle, the bound is computed from its plane over each pixel of M.
+///      height minus the greatest M under the box is a lower bound of the distance to every contact in the
+///      box. For a triangle, the bound is computed from the triangle's plane in each pixel of M.
 ///   3. L: the triangle with the least bound gets the exact test, in double, against all object triangles
 ///      that overlap it in projection (search_column, find_gap, classify_pair). The least distance found is
-///      an upper bound of the result, and the least untested bound a lower one. Once they agree, both are
-///      exact.
+///      an upper bound of the result, and the least bound of the untested triangles is a lower bound. Once
+///      the two bounds agree, they are the exact result.
 ///
 /// Triangles thinner than a pixel enter M and R with their whole bounding boxes, so the bounds include them.
-/// Scene inside a concavity of the object is behind M, and a negative gap to M is not a contact there. The
-/// exact test compares such scene with the object's surfaces behind it.
+/// A scene surface inside a concavity of the object is behind M. Its gap to M is negative, which is not a
+/// contact. The exact test compares such a surface with those object surfaces that are behind the scene
+/// surface.
 ///
 /// Exactness: the error is that of double arithmetic on the float vertices, about 1e-12 m in a room and 1e-9
 /// m at a million metres from the world's origin.
 ///
 /// Touching: surfaces closer than touching_m() touch. Touching a surface that faces against the motion (n . u
-/// < 0) is a contact at distance 0. Touching a back-facing surface (n . u > 0, the object moves away from it)
-/// or a surface parallel to the motion is not a contact.
+/// < 0) is a contact at distance 0. Touching a surface parallel to the motion is not a contact, nor is
+/// touching a back-facing surface (n . u > 0), since the object moves away from it.
 ///
-/// Overlap: surfaces that intersect by more than touching_m(), or scene inside a closed object
+/// Overlap: surfaces that intersect by more than touching_m(), or scene surfaces inside a closed object
 /// (TriangleTree::is_closed()). Back-facing scene triangles do not count. Each pair of triangles intersects
-/// over an interval of the distance moved, and so does scene inside a closed object. contact_distance_m =
-/// lower_m = upper_m is the lower end of the connected union of intervals that contains 0: the object is
-/// clear after moving back this far. An object that is sunk in the ground and moves along it is clear only
-/// where the ground ends, so the search stops at a work limit (kMostOverlapWork). Then contact_distance_m =
-/// upper_m is the lower end of the union found so far, and lower_m is -infinity.
+/// over an interval of the distance moved, and a scene surface is inside a closed object over such intervals
+/// too. Overlapping intervals are joined. The lower end of the joined interval that contains 0 is
+/// contact_distance_m = lower_m = upper_m: the object is clear after moving back this far. An object that is
+/// sunk in the ground and moves along the ground is clear only where the ground ends, so the search stops at
+/// a work limit (kMostOverlapWork). Then contact_distance_m = upper_m is the lower end of the joined interval
+/// found so far, and lower_m is -infinity.
 ///
-/// Sliding: a scene triangle that is exactly parallel to the motion (|n . u| <= 1e-9) is no contact for
-/// object triangles wholly on one side of it. An open sheet that runs exactly along edges of the object's
-/// mesh is therefore not touched by the triangles on either side.
+/// Sliding: a scene triangle parallel to the motion (|n . u| <= 1e-9) is no contact for an object triangle
+/// that lies wholly on one side of its plane. If the edges of object triangles lie exactly in an open scene
+/// sheet, the object therefore passes the sheet without contact.
 ///
-/// Leaving: the object is leaving a back-facing surface that it intersects now. Other back-facing surfaces
-/// are ignored too if the object will intersect one or another of them without interruption from now on.
-/// Example: a cup leaves a hand that is in its handle, and the handle's bar is still behind the hand. These
-/// surfaces cause no contact until the object has passed the last of them.
+/// Leaving: the object is leaving a back-facing surface that it intersects now. The intervals of the distance
+/// moved over which the object intersects back-facing surfaces are joined, from 0 on, as long as they
+/// overlap. Back-facing surfaces cause no contact before the end of the joined interval. Example: a cup
+/// leaves a hand that is in its handle, and the handle's bar is behind the hand and has to pass it.
 ///
 /// One-sided surfaces (is_one_sided()) are touched from their outside only: their back-facing triangles are
 /// always ignored.
 ///
-/// Contact point: the one nearest to the centroid of all equally near points, for example those of a face
-/// that lands flat. At most ContactPatch::kMaxPieces pairs of triangles contribute.
+/// Contact point: of all equally near points (for example those of a face that lands flat), the one nearest
+/// to their centroid. At most ContactPatch::kMaxPieces pairs of triangles contribute.
 ///
-/// No GL. Not thread safe: use one radar per thread; trees and images may be shared.
+/// Uses no OpenGL. Not thread safe: use one radar per thread; trees and images may be shared.
 class CyberRadar {
  public:
   explicit CyberRadar(const RadarConfig& config = {});
@@ -75,20 +77,22 @@ class CyberRadar {
   /// Returns kInvalidInput if the direction is zero or not finite, the distance is not finite or <= 0, the
   /// margin is negative or not finite, the object has no triangles, a pose of object or scene is not finite,
   /// a camera is unusable, a mask's size differs from its depth image's, a stride is below 1, or a jump limit
-  /// is negative or NaN. Sampled mode stops once it has a contact, has run kSampledExactTests exact tests,
-  /// and nothing untested may overlap. Exact mode stops once nothing untested can be nearer.
+  /// is negative or NaN. Sampled mode stops once three conditions hold: it has found a contact, it has run
+  /// kSampledExactTests exact tests, and the lower bounds of all untested surfaces are at least 0. Exact mode
+  /// stops once no untested surface can be nearer.
   Contact query(const RadarQuery& query, const RadarScene& scene);
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }
-  /// Returns the number of SurfaceKind::kStatic triangles examined individually by all queries so far.
-  /// Triangles smaller than a pixel of M are not counted.
+  /// Returns the number of SurfaceKind::kStatic triangles for which the queries so far computed a bound from
+  /// the triangle's plane. Triangles smaller than a pixel of M are not counted.
   [[nodiscard]] std::uint64_t static_triangles_tested() const { return static_triangles_asked_; }
 
   /// Minimum number of exact tests before sampled mode stops.
   static constexpr int kSampledExactTests = 48;
-  /// Max cost of testing scene behind M, in units of ColumnScratch::work; a few milliseconds. Reached if the
-  /// object is sunk in a very fine mesh, or if such a mesh lies in a concavity of the object. Then lower_m is
-  /// 0 in exact mode too, and back-facing surfaces cause no contact.
+  /// Max cost of a query that tests scene surfaces behind M, in units of ColumnScratch::work; a few
+  /// milliseconds. The limit is reached if the object is sunk in a very fine mesh, or if a very fine mesh
+  /// lies in a concavity of the object. Surfaces that may be behind M are then left untested: lower_m is 0 in
+  /// exact mode too, and back-facing surfaces cause no contact.
   static constexpr std::uint64_t kMostWorkBehind = 40'000;
 
  private:

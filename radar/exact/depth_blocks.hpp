@@ -1,4 +1,4 @@
-// depth_blocks.hpp: triangles of a depth image inside a volume, in blocks of 8 x 8 grid cells.
+// depth_blocks.hpp: finds the triangles of a depth image inside a volume, in blocks of 8 x 8 grid cells.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -14,12 +14,14 @@ struct FrameBox {
   float x0, x1, y0, y1, z0, z1;
 };
 
-/// A depth image in the frame of the motion, and the part of its vertex grid that may intersect a volume.
+/// A depth image in the frame of the motion, and the rectangle of its vertex grid that may intersect a
+/// volume.
 struct DepthView {
   const SceneDepth* scene = nullptr;
   Eigen::Matrix3d R_frame_camera;
   Eigen::Vector3d t_frame_camera;
-  /// Maps pixels to points: pixel (u, v) with this depth is at depth * rays * (u, v, 1) + shift.
+  /// Map from pixels to points in the frame: a pixel (u, v) measured at `depth` is at depth * rays * (u, v,
+  /// 1) + shift.
   Eigen::Matrix3f rays;
   Eigen::Vector3f shift;
   /// Error bound of a point computed in float: slack_m + slack_per_m * depth.
@@ -30,9 +32,9 @@ struct DepthView {
   int i0 = 0, i1 = -1, j0 = 0, j1 = -1;
 };
 
-/// Finds the rectangle of vertices whose cells can intersect `volume` (in the frame of the motion): the
-/// volume's bounding rectangle in the image, since a cell's triangles lie in the pyramid between camera and
-/// cell.
+/// Finds the rectangle of vertices whose cells can intersect `volume` (in the frame of the motion). The
+/// rectangle is the volume's bounding rectangle in the image, since a cell's triangles lie in the pyramid
+/// that the cell spans with the camera.
 /// @return false if there is no such cell
 bool place_depth(const SceneDepth& scene, const Eigen::Matrix3d& R_frame_world,
                  const Eigen::Vector3d& origin_world, const Eigen::AlignedBox3d& volume, DepthView& view);
@@ -42,14 +44,14 @@ struct DepthBlock {
   FrameBox box;
   std::int32_t i, j;  ///< Column i and row j of the block's top left vertex.
 };
-/// Appends the view's blocks that have measured vertices. Takes O(vertices in the view) and reads no other
-/// pixels.
+/// Appends the view's blocks that have measured vertices. Takes O(vertices in the view). Reads only the
+/// pixels of the view's rectangle.
 void append_blocks(const DepthView& view, std::vector<float>& scratch, std::vector<DepthBlock>& blocks);
 
 /// A triangle of a cell, and its bounding box.
 struct DepthTriangle {
   FrameBox box;
-  /// Number of the triangle in its depth image, for depth_triangle().
+  /// Index of the triangle in its depth image, for depth_triangle().
   std::uint32_t id;
 };
 /// Appends the triangles of a block. SceneDepth defines which triangles exist.

@@ -14,14 +14,14 @@ namespace roomradar {
 /// add_work(), in this order. Not thread safe.
 class ObjectFront {
  public:
-  /// Returns the unit direction of motion in the object's frame. If it differs from the previous call's
-  /// direction only by rounding, returns the previous one, so M can be reused.
+  /// Returns the unit direction of motion in the object's frame. If the direction differs from the previous
+  /// call's by less than 1e-13, returns the previous one, so M can be reused.
   Eigen::Vector3d direction_in_object(const RadarQuery& query);
   /// Sets the object's orientation and computes bounds(); build() must follow.
   void turn(const TurnedTree& object);
   /// Builds a coarse M for a new direction. If the direction repeats, builds a finer M once the queries with
-  /// this direction have cost more than building the finer M would. M's resolution affects the speed of an
-  /// exact query, not its result.
+  /// this direction have cost more than half of what the finer M would cost to build. M's resolution affects
+  /// the speed of an exact query, not its result.
   void build(const TurnedTree& object, const SceneInFrame& scene, const RadarConfig& config);
   /// Adds the cost of a query, in units of ColumnScratch::work.
   void add_work(std::uint64_t work) { work_ += work; }

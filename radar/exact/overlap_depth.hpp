@@ -1,4 +1,4 @@
-// overlap_depth.hpp: distance an object has to move back until it no longer overlaps the scene.
+// overlap_depth.hpp: computes how far an object has to move back until it no longer overlaps the scene.
 #pragma once
 #include <vector>
 
@@ -31,23 +31,27 @@ struct Overlap {
   double depth_m = 0.0;
   /// False if the search was cut short; depth_m is then a lower bound.
   bool is_all = true;
-  /// Point where object and scene separate last, in the frame of the motion, m.
+  /// Point on the scene where object and scene lose contact last as the object moves back, in the frame of
+  /// the motion, m.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   /// Unit normal of the scene's triangle at `point`, oriented by its winding.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   SurfaceKind kind = SurfaceKind::kNothing;
 };
 
-/// Cost (in units of ColumnScratch::work) after which the search is cut short: a few milliseconds. An object
-/// that is sunk in the ground and moves along it would be clear only where the ground ends.
+/// Cost after which the search is cut short, in units of ColumnScratch::work; a few milliseconds. Without a
+/// limit, an object that is sunk in the ground and moves along the ground would be searched to where the
+/// ground ends.
 inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 
 /// Computes how far the object has to move back until it no longer overlaps the scene. A pair of triangles
-/// intersects over an interval of the distance moved, from its least gap to its greatest. Between these
-/// intervals, a scene triangle is inside a closed object if more exits from the solid than entries are ahead
-/// of the triangle. The depth is the distance from 0 back to the lower end of the connected union of
-/// intervals that contains 0. Back-facing scene triangles are ignored.
-/// @param known  an overlapped triangle, reported if the search is cut short before it finds one
+/// intersects while the distance moved is between the pair's least gap and its greatest. Between such
+/// intervals, a scene triangle is inside a closed object if the line through it along the motion has more
+/// exits from the solid than entries ahead of the triangle. Overlapping intervals are joined; the depth is
+/// the distance from 0 back to the lower end of the joined interval that contains 0. Back-facing scene
+/// triangles are ignored.
+/// @param known  a triangle known to overlap the object, reported if the search is cut short before it finds
+///               one
 Overlap overlap_depth(const TurnedTree& object, const ObjectHeightMap& front, SceneInFrame& scene,
                       const OverlappedTriangle& known, OverlapScratch& scratch);
 

@@ -43,16 +43,17 @@ struct RadarPictures {
 };
 
 /// Computes the images of a CyberRadar query. Samples each pixel slightly off its centre, as GlRadar does.
-/// Depths equal GlRadar's except for its renderer's rounding, overlaps (L is not negative here) and one-sided
-/// surfaces (GlRadar treats them as two-sided). R is the first surface not behind the object's leading
-/// surface. Everything is computed in double. CyberRadar does not use these images.
+/// Depths differ from GlRadar's in three ways: by its renderer's rounding, in overlaps (L is never negative
+/// in these images) and at one-sided surfaces (GlRadar treats them as two-sided). R shows the first surface
+/// that is not behind the object's leading surface. All depths are computed in double. CyberRadar itself does
+/// not use the images.
 ///
 /// @param resolution_px  pixels along the longer side of the object's outline, 1 to 4096
 /// @return the images; all empty if CyberRadar rejects the query with kInvalidInput
 RadarPictures radar_pictures(const RadarQuery& query, const RadarScene& scene, int resolution_px);
 
-/// Sample position in a pixel: slightly off its centre, so edges along pixel centres do not coincide with
-/// samples.
+/// Sample position in a pixel. It is slightly off the centre, so edges that run through pixel centres do not
+/// pass through samples.
 inline constexpr double kSampleX_px = 0.5 + 1.0 / 64.0, kSampleY_px = 0.5 + 1.0 / 97.0;
 
 }  // namespace roomradar

@@ -13,8 +13,9 @@
 namespace roomradar {
 
 /// One query of CyberRadar in the frame of its motion, and the results of its exact tests so far. The frame
-/// has its origin at the object's centre and z along the direction. It depends only on the direction in the
-/// object's frame, so the object's height map M can be reused while that direction is unchanged.
+/// has its origin at the object's centre and its z axis along the direction of motion. Relative to the
+/// object, the frame depends only on the direction, so the object's height map M can be reused while the
+/// direction in the object's frame is unchanged.
 struct RadarSearch {
   const RadarQuery& query;
   const TriangleTree& tree;
@@ -28,15 +29,15 @@ struct RadarSearch {
   double best_m = kInfinity<double>;
   /// True if an exact test found an overlap; the search for contacts then ends.
   bool overlaps = false;
-  /// The overlapped triangle; set if `overlaps`.
+  /// The scene triangle that the object overlaps; set if `overlaps`.
   OverlappedTriangle overlapped;
   /// True if the object intersects a back-facing surface now.
   bool leaves_something = false;
   /// True if a contact with a back-facing surface was found ahead.
   bool met_a_back = false;
-  /// True if back-facing surfaces are collected instead of treated as contacts.
+  /// True if back-facing surfaces are collected instead of counted as contacts.
   bool collects_backs = false;
-  /// True if some scene that may be behind M was not tested.
+  /// True if surfaces that may be behind M were left untested (see CyberRadar::kMostWorkBehind).
   bool is_cut_short = false;
 
   /// @param q       the query; must outlive the search
@@ -50,7 +51,7 @@ struct RadarSearch {
     R_frame_world = object.R_frame_mesh * q.object.T_world_mesh.linear().transpose();
     origin_world = q.object.T_world_mesh * (tree.origin() + tree.centre());
   }
-  /// Returns by how much a contact may be farther than the nearest one and still count as equally near.
+  /// Returns the tolerance within which contacts count as equally near, m.
   [[nodiscard]] double equally_m() const { return object.touching_m; }
   /// Returns true if an object triangle faces against the motion and belongs to a closed object.
   [[nodiscard]] bool is_rear(const FrameTriangle& o) const {
@@ -58,8 +59,8 @@ struct RadarSearch {
   }
 };
 
-/// Sets the contact's point, normal and kind from a point in the search's frame. The normal is turned to face
-/// against the motion; a zero normal is replaced by the direction opposite to the motion.
+/// Sets the contact's point, normal and kind from a point in the search's frame. A normal that faces along
+/// the motion is negated. A zero normal is replaced by the direction opposite to the motion.
 inline void touch(const RadarSearch& search, const PatchPoint& at, Contact& contact) {
   const Eigen::Matrix3d R_world_frame = search.R_frame_world.transpose();
   contact.point_world = search.origin_world + R_world_frame * at.point;

@@ -20,21 +20,22 @@ class SceneBoxes {
   /// are not finite.
   void build(std::span<const SceneTree> scene);
 
-  /// Starts building a hierarchy for a scene of another type: call clear(), then add() for each mesh with a
-  /// surface, then finish().
+  /// Empties the hierarchy. For a scene that is not a span of SceneTree, build the hierarchy by clear(), then
+  /// add() for each mesh with a surface, then finish().
   void clear();
   /// Adds a mesh.
-  /// @param index        index in the scene, passed on by visit(); must increase from call to call
+  /// @param index        index of the mesh in the scene, which visit() passes to its callback; must increase
+  ///                     from call to call
   /// @param bounds_mesh  bounding box in the mesh's frame, m
   void add(std::size_t index, const Eigen::AlignedBox3d& bounds_mesh, const Eigen::Isometry3d& T_world_mesh);
   /// Builds the hierarchy over the meshes added since clear().
   void finish();
 
-  /// Returns true if all poses were finite.
+  /// Returns true if the poses of all meshes were finite.
   [[nodiscard]] bool are_finite() const { return are_finite_; }
 
-  /// Calls work(index in the scene) for each mesh whose box intersects `around_world`, always in the same
-  /// order.
+  /// Calls work(index in the scene) for each mesh whose bounding box intersects `around_world`. The order is
+  /// always the same.
   template <typename Work>
   void visit(const Eigen::AlignedBox3d& around_world, const Work& work) const {
     tree_.visit([&](const Eigen::AlignedBox3d& box) { return box.intersects(around_world); },

@@ -1,4 +1,5 @@
-// scene_in_frame.hpp: the scene in the frame of one motion (z is its direction), subdivided on demand.
+// scene_in_frame.hpp: the scene in the frame of a motion (z is the direction of motion), subdivided on
+// demand.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace roomradar {
 
-/// A part of the scene that has not been examined further, and a lower bound of its distance to contact.
+/// A part of the scene, which SceneInFrame::expand() can subdivide, and a lower bound of its distance to
+/// contact.
 struct SceneItem {
   enum class Kind : std::uint32_t {
     /// Node of a triangle tree.
@@ -27,7 +29,7 @@ struct SceneItem {
   /// Lower bound of the distance to contact, m.
   float low_m;
   Kind kind;
-  /// Index of the tree; or number of trees + index of the depth image.
+  /// Index of the tree. For a depth image: number of trees + index of the image.
   std::uint32_t source;
   /// Index of the first node, triangle or block, and number of triangles (kLeaf only).
   std::uint32_t first, count;
@@ -35,13 +37,13 @@ struct SceneItem {
   [[nodiscard]] bool is_triangle() const { return kind == Kind::kTriangle || kind == Kind::kBounded; }
 };
 
-/// Computes lower bounds of the distance to contact. A box's bound is its least height minus the object's
-/// greatest height under it. The bound holds for everything in the box, since ObjectHeightMap is an upper
-/// bound over the whole area of each pixel.
+/// Computes lower bounds of the distance to contact. A box's bound is the box's least height minus the
+/// object's greatest height under the box. The bound holds for all surfaces in the box, since ObjectHeightMap
+/// is an upper bound over the whole area of each pixel.
 struct SceneBound {
   /// Height map of the object.
   const ObjectHeightMap* front = nullptr;
-  /// Scene wholly below this height is ignored, m.
+  /// Scene boxes wholly below this height are ignored, m.
   float behind_m = 0.0F;
   [[nodiscard]] float low_m(const FrameBox& box) const {
     if (box.z1 < behind_m) return std::numeric_limits<float>::infinity();
@@ -59,19 +61,21 @@ class SceneInFrame {
  public:
   /// Sets the scene and the frame. The scene must not change while this object is used.
   /// @param own_tree  index in scene.trees of a tree to skip
-  /// @return false if a pose is not finite or a depth image is unusable (camera, mask size, stride, jump
-  ///         limits)
+  /// @return false if a pose is not finite or a depth image is unusable (invalid camera, mask size, stride or
+  ///         jump limits)
   bool place(const RadarScene& scene, std::size_t own_tree, const Eigen::Matrix3d& R_frame_world,
              const Eigen::Vector3d& origin_world);
-  /// Finds the trees that intersect the volume, and the part of each depth image that projects into it.
+  /// Finds the trees that intersect the volume, and the rectangle of each depth image into which the volume
+  /// projects.
   void enter(const Eigen::AlignedBox3d& volume);
   /// Returns the number of depth image cells that may be in the volume.
   [[nodiscard]] std::size_t cell_count() const;
   [[nodiscard]] bool has_trees() const { return !trees_.empty(); }
-  /// Appends the parts of trees and the blocks in the volume that can be nearer than limit_m. Call after
-  /// enter() and before expand(). Items of earlier calls become invalid.
+  /// Appends those nodes of trees and blocks of depth images in the volume that can be nearer than limit_m.
+  /// Call after enter() and before expand(). Items of earlier calls become invalid.
   void begin(const SceneBound& bound, float limit_m, std::vector<SceneItem>& items);
-  /// Appends the parts of an item that can be nearer than limit_m. The item must not be a triangle.
+  /// Subdivides an item, and appends those of its parts that can be nearer than limit_m. The item must not be
+  /// a triangle.
   void expand(const SceneItem& item, const SceneBound& bound, float limit_m, std::vector<SceneItem>& items);
 
   [[nodiscard]] FrameTriangle triangle(const SceneItem& item) const;

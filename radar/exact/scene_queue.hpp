@@ -1,4 +1,4 @@
-// scene_queue.hpp: priority queue of the parts of the scene that are left to examine.
+// scene_queue.hpp: priority queue of the scene items that are left to examine.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -7,7 +7,8 @@
 
 namespace roomradar {
 
-/// A binary heap of scene items, ordered by SceneItem::low_m. Keeps its memory when cleared.
+/// A binary heap of scene items; the item with the least SceneItem::low_m is popped first. Keeps its memory
+/// when cleared.
 class SceneQueue {
  public:
   void clear() { items_.clear(); }
@@ -29,7 +30,7 @@ class SceneQueue {
     items_.push_back(item);
     std::push_heap(items_.begin(), items_.end(), is_farther);
   }
-  /// Removes all items with a negative bound: they may be behind the object's leading surface.
+  /// Removes all items with a negative bound, since these may be behind the object's leading surface.
   void drop_below_zero() {
     std::erase_if(items_, [](const SceneItem& item) { return item.low_m < 0.0F; });
     arrange();

@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// Finds the boxes that satisfy a predicate without testing each of them. Building is not thread safe.
+/// Finds the boxes that satisfy a predicate without testing every box. Building is not thread safe.
 class BoxTree {
  public:
   /// Builds the hierarchy in O(n); allocates nothing if an earlier build had at least as many boxes. Groups
@@ -17,8 +17,8 @@ class BoxTree {
 
   [[nodiscard]] std::size_t size() const { return levels_.empty() ? 0 : levels_.front().count; }
 
-  /// Calls work(index) for each given box for which `reaches(box)` is true, in ascending order of index.
-  /// If `reaches` is true for a box, it must be true for every box that contains that box.
+  /// Calls work(index), in ascending order of index, for each box of build() for which `reaches(box)` is
+  /// true. If `reaches` is true for a box, it must be true for every box that contains that box.
   template <typename Reaches, typename Work>
   void visit(const Reaches& reaches, const Work& work) const {
     if (!levels_.empty()) visit_range(levels_.size() - 1, 0, levels_.back().count, reaches, work);

@@ -16,8 +16,8 @@ namespace roomradar {
 struct TurnedTree {
   const TriangleTree* tree = nullptr;
   Eigen::Matrix3d R_frame_mesh = Eigen::Matrix3d::Identity();
-  double margin_m = 0.0;    ///< the search inflates boxes by this distance on all sides
-  double touching_m = 0.0;  ///< surfaces closer than this touch; see classify_pair()
+  double margin_m = 0.0;    ///< distance by which the search inflates boxes on all sides
+  double touching_m = 0.0;  ///< distance below which surfaces touch; see classify_pair()
 };
 
 /// Returns an object triangle in the frame of the motion, with a zero normal.
@@ -37,8 +37,8 @@ inline FrameTriangle turned_triangle(const TurnedTree& object, std::uint32_t tri
   return result;
 }
 
-/// Range of a linear function f(p) = g . p over each of a node's eight boxes: over box i, f is within
-/// value[i] +- reach[i].
+/// Range of a linear function f(p) = g . p over each of a node's eight boxes. Over box i, f lies in value[i]
+/// +- reach[i].
 struct LinearOverBoxes {
   alignas(32) std::array<float, TreeNode::kWidth> value, reach;
 };
@@ -51,8 +51,8 @@ inline void linear_over_boxes(const TreeNode& node, const Eigen::Vector3f& g, Li
   }
 }
 
-/// Inner node (count = 0) or leaf (count > 0) that is still to be visited. low_m is a lower bound of the gap,
-/// along the motion, from its triangles to the scene triangle; first and count are as in TreeNode.
+/// Inner node (count = 0) or leaf (count > 0) that is left to visit. low_m is a lower bound of the gap from
+/// the node's triangles to the scene triangle, along the motion. first and count are as in TreeNode.
 struct PendingNode {
   float low_m;
   std::uint32_t first, count;
@@ -61,12 +61,13 @@ struct PendingNode {
 /// Scratch memory for searches, and a counter of their cost.
 struct ColumnScratch {
   std::vector<PendingNode> pending;
-  /// Number of nodes visited plus triangles passed to `leaf`, about 0.1 us each. Accumulates over searches.
+  /// Number of nodes visited plus number of triangles passed to `leaf`; each takes about 0.1 us. Accumulates
+  /// over searches.
   std::uint64_t work = 0;
 };
 
-/// Sorts the nodes from index `first` on by descending low_m, so the one with the smallest gap is popped
-/// next. Insertion sort, because there are at most eight: the children of one node.
+/// Sorts the nodes from index `first` on by descending low_m, so the node with the smallest gap is popped
+/// next. Uses insertion sort, since there are at most eight nodes (the children of one node).
 inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t first) {
   for (std::size_t i = first + 1; i < pending.size(); ++i) {
     for (std::size_t j = i; j > first && pending[j].low_m > pending[j - 1].low_m; --j) {
@@ -75,31 +76,31 @@ inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t firs
   }
 }
 
-/// Infinite prism that a scene triangle spans along the motion. Its axes, edge and plane are gradients of
-/// linear functions of the object's points p (mesh frame, relative to the tree's centre, m). All bounds
-/// include float rounding.
+/// Infinite prism that a scene triangle spans along the motion. x_axis, y_axis, z_axis, edge and plane are
+/// the gradients of linear functions of a point p of the object (mesh frame, relative to the tree's centre,
+/// m). All bounds include float rounding.
 struct SceneColumn {
   Eigen::Vector3f x_axis, y_axis, z_axis;
   /// Bounds of the scene triangle in the frame of the motion, m. z0 and z1 are infinite unless is_steep.
   float x0, x1, y0, y1, z0, z1;
-  /// Outward direction across the triangle's longest edge: points p with edge . p > edge_reach are beyond
-  /// this edge, so outside the projected triangle.
+  /// Outward direction perpendicular to the projected triangle's longest edge. Points p with edge . p >
+  /// edge_reach are beyond this edge and so outside the projected triangle.
   Eigen::Vector3f edge;
   float edge_reach;
   /// Height of the triangle's plane above a point p, along the motion: offset + plane . p, +- plane_slack. If
-  /// is_edge_on, offset + plane . p is instead the signed distance of p from the plane; a box does not cross
-  /// the plane if its distance exceeds -beside.
+  /// is_edge_on, offset + plane . p is instead the signed distance of p from the plane. A box whose distance
+  /// from the plane exceeds -beside counts as not crossing the plane.
   Eigen::Vector3f plane = Eigen::Vector3f::Zero();
   float offset = 0.0F, plane_slack = std::numeric_limits<float>::infinity();
   float beside = -std::numeric_limits<float>::infinity();
   bool is_edge_on = false;
-  /// The plane is nearly parallel to the motion, so the z range of the triangle bounds the gap as well.
+  /// True if the plane is nearly parallel to the motion; then the triangle's z range bounds the gap as well.
   bool is_steep = true;
 
   SceneColumn(const TurnedTree& object, const FrameTriangle& scene);
 
   /// Returns a lower bound of the gap from an object triangle to the scene triangle's plane, along the
-  /// motion. -infinity if the scene triangle is edge-on.
+  /// motion. Returns -infinity if the scene triangle is edge-on.
   [[nodiscard]] float least_gap(const TriangleTree& tree, std::uint32_t triangle) const {
     if (is_edge_on) return -std::numeric_limits<float>::infinity();
     const Eigen::Vector3f centre = tree.centre().cast<float>();
@@ -111,22 +112,23 @@ struct SceneColumn {
   }
 };
 
-/// Visits the object triangles that may overlap `scene` in projection along the motion, smallest possible gap
-/// first. The gap is the height of the scene's surface above the object's, along the motion.
+/// Visits the object triangles that may overlap `scene` in projection along the motion, in order of their
+/// smallest possible gap. The gap is the height of the scene's surface above the object's, along the motion.
 ///
 /// The gap between the scene triangle's plane and a point is linear in the point, so its minimum and maximum
 /// over a box are exact. If the plane is steep, the heights of box and triangle bound the gap as well. All
-/// bounds include float rounding. If the scene triangle is edge-on, boxes that do not cross its plane by more
-/// than touching_m are skipped: their triangles at most slide along the plane (see classify_pair()).
+/// bounds include float rounding. If the scene triangle is edge-on, the search skips boxes that do not reach
+/// through its plane by more than touching_m, since their triangles can only slide along the plane (see
+/// classify_pair()).
 ///
 /// Bounds and tests are in one function, so the eight lanes of a node stay in registers.
 ///
-/// @param limit_m   callable without arguments that returns a gap; boxes and triangles whose min gap is not
-///                  below it are skipped
-/// @param floor_m   boxes whose max gap is less than this are skipped
+/// @param limit_m   callable without arguments that returns a gap; the search skips boxes and triangles whose
+///                  min gap is not below that gap
+/// @param floor_m   the search skips boxes whose max gap is less than floor_m
 /// @param leaf      callable that takes the index of an object triangle
-/// @return true if a box was skipped because its max gap is less than floor_m, i.e. the scene triangle is
-///         behind it
+/// @return true if the search skipped a box because its max gap is less than floor_m, i.e. the scene triangle
+///         is behind the box
 template <typename Limit, typename Leaf>
 bool search_column(const TurnedTree& object, const FrameTriangle& scene, const Limit& limit_m, double floor_m,
                    ColumnScratch& scratch, const Leaf& leaf) {

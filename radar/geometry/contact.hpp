@@ -1,4 +1,5 @@
-// contact.hpp: first contact of a moving object with the scene, and guaranteed bounds of the distance to it.
+// contact.hpp: first contact of a moving object with the scene, and guaranteed bounds of the distance to
+// contact.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -28,8 +29,9 @@ enum class SurfaceKind {
 };
 constexpr std::size_t kSurfaceKinds = 6;
 
-/// Returns true for surfaces that are assumed, not observed. They block motion from their outside only. An
-/// object that is already behind such a surface, e.g. when the surface appears, can therefore leave.
+/// Returns true for the kinds of surfaces that are assumed, not observed. One-sided surfaces block motion
+/// from their outside only. An object that is already behind a one-sided surface, e.g. when the surface
+/// appears, can therefore leave.
 constexpr bool is_one_sided(SurfaceKind touched) {
   return touched == SurfaceKind::kUnknownFrontier || touched == SurfaceKind::kInferredBack;
 }
@@ -59,17 +61,17 @@ struct [[nodiscard]] Contact {
   /// negative: the object must move back by -contact_distance_m along the direction to clear the surfaces
   /// that face against the motion.
   double contact_distance_m = 0.0;
-  /// Lower bound of the true distance to contact, m. kNoTarget: distance that is certainly free, at most the
-  /// queried distance. kOverlap: contact_distance_m, or -infinity if the overlap is too deep to be measured
-  /// (see CyberRadar).
+  /// Lower bound of the true distance to contact, m. For kNoTarget: distance that is certainly free, at most
+  /// the queried distance. For kOverlap: contact_distance_m, or -infinity if the overlap is too deep to be
+  /// measured (see CyberRadar).
   double lower_m = 0.0;
-  /// Upper bound of the true distance to contact, m. kNoTarget: infinite. kOverlap: contact_distance_m.
+  /// Upper bound of the true distance to contact, m. Infinite for kNoTarget; contact_distance_m for kOverlap.
   double upper_m = std::numeric_limits<double>::infinity();
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< contact point on the scene's surface, m
-  /// Unit normal of the scene's triangle, turned to face the object.
+  /// Unit normal of the scene's triangle, negated if necessary so that it faces the object.
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
   SurfaceKind touched = SurfaceKind::kNothing;
-  /// Edge of a pixel of the query's images, perpendicular to the direction, m.
+  /// Side length of a pixel of the query's images, perpendicular to the direction, m.
   double pixel_m = 0.0;
 
   /// Returns true for kContact and kOverlap.

@@ -1,4 +1,4 @@
-// flat_faces.hpp: finds the triangles of a closed mesh that are within flat faces.
+// flat_faces.hpp: finds the triangles in the interior of a closed mesh's flat faces.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -9,16 +9,18 @@
 
 namespace roomradar {
 
-/// Returns, per triangle, true if all its neighbours belong to the same flat face (see TriangleTree).
+/// Returns, per triangle, true if the triangle and all its neighbours belong to one flat face (see
+/// TriangleTree).
 /// @param edges   result of half_edges_of() for these triangles
-/// @param flat_m  flatness tolerance: a triangle joins a face if its corners are at most this far from the
-///                plane of the face; in the complete face, they are at most twice this far from its plane
+/// @param flat_m  flatness tolerance, m: a triangle joins a face if its vertices are at most flat_m from the
+///                plane fitted to the face so far; vertices of the complete face are at most 2 flat_m from
+///                its plane
 std::vector<bool> find_within_flat_faces(const std::vector<Triangle>& triangles,
                                          const std::vector<Eigen::Vector3f>& vertices,
                                          const std::vector<HalfEdge>& edges, double flat_m);
 
 /// Sets TreeNode::within_faces of all nodes.
-/// @param within  by triangle, in the tree's order: true if it is within a flat face
+/// @param within  result of find_within_flat_faces(), in the tree's order of triangles
 /// @param nodes   children must come after their parents
 void mark_flat_faces(const std::vector<bool>& within, std::vector<TreeNode>& nodes);
 

@@ -1,4 +1,4 @@
-// half_edges.hpp: half-edges of a triangle mesh, and a test for closed meshes.
+// half_edges.hpp: half-edges of a triangle mesh, and a test whether a mesh is closed.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace roomradar {
 
 /// One side of a triangle, as a directed edge between two vertex positions.
 struct HalfEdge {
-  std::uint64_t edge;  ///< key of the undirected edge, equal for all half-edges on it
-  std::uint32_t side;  ///< 3 * triangle + index of the side's first corner
+  std::uint64_t edge;  ///< key of the undirected edge; equal for all its half-edges
+  std::uint32_t side;  ///< 3 * triangle + index (0 to 2) of the side's first vertex
   int sense;           ///< +1 or -1: direction of the side along the undirected edge
 };
 

@@ -1,4 +1,4 @@
-// infinity.hpp: short name for a number type's infinity, which stands for "no distance limit" or "nothing
+// infinity.hpp: short name for the infinity of a number type. It stands for "no distance limit" or "nothing
 // found".
 #pragma once
 #include <limits>

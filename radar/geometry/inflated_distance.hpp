@@ -1,17 +1,18 @@
-// inflated_distance.hpp: distance that a triangle can move along z until it is within a margin of another.
+// inflated_distance.hpp: distance that a triangle can move along z until it is within a margin of another
+// triangle.
 #pragma once
 #include "radar/geometry/triangle_gap.hpp"
 
 namespace roomradar {
 
 /// Returns the least distance >= 0 that `object` can move along z until it is within margin_m of `scene`: 0
-/// if it is so now, infinity if it never is. Stops early, with a lower bound, once the result exceeds
-/// limit_m. The result never exceeds the true distance; it is less only if 20 steps do not converge because
-/// the object grazes the margin.
+/// if `object` is within the margin now, infinity if it never comes within the margin. Once the result
+/// exceeds limit_m, the search stops and returns a lower bound. The result never exceeds the true distance.
+/// It is less than the true distance only if 20 steps do not converge, because the object grazes the margin.
 ///
-/// The distance between two convex sets is a convex function of the distance moved. The plane perpendicular
-/// to the shortest segment separates the sets. Each Newton step moves the object until its distance from that
-/// plane is the margin, so no step passes the true solution.
+/// The distance between two convex sets is a convex function of the distance moved. A plane perpendicular to
+/// the shortest segment between the sets separates them. Each Newton step moves the object until its distance
+/// from this plane through the scene's nearest point is the margin, so no step passes the true solution.
 double inflated_distance(const FrameTriangle& object, const FrameTriangle& scene, double margin_m,
                          double limit_m);
 

@@ -1,4 +1,5 @@
-// radar_scene.hpp: scene that an object can touch, as triangle trees with poses and depth images.
+// radar_scene.hpp: the scene that an object can touch, given as triangle trees with poses and as depth
+// images.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -26,14 +27,15 @@ inline bool has_surface(const SceneTree& s) {
 
 /// Surface of a depth image, triangulated only inside the query's volume. Does not own the images.
 ///
-/// Vertices are the measured pixels of every stride_px-th row and column: depth finite and > 0 and, if a mask
-/// is given, mask not 0. Each vertex is back_project()ed and rounded to float in the camera frame. Each cell
-/// of the grid has corners a (top left), b (top right), c (bottom left) and d (bottom right). Its triangles
-/// are a, c, d and a, d, b, counter-clockwise seen from the camera. A triangle exists if its corners' depths
-/// differ by at most max_jump_m + max_jump_slope * (smallest of the three depths).
+/// Vertices are the measured pixels of every stride_px-th row and column. A pixel is measured if its depth is
+/// finite and > 0 and, if a mask is given, its mask is not 0. Each vertex is back-projected (back_project())
+/// and rounded to float in the camera frame. Each cell of the grid has corners a (top left), b (top right), c
+/// (bottom left) and d (bottom right). Its triangles are a, c, d and a, d, b, counter-clockwise seen from the
+/// camera. A triangle exists if its vertices' depths differ by at most max_jump_m + max_jump_slope *
+/// (smallest of the three depths).
 struct SceneDepth {
   const DepthImage* depth_m = nullptr;
-  const MaskImage* mask = nullptr;  ///< size of depth_m; null: all measured pixels are used
+  const MaskImage* mask = nullptr;  ///< same size as depth_m; null: no pixel is masked out
   /// Only focal lengths and principal point are used, in pixels of depth_m.
   Intrinsics camera;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
@@ -50,9 +52,9 @@ class SceneBoxes;
 struct RadarScene {
   std::span<const SceneTree> trees;
   std::span<const SceneDepth> depths;
-  /// Optional hierarchy of the boxes of `trees` at their present poses, so a query visits only the trees near
-  /// it. Null: a query visits all trees. Building the hierarchy pays from a few tens of trees on, if many
-  /// queries share it.
+  /// Optional hierarchy of the bounding boxes of `trees` at their present poses, so a query visits only the
+  /// trees near its volume. Null: a query visits all trees. Building the hierarchy saves time from a few tens
+  /// of trees on, if many queries share it.
   const SceneBoxes* boxes = nullptr;
 };
 

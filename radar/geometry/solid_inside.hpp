@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Crossing of a line, parallel to the motion, with an object's surface.
+/// Crossing of an object's surface with a line that is parallel to the motion.
 struct Layer {
   /// Distance of the query point ahead of the crossing, m; negative if the crossing is ahead of the point.
   double gap_m;
@@ -14,19 +14,20 @@ struct Layer {
   int way_out;
 };
 
-/// Finds all crossings of the object's surface with the line through a point along the motion: those ahead of
-/// the point, and those up to limit_m behind it.
-/// @return false if the line passes an edge too closely to decide which triangles it crosses
+/// Finds the crossings of the object's surface with the line that runs through a point along the motion: all
+/// crossings ahead of the point, and those up to limit_m behind it.
+/// @return false if the line passes so close to an edge that rounding decides which triangles it crosses
 bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 
 /// Returns true if the point for which layers_at() found `layers` is inside the solid after the object has
-/// moved by contact_distance_m. It is inside if there are more exits than entries ahead of the point; by this
-/// rule, a mesh's solids may overlap each other.
+/// moved by contact_distance_m. The point is inside if there are more exits than entries ahead of it. This
+/// rule holds even if components of the mesh overlap each other.
 bool is_within(const std::vector<Layer>& layers, double contact_distance_m);
 
-/// Returns true if a scene triangle that does not intersect the object's surface is inside the object's
-/// solid, deeper than touching_m. Always false if the object is not closed.
+/// Returns true if a scene triangle is inside the object's solid, more than touching_m deep. The triangle
+/// must not intersect the object's surface, since only one of its points is tested. Returns false if the
+/// object is not closed.
 bool is_inside(const TurnedTree& object, const FrameTriangle& scene, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 

@@ -28,7 +28,7 @@ struct FloatBounds {
   }
 };
 
-/// Returns the bounds of a triangle's corners; rounding is not included.
+/// Returns the bounds of a triangle's vertices, without a margin for rounding.
 FloatBounds bounds_of(const Triangle& triangle, const std::vector<Eigen::Vector3f>& vertices);
 
 /// Frame of the nodes' boxes: boxes are relative to `centre` and enlarged by rounding_m on all sides.
@@ -39,7 +39,7 @@ struct NodeFrame {
 
 /// Builds nodes with the surface area heuristic; see TriangleTree::build_by_place().
 /// @param[out] nodes  the root is first, and children come after their parents
-/// @return indices in `triangles`, in the order in which the leaves refer to them
+/// @return indices of the triangles, in the order in which the leaves refer to them
 std::vector<std::uint32_t> build_nodes_by_place(const std::vector<Triangle>& triangles,
                                                 const std::vector<Eigen::Vector3f>& vertices,
                                                 const NodeFrame& frame, std::vector<TreeNode>& nodes);

@@ -15,11 +15,11 @@
 
 namespace roomradar {
 
-/// Box of one of the two trees, in the frame of the TreePair, m.
+/// Box of a node of one of the two trees, in the common frame of the TreePair, m.
 struct PairBox {
   Eigen::Vector3f centre, half;
   std::uint32_t first, count;  ///< as in TreeNode; count 0 means an inner node
-  bool is_within_faces;        ///< true if all triangles in the box lie within flat faces
+  bool is_within_faces;        ///< true if all triangles in the box lie within flat faces (TriangleTree)
 };
 struct PendingPair {
   PairBox object, scene;
@@ -28,7 +28,7 @@ struct PendingPair {
 /// Order in which pairs of boxes are visited.
 enum class PairOrder {
   kAny,  ///< last in, first out: keeps the number of pending pairs small
-  /// Smallest key first: once a leaf has lowered the bound, pairs with larger keys are never opened.
+  /// Smallest key first. Once a leaf has lowered the bound, pairs with keys above the bound are never opened.
   kLeastFirst,
 };
 
@@ -38,8 +38,8 @@ inline bool is_usable(const TreeInstance& instance) {
   return instance.tree != nullptr && !instance.tree->empty() && instance.T_world_mesh.matrix().allFinite();
 }
 
-/// Returns true if the bounding spheres of the two trees are farther apart than `than_m`, which implies the
-/// same for the trees.
+/// Returns true if the bounding spheres of the two trees are farther apart than `than_m`; then the trees are,
+/// too.
 inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other, double than_m) {
   constexpr double kRounding = 1.0 + 1e-5;  // covers the rounding of half_size() to float
   const auto middle_world = [](const TreeInstance& instance) -> Eigen::Vector3d {
@@ -123,8 +123,8 @@ class TreePair {
   }
 };
 
-/// Returns true if `leaf` is more than twice as large as the box `other`. Its triangles may then bound the
-/// distance to that box more tightly than the leaf's own box does.
+/// Returns true if the box `leaf` is a leaf and more than twice as large as the box `other`. The leaf's
+/// triangles may then bound the distance to `other` more tightly than the leaf's box does.
 inline bool are_large_against(const PairBox& leaf, const PairBox& other) {
   return leaf.count > 0 && leaf.half.maxCoeff() > 2.0F * other.half.maxCoeff();
 }
@@ -137,10 +137,10 @@ inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
          -kTouching_m;
 }
 
-/// Calls leaf(object box, scene box) for all pairs of leaves for which key(), of these and of all enclosing
-/// boxes, is finite, until leaf() returns -infinity. Skips pairs in which both boxes lie within flat faces
-/// (see TriangleTree). With PairOrder::kLeastFirst, stops once all pending keys are at least the value that
-/// leaf() returned last.
+/// Calls leaf(object box, scene box) for pairs of leaves. Skips a pair if key(object box, scene box) is
+/// infinite for it or for a pair of boxes that encloses it, or if both its boxes lie within flat faces (see
+/// TriangleTree). Stops when leaf() returns -infinity. With PairOrder::kLeastFirst, also stops once all
+/// pending keys are at least the value that leaf() returned last.
 template <PairOrder order, typename Key, typename Leaf>
 void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
   constexpr float kNone = std::numeric_limits<float>::infinity();

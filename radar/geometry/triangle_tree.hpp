@@ -12,8 +12,8 @@
 namespace roomradar {
 
 /// Node with eight child boxes, stored as a structure of arrays for SIMD. Boxes are relative to
-/// TriangleTree::centre() and contain everything under them, rounding included. Unused entries repeat the
-/// first box.
+/// TriangleTree::centre(). Each contains all triangles below it in the tree, with a margin for rounding.
+/// Unused entries repeat the first box.
 struct alignas(32) TreeNode {
   static constexpr int kWidth = 8;
   std::array<float, kWidth> centre_x, centre_y, centre_z;  // centres of the boxes, m
@@ -22,7 +22,7 @@ struct alignas(32) TreeNode {
                                             // nodes()
   std::array<std::uint32_t, kWidth> count;  // leaf: number of triangles; inner child: 0
   std::uint32_t child_count = 0;
-  std::uint32_t within_faces = 0;  // bit i: all triangles under box i are within flat faces
+  std::uint32_t within_faces = 0;  // bit i: all triangles below box i are within flat faces
 };
 
 /// A rigid mesh (a virtual object, a saved room) or a mesh of a single frame. Vertices are float, relative to
@@ -31,9 +31,9 @@ struct alignas(32) TreeNode {
 /// duplicate triangles are kept. Uses no OpenGL. Concurrent reading is safe; building is not.
 ///
 /// A triangle of a closed mesh is within a flat face if all its neighbours are in the same plane, within
-/// float precision (twice rounding_m()). None of its edges is then an edge of the solid. Wherever two solids
-/// touch or are closest, an edge or a corner of one of them is involved. Queries can therefore skip pairs of
-/// triangles that are both within flat faces.
+/// float precision (twice rounding_m()). None of its edges is then an edge of the solid. Where two solids
+/// touch or are closest, an edge or a vertex of one of the solids is involved. Queries can therefore skip
+/// pairs of triangles that are both within flat faces.
 class TriangleTree {
  public:
   /// Builds the tree with the surface area heuristic, for meshes that persist. O(n log n). Determines whether
@@ -47,27 +47,28 @@ class TriangleTree {
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
   [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
   [[nodiscard]] std::size_t dropped_triangles() const { return dropped_triangles_; }
-  /// Origin of the local points, in the mesh's frame, m: mesh point = local point + origin().
+  /// Returns the origin of the local points, in the mesh's frame, m: mesh point = local point + origin().
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
-  /// All vertices of the mesh as local points, m, in the mesh's order.
+  /// Returns all vertices of the mesh as local points, m, in the mesh's order.
   [[nodiscard]] std::span<const Eigen::Vector3f> vertices() const { return vertices_; }
-  /// Triangles in the tree's order, which differs from the mesh's order after build_by_place().
+  /// Returns the triangles in the tree's order, which differs from the mesh's order after build_by_place().
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
-  /// Cache key: unique per build, across all trees; 0 before the first build.
+  /// Returns a number that is unique per build, across all trees, for use as a cache key; 0 before the first
+  /// build.
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
-  /// Returns true if the mesh is closed and counter-clockwise seen from outside, so points can be inside it.
-  /// In a closed mesh, triangles use every edge equally often in both directions (vertices at the same
-  /// position count as one), and every connected component has a positive volume.
+  /// Returns true if the mesh is closed and its triangles are counter-clockwise seen from outside, so points
+  /// can be inside the mesh. In a closed mesh, triangles use every edge equally often in both directions
+  /// (vertices at the same position count as one), and every connected component has a positive volume.
   [[nodiscard]] bool is_closed() const { return is_closed_; }
 
-  /// Nodes of the tree, root first; empty if there are no triangles.
+  /// Returns the nodes of the tree, root first; empty if there are no triangles.
   [[nodiscard]] std::span<const TreeNode> nodes() const { return nodes_; }
-  /// Centre of the box around all triangles, as a local point, m. Origin of the nodes' boxes.
+  /// Returns the centre of the box around all triangles, as a local point, m. The nodes' boxes are relative
+  /// to it.
   [[nodiscard]] const Eigen::Vector3d& centre() const { return centre_; }
-  /// Half the size of the box around all triangles, m.
+  /// Returns half the size of the box around all triangles, m.
   [[nodiscard]] const Eigen::Vector3f& half_size() const { return half_size_; }
-  /// Max rounding error of a float box around its triangles' corners, m. The boxes already include this
-  /// error.
+  /// Returns the max rounding error of a node's float box, m. The boxes are already enlarged by this error.
   [[nodiscard]] float rounding_m() const { return rounding_m_; }
 
  private:

@@ -22,7 +22,7 @@ RendererChoice renderer_choice_from_environment();
 /// depth needs glClipControl). The context is current on the thread that made it, and any code on that thread
 /// may call GL. It has no default framebuffer, so everything is drawn into framebuffer objects. The
 /// constructor sets the clip-space convention (depth 0 to 1, lower left origin); code that changes it must
-/// restore it. Not thread safe. Must outlive everything made with it (GpuMesh, DepthPass, GlRadar).
+/// restore it. Not thread safe. Must outlive all objects made with it (GpuMesh, DepthPass, GlRadar).
 class GlContext {
  public:
   /// @throws Error listing the devices tried and why each failed (no EGL, no GPU, a version below 4.5)
@@ -35,11 +35,11 @@ class GlContext {
   [[nodiscard]] const std::string& renderer() const { return renderer_; }
   [[nodiscard]] bool is_software() const { return is_software_; }
 
-  /// Makes the context current on the calling thread. Needed after a window's context was current, or on
-  /// another thread after release() on the first.
+  /// Makes the context current on the calling thread. Necessary after another context (a window's) was
+  /// current on this thread, or after another thread called release().
   /// @throws Error if the driver refuses
   void make_current() const;
-  /// Releases the context from the calling thread.
+  /// Releases the context from the calling thread, so another thread can call make_current().
   void release() const;
 
  private:

@@ -33,23 +33,23 @@ class GpuMesh {
   GpuMesh(const GpuMesh&) = delete;
   GpuMesh& operator=(const GpuMesh&) = delete;
 
-  /// Replaces the mesh, including normals and colours if there is one per vertex. An empty mesh is valid and
-  /// draws nothing.
+  /// Replaces the mesh. Includes its normals and colours if there is one per vertex. An empty mesh is valid
+  /// and draws nothing.
   ///
-  /// kStatic rejects a mesh with an index past the last vertex or a used vertex that is not finite, and keeps
-  /// the previous mesh. kStreamed drops such triangles and counts them. kStreamed allocates nothing once a
-  /// mesh of this size has been uploaded.
+  /// A triangle is invalid if an index is past the last vertex or one of its vertices is not finite. kStatic
+  /// rejects a mesh with an invalid triangle, and keeps the previous mesh. kStreamed drops and counts invalid
+  /// triangles. kStreamed allocates nothing once a mesh of this size has been uploaded.
   /// @throws Error if the mesh is rejected (kStatic), the number of normals or colours is neither 0 nor the
   ///         number of vertices, the origin is not finite, or there are more than 2^31 / 3 triangles. Also
   ///         throws if the renderer is lost or has no memory; the mesh is then empty.
   void upload(const Mesh& mesh, MeshUsage usage);
 
   /// Replaces the mesh; the tree's triangles and vertices serve as the CPU copy.
-  /// @param tree  built from this mesh (in order for kStreamed); must not be destroyed or rebuilt before the
-  ///              next upload
+  /// @param tree  built from this mesh (by build_in_order() for kStreamed); must not be destroyed or rebuilt
+  ///              before the next upload
   void upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree);
-  /// Adds texture coordinates to the last upload of kStatic, one per vertex of that mesh: attribute 3 (vec2).
-  /// Throws Error if their number is another, or the renderer has no memory.
+  /// Adds texture coordinates, one per vertex, to a mesh uploaded as kStatic: vertex attribute 3 (vec2).
+  /// Throws Error if their number differs from the number of vertices, or if the renderer has no memory.
   void upload_texture_points(std::span<const Eigen::Vector2f> points);
   /// Returns the tree of the last upload, or null if it had none.
   [[nodiscard]] const TriangleTree* tree() const { return tree_; }
@@ -65,7 +65,7 @@ class GpuMesh {
 
   /// Calls work(first_triangle, triangle_count) for each contiguous range of triangles() whose boxes satisfy
   /// `reaches(box)`. Boxes are Eigen::AlignedBox3d in local coordinates. If `reaches` is true for a box, it
-  /// must also be true for every box that contains it.
+  /// must also be true for every box that contains that box.
   template <typename Reaches, typename Work>
   void visit_runs(const Reaches& reaches, const Work& work) const {
     std::uint32_t first = 0;
@@ -97,7 +97,8 @@ class GpuMesh {
 
   /// Returns the origin in the mesh's frame, m. A local point plus the origin is a point in the mesh's frame.
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
-  /// Returns the bounds in the mesh's frame (origin included), m; isEmpty() without triangles.
+  /// Returns the bounding box in the mesh's frame (origin() added), m. It isEmpty() if there are no
+  /// triangles.
   [[nodiscard]] Eigen::AlignedBox3d bounds() const;
 
   /// Returns the chunks of the CPU copy, in local coordinates.

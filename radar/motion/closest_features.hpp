@@ -11,10 +11,10 @@
 
 namespace roomradar {
 
-/// A triangle with precomputed edges. Edge i runs from corner i to the next corner.
+/// A triangle with precomputed edges. Edge i runs from vertex i to the next vertex.
 struct Face : FrameTriangle {
-  /// edge: vector from corner i to the next corner. inward: vector in the triangle's plane, perpendicular to
-  /// edge i, towards the third corner. Not normalised.
+  /// edge[i]: vector from vertex i to the next vertex. inward[i]: vector in the triangle's plane,
+  /// perpendicular to edge i, towards the third vertex. Neither has unit length.
   std::array<Eigen::Vector3d, 3> edge, inward;
 };
 
@@ -24,8 +24,9 @@ Face face_of(const FrameTriangle& triangle);
 bool cross(const Face& a, const Face& b);
 
 /// Returns true if a unit direction is at most 60 degrees from the triangle's normal. At an edge between two
-/// faces whose normals are up to 120 degrees apart, every direction between the normals passes for at least
-/// one face. The limit is below 90 degrees so rounding does not admit directions parallel to the face.
+/// faces whose normals are up to 120 degrees apart, every direction between the normals is outside of at
+/// least one face. The limit is below 90 degrees, so rounding errors do not admit directions parallel to the
+/// face.
 inline bool is_outside(const Eigen::Vector3d& direction, const FrameTriangle& t) {
   return direction.dot(t.normal) > 0.5 - 1e-9;
 }
@@ -39,42 +40,45 @@ struct Range {
     high = std::max(high, at);
   }
 };
-/// Returns the range of a triangle's corners along a direction.
+/// Returns the range of the vertices' coordinates along a direction.
 inline Range range_along(const Eigen::Vector3d& direction, const std::array<Eigen::Vector3d, 3>& corners) {
   Range range;
   for (const Eigen::Vector3d& corner : corners) range.include(direction.dot(corner));
   return range;
 }
 
-/// Collects the closest features of pairs of triangles: one of an object, one of the scene.
+/// Collects the closest features of pairs of triangles. Each pair consists of one triangle of an object and
+/// one of the scene.
 struct FeatureCollector {
   /// Max distance between closest features, m.
   double reach_m;
   bool object_is_closed;
   bool scene_is_one_sided;
-  /// Kind of the scene's surface, copied into the points.
+  /// Kind of the scene's surface, copied into ClosestPoint::kind.
   SurfaceKind kind;
-  /// Pose of the frame in which the triangles are given.
+  /// Pose, in the world, of the frame in which the triangles are given.
   const Eigen::Isometry3d& T_world_frame;
-  /// Output: points are appended.
+  /// Output: the collector appends its points to this vector.
   std::vector<ClosestPoint>& found;
 
   /// Appends the closest features of one pair of triangles. Returns true if the triangles intersect and the
-  /// scene's is not one-sided.
+  /// scene's surface is not one-sided.
   bool look(const FrameTriangle& object, const FrameTriangle& scene) const;
 
  private:
   /// Appends a point unless it is farther than reach_m, its normal is zero, or it is on the inside of a
   /// one-sided surface.
   void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m, const Face& s) const;
-  /// Returns the scene triangle's normal, turned to the side of an object corner that has this height above
-  /// the triangle's plane. If the corner touches the plane, its triangle's other corners decide the side.
-  /// @param heights  range of the heights of all corners of the object's triangle
+  /// Returns the scene triangle's normal, negated if an object vertex is below the scene triangle's plane. If
+  /// the vertex touches the plane, the other vertices of the object's triangle decide the sign.
+  /// @param height_m  height of the object vertex above the plane
+  /// @param heights  range of the heights of all vertices of the object's triangle
   [[nodiscard]] Eigen::Vector3d off_scene(double height_m, const Face& o, const Face& s,
                                           const Range& heights) const;
-  /// Returns the object triangle's normal, turned to point from a scene corner at this height towards the
-  /// object. Returns zero if the side cannot be decided.
-  /// @param heights  range of the heights of all corners of the scene's triangle
+  /// Returns the object triangle's normal with the sign that makes it point from a scene vertex towards the
+  /// object. Returns zero if the vertex touches the plane and its side cannot be decided.
+  /// @param height_m  height of the scene vertex above the object triangle's plane
+  /// @param heights  range of the heights of all vertices of the scene's triangle
   [[nodiscard]] Eigen::Vector3d off_object(double height_m, const Eigen::Vector3d& corner, const Face& o,
                                            const Range& heights) const;
   /// Appends the shortest segment between edge i of the object's triangle and edge j of the scene's, if it is
@@ -82,10 +86,11 @@ struct FeatureCollector {
   void look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const;
 };
 
-/// Selects the contact points that support an object best. For each of up to four normals, keeps the nearest
-/// point, and the outermost point in each of eight directions perpendicular to the normal. A point that is 1
-/// mm more distant from the surface must be 2 cm farther out to be preferred.
-/// @param all   candidates; the function empties or reorders this vector
+/// Selects the contact points that support an object best. Groups the points by normal into up to four
+/// groups. In each group, keeps the point with the smallest gap, and the outermost point in each of eight
+/// directions perpendicular to the normal. A point with a 1 mm larger gap must be 2 cm farther out to be
+/// preferred.
+/// @param all   candidates; the function removes points from this vector
 /// @param[out] kept  the selected points, at most kMaxClosestPoints
 void keep_the_outermost(std::vector<ClosestPoint>& all, std::vector<ClosestPoint>& kept);
 

@@ -1,4 +1,4 @@
-// closest_point.hpp: a pair of closest features of two meshes, and masks of surface kinds.
+// closest_point.hpp: a pair of closest features of two meshes, and bit masks of surface kinds.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>

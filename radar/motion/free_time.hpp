@@ -1,4 +1,4 @@
-// free_time.hpp: contact-free duration of a rigid motion, by separating planes.
+// free_time.hpp: contact-free duration of a rigid motion, computed with separating planes.
 #pragma once
 #include <vector>
 
@@ -12,18 +12,20 @@ namespace roomradar {
 
 /// Result of free_time().
 struct FreeTime {
-  /// Duration from now during which every pair of triangles keeps its minimum distance, s.
+  /// Duration, beginning now, during which every pair of triangles keeps its minimum distance (see
+  /// free_time()), s.
   double free_s = 0.0;
-  /// Present closest features of the pair that limits free_s; kind kNothing if the whole duration is free.
+  /// Present closest features of the pair that limits free_s. Its kind is kNothing if the whole duration is
+  /// free.
   ClosestPoint limit;
 };
 
-/// Returns a lower bound of the duration for which a rigid motion stays free of contact with surfaces that do
-/// not intersect the object now. Each pair of triangles is separated by a plane: the plane of one of them, or
-/// the plane perpendicular to the segment between their nearest points. No corner approaches that plane
-/// faster than its present speed plus the most that rotation can add. A pair's minimum distance is keep_m, or
-/// half its present distance if its present distance is under 2 * keep_m. Sources: Mirtich, PhD thesis,
-/// Berkeley 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
+/// Returns a lower bound of the duration for which a rigid motion stays free of contact. Ignores surfaces
+/// that intersect the object now. Each pair of triangles is separated by a plane: that of one triangle, or
+/// one perpendicular to the segment between their nearest points. No vertex approaches the plane faster than
+/// its present speed plus the most that rotation can add. A pair's minimum distance is keep_m, or half its
+/// present distance if that is less than 2 * keep_m. Sources: Mirtich, PhD thesis, Berkeley 1996, section
+/// 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
 ///
 /// @param keep_m    minimum distance to keep, m
 /// @param left_out  kinds of surfaces to ignore

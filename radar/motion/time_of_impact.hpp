@@ -7,14 +7,13 @@
 
 namespace roomradar {
 
-/// Bounds of the time of contact of a straight motion. upper_s is infinite if no contact was found or nothing
-/// moves.
+/// Bounds of the time of contact of a straight motion. upper_s is infinite without contact or at speed 0.
 struct ContactTime {
   double lower_s = 0.0;
   double upper_s = std::numeric_limits<double>::infinity();
 };
 /// Converts a distance to contact into a time.
-/// @param contact  result of a query along the velocity; for kOverlap both times are 0
+/// @param contact  result of a query along the velocity; for kOverlap, both bounds are 0
 /// @param speed_m_s  speed of the object, >= 0
 ContactTime contact_time(const Contact& contact, double speed_m_s);
 
@@ -27,19 +26,18 @@ struct RigidMotion {
   /// Centre of rotation in the object's frame, m.
   Eigen::Vector3d centre_object = Eigen::Vector3d::Zero();
 };
-/// Returns the object's pose after time_s of the motion. It is computed from the start pose, so no error
-/// accumulates.
+/// Returns the object's pose after time_s, computed from the start pose so that no error accumulates.
 Eigen::Isometry3d pose_after(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
                              double time_s);
 
 enum class TimeOfImpactStatus {
-  /// The query is one that CyberRadar rejects, or motion, duration or config is not finite or out of range.
+  /// CyberRadar rejects the query, or motion, duration or config is not finite or out of range.
   kInvalidInput,
   /// A radar query failed; safe_s is valid.
   kNoAnswer,
   /// The whole duration is free of contact.
   kFree,
-  /// The object stopped at safe_s, at most tolerance_m of motion before contact.
+  /// The object stopped at safe_s. It may make contact before any point moves tolerance_m farther.
   kContact,
   /// The object overlaps the scene at the start.
   kOverlap,
@@ -48,7 +46,8 @@ enum class TimeOfImpactStatus {
 };
 
 struct TimeOfImpactConfig {
-  /// Contact tolerance, m, > 0: contact before any point travels this far counts as touching.
+  /// Contact tolerance, m, > 0. The object stops where it may make contact before any of its points travels
+  /// this far.
   double tolerance_m = 1e-4;
   /// Max number of radar queries.
   int max_queries = 256;
@@ -58,13 +57,13 @@ struct [[nodiscard]] TimeOfImpact {
   TimeOfImpactStatus status = TimeOfImpactStatus::kInvalidInput;
   /// The motion is certainly free up to this time.
   double safe_s = 0.0;
-  /// The object is certainly in contact by this time. Infinite if that could not be shown (no contact, or a
-  /// graze that may miss).
+  /// The object is certainly in contact by this time. Infinite if contact could not be proved: there is none,
+  /// or the object grazes a surface and may miss it.
   double contact_s = std::numeric_limits<double>::infinity();
   /// Pose of the object at safe_s.
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  /// Contact that stopped the motion (point, normal and kind), at contact_s if that is finite. Its distances
-  /// are those of the single query that found it.
+  /// Contact that stopped the motion (point, normal and kind), at contact_s if contact_s is finite. The
+  /// contact's distances are those of the single query that found it.
   Contact contact;
   /// Number of radar queries run.
   int queries = 0;
@@ -72,18 +71,19 @@ struct [[nodiscard]] TimeOfImpact {
 
 /// Moves the object until contact, by conservative advancement.
 ///
-/// Each step is as long as one query can prove to be free. The query moves the object straight, in its
-/// orientation half-way through the step, inflated by the greatest distance that rotation can carry a point
-/// from there. That distance is the chord 2 R sin(a / 4), where a is the step's rotation and R the greatest
-/// distance of a point from the axis. A path that is free for the inflated object is free at every moment of
-/// the step, so nothing tunnels at any speed. If the chord is longer than R, the query inflates the axis
-/// instead: the resulting capsule contains the object in every orientation. Steps double on success and halve
-/// on failure. An object that rotates in place and is free for a full turn is free for the whole duration.
-/// Without rotation a single query gives the result.
+/// The motion is divided into steps, each of which one query proves to be free. The query moves the object
+/// along a straight line, in the orientation it has half-way through the step. The query inflates the object
+/// by the chord 2 R sin(a / 4), where a is the step's rotation and R the greatest distance of a point from
+/// the axis: rotation moves no point farther than this away from the half-way orientation. A path that is
+/// free for the inflated object is free at every moment of the step, so objects do not tunnel at any speed.
+/// If the chord is longer than R, the query inflates a segment of the axis by R instead: the resulting
+/// capsule contains the object in every orientation. Steps double on success and halve on failure. An object
+/// that rotates in place and is free for a full rotation is free for the whole duration. Without rotation a
+/// single query gives the result.
 ///
-/// An object that touches the scene at the start and rotates (by more than a nanometre of motion) stops at
-/// once, even if it would separate, so callers should keep a gap. A stopped object has a gap of up to
-/// tolerance_m.
+/// An object that touches the scene at the start and rotates (so that a point moves more than a nanometre)
+/// stops at once, even if its motion separates it from the scene. Callers should therefore keep a gap. A
+/// stopped object has a gap of up to tolerance_m.
 ///
 /// Allocates a few hundred bytes in addition to the radar's memory.
 TimeOfImpact time_of_impact(CyberRadar& radar, const TreeInstance& object, const RigidMotion& motion,

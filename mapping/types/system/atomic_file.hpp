@@ -5,9 +5,10 @@
 
 namespace roomradar {
 
-/// Writes to target.partial-PID and renames it to `target` once complete; until then, and after any error,
-/// `target` is unchanged. A `target` that is not a regular file (a pipe, a device) is written directly. If
-/// stdout or stderr is redirected to `target`, the file is appended to directly, in order with their output.
+/// Writes to target.partial-PID, and renames this file to `target` once it is complete. Until then, and after
+/// any error, `target` is unchanged. A `target` that is not a regular file (a pipe, a device) is written
+/// directly. If stdout or stderr is redirected to `target`, the output is appended to `target` directly, in
+/// order with that of stdout and stderr.
 class AtomicFile {
  public:
   /// Throws Error, with the system's reason, if the file cannot be opened.
@@ -17,7 +18,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Binary stream to write to.
+  /// Returns the binary stream to which callers write.
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
   /// Renames the partial file to `target` atomically. An existing file is replaced only after the new one is

@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// Checks the settings of one group. A call with `holds` false throws Error such as "fusion.max_range_m = -1:
-/// must be in 0..100 m".
+/// Checks the settings of one group. If `holds` is false, a call throws an Error such as "fusion.max_range_m
+/// = -1: must be in 0..100 m".
 struct ConfigCheck {
   const char* group;
   template <typename Number>

@@ -5,8 +5,9 @@
 
 namespace roomradar {
 
-/// A failure that a user can act on. The message says what failed, in which file, field or frame, and what to
-/// do about it. Thrown only at the program's boundary; per-frame code returns status values.
+/// A failure that a user can repair. The message says what failed, in which file, field or frame, and how to
+/// repair it. Thrown only by code that handles files, devices, settings and arguments; per-frame code returns
+/// status values.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -10,22 +10,22 @@
 namespace roomradar {
 
 /// Reads the regular file `path`, following links. Allocates no more than the file's size.
-/// @param what  expected content, for messages: "a camera file"
+/// @param what  name of the expected content in messages, such as "a camera file"
 /// @throws Error naming the file if it is missing, not a regular file (a folder, a pipe), larger than
 /// `max_bytes`, or cannot be read to its end
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::string_view what,
                                      std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 
-/// Replaces the contents of the file `path`. Not atomic: use AtomicFile for that.
+/// Replaces the contents of the file `path`. Not atomic; use AtomicFile for atomic writing.
 /// @throws Error naming the file if some bytes could not be written; the partial file is removed
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
-/// Returns why a file cannot be written at this path, as the end of a sentence, by looking: its folder does
-/// not exist, is not writable, holds no files (/proc), or its disk is full. Returns an empty string if
-/// nothing is in the way now.
+/// Returns the reason why a file cannot be written at this path, as the end of a sentence: its folder does
+/// not exist, is not writable or does not hold files (/proc), or its disk is full. Writes nothing. Returns an
+/// empty string if none of these reasons applies now.
 [[nodiscard]] std::string why_not_writable(const std::filesystem::path& path);
 
-/// Throws Error naming the file and the cause if `stream` has failed; for use after writing to `path` through
+/// Throws Error naming the file and the cause if `stream` has failed. Call it after writing to `path` through
 /// a plain stream.
 void require_written(const std::ios& stream, const std::filesystem::path& path);
 

@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// Shortest text that reads back as the same number, in any locale: "0.1", "-3", "1e-09", "nan".
+/// Returns the shortest text that reads back as the same number, in any locale: "0.1", "-3", "1e-09", "nan".
 template <typename Number>
 std::string format_number(Number value) {
   std::array<char, 32> text;  // a double needs at most 24
@@ -30,7 +30,7 @@ inline std::string format_general(double value, int digits) {
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr};
 }
 
-/// A frame's number for file names: zero-padded to six digits, longer if needed.
+/// Returns a frame's number for file names: zero-padded to six digits, longer if needed.
 inline std::string format_frame_number(std::int64_t number) {
   std::string text = std::to_string(number);
   return text.insert(0, 6 - std::min<std::size_t>(text.size(), 6), '0');

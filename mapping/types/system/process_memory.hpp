@@ -5,10 +5,11 @@
 
 namespace roomradar {
 
-/// Resident memory of this process, in bytes; 0 if the system does not report it. Takes about 10 us.
+/// Returns the resident memory of this process, in bytes; 0 if the system does not report it. Takes about 10
+/// us.
 std::size_t resident_bytes();
 
-/// Physical memory of this machine, in bytes; 0 if the system does not report it.
+/// Returns the physical memory of this machine, in bytes; 0 if the system does not report it.
 std::uint64_t machine_bytes();
 
 /// Returns freed heap memory to the system (glibc only).
@@ -16,7 +17,7 @@ void release_unused_memory();
 
 /// Makes allocations of 1 MB and more return to the system as soon as they are freed (glibc only), for the
 /// whole process. Otherwise images and keyframes of many sizes fragment the heap: after 500 frames, 83 MB of
-/// holes were measured beside 55 MB in use. Costs 0.5 ms per frame of a prescan.
+/// the heap were unused and 55 MB in use. Costs 0.5 ms per frame of a prescan.
 void mmap_large_allocations();
 
 }  // namespace roomradar

@@ -6,9 +6,9 @@
 
 namespace roomradar {
 
-/// Owns the thread, which sleeps between calls. On a machine with one processor there is no thread: the two
-/// tasks run one after the other, and results must not depend on their order. Call run() from one thread
-/// only, and not from inside run().
+/// Owns a thread that sleeps between calls of run(). On a machine with one processor there is no thread, and
+/// the two tasks run one after the other. Results must not depend on the order of the tasks. Call run() from
+/// one thread only, and not from inside run().
 class WorkerThread {
  public:
   WorkerThread();
@@ -16,8 +16,8 @@ class WorkerThread {
   WorkerThread(const WorkerThread&) = delete;
   WorkerThread& operator=(const WorkerThread&) = delete;
 
-  /// Calls here() on the caller's thread and beside() on the worker; returns when both are done. Then
-  /// rethrows an exception of either; here()'s takes precedence.
+  /// Calls here() on the caller's thread and beside() on the worker thread, and waits until both are done.
+  /// Then rethrows an exception of either task; if both threw, that of here().
   template <typename Here, typename Beside>
   void run(const Here& here, const Beside& beside) {
     start([](const void* work) { (*static_cast<const Beside*>(work))(); }, &beside);
