@@ -31,8 +31,8 @@ struct SourceOptions {
   std::optional<Intrinsics> depth_camera;
   /// Depth mode of a live Kinect.
   KinectDepth kinect_depth = KinectDepth::kRaw;
-  /// True: several seconds of a live device's frames are queued, for a scan, which needs every frame. False:
-  /// only the newest frame is kept, for live display.
+  /// True: up to 120 frames of a live device are queued, for a scan, which needs every frame. False: only the
+  /// newest frame is kept, for live display.
   bool keep_all = false;
   /// True: a calibration.json beside a recording is ignored, so frames are delivered as recorded.
   bool as_recorded = false;

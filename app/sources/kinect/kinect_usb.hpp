@@ -26,7 +26,7 @@ struct KinectOnUsb {
   bool may_open = false;
   /// Kernel driver bound to the camera, such as gspca_kinect; empty: none.
   std::string kernel_driver;
-  /// True if the microphones of the same Kinect, which need the power supply, are on the bus; unset: unknown.
+  /// True if a Kinect's motor or microphones are on the bus too; unset if there are several cameras.
   std::optional<bool> has_power;
 };
 
