@@ -12,8 +12,8 @@ namespace roomradar {
 ///
 /// @param fine       with normals; normals that are not finite are ignored
 /// @param reach_m    max distance (> 0) of a sample point from its corresponding triangle
-/// @param spacing_m  max distance (> 0) between sample points on a fine triangle; a triangle with shorter
-///                   sides has one
+/// @param spacing_m  max distance (> 0) between sample points on a fine triangle; a triangle with a longest
+///                   side of at most spacing_m has one
 /// @param coarse     with normals; Mesh::origin must equal that of `fine`
 void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse);
 

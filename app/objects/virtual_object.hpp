@@ -18,19 +18,19 @@ namespace roomradar {
 struct VirtualObject {
   Body body;  ///< includes name and pose
   bool in_room = false;
-  /// It was in solid unknown space when last placed.
+  /// The object was in solid unknown space when it was last placed.
   bool began_in_unknown = false;
-  /// It has been in solid unknown space ever since it was placed.
+  /// The object has been in solid unknown space ever since it was placed.
   bool in_unknown = false;
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< orientation when last placed
-  /// Target position of its origin while a user carries it, without gravity. Unset: not carried.
+  /// Target position of the origin while a user carries the object, without gravity. Unset: not carried.
   std::optional<Eigen::Vector3d> carried_to_world;
-  /// Pose in which it last slept. Unset: it has not slept since it was added or since end_departure()
-  /// returned it.
+  /// Pose in which the object last slept. Unset: the object has not slept since it was added or since
+  /// end_departure() returned it.
   std::optional<Eigen::Isometry3d> T_world_rested;
   int departures = 0;  ///< number of times that it fell out of the map
-  /// True after it has been awake and still for 1 s while a surface intersects it and no free pose is within
-  /// 10 cm. Reset when it moves.
+  /// True if the object has been awake and at rest for 1 s, a surface intersects it, and no free pose is
+  /// within 10 cm. Reset when the object moves.
   bool stuck = false;
   double still_s = 0.0;  ///< time for which it has been awake and within 2 mm of T_world_still
   /// Pose from which its motion is measured for still_s.
@@ -56,19 +56,20 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
-/// Return the heights of its lowest and highest vertex above its origin in its present orientation, m.
+/// Return the heights of the object's lowest and highest vertex above its origin in its current orientation,
+/// m.
 double lowest_m(const VirtualObject& object);
 double highest_m(const VirtualObject& object);
-/// Returns the height of its lowest vertex above its origin in the given orientation, m.
+/// Returns the height of the object's lowest vertex above its origin in the given orientation, m.
 double lowest_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
-/// Returns the radius of the sphere circumscribed about its bounding box, m.
+/// Returns the radius of the sphere circumscribed about the object's bounding box, m.
 double radius_m(const VirtualObject& object);
-/// Returns the max horizontal distance of its vertices from the centre of its bounding box in the given
-/// orientation, m.
+/// Returns the max horizontal distance of the object's vertices from the centre of its bounding box in the
+/// given orientation, m.
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
-/// Returns the horizontal vector from its origin to the centre of its bounding box in the given orientation,
-/// m, in world axes.
+/// Returns the horizontal vector, in world axes, from the object's origin to the centre of its bounding box
+/// in the given orientation, m.
 Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
 /// Returns the coarsest level of detail that deviates by at most error_px pixels from the full mesh, at the

@@ -19,10 +19,11 @@ struct Body {
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();            ///< of the centre of mass
   Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< right-handed
   bool asleep = false;
-  /// Time for which it has been supported and has moved at most sleep_drift_m from sleep_pose_candidate.
+  /// Time for which the body has been supported, within PhysicsConfig::sleep_drift_m of sleep_pose_candidate.
   double sleep_timer_s = 0.0;
   Eigen::Isometry3d sleep_pose_candidate = Eigen::Isometry3d::Identity();
-  SurfaceKind rests_on = SurfaceKind::kNothing;  ///< kind of the surface that supported it when it last moved
+  /// Kind of the surface that supported the body when it last moved.
+  SurfaceKind rests_on = SurfaceKind::kNothing;
   /// Another body in contact with this one when this one fell asleep.
   struct SupportingBody {
     const Body* on;
@@ -40,8 +41,7 @@ enum class StepStatus {
 
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
-  /// Number of impacts. At each contact event, a surface kind counts once, whatever its number of contact
-  /// points.
+  /// Number of impacts in the step. Simultaneous impacts on one kind of surface count once.
   int contacts = 0;
   std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< `contacts` per surface kind
   int queries = 0;                                    ///< number of CollisionQueries::travel calls

@@ -13,7 +13,7 @@ struct Velocity {
   Eigen::Vector3d angular_rad_s = Eigen::Vector3d::Zero();
 };
 
-/// Another body that touches the solved body, as the solver needs it.
+/// State of another body that touches the solved body.
 struct SolverBody {
   Velocity velocity;
   Eigen::Matrix3d inverse_inertia_m2 = Eigen::Matrix3d::Zero();  ///< per kg, 1/m^2, in world axes

@@ -13,9 +13,10 @@
 
 namespace roomradar {
 
-/// Returns true if the inferred backs of dynamic surfaces engulf the body. They do if every overlap found
-/// along gravity and the depenetration directions exceeds max_depenetration_mps * dt_s + wake_overlap_m.
-/// Callers then omit the backs from the scene, since resolving so deep an overlap would throw the body.
+/// Returns true if the inferred backs of dynamic surfaces engulf the body. They do if they overlap the body
+/// along gravity or a depenetration direction, and each such overlap exceeds max_depenetration_mps * dt_s +
+/// wake_overlap_m. Callers then omit the backs from the scene, since resolving such deep overlaps would throw
+/// the body.
 bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
                  std::span<const Eigen::Vector3d> depenetration_directions_world);
 

@@ -13,7 +13,7 @@ struct MassProperties {
   /// Inertia about the centre of mass, in the mesh's axes, m^2 (per kg of body mass). Positive definite.
   Eigen::Matrix3d inertia_m2 = 0.0025 * Eigen::Matrix3d::Identity();
   double radius_m = 0.1;  ///< distance from the centre of mass to the farthest vertex
-  /// > 0; closed mesh: solid of 1,000 kg/m^3; open mesh: shell of 5 kg/m^2
+  /// Mass, > 0. Closed mesh: solid of 1,000 kg/m^3; open mesh: shell of 5 kg/m^2.
   double mass_kg = 1.0;
 };
 

@@ -14,7 +14,7 @@ struct PlacementConfig {
   double max_tilt_deg = 8.0;  ///< max angle between the surface and the horizontal
   double flatness_m = 0.015;  ///< max deviation of measured heights under the footprint from the fitted plane
   /// Min fraction of the footprint's cells that must be measured. Within 6 cm of its centre, all cells must
-  /// be.
+  /// be measured.
   double min_seen = 0.9;
   double room_to_spare_m = 0.05;  ///< width of the measured, level margin around the footprint
   double min_range_m = 0.4;       ///< min depth of the surface along the camera's axis

@@ -1,4 +1,4 @@
-// rigid_motion.hpp: one substep of rigid-body motion, from contact event to contact event.
+// rigid_motion.hpp: one substep of rigid-body motion.
 #pragma once
 #include <optional>
 
@@ -46,7 +46,7 @@ struct RigidScratch {
   std::vector<Body*> bodies;       ///< body of each entry of `others`
 };
 
-/// Simulates one substep of advance(). The caller limits dt_s to the substep's length.
+/// Simulates one substep of advance(), of length dt_s.
 /// @param report  the substep's contacts are added
 SubstepResult simulate_substep(Body& body, double dt_s, const CollisionQueries& probe,
                                const PhysicsConfig& config, const std::optional<Push>& push,

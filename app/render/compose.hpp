@@ -28,8 +28,8 @@ struct ShadowCaster {
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
 
-/// Returns the rectangle of the pixels for which compose needs the depth of real surfaces. It contains the
-/// object layer, enlarged by occlusion_margin_px(), and the shadows.
+/// Returns the rectangle of pixels in which the functions below need the depth of real surfaces. The
+/// rectangle contains the object layer, enlarged by occlusion_margin_px(), and the shadows.
 PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
                             const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
                             const OcclusionConfig& config);
@@ -45,7 +45,7 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 ///                         shadow
 /// @param casters          objects that cast a shadow
 /// @param strength         see ComposeConfig::shadow_strength
-/// @param[out] picture resized to the size of `camera`; must not be `background`
+/// @param[out] picture     resized to the size of `camera`; must not be `background`
 /// @throws Error if sizes differ
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
@@ -57,7 +57,7 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
 /// @param real_depth_m  depth of real surfaces, with the size of `picture`; pixels with depth 0 occlude
 ///                      nothing
 /// @param[out] occlusion    occlusion of the objects; its buffers are reused
-/// @param[in,out] picture image that contains the shadows
+/// @param[in,out] picture   image that contains the shadows
 /// @throws Error if sizes differ, or the layer exceeds the image
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
                  Occlusion& occlusion, ColourImage& picture);

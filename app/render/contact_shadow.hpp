@@ -16,9 +16,9 @@ struct SurfacePoints {
   Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();
 };
 
-/// Samples about 8,000 points of equal area, deterministically. A triangle smaller than a point's area gets a
-/// point with a probability proportional to the triangle's area. Ignores invalid triangles. Returns no points
-/// for a mesh without valid triangles.
+/// Samples about 8,000 points, each of which represents the same area, deterministically. A triangle smaller
+/// than that area gets a point with a probability proportional to the triangle's area. Ignores invalid
+/// triangles. Returns no points for a mesh without valid triangles.
 SurfacePoints spread_points(const Mesh& mesh);
 
 /// Lookup table of the ambient occlusion by an object's underside, for one orientation of the object. The

@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// A horizontal disc in the world.
+/// A horizontal disc in the world to be hatched.
 struct HatchedPatch {
   Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();
   double radius_m = 0.0;

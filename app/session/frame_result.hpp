@@ -18,7 +18,7 @@ namespace roomradar {
 enum class FrameStatus {
   kDone,
   kNotLocated,  ///< no camera pose; objects do not move, and the picture does not show them
-  kBadFrame,    ///< image sizes do not match the camera models; session and picture are unchanged
+  kBadFrame,    ///< fault_of() rejects the frame's images; session and picture are unchanged
 };
 
 struct FrameResult {

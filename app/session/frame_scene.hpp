@@ -76,8 +76,8 @@ class FrameScene {
   const MaskImage& previous_dynamic_mask(const Intrinsics& camera);
   /// Labels the frame's pixels from live depth, expected depth and the previous frame's labels.
   const FrameForeground& find_dynamic(const Frame& frame, const ExpectedView& expected);
-  /// With kMap, meshes the dynamic pixels and infers the back of that surface. The mesh has full resolution
-  /// in the regions `fine`. Other policies mesh all pixels.
+  /// With kMap, meshes the dynamic pixels and infers the back of the dynamic surface. The mesh has full
+  /// resolution in the regions `fine`. With other policies, meshes all pixels.
   /// @param expected, foreground  of this frame
   void mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                      const ExpectedView& expected, const FrameForeground& foreground,

@@ -43,8 +43,8 @@ struct WayOut {
 /// @return notice text without the object's name; empty if the object was moved by less than 5 mm
 std::string leave_surfaces(VirtualObject& object, const WayOut& way);
 
-/// Adds waited_s to the time for which the object has been awake and within 2 mm of one pose. Returns true
-/// when that time reaches 1 s, and resets it to 0.
+/// Adds waited_s to VirtualObject::still_s, the time for which the object has been awake and has moved by at
+/// most 2 mm. Returns true when still_s reaches 1 s, and resets still_s to 0.
 bool is_still_too_long(VirtualObject& object, double waited_s);
 
 /// Moves the object to the nearest free pose within 10 cm if a surface other than a dynamic one intersects

@@ -62,17 +62,17 @@ class Session {
   void release(const std::string& name, const Eigen::Vector3d& velocity_world_mps) {
     objects_.release(name, velocity_world_mps);
   }
-  /// Rotates an object about its centre until the first contact. turn_world_deg is a rotation vector in world
-  /// axes. An object outside the room is not rotated.
+  /// Rotates an object in the room about its centre until the first contact. turn_world_deg is a rotation
+  /// vector in world axes.
   void turn(const std::string& name, const Eigen::Vector3d& turn_world_deg) {
     objects_.turn(name, turn_world_deg);
   }
   /// Takes an object out of the room; its name stays in use.
   void remove(const std::string& name) { objects_.remove(name); }
 
-  /// From now on, objects cannot enter space that the map's scan has not observed. Objects in such space can
-  /// leave it. Stage timed: unknown. Throws Error unless the surface policy is kMap, and if the first call
-  /// comes after the first frame while config().map_updates is set.
+  /// From now on, objects cannot enter space that the map's scan has not observed. Objects that are in
+  /// unobserved space can leave it. Stage timed: unknown. Throws Error unless the surface policy is kMap.
+  /// With config().map_updates, throws Error if the first call comes after the first frame.
   void make_unknown_solid(StageTimes& times);
   /// From now on, objects can enter unknown space.
   void make_unknown_free();
@@ -81,7 +81,7 @@ class Session {
   void set_surfaces(SurfacePolicy surfaces);
   /// Takes effect in the next frame. Throws Error if the config is invalid.
   void set_radar(const RadarConfig& config);
-  /// Takes effect at once, except depth_stride: in the next frame. Throws Error if the quality is invalid.
+  /// Takes effect at once, depth_stride in the next frame. Throws Error if the quality is invalid.
   void set_quality(const RunQuality& quality);
   /// Takes effect in the next frame, from part `part` on. Throws Error if the quality is invalid.
   void set_quality_from(FramePart part, const RunQuality& quality);

@@ -29,8 +29,8 @@ struct SessionConfig {
   int move_every_n_frames = 1;  ///< each object is advanced in every n-th frame; objects alternate
   /// Max deviation, in pixels, of the drawn level of detail from the full mesh.
   double object_error_px = 0.7;
-  int shadow_every_n_frames = 1;  ///< max one fine shadow is computed in every n-th frame
-  /// One picture is made in every n-th frame. If > 1, objects are advanced only in frames without a picture.
+  int shadow_every_n_frames = 1;  ///< in every n-th frame, at most one shadow is computed at full resolution
+  /// A picture is made in every n-th frame. If > 1, objects are advanced only in frames without a picture.
   int picture_every_n_frames = 1;
   bool make_picture = true;  ///< false: pictures are not drawn; objects are simulated as usual
   /// Called before each part of a frame, and with kDone after the last part. A returned quality takes effect

@@ -41,9 +41,10 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 210  unknown solid                    or free
 ///     frame 220  radar sampled 64                 mode exact or sampled; resolution in pixels
 ///     frame 225  quality depth_stride 2 shadows off       others as on the command line, or default
-///     frame 226  quality from physics move_every_n_frames 4      from that part of the frame on; mesh,
-///     compose frame 230  camera hold                      repeats this frame; or go, rewind, loop, stay,
-///     resume frame 300  quit
+///     frame 226  quality from physics move_every_n_frames 4      from that frame's physics on; or mesh,
+///                                                              compose
+///     frame 230  camera hold                      repeats this frame; or go, rewind, loop, stay, resume
+///     frame 300  quit
 ///
 /// place, throw and drop put an object that would overlap another object on top of it, if no surface of the
 /// room is in the way. They may end with `turned YAW PITCH ROLL`: degrees about z, then about the rotated y
