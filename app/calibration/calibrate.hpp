@@ -35,9 +35,9 @@ struct CalibrationFit {
 /// by a sigma of 0.15 px, and distances of depth from the checkerboard's plane, weighted by the sensor's
 /// noise. The loss is robust (Huber). Nodes of the depth correction without measurements are extrapolated
 /// from their neighbours. Method: Herrera, Kannala, Heikkila, Joint depth and color camera calibration with
-/// distortion correction, PAMI 2012; unlike there, the depth error is modelled in disparity. Throws Error if
-/// there are fewer than 12 views or fewer than 6 tilted views, if the fit does not converge, or if a focal
-/// length's sigma exceeds 1 %. Also throws Error if read_calibration() would reject the result.
+/// distortion correction, PAMI 2012, but with the depth error modelled in disparity. Throws Error if there
+/// are fewer than 12 views or fewer than 6 tilted views, if the fit does not converge, or if a focal length's
+/// sigma exceeds 1 %. Also throws Error if read_calibration() would reject the result.
 CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config);
 
 }  // namespace roomradar

@@ -47,9 +47,9 @@ struct Calibration {
 ///  {"format": "roomradar calibration", "version": 1, "depth", "colour", "T_colour_depth": as in camera.json,
 ///   "depth_lens", "colour_lens": {"k1", "k2", "p1", "p2", "k3"},
 ///   "depth_correction": {"inverse_scale", "columns", "rows", "offset_per_m": [columns * rows numbers]}}
-/// Throws Error naming the file, and the field that is missing, of the wrong type or impossible (a lens that
-/// moves a corner of the image by more than half the corner's distance from the centre; an offset beyond 0.2
-/// / m).
+/// Throws Error with the file's name and the field that is missing, has the wrong type or an impossible
+/// value. A lens is impossible if it moves a corner of the image by more than half the corner's distance from
+/// the image centre. An offset is impossible if its magnitude is above 0.2 / m.
 Calibration read_calibration(const std::filesystem::path& path);
 /// Throws Error "WHERE, depth_lens: ..." if read_calibration() would reject these numbers.
 void require_valid(const Calibration& calibration, const std::string& where);

@@ -25,7 +25,7 @@ struct CameraRig {
 ///    "colour": {... the same fields; absent if there is no colour},
 ///    "T_colour_depth": [[r, r, r, tx], [r, r, r, ty], [r, r, r, tz], [0, 0, 0, 1]],       (metres)
 ///    "calibrated": true}                           (absent if frames are as the device delivered them)
-/// Throws Error with the file's name. The message names a field that is missing, has the wrong type or an
+/// Throws Error with the file's name, and with the name of a field that is missing, has the wrong type or an
 /// impossible value.
 CameraRig read_camera_file(const std::filesystem::path& path);
 /// Writes camera.json. Throws Error with the file's name if it cannot be written.
