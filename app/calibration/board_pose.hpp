@@ -9,8 +9,8 @@
 
 namespace roomradar {
 
-/// Computes T_camera_board with OpenCV's solvePnP.
-/// @param corners_px  all of the board's corners, row by row, in the distorted image
+/// Returns T_camera_board, the checkerboard's pose in the camera's frame, computed with OpenCV's solvePnP.
+/// @param corners_px  all inner corners of the checkerboard, row by row, in the distorted image
 Eigen::Isometry3d pose_of_board(const std::vector<Eigen::Vector2d>& corners_px, const Board& board,
                                 const Intrinsics& camera, const Lens& lens);
 

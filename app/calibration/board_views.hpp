@@ -1,4 +1,5 @@
-// board_views.hpp: selects the frames of a recording that show a checkerboard, one per board pose.
+// board_views.hpp: selects the frames of a recording that show a checkerboard, one frame per checkerboard
+// pose.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -18,49 +19,56 @@ void require_valid(const Board& board);
 
 struct DepthSample {
   double x_px, y_px;  ///< in the distorted depth image
-  double reported_m;  ///< depth as reported by the sensor
+  double reported_m;  ///< depth reported by the sensor
 };
 
+/// A selected frame, with its measurements of the checkerboard.
 struct BoardView {
   std::int64_t frame = 0;
-  std::vector<Eigen::Vector2d> corners_px;  ///< in the distorted colour image, row by row
-  std::vector<DepthSample> depth;           ///< depth pixels on the board
-  /// Unit normal of the board in the colour camera, by the nominal cameras.
+  std::vector<Eigen::Vector2d> corners_px;  ///< inner corners in the distorted colour image, row by row
+  std::vector<DepthSample> depth;           ///< depth pixels on the checkerboard
+  /// Unit normal of the checkerboard in the colour camera's frame, computed with the source's uncalibrated
+  /// intrinsics and no distortion.
   Eigen::Vector3d normal_camera = Eigen::Vector3d::UnitZ();
 };
 
 struct BoardViews {
   std::vector<BoardView> views;
-  Frame first;                  ///< first frame with colour; provides image sizes and nominal cameras
+  Frame first;                  ///< first frame with colour; provides image sizes and uncalibrated intrinsics
   std::int64_t frames = 0;      ///< number of frames read
-  std::int64_t with_board = 0;  ///< number of frames in which the board was found
-  std::int64_t still = 0;       ///< number of frames in which the board was found and hardly moved
-  /// One entry per frame that was rejected only because the depth does not fit the board: median ratio of
-  /// measured depth to the depth expected from corners and square size. A common ratio other than 1 indicates
-  /// a wrong square_m.
+  std::int64_t with_board = 0;  ///< number of frames in which the checkerboard was found
+  /// Number of frames in which the checkerboard was found and had moved by at most 6 px (RMS) since the
+  /// previous frame.
+  std::int64_t still = 0;
+  /// One entry per frame that was rejected only because its depth does not fit the checkerboard's plane. The
+  /// entry is the median ratio of measured depth to the depth computed from the corners and Board::square_m.
+  /// Similar ratios other than 1 in all frames indicate a wrong square_m.
   std::vector<double> off_plane_ratios;
 };
 
-/// Finds the board's corners with subpixel precision, or returns nothing.
+/// Finds the checkerboard's inner corners with subpixel precision. Returns nullopt unless all of them are
+/// found.
 std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colour, const Board& board);
 
-/// Reads the source to its end, or until `most` views are found. A frame becomes a view if it meets all of
-/// these: the whole board is in the colour image, the board hardly moves (colour and depth are not taken at
-/// the same instant), its pose differs from those in all earlier views, and the depth image measures it.
+/// Reads the source to its end, or until `most` views are found. A frame becomes a view if the whole
+/// checkerboard is in its colour image, hardly moves, differs in pose from all earlier views, and is measured
+/// by its depth image. Motion is excluded because colour and depth images are not taken at the same instant.
 /// Throws Error if the source has no colour.
-/// @param progress  called after every frame with the views so far
+/// @param progress  called after each frame with the views found so far
 BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
                             const std::function<void(const BoardViews&)>& progress);
 
-/// Returns the number of views whose board is tilted by 12 degrees or more against the mean of all.
+/// Returns the number of views with a checkerboard normal that differs by at least 12 degrees from the mean
+/// normal of all views.
 std::size_t count_tilted(const BoardViews& views);
 
-/// Returns what the views so far lack and what to do about it, in a few words: no board of that size, never
-/// held still, squares of another size, too few tilted. Empty if nothing is wrong.
+/// Returns a short text on the problem with the views found so far and its remedy, or an empty string if
+/// there is none. Problems are: no checkerboard of that size, a checkerboard never held still, squares of
+/// another size, or too few tilted views.
 std::string advice_on(const BoardViews& views, const Board& board);
 
-/// Returns true if the frames' depth is registered to colour: one camera for both, so their relative pose
-/// cannot be estimated.
+/// Returns true if the frame's depth is registered to colour. Both images then have the same camera, so the
+/// cameras' relative pose cannot be estimated.
 bool is_registered(const Frame& frame);
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// calibrate.hpp: calibration of both cameras, their relative pose and depth errors from checkerboard views.
+// calibrate.hpp: calibration of both cameras, their relative pose and the depth errors from checkerboard
+// views.
 #pragma once
 #include <vector>
 
@@ -10,32 +11,33 @@ namespace roomradar {
 
 struct CalibrateConfig {
   Board board;
-  int grid_columns = 13, grid_rows = 10;  ///< nodes of the depth correction
+  int grid_columns = 13, grid_rows = 10;  ///< number of nodes of the depth correction
   int hold_out = 5;                       ///< every n-th view is held out for validation; 0: none
 };
 
-/// Standard deviations from the fit's covariance, scaled up if the residuals exceed the assumed noise.
+/// Standard deviations of the results, from the covariance of the least-squares fit. They are scaled up if
+/// the residuals exceed the assumed noise.
 struct CalibrationSigmas {
   double colour_focal_px = 0.0, colour_centre_px = 0.0, depth_focal_px = 0.0, depth_centre_px = 0.0;
-  double shift_m = 0.0, turn_rad = 0.0;  ///< of T_colour_depth: translation, rotation
+  double shift_m = 0.0, turn_rad = 0.0;  ///< translation and rotation of T_colour_depth
 };
 
 struct CalibrationFit {
   Calibration calibration;
   CalibrationSigmas sigmas;
-  std::vector<std::size_t> held_out;  ///< indices of the views that the fit does not use
-  std::vector<ViewResidual> before;   ///< residuals with the frames' own cameras, one per view
+  std::vector<std::size_t> held_out;  ///< indices of the held-out views, which the fit does not use
+  std::vector<ViewResidual> before;   ///< residuals with the uncalibrated cameras of the frames, one per view
   std::vector<ViewResidual> after;    ///< residuals with the calibration, one per view
 };
 
-/// Fits jointly over all views: focal lengths, principal point and lens of both cameras, T_colour_depth, the
-/// board's pose in each view, and the depth correction. Residuals are robust: corner positions weighted by a
-/// sigma of 0.15 px, depth against the board's plane weighted by the sensor's noise. Nodes of the depth
-/// correction without measurements are extrapolated from their neighbours. Method: Herrera, Kannala,
-/// Heikkila, Joint depth and color camera calibration with distortion correction, PAMI 2012, except that the
-/// depth error is modelled in disparity. Throws Error if there are fewer than 12 views or fewer than 6 tilted
-/// views, if the fit does not converge, if a focal length's sigma exceeds 1 %, or if the result would be
-/// rejected by read_calibration().
+/// Fits all parameters jointly to all views: intrinsics and lens distortion of both cameras, T_colour_depth,
+/// the checkerboard's pose in each view, and the depth correction. Residuals are corner positions, weighted
+/// by a sigma of 0.15 px, and distances of depth from the checkerboard's plane, weighted by the sensor's
+/// noise. The loss is robust (Huber). Nodes of the depth correction without measurements are extrapolated
+/// from their neighbours. Method: Herrera, Kannala, Heikkila, Joint depth and color camera calibration with
+/// distortion correction, PAMI 2012, but with the depth error modelled in disparity. Throws Error if there
+/// are fewer than 12 views or fewer than 6 tilted views, if the fit does not converge, or if a focal length's
+/// sigma exceeds 1 %. Also throws Error if read_calibration() would reject the result.
 CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config);
 
 }  // namespace roomradar

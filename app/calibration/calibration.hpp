@@ -9,18 +9,18 @@
 
 namespace roomradar {
 
-/// Depth correction: 1 / depth = inverse_scale / reported depth + offset(x, y). It is linear in disparity,
-/// which is the quantity that a structured-light sensor measures. The offset (1/m) is interpolated bilinearly
-/// between nodes, stored row by row. The nodes span the image from the centre of its first pixel to the
-/// centre of its last; without nodes the offset is 0.
+/// Depth correction: 1 / depth = inverse_scale / reported depth + offset(x, y). The correction is linear in
+/// disparity, the quantity that a structured-light sensor measures. The offset (1/m) is interpolated
+/// bilinearly between the nodes of a grid, stored row by row. The grid extends from the centre of the image's
+/// first pixel to the centre of its last. Without nodes, the offset is 0.
 struct DepthCorrection {
   double inverse_scale = 1.0;
   int columns = 0, rows = 0;  ///< both 0, or both 2 to 256
   std::vector<double> offset_per_m;
 };
 
-/// Position of pixel (x, y) in the node grid: the node above left, and the fraction of a cell from there, 0
-/// to 1.
+/// Position of a pixel in the node grid: column and row of the node above and to the left, and the pixel's
+/// offset from that node in fractions of a cell, 0 to 1.
 struct GridPlace {
   int column = 0, row = 0;
   double right = 0.0, down = 0.0;
@@ -30,8 +30,7 @@ GridPlace grid_place(int columns, int rows, int width_px, int height_px, double 
 /// Returns the offset (1/m) at a pixel of an image of the given size.
 double offset_per_m(const DepthCorrection& correction, int width_px, int height_px, double x_px, double y_px);
 
-/// Returns the corrected depth (m); 0 if the reported depth is 0, or if the result is behind the camera or
-/// beyond 1 km.
+/// Returns the corrected depth (m), or 0 if the reported depth is 0 or the result is negative or above 1 km.
 inline float corrected_depth_m(float reported_m, double inverse_scale, double offset_per_m) {
   if (!(reported_m > 0.0F)) return 0.0F;
   const double inverse = inverse_scale / reported_m + offset_per_m;
@@ -48,9 +47,9 @@ struct Calibration {
 ///  {"format": "roomradar calibration", "version": 1, "depth", "colour", "T_colour_depth": as in camera.json,
 ///   "depth_lens", "colour_lens": {"k1", "k2", "p1", "p2", "k3"},
 ///   "depth_correction": {"inverse_scale", "columns", "rows", "offset_per_m": [columns * rows numbers]}}
-/// Throws Error naming the file, and the field that is missing, of the wrong type or impossible (a lens that
-/// moves a corner of the image by more than half the corner's distance from the centre; an offset beyond 0.2
-/// / m).
+/// Throws Error with the file's name and the field that is missing, has the wrong type or an impossible
+/// value. A lens is impossible if it moves a corner of the image by more than half the corner's distance from
+/// the image centre. An offset is impossible if its magnitude is above 0.2 / m.
 Calibration read_calibration(const std::filesystem::path& path);
 /// Throws Error "WHERE, depth_lens: ..." if read_calibration() would reject these numbers.
 void require_valid(const Calibration& calibration, const std::string& where);

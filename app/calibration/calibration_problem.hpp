@@ -20,14 +20,14 @@ struct PoseBlock {
   std::array<double, 6> turn_and_shift{};
 };
 
-/// Converts between a pose and its parameters.
+/// Convert between a pose and its parameters.
 PoseBlock pose_of(const Eigen::Isometry3d& T_a_b);
 Eigen::Isometry3d isometry_of(const PoseBlock& pose);
 
 /// A camera and its lens: fx, fy, cx, cy (px), k1, k2, p1, p2, k3.
 using CameraBlock = std::array<double, 9>;
 
-/// Converts between a camera and its parameters; `sized` gives the size of the images.
+/// Convert between a camera and its parameters. `sized` provides the image size of the result.
 CameraBlock block_of(const Intrinsics& camera, const Lens& lens);
 Intrinsics camera_of(const CameraBlock& block, Intrinsics sized);
 Lens lens_of(const CameraBlock& block);
@@ -36,25 +36,25 @@ Lens lens_of(const CameraBlock& block);
 struct CalibrationUnknowns {
   CameraBlock colour, depth;
   PoseBlock T_colour_depth;
-  std::vector<PoseBlock> T_colour_board;  ///< one per view
+  std::vector<PoseBlock> T_colour_board;  ///< the checkerboard's pose in each view
   double inverse_scale = 1.0;
   std::vector<double> nodes;  ///< offsets of the depth correction (1/m), row by row
 };
 
-/// Nodes of the depth correction, and the size of the depth images that it covers.
+/// Number of nodes of the depth correction, and the size of the depth images that its grid covers.
 struct CorrectionGrid {
   int columns = 0, rows = 0;
   int width_px = 0, height_px = 0;
 };
 
-/// Adds the residuals of one view: corner positions, weighted by a sigma of 0.15 px, and depth against the
-/// board's plane, weighted by the sensor's noise. Both are robust (Huber).
-/// @param T_colour_board  the board's pose in this view; an element of unknowns.T_colour_board
+/// Adds the residuals of one view. Residuals are corner positions, weighted by a sigma of 0.15 px, and
+/// distances of depth from the checkerboard's plane, weighted by the sensor's noise. The loss is Huber's.
+/// @param T_colour_board  the checkerboard's pose in this view; must be an element of unknowns.T_colour_board
 /// `unknowns` must outlive the problem and must not move.
 void add_view(const BoardView& view, const Board& board, const CorrectionGrid& grid,
               PoseBlock& T_colour_board, CalibrationUnknowns& unknowns, ceres::Problem& problem);
 
-/// Adds the priors on the depth correction: each node is near 0 and near its neighbours.
+/// Adds priors on the depth correction: one pulls each node towards 0, one towards the node's neighbours.
 void add_smoothness(const CorrectionGrid& grid, CalibrationUnknowns& unknowns, ceres::Problem& problem);
 
 }  // namespace roomradar

@@ -4,13 +4,14 @@
 
 namespace roomradar {
 
-/// A printed checkerboard, described by its inner corners (where four squares meet).
+/// A printed checkerboard. Its size is the number of its inner corners, at which four squares meet.
 struct Board {
-  int columns = 8, rows = 6;  ///< inner corners, 3 to 30 each, not equal
+  int columns = 8, rows = 6;  ///< number of inner corners, 3 to 30 each, not equal
   double square_m = 0.03;
 };
 
-/// Returns corner (column, row) in the board's frame: z = 0, x along the columns.
+/// Returns inner corner (column, row) in the checkerboard's frame. The checkerboard is the plane z = 0; x
+/// points from column to column.
 inline Eigen::Vector3d corner_board(const Board& board, int column, int row) {
   return {column * board.square_m, row * board.square_m, 0.0};
 }

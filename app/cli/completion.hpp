@@ -1,4 +1,4 @@
-// completion.hpp: completion of commands and options for bash and zsh, generated from the command line.
+// completion.hpp: completion scripts for bash and zsh, generated from the definition of the command line.
 #pragma once
 #include <string>
 #include <string_view>
@@ -9,8 +9,9 @@ class App;
 
 namespace roomradar {
 
-/// Returns the completion script for a shell, `bash` or `zsh`: commands, their parts, options, the words of
-/// options with a choice, topics of help, files elsewhere. Throws CLI::ValidationError for another shell.
+/// Returns the completion script for `bash` or `zsh`. The script completes commands, subcommands, options,
+/// the values of options with a fixed set of values, and help topics; elsewhere it completes file names.
+/// Throws CLI::ValidationError for another shell.
 std::string completion_script(const CLI::App& app, std::string_view shell);
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// deferred_errors.hpp: collects errors while results are saved, so one failure does not prevent saving the
-// others.
+// deferred_errors.hpp: collects errors while results are saved, so that one failure does not prevent saving
+// other results.
 #pragma once
 #include <cstdio>
 #include <exception>
@@ -9,10 +9,10 @@
 
 namespace roomradar {
 
-/// Keeps the first error, so the caller can throw it at the end. Prints later errors to stderr immediately.
+/// Stores the first error, which callers can throw at the end. Prints later errors to stderr immediately.
 class DeferredErrors {
  public:
-  /// Calls act() and adds its error if it throws one.
+  /// Calls act() and adds the message of an exception that it throws.
   template <typename Act>
   void attempt(const Act& act) {
     try {

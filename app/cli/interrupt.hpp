@@ -1,4 +1,4 @@
-// interrupt.hpp: handles Ctrl-C: the first ends the work cleanly, the second kills the process.
+// interrupt.hpp: handles Ctrl-C: the first one ends the work cleanly, the second one kills the process.
 #pragma once
 #include <memory>
 
@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// While an instance exists, the first SIGINT only sets a flag, and the second ends the process. At most one
-/// instance may exist at a time.
+/// While an instance exists, the first SIGINT only sets a flag, and a second SIGINT ends the process. At most
+/// one instance may exist at a time.
 class Interrupt {
  public:
   Interrupt();
@@ -16,7 +16,7 @@ class Interrupt {
   Interrupt& operator=(const Interrupt&) = delete;
 
   /// Replaces the message that Ctrl-C prints. The default message says that no more frames are read and that
-  /// the work ends with the frames read so far. The string must stay valid and end with a line break.
+  /// the work is completed with the frames read so far. `sentence` must remain valid and end with a newline.
   static void say(const char* sentence);
   /// Returns true once if Ctrl-C was pressed; later calls return false.
   static bool take();
@@ -24,7 +24,7 @@ class Interrupt {
   static bool is_asked();
 };
 
-/// Wraps a source so it ends when Ctrl-C is pressed.
+/// Returns a source that delivers the frames of `source` and ends when Ctrl-C is pressed.
 std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source);
 
 }  // namespace roomradar

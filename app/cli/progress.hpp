@@ -1,4 +1,4 @@
-// progress.hpp: displays the progress of long work on stderr.
+// progress.hpp: displays the progress of long operations on stderr.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace roomradar {
 
 /// Content of a progress line.
 struct ProgressState {
-  /// Name of the work, for example "track" or "fuse".
+  /// Name of the operation, such as "track" or "fuse".
   std::string what;
   /// Number of finished steps.
   std::int64_t done = 0;
@@ -17,23 +17,23 @@ struct ProgressState {
   std::optional<std::int64_t> total;
   /// Recent steps per second; 0 if not measured so far.
   double per_s = 0.0;
-  /// Text after the count, for example "tracked; 12.4 m2 seen".
+  /// Text after the count, such as "tracked; 12.4 m2 seen".
   std::string note;
-  /// True if the work has ended, even if done < total.
+  /// True if the operation has ended, even if done < total.
   bool is_over = false;
 };
 
-/// Returns the line, for example "track [######      ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen".
-/// Bar and remaining time appear only if the total is known, and the bar only if requested.
+/// Returns a line such as "track [###### ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". The remaining
+/// time appears only if the total is known, the bar only if the total is known and with_bar is true.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
-/// Speed of the work, averaged over about the last 15 s, so that a single slow or fast step hardly moves the
-/// remaining time.
+/// Speed of an operation, averaged over about the last 15 s, so that a single slow or fast step hardly
+/// affects the remaining time.
 class SmoothRate {
  public:
-  /// Adds steps that took this long.
+  /// Adds a number of steps that together took `seconds`.
   void add(double steps, double seconds);
-  /// Returns steps per second; 0 before the first time that is > 0.
+  /// Returns steps per second; 0 before the first call with seconds > 0.
   [[nodiscard]] double per_s() const { return seconds_ > 0.0 ? steps_ / seconds_ : 0.0; }
 
  private:
@@ -47,11 +47,11 @@ class Progress {
   Progress(std::string what, std::optional<std::int64_t> total);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Ends the line that is redrawn.
+  /// Ends the line on the terminal.
   ~Progress();
 
   /// Counts one finished step.
-  /// @param note  shown after the count, for example "tracked" or "lost"
+  /// @param note  text after the count, such as "tracked" or "lost"
   void step(const std::string& note = {});
 
  private:

@@ -1,4 +1,4 @@
-// registered_maps.hpp: registers two maps of one room for a command, with output and report.
+// registered_maps.hpp: registers two maps of one room, prints the result and adds it to the report.
 #pragma once
 #include <string>
 
@@ -9,7 +9,7 @@ namespace roomradar {
 
 /// Registers map b to map a (register_maps()), prints the result and adds it to the report. Throws Error if
 /// the registration is not reliable.
-/// @param name_a, name_b  for messages
+/// @param name_a, name_b names of the maps in messages
 Registration require_registered(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                                 const std::string& name_b, Report& report);
 

@@ -11,8 +11,8 @@
 
 namespace roomradar {
 
-/// Content of a report. All fields but `results` are common to all commands; the keys of `results` are merged
-/// into the top level.
+/// Content of a report. `results` is specific to the command; its keys are merged into the top level of the
+/// JSON object.
 struct Report {
   std::string command;
   std::string source;
@@ -34,15 +34,15 @@ struct Report {
 /// Returns the vector as an array [x, y, z].
 nlohmann::json to_json(const Eigen::Vector3d& v);
 
-/// Returns the report as one object, with the present values of peak_rss_mb and wall_s. Numbers that are not
-/// finite become null.
+/// Returns the report as one JSON object, with the current values of peak_rss_mb and wall_s. Numbers that are
+/// not finite become null.
 nlohmann::json to_json(const Report& report);
 
-/// Throws Error if a file cannot be written at this path, or the path is inside a map's folder. For use
-/// before long work. An empty path is allowed.
+/// Throws Error if a file cannot be written at `path`, or if `path` is inside a map's folder. Call before
+/// long operations. An empty path is accepted.
 void require_writable(const std::filesystem::path& path);
 
-/// Writes the report; does nothing if the path is empty. Throws Error if the file cannot be written.
+/// Writes the report. Does nothing if `path` is empty. Throws Error if the file cannot be written.
 void write_report(const Report& report, const std::filesystem::path& path);
 
 /// Returns the peak resident memory of this process so far, in 10^6 bytes.

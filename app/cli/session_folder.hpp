@@ -1,5 +1,4 @@
-// session_folder.hpp: records a run (session) in a folder and replays it: frames, events, settings and
-// results.
+// session_folder.hpp: records a run (session) in a folder and replays it. The folder contains:
 //
 //   session.json   format, settings, source, map
 //   events.txt     every event, in the format of `--script`
@@ -23,28 +22,28 @@
 
 namespace roomradar {
 
-/// Throws Error if the folder exists and is not empty, so no session can be recorded in it.
+/// Throws Error if the folder exists and is not empty. A session can then not be recorded in it.
 void require_can_become_session(const std::filesystem::path& folder);
 
-/// Records a session during the run. Files always consist of whole lines, so the session of a killed run can
-/// be replayed up to its last frame.
+/// Records a session during the run. The session of a killed run can be replayed up to its last recorded
+/// frame.
 class SessionRecorder {
  public:
   /// Creates the folder, or uses an empty one. Throws Error if it is not empty or cannot be written.
-  /// @param map  the loaded map; its checksum is recorded, so a replay can detect that the map has changed
-  /// @param are_calibrated  true if lens and depth errors of the frames are already corrected
+  /// @param map  the loaded map; its checksum is recorded, so that a replay can detect a changed map
+  /// @param are_calibrated  true if lens and depth errors were removed from the frames
   SessionRecorder(std::filesystem::path folder, const RunOptions& options, const MapInfo& map,
                   bool are_calibrated);
 
-  /// Wraps a source, so its frames are recorded as they are read and can be read again.
+  /// Returns a source that delivers the frames of `source` and records them. The returned source can rewind.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
-  /// Writes the model of a kAdd event into the folder, unless it is the built-in one, and returns the event
-  /// with the copy's name. Other events are returned as they are. Call before the object is in the room.
-  /// Throws Error if writing fails; the caller must then not add the object, so every object in the run is
-  /// also in the recording.
-  /// @param model  as loaded for the event
+  /// Writes the model of a kAdd event into the folder, unless it is the built-in teapot, and returns the
+  /// event with the copy's name. Returns other events unchanged. Call before the object is added to the
+  /// session. Throws Error if the model cannot be written. Callers must then not add the object, so that all
+  /// objects of the run are in the recording.
+  /// @param model  the model loaded for the event
   ScriptEvent with_mesh_kept(ScriptEvent event, const Model& model);
-  /// Records an event that with_mesh_kept() returned and that is applied before frame `run_frame`. Throws
+  /// Records an event that was returned by with_mesh_kept() and is executed before frame `run_frame`. Throws
   /// Error if the event cannot be written.
   void write(ScriptEvent event, std::int64_t run_frame);
   /// Records the hashes of a frame's result.
@@ -56,41 +55,42 @@ class SessionRecorder {
   int meshes_ = 0;
 };
 
-/// Returns true if the folder holds a recorded session.
+/// Returns true if the folder contains a recorded session.
 bool is_session_folder(const std::filesystem::path& folder);
-/// Returns true if lens and depth errors of a session's frames were corrected before recording. Throws Error,
-/// naming the file and the problem, if session.json is missing or invalid.
+/// Returns true if lens and depth errors were removed from a session's frames before recording. Throws Error
+/// with the file's name and the problem if session.json is missing or invalid.
 bool is_session_calibrated(const std::filesystem::path& folder);
 /// Returns true if the file is the events file of a recorded session.
 bool is_session_events(const std::filesystem::path& file);
 
-/// Reads such a file; a last line that is cut off is ignored. Events of older sessions are completed, so that
-/// objects stand as they did then. Throws Error as read_script() does.
+/// Reads the events file of a recorded session. Ignores an incomplete last line. Completes events of sessions
+/// recorded by older versions, so that objects get the same pose as in that run. Throws Error as
+/// read_script() does.
 Script read_session_events(const std::filesystem::path& file);
 
-/// Returns the recorded options: the folder itself as source, its events file as script, the map, and the
-/// settings that affect results. Throws Error, naming the file and the problem, if session.json is missing or
-/// invalid.
+/// Returns the options of a replay: the folder as source, its events file as script, the recorded map, and
+/// the recorded settings that affect results. Throws Error with the file's name and the problem, if
+/// session.json is missing or invalid.
 RunOptions read_session(const std::filesystem::path& folder);
 
 /// Opens the recorded frames. Throws Error if there are none.
 std::unique_ptr<FrameSource> open_session_frames(const std::filesystem::path& folder);
 
-/// Returns a message if the map differs from the recorded one; empty if it does not.
+/// Returns a message if the map differs from the recorded one, otherwise an empty string.
 std::string map_difference(const std::filesystem::path& folder, const MapInfo& map);
 
 /// Compares the frames of a replay with the recorded results.
 class ReplayCheck {
  public:
   explicit ReplayCheck(const std::filesystem::path& folder);
-  /// Compares the next frame's hashes with the recorded ones.
+  /// Compares the next frame's hashes with the recorded hashes.
   void compare(const FrameFingerprint& fingerprint);
 
-  /// Returns the number of frames that are the same.
+  /// Returns the number of compared frames that are equal to the recorded ones.
   [[nodiscard]] std::int64_t same() const { return same_; }
-  /// Returns the number of frames that differ.
+  /// Returns the number of compared frames that differ.
   [[nodiscard]] std::int64_t different() const { return different_; }
-  /// Returns the number of frames recorded.
+  /// Returns the number of recorded frames.
   [[nodiscard]] std::int64_t recorded() const { return static_cast<std::int64_t>(recorded_.size()); }
   /// Returns the number of the first frame that differs; -1 if there is none.
   [[nodiscard]] std::int64_t first_different() const { return first_different_; }

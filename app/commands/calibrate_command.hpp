@@ -1,11 +1,12 @@
-// calibrate_command.hpp: roomradar calibrate: cameras and depth errors from a recording of a checkerboard.
+// calibrate_command.hpp: roomradar calibrate: estimates cameras and depth errors from a recording of a
+// checkerboard.
 #pragma once
 #include "app/cli/options/calibrate_options.hpp"
 
 namespace roomradar {
 
 /// Estimates and writes the calibration, and prints residuals before and after. Returns the exit status 0.
-/// @throws Error if the board is seen too rarely, or if a file cannot be read or written
+/// @throws Error as calibrate() does, or if a file cannot be read or written
 int run(const CalibrateOptions& options);
 
 }  // namespace roomradar

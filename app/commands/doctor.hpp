@@ -1,4 +1,4 @@
-// doctor.hpp: checks Kinects, renderer and fakenect, with advice on repairs.
+// doctor.hpp: checks Kinects, renderer and fakenect, and gives advice on repairs.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,27 +10,27 @@ namespace roomradar {
 
 enum class Health {
   kGood,
-  kMissing,  ///< absent, but optional
-  kBad,      ///< must be repaired
+  kMissing,  ///< an optional component is absent
+  kBad,      ///< a fault that must be repaired
 };
 
 struct Finding {
   Health health = Health::kGood;
-  std::string what;        ///< what was found, a sentence
-  std::string what_to_do;  ///< advice, a sentence; empty if good
+  std::string what;        ///< sentence on what was found
+  std::string what_to_do;  ///< sentence with advice; empty if `health` is kGood
 };
 
-/// Checks the Kinects on the USB bus against the number that libfreenect sees (negative: this program was
-/// built without it).
+/// Compares the Kinects on the USB bus with those that libfreenect finds.
+/// @param seen_by_libfreenect  result of count_kinects()
 std::vector<Finding> judge_kinects(const std::vector<KinectOnUsb>& on_usb, int seen_by_libfreenect);
 
 /// Checks the recording that fakenect replays in place of a Kinect.
 Finding judge_replay(const std::filesystem::path& recording);
 
-/// Checks that there is a renderer, and the max size of its images.
+/// Checks that an OpenGL renderer exists, and its max image size.
 Finding judge_renderer();
 
-/// Checks whether the program `fakenect` is in the folders of `path`, which has the form of $PATH.
+/// Checks that the program `fakenect` is in a folder of `path`, a list of folders as in $PATH.
 Finding judge_fakenect(const std::string& path);
 
 }  // namespace roomradar

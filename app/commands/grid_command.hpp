@@ -5,12 +5,12 @@
 
 namespace roomradar {
 
-/// Drops a ball over each cell of a grid in the map, with the surfaces of the source's first frame. Prints
-/// the table, writes picture and report. Throws Error if the frame cannot be localised.
+/// Drops a ball in each cell of a grid over the map, onto the surfaces of the source's first frame. Prints
+/// the table, and writes picture and report. Throws Error if the frame cannot be localised.
 int run_grid(const FallthroughOptions& options);
 
-/// Returns true if the frames of both maps have recorded poses in the same world: both maps are of one
-/// recording, possibly with different --frames.
+/// Returns true if both maps were made from recorded poses of the same recording, possibly with different
+/// --frames. Both maps then have the same world frame.
 bool share_recorded_world(const MapInfo& a, const MapInfo& b);
 
 }  // namespace roomradar

@@ -6,11 +6,11 @@ namespace roomradar {
 
 // Each returns the exit status, and throws Error if a file cannot be read or written.
 
-/// Prints the map's facts.
+/// Prints the map's properties.
 int run(const MapInfoOptions& options);
-/// Compares every file with its checksum; returns 1 if one differs.
+/// Compares the map's files with their checksums; returns 1 if a file differs.
 int run(const MapVerifyOptions& options);
-/// Writes the octree, the mesh or the border of unknown space to a file.
+/// Writes the octree, the mesh or the frontier of unknown space to a file.
 int run(const MapExportOptions& options);
 
 }  // namespace roomradar

@@ -9,7 +9,7 @@ namespace roomradar {
 
 /// Adds map b to map a and saves the result as a new map.
 int run(const MapMergeOptions& options);
-/// Prints the objects that appeared in, or vanished from, map b compared with map a.
+/// Prints the objects that appeared or vanished between map a and map b.
 int run(const MapDiffOptions& options);
 
 }  // namespace roomradar

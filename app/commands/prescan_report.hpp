@@ -11,18 +11,18 @@
 
 namespace roomradar {
 
-/// Returns the report's keys that are specific to prescans, except `held_out`.
+/// Returns the report's entries that are specific to prescans, except `held_out`.
 nlohmann::json results_of(const PrescanResult& scanned);
 
-/// Returns the report's key `held_out`. Figures that could not be measured are omitted.
+/// Returns the value of the report's key `held_out`. Values that could not be measured are omitted.
 nlohmann::json held_out_json(const HeldOutScore& score);
 
-/// Prints a few lines to stdout.
-/// @param held_out  unset: no frames were held out, or they were not compared
+/// Prints a summary of a few lines to stdout.
+/// @param held_out  unset: no frames were held out, or held-out frames were not compared
 void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
                    const std::optional<HeldOutScore>& held_out);
 
-/// Prints, to stdout, the largest holes that a scan from more positions could close.
+/// Prints to stdout the largest holes that further views could close.
 void print_holes(const std::vector<Hole>& holes);
 
 }  // namespace roomradar

@@ -4,8 +4,9 @@
 
 namespace roomradar {
 
-/// Copies the frames until the source ends or Ctrl-C is pressed. Returns the exit status 0.
-/// @throws Error if no frame can be read, or if one cannot be written; frames before it are complete
+/// Records the frames until the source ends or Ctrl-C is pressed. Returns the exit status 0.
+/// @throws Error if no frame can be read, or if a frame cannot be written; frames written before it are
+/// complete
 int run(const RecordOptions& options);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// unfinished_scan.hpp: begins a prescan: a new one, an interrupted one, or one that extends a map.
+// unfinished_scan.hpp: decides how a prescan begins: new, resumed, or as extension of a map.
 #pragma once
 #include <memory>
 #include <optional>
@@ -12,20 +12,21 @@ namespace roomradar {
 
 /// Input of a prescan.
 struct ScanStart {
-  std::unique_ptr<Checkpoints> checkpoints;  ///< null: no checkpoints requested
+  std::unique_ptr<Checkpoints> checkpoints;  ///< null: no checkpoints are written
   /// Frame source, which can rewind. A live source is cached on disk beside the checkpoints, and ends on
   /// Ctrl-C.
   std::unique_ptr<FrameSource> source;
-  bool is_live = false;         ///< continues until Ctrl-C, unless limited by --frames
-  std::filesystem::path spool;  ///< a live source's stored frames, beside the checkpoints; empty: not stored
-  std::optional<SavedMap> map;  ///< map to extend
-  bool is_done = false;         ///< nothing to resume: the map already holds all of this recording
+  bool is_live = false;  ///< true: the source continues until Ctrl-C, unless limited by --frames
+  /// Folder beside the checkpoints in which a live source's frames are cached; empty: not cached.
+  std::filesystem::path spool;
+  std::optional<SavedMap> map;  ///< the map to extend; unset: a new map
+  bool is_done = false;         ///< true: nothing to do, since the map already contains the whole recording
 };
 
-/// Opens the source. From --resume, the existing map and an interrupted scan beside it (MAP.unfinished),
-/// decides whether to begin, resume or extend.
-/// @throws Error if there is nothing to resume, if the interrupted scan belongs to another command, or if a
-/// live scan would be lost without --resume; also as open_source() does
+/// Opens the source. Decides whether to begin a new scan, resume a scan or extend a map. The decision depends
+/// on --resume, the existing map, and an interrupted scan in the folder MAP.unfinished.
+/// @throws Error if there is nothing to resume, if the interrupted scan belongs to another command, or if an
+/// interrupted live scan would be lost without --resume. Also throws as open_source() does
 ScanStart start_scan(const PrescanOptions& options);
 
 }  // namespace roomradar

@@ -7,24 +7,24 @@
 
 namespace roomradar {
 
-/// Blends a colour into a pixel with opacity `part`; does nothing outside the picture.
+/// Blends a colour into pixel (x, y) with opacity `part`. Does nothing outside the picture.
 void blend(ColourImage& picture, int x, int y, Rgb colour, double part = 1.0);
 
-/// Draws an antialiased line between pixel coordinates; clipped.
+/// Draws an antialiased line from pixel a to pixel b, clipped to the picture.
 void draw_line(ColourImage& picture, const Eigen::Vector2d& a, const Eigen::Vector2d& b, Rgb colour,
                int width_px = 1);
 
-/// Draws text with its lower left corner at (x, y); `size` 1 is 22 pixels high.
+/// Draws text with its lower left corner at (x, y). `size` 1 gives letters 22 pixels high.
 void draw_text(ColourImage& picture, const std::string& text, int x, int y, double size, Rgb colour);
 
-/// Sets the mask where the triangle covers a pixel's centre.
+/// Sets the mask in the pixels whose centres the triangle covers.
 void fill_triangle(MaskImage& mask, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                    const Eigen::Vector2d& c);
 
-/// Tints the masked pixels with opacity `part`, and draws the mask's outline.
+/// Blends a colour into the masked pixels with opacity `part`, and draws the mask's outline.
 void tint(ColourImage& picture, const MaskImage& mask, Rgb colour, double part);
 
-/// Copies `part` into the picture with its upper left corner at (x, y); clipped.
+/// Copies the picture `part` into `picture` with its upper left corner at (x, y), clipped to `picture`.
 void paste(const ColourImage& part, int x, int y, ColourImage& picture);
 
 }  // namespace roomradar

@@ -8,9 +8,10 @@
 
 namespace roomradar {
 
-/// Renders an orthographic view from above and one side; faces turned away (the ceiling, the near walls) are
-/// culled. The mesh has its own colours, paled; appeared surfaces are green, vanished surfaces red.
-/// @param width_px  of the picture; its height follows from the map
+/// Renders an orthographic view from obliquely above. Back faces, such as those of the ceiling and the near
+/// walls, are culled. The mesh has its own colours, lightened; appeared surfaces are green, vanished surfaces
+/// red.
+/// @param width_px  width of the picture; its height follows from the map's extent
 /// @return an empty image for an empty mesh
 ColourImage draw_changes(const Mesh& mesh, std::span<const Change> changes, int width_px = 1200);
 

@@ -1,4 +1,4 @@
-// svg_plot.hpp: small charts as SVG text, to be embedded in a web page.
+// svg_plot.hpp: small charts as SVG text for HTML pages, and text formatting for them.
 #pragma once
 #include <string>
 #include <utility>
@@ -12,21 +12,22 @@ struct PlotLine {
   std::vector<std::pair<double, double>> points;  ///< x ascending
 };
 
-/// Plots lines over a logarithmic x axis, y in percent from 0 to 100, with a legend. Points with x below
-/// x_least are drawn at x_least.
+/// Returns a plot of lines with a legend. The x axis is logarithmic; y is in percent, from 0 to 100. Points
+/// with x below x_least are drawn at x_least.
 std::string percent_plot(const std::string& title, const std::string& x_name, double x_least, double x_most,
                          const std::vector<PlotLine>& lines);
 
-/// A table of fractions as coloured cells with row and column names; NaN: empty cell.
+/// A table of fractions with row and column names. NaN: empty cell.
 struct ShareTable {
   std::string title;
   std::vector<std::string> rows, columns;
   std::vector<std::vector<double>> share;  ///< 0 to 1, [row][column]
 };
+/// Returns the table as coloured cells.
 std::string share_cells(const ShareTable& table);
 
-/// Formats a number for people: `digits` (1..15) significant digits, commas between thousands, no exponent:
-/// "2,250", "0.00123", "-12". "nan" and "inf" for these.
+/// Formats a number with `digits` (1..15) significant digits, commas between thousands and no exponent, such
+/// as "2,250", "0.00123" or "-12". NaN and infinity become "nan" and "inf".
 std::string readable_number(double value, int digits = 3);
 
 /// Escapes `<`, `>`, `&` and double quotes for HTML.

@@ -1,4 +1,4 @@
-// model.hpp: the mesh of a virtual object with the textures of its author.
+// model.hpp: the mesh of a virtual object with its textures.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace roomradar {
 
-/// Continuation of a texture beyond its border.
+/// Continuation of a texture for texture coordinates outside 0..1.
 enum class TextureWrap : std::uint8_t { kRepeat, kMirror, kClamp };
 
 /// A base-colour texture.
 struct Texture {
   ColourImage colour;                ///< sRGB
   MaskImage opacity;                 ///< 0..255, same size as colour; empty: opaque everywhere
-  std::uint8_t least_opacity = 128;  ///< less opaque pixels are not drawn
+  std::uint8_t least_opacity = 128;  ///< pixels with a lower opacity are not drawn
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
   friend bool operator==(const Texture& a, const Texture& b) {
     return a.colour.width == b.colour.width && a.colour.pixels == b.colour.pixels &&
@@ -26,6 +26,7 @@ struct Texture {
   }
 };
 
+/// Value of ModelPart::texture for triangles without a texture.
 inline constexpr std::int32_t kNoTexture = -1;
 
 /// Consecutive triangles with the same texture.
@@ -36,15 +37,18 @@ struct ModelPart {
   friend bool operator==(const ModelPart&, const ModelPart&) = default;
 };
 
-/// Vertex colours hold material colour times vertex colour, sRGB; a texture multiplies them. Vertices at
-/// texture seams are there once per side.
+/// A mesh with textures. Mesh colours are material colours times vertex colours, in sRGB; textures multiply
+/// them. Vertices at texture seams are duplicated, one per side.
 struct Model {
   Mesh mesh;
-  std::vector<Eigen::Vector2f> texture_points{};  ///< empty without textures, else one per vertex: 0..1 from
-                                                  ///< the texture's top left, right and down
-  std::vector<ModelPart> parts{};                 ///< empty without textures, else all triangles in order
+  /// Texture coordinates, one per vertex; empty without textures. (0, 0) is the texture's top left corner,
+  /// (1, 1) its bottom right corner.
+  std::vector<Eigen::Vector2f> texture_points{};
+  /// Parts that cover all triangles, in order; empty without textures.
+  std::vector<ModelPart> parts{};
   std::vector<Texture> textures{};
-  std::vector<std::string> notes{};  ///< sentences for the user: what of the file could not be used
+  /// Sentences for the user about contents of the file that could not be used.
+  std::vector<std::string> notes{};
 
   [[nodiscard]] bool is_textured() const { return !textures.empty(); }
 };

@@ -1,4 +1,4 @@
-// model_file.hpp: reads models as their authors made them.
+// model_file.hpp: reads model files with their units, axes, colours and textures.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -11,28 +11,28 @@ namespace roomradar {
 inline constexpr const char* kModelFormats = ".glb, .gltf, .obj, .ply, .stl or .dae";
 
 enum class ModelOrigin {
-  kNear,      ///< an origin far from the model is replaced by the model's middle
-  kAsInFile,  ///< the file's
+  kNear,      ///< an origin far from the model is replaced by the centre of the model's bounding box
+  kAsInFile,  ///< the origin is that of the file
 };
 
 /// Reads a .glb, .gltf, .obj, .ply, .stl or .dae file in a sandbox: geometry, normals, vertex colours,
 /// material colours and base-colour textures. Skinned meshes are read in their rest pose.
 ///
-/// The result stands: +z is up. Coordinates are metres, as glTF prescribes and a .dae states; the other
-/// formats state no unit, and their numbers are taken as metres. With ModelOrigin::kNear, a model that is
-/// farther from its origin than its longest side gets its middle as origin, with a note. Textures that cannot
-/// be read are named in Model::notes.
+/// In the result, +z is up and coordinates are in metres. glTF prescribes metres and a .dae file states its
+/// unit; numbers in the other formats are taken as metres. With ModelOrigin::kNear, the origin of a model
+/// that is farther from its origin than its longest side is moved to the model's centre, with a note.
+/// Model::notes names textures that cannot be read.
 ///
 /// @param up  axis of the file that points up; unset: y for .glb, .gltf and .obj, z for .ply and .stl, and
-///            what a .dae states
-/// @throws Error naming the file, the fault and a remedy, as read_mesh() does
+///            the axis that a .dae states
+/// @throws Error with the file's name, the fault and a remedy, as read_mesh() does
 Model read_model(const std::filesystem::path& path, std::optional<UpAxis> up = std::nullopt,
                  ModelOrigin origin = ModelOrigin::kNear);
 
-/// Extension of model copies.
+/// Extension of the files that write_model_copy() writes.
 inline constexpr const char* kModelCopyExtension = ".model";
-/// Writes a model with its textures, for recorded sessions. read_model() restores it bit by bit, without its
-/// notes; `up` and `origin` do not apply to such a file. Throws Error if writing fails.
+/// Writes a model with its textures, for recorded sessions. read_model() restores it exactly, without its
+/// notes, and ignores `up` and `origin` for such a file. Throws Error if the file cannot be written.
 void write_model_copy(const Model& model, const std::filesystem::path& path);
 
 }  // namespace roomradar

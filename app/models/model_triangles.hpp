@@ -1,4 +1,4 @@
-// model_triangles.hpp: some triangles of a model as a model of their own.
+// model_triangles.hpp: extracts triangles of a model as a new model.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// Returns these triangles, in this order, with the vertices that they use: positions, normals, colours and
-/// texture points. Without parts and textures.
+/// Returns a model of the given triangles, in the given order, and the vertices that they use. Vertices have
+/// positions, normals, colours and texture coordinates; the result has no parts and textures.
 Model triangles_alone(const Model& model, std::span<const std::uint32_t> triangles);
 
 }  // namespace roomradar

@@ -10,15 +10,15 @@ struct aiScene;
 
 namespace roomradar {
 
-/// Sets the model's colours, texture points, parts, textures and notes from the scene.
+/// Sets the model's colours, texture coordinates, parts, textures and notes from the scene.
 ///
-/// Colours are in sRGB. glTF's factors and vertex colours are linear and multiply each other; in the other
-/// formats colours are taken as sRGB, vertex colours replace the material's colour, and a texture replaces
-/// both, except that an .obj's diffuse colour multiplies its texture. A model without any colour keeps none.
-/// A texture that is missing or broken is named in a note, and the material's colour is used. Decodes
-/// pictures: call this within run_sandboxed().
+/// Resulting colours are in sRGB. In glTF, material factors and vertex colours are linear and are multiplied.
+/// In the other formats, colours are taken as sRGB, and vertex colours replace the material's colour. A
+/// texture then replaces both, but in an .obj the diffuse colour multiplies the texture. A model without any
+/// colour gets none. For a texture that is missing or broken, a note is added and the material's colour is
+/// used. Decodes image files: call this function within run_sandboxed().
 ///
-/// @param parts  of model.mesh, from scene_mesh()
+/// @param parts  parts of model.mesh, from scene_mesh()
 void set_appearance(const std::filesystem::path& path, const aiScene& scene, std::span<const ScenePart> parts,
                     Model& model);
 

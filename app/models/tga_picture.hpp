@@ -1,4 +1,4 @@
-// tga_picture.hpp: decodes Truevision TGA pictures, which OpenCV does not read.
+// tga_picture.hpp: decodes Truevision TGA images, which OpenCV does not read.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,9 +12,9 @@ struct TgaPicture {
   std::string bgra;
 };
 
-/// Decodes grey pictures of 8 bits and colour pictures of 24 or 32 bits, plain or run-length coded, of at
-/// most 16,384 px a side. Returns nullopt for anything else, also for a picture that is cut short. Source:
-/// Truevision TGA file format specification, version 2.0.
+/// Decodes grey images of 8 bits and colour images of 24 or 32 bits, plain or run-length encoded, of at most
+/// 16,384 px per side. Returns nullopt for other and truncated images. Source: Truevision TGA file format
+/// specification, version 2.0.
 std::optional<TgaPicture> decode_tga(std::string_view bytes);
 
 }  // namespace roomradar

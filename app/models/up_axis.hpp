@@ -1,4 +1,4 @@
-// up_axis.hpp: the axis of a model that points up, and turning it to +z.
+// up_axis.hpp: the axis of a model that points up, and the rotation of that axis to +z.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
@@ -12,12 +12,13 @@ enum class UpAxis { kX, kY, kZ, kMinusX, kMinusY, kMinusZ };
 
 inline constexpr std::string_view kUpAxisWords = "x, y, z, -x, -y or -z";
 
-/// Returns "x" to "-z".
+/// Returns one of the words "x", "y", "z", "-x", "-y" and "-z".
 std::string_view to_string(UpAxis up);
-/// Returns nullopt if the word names no axis.
+/// Returns the axis of such a word, or nullopt for any other word.
 std::optional<UpAxis> up_axis_of(std::string_view word);
 
-/// Turns the mesh so that the axis points to +z. Exact: coordinates are exchanged and negated.
+/// Rotates the mesh so that axis `up` points to +z. Coordinates are exchanged and negated, so the result is
+/// exact.
 void stand_up(Mesh& mesh, UpAxis up);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// departure.hpp: puts an object that fell out of the map back.
+// departure.hpp: returns an object that fell out of the map to its last resting pose.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -11,15 +11,17 @@ namespace roomradar {
 /// An object that fell out of the map.
 struct Departure {
   std::string name;
-  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();  ///< position of its origin when noticed, m
-  bool is_back = false;  ///< true: put back where it last rested; false: removed from the room
+  /// Position of its origin when the fall was detected, m.
+  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
+  bool is_back = false;  ///< true: returned to its last resting pose; false: removed from the room
 };
 
-/// Puts an object that is half a metre below lowest_known_m back where it last rested, asleep. Removes it
-/// from the room if it has not rested so far, or if it has fallen out from that position before. Carried
-/// objects are left alone. Call once per frame, after physics.
-/// @param lowest_known_m  least height of the map's surface and observed space, in the world
-/// @return unset: the object has not departed
+/// Checks whether an object has fallen out of the map: its bounding sphere is more than 0.5 m below
+/// lowest_known_m. Returns such an object to the pose in which it last slept, and puts it to sleep. Removes
+/// the object from the room if it has not slept since it was added or last returned. Ignores carried objects.
+/// Call once per frame, after physics.
+/// @param lowest_known_m  world z (m) of the lowest point of the map's surface and observed space
+/// @return unset: the object has not fallen out of the map
 std::optional<Departure> end_departure(VirtualObject& object, double lowest_known_m);
 
 }  // namespace roomradar

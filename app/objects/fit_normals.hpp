@@ -1,18 +1,20 @@
-// fit_normals.hpp: fits a simplified mesh's normals to the fine mesh's shading.
+// fit_normals.hpp: fits vertex normals of a simplified mesh to the normals of the full mesh.
 #pragma once
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
-/// Sets the coarse mesh's normals by least squares over the fine surface: their interpolation over the coarse
-/// triangles best matches the fine normals. Each sample point of the fine surface corresponds to the nearest
-/// coarse triangle that faces the same way. The averages of merged normals that a simplified mesh has would
-/// look flatter. Vertices of triangles without correspondence keep their normals.
+/// Sets the vertex normals of the coarse mesh by linear least squares. The residuals are the differences
+/// between fine normals, at sample points of the fine surface, and normals interpolated on the coarse
+/// triangles. A sample point corresponds to the nearest coarse triangle whose front faces the same side.
+/// Averages of merged vertex normals would shade the simplified mesh too flat. Vertices of triangles without
+/// correspondences keep their normals.
 ///
 /// @param fine       with normals; normals that are not finite are ignored
-/// @param reach_m    max distance (> 0) of the coarse surface from the fine one
-/// @param spacing_m  (> 0) between sample points on large fine triangles; small triangles have one point each
-/// @param coarse     with normals; must have the origin of `fine`
+/// @param reach_m    max distance (> 0) of a sample point from its corresponding triangle
+/// @param spacing_m  max distance (> 0) between sample points on a fine triangle; a triangle with a longest
+///                   side of at most spacing_m has one
+/// @param coarse     with normals; Mesh::origin must equal that of `fine`
 void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// object_file.hpp: loads the models that users name, in the right size.
+// object_file.hpp: loads the model of a virtual object and scales it to the requested size.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,28 +8,32 @@
 
 namespace roomradar {
 
-/// A virtual object as a user names it.
+/// Model file and scaling that a user gave for a virtual object.
 struct ObjectSource {
-  std::string mesh{};  ///< `teapot`, the built-in one, 0.15 m high, or a file that read_model() reads
-  std::optional<double> size_m{};  ///< longest side after scaling, > 0; unset: not scaled
-  std::optional<UpAxis> up{};      ///< as in read_model()
+  /// `teapot` (built in, 0.15 m high), or a file in a format of read_model().
+  std::string mesh{};
+  std::optional<double> size_m{};  ///< longest side of the bounding box after scaling, > 0; unset: not scaled
+  /// Axis of the file that points up; unset: the format's default, see read_model().
+  std::optional<UpAxis> up{};
   ModelOrigin origin = ModelOrigin::kNear;
 };
 
-/// Loads a model and scales it. Throws Error naming the file and the fault.
+/// Loads a model and scales it. Throws Error with the file's name and the fault.
 Model object_model(const ObjectSource& source);
 /// Returns the mesh of object_model().
+/// @param size_m  longest side after scaling; 0: not scaled
 Mesh object_mesh(const std::string& name_or_path, double size_m = 0.0);
 
-/// The room into which an object comes, and how its user gives it a size.
+/// Limits for the size of an object without a given size, and the option named in the error message.
 struct SizeCheck {
-  double room_m = 0.0;  ///< longest side of the known room; 0: not known
-  std::string option;   ///< text that precedes a size in metres: "--object-size "
+  double room_m = 0.0;  ///< longest side of the room's mapped space; 0: unknown
+  std::string option;   ///< command-line text before a size in metres, such as "--object-size "
 };
 
-/// Throws Error if no size was given and the longest side of the model is less than 5 mm, more than 5 m or
-/// more than half of the room's. The sentence ends with the option that makes it fit, to be pasted: in
-/// millimetres or centimetres if the model has a plausible size in these, else 0.3 m.
+/// Throws Error if no size was given and the model's longest side is less than 5 mm, more than 5 m or more
+/// than half of room_m. The message ends with an option that the user can paste. The option's size assumes
+/// that the file is in millimetres or centimetres, if that makes the model 2 cm to 2 m long. Otherwise the
+/// size is 0.3 m.
 void require_sensible_size(const Model& model, const ObjectSource& source, const SizeCheck& check);
 
 }  // namespace roomradar

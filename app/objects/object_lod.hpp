@@ -12,22 +12,23 @@ namespace roomradar {
 struct LevelOfDetail {
   Mesh mesh;
   float deviation_m = 0.0F;
-  /// Per vertex: index of a vertex of the full mesh that was merged into it. Only if seams were kept.
+  /// Per vertex: index of one of the full mesh's vertices that were merged into it. Empty unless keeps_seams.
   std::vector<std::uint32_t> full_vertex{};
-  // Only of textured models, see textured_lod.hpp:
+  // Filled only for textured models, see textured_lod.hpp:
   std::vector<Eigen::Vector2f> texture_points{};
   std::vector<ModelPart> parts{};
 };
 
-/// Computes simplified meshes down to about a hundred triangles, finest first; none for a mesh with fewer
-/// than 1,000 triangles. The max deviation starts at 1/1,024 of the mesh's size and grows by a factor of 1.4
-/// per level. Levels have normals that reproduce the full mesh's shading (fit_normals.hpp). A full mesh
-/// without normals is taken as shaded by vertex normals averaged over the adjacent faces. At faces that
-/// deviate from that mean by more than 25 degrees (sharp edges), the face normal is used.
-/// @param keeps_seams  vertices at the same position stay separate
+/// Computes simplified meshes of down to about 100 triangles, finest first. Returns none for a mesh with
+/// fewer than 1,000 triangles. The max deviation starts at 1/1,024 of the mesh's size and grows by a factor
+/// of 1.4 per level. The levels' normals are fitted to the full mesh's normals (fit_normals.hpp). For a full
+/// mesh without normals, vertex normals are averaged over adjacent faces. A face that deviates from the
+/// averaged normal by more than 25 degrees keeps its own normal, which preserves sharp edges.
+/// @param keeps_seams  true: coincident vertices, as along texture seams, are not merged
 std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh, bool keeps_seams = false);
 
-/// Returns true if a level's deviation is at most error_px pixels; pixel_m is a pixel's size at the object.
+/// Returns true if a level's deviation is at most error_px pixels; pixel_m is the width that one pixel covers
+/// at the object's distance.
 inline bool is_fine_enough(float deviation_m, double pixel_m, double error_px) {
   return static_cast<double>(deviation_m) <= error_px * pixel_m;
 }

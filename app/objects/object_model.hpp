@@ -17,43 +17,45 @@
 
 namespace roomradar {
 
-/// The parts of a model that need no renderer; can be made on any thread.
+/// Data of an object's model that are computed without GL, on any thread.
 struct ObjectParts {
   Model source;
-  TriangleTree touched;  ///< collision shape, spatially sorted
+  TriangleTree touched;  ///< collision shape; triangles are sorted spatially
   MassProperties mass;
-  SurfacePoints surface;              ///< source of its contact shadow
+  SurfacePoints surface;              ///< sample points for its contact shadow
   std::vector<LevelOfDetail> levels;  ///< finest first
 };
 
-/// Makes the parts. Levels of a mesh with many triangles take a few tenths of a second.
-/// @param name  object name for messages
+/// Computes the data. Levels of detail of a mesh with many triangles take a few tenths of a second.
+/// @param name  name of the object in error messages
 /// Throws Error if the mesh has no valid triangles.
 ObjectParts object_parts(const std::string& name, Model source);
-/// Same, of a mesh without textures.
+/// Computes the data of a mesh without textures.
 ObjectParts object_parts(const std::string& name, Mesh mesh);
 
 /// A simplified mesh of an object, for rendering.
 struct DrawnLevel {
-  float deviation_m = 0.0F;  ///< max distance from the full mesh
+  float deviation_m = 0.0F;  ///< LevelOfDetail::deviation_m: two-sided distance to the full mesh
   std::unique_ptr<GpuMesh> mesh;
-  /// Drawn in place of the mesh, one per part of the model; empty without textures.
+  /// Drawn instead of `mesh`, one per ModelPart; empty without textures.
   std::vector<DrawnPart> parts{};
 };
 
-/// Made once per mesh and immutable afterwards; shared by any number of objects.
+/// Collision and render data of one model. Immutable; shared by all objects of the same model.
 struct ObjectModel {
   Model source;
   Shape shape;
-  std::vector<std::unique_ptr<GpuTexture>> textures;  ///< of source
-  std::vector<std::unique_ptr<GpuMesh>> part_meshes;  ///< of all levels
-  std::vector<DrawnPart> parts;                       ///< of the full mesh; empty without textures
-  bool is_opaque = true;  ///< false: a texture has holes, through which its inside is visible
-  /// Vertices used by triangles, each once, in the mesh's frame.
+  std::vector<std::unique_ptr<GpuTexture>> textures;  ///< textures of `source`
+  /// Meshes that DrawnPart entries refer to, of the full mesh and all levels.
+  std::vector<std::unique_ptr<GpuMesh>> part_meshes;
+  std::vector<DrawnPart> parts;  ///< parts of the full mesh; empty without textures
+  bool is_opaque = true;  ///< false: a texture has transparent areas, through which back faces are visible
+  /// Vertices that triangles use, each listed once, in the mesh's frame.
   std::vector<Eigen::Vector3d> corners;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< centre of its bounding box, in the mesh's frame
+  /// Centre of the mesh's bounding box, in the mesh's frame.
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   MassProperties mass;
-  SurfacePoints surface;           ///< source of its contact shadow
+  SurfacePoints surface;           ///< sample points for its contact shadow
   std::vector<DrawnLevel> levels;  ///< finest first
 
   /// Throws Error if the mesh cannot be rendered (vertices not finite, or indices out of range).
@@ -61,11 +63,11 @@ struct ObjectModel {
 
  private:
   void upload_textures(GlContext& context);
-  /// Uploads the parts of a textured model to part_meshes.
+  /// Uploads the meshes of a textured model's parts to part_meshes.
   std::vector<DrawnPart> upload_parts(GlContext& context, const Model& of);
 };
 
-/// Returns true if the ObjectModel was made from a model identical to this one.
+/// Returns true if `model` was made from a model identical to `source`.
 bool is_model_of(const ObjectModel& model, const Model& source);
 
 }  // namespace roomradar

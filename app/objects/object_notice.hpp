@@ -4,11 +4,11 @@
 
 namespace roomradar {
 
-/// A sentence about an event that the user did not request: the object was moved out of a surface, is stuck,
-/// or cannot be dropped.
+/// A sentence about an event that the user did not request, such as that the object was moved out of a
+/// surface, is stuck or cannot be dropped.
 struct ObjectNotice {
-  std::string name;  ///< name of the object
-  std::string text;  ///< the rest of the sentence after the name, without a full stop
+  std::string name;  ///< object's name, the start of the sentence; empty: `text` is the whole sentence
+  std::string text;  ///< rest of the sentence, without a full stop
 };
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// shape.hpp: a mesh as collision shape and as GPU mesh.
+// shape.hpp: one mesh as a collision shape and as a GPU mesh.
 #pragma once
 #include "mapping/types/mesh.hpp"
 #include "radar/geometry/triangle_tree.hpp"
@@ -8,14 +8,15 @@
 namespace roomradar {
 
 struct Shape {
-  TriangleTree touched;  ///< collision shape, for the radar
-  GpuMesh drawn;  ///< render shape, for picture and depth pass; shares the tree's vertices and triangles
+  TriangleTree touched;  ///< collision shape for Cyber Radar
+  /// Render shape, for colour and depth passes. Shares the vertices and triangles of `touched`.
+  GpuMesh drawn;
 
   explicit Shape(GlContext& context) : drawn(context) {}
 
-  /// Replaces both. Throws Error as GpuMesh::upload() does; both are then unusable.
+  /// Replaces both shapes. Throws Error as GpuMesh::upload() does; afterwards both shapes are unusable.
   void set(const Mesh& mesh, MeshUsage usage);
-  /// The same, with a tree already built from this mesh by build_by_place().
+  /// Replaces both shapes, with a tree that build_by_place() has built from `mesh`.
   void set(const Mesh& mesh, TriangleTree tree);
 };
 

@@ -7,10 +7,10 @@
 
 namespace roomradar {
 
-/// Computes the levels of a model, as levels_of_detail() does for a mesh, with texture points, colours and
-/// parts carried over. Vertices at texture seams stay apart, and each side of a seam keeps its own texture
-/// points. deviation_m of a level also bounds the distance by which the texture is shifted along the surface,
-/// for 95 % of the area, measured at the middles of triangles and edges.
+/// Computes the levels of detail of a model as levels_of_detail(const Mesh&) does, and transfers texture
+/// coordinates, colours and parts to them. Coincident vertices along texture seams are not merged, and each
+/// side of a seam keeps its own texture coordinates. On 95 % of a level's area, the texture is shifted along
+/// the surface by at most deviation_m. The shift is measured at the centres of triangles and edges.
 std::vector<LevelOfDetail> levels_of_detail(const Model& model);
 
 }  // namespace roomradar

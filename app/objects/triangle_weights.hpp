@@ -5,8 +5,8 @@
 
 namespace roomradar {
 
-/// Returns the barycentric weights of the point of triangle a, b, c nearest to p; approximate if p projects
-/// outside the triangle.
+/// Returns the barycentric coordinates of the point of triangle a, b, c that is nearest to p. They are
+/// approximate if p projects outside the triangle.
 inline Eigen::Vector3f triangle_weights(const Eigen::Vector3f& a, const Eigen::Vector3f& b,
                                         const Eigen::Vector3f& c, const Eigen::Vector3f& p) {
   const Eigen::Vector3f normal = (b - a).cross(c - a);

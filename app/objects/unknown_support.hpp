@@ -1,5 +1,5 @@
-// unknown_support.hpp: objects that rest on the border of unknown space, and from where to scan what is
-// there.
+// unknown_support.hpp: finds objects that rest on the frontier of unknown space, and viewpoints to scan their
+// supports from.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
@@ -11,21 +11,24 @@
 
 namespace roomradar {
 
-/// Returns true if the object is asleep and something that it rests on is the border of unknown space.
+/// Returns true if the object is asleep on the frontier, the boundary between observed free space and
+/// unobserved space.
 bool rests_on_unknown(const VirtualObject& object);
 
-/// Returns the middle of the object's lowest level, where it rests, in the world.
+/// Returns the world point below the centre of the object's bounding box, at the height of its lowest vertex.
 Eigen::Vector3d support_point_world(const VirtualObject& object);
 
-/// Returns a position 0.6 to 1.5 m from the object's support point with a free line of sight to it, from
-/// which a person can scan what is under the object; the steepest that is free, nearest to `towards_world` on
-/// its circle. nullopt if all lines of sight are blocked.
-/// @param scene  surfaces that block the view: the room's, and the border of unknown space
+/// Returns a viewpoint for scanning the surface under the object: 0.6, 1 or 1.5 m from support_point_world(),
+/// with a free line of sight to it. Among free viewpoints, the highest elevation angle (60, 45, 30 or 15
+/// degrees) comes first, then the largest distance, then the azimuth nearest to that of `towards_world`.
+/// Returns nullopt if all lines of sight are blocked.
+/// @param scene  surfaces; only those of the static room and the frontier block lines of sight
 std::optional<Eigen::Vector3d> viewpoint_of_support(const VirtualObject& object,
                                                     std::span<const SceneTree> scene,
                                                     const Eigen::Vector3d& towards_world);
 
-/// Returns the rest of a sentence about the object: where it rests, and from where to look.
+/// Returns a sentence about the object without its name: the support point, and the viewpoint to scan it
+/// from.
 std::string unknown_support_text(const VirtualObject& object, std::span<const SceneTree> scene,
                                  const Eigen::Vector3d& towards_world);
 

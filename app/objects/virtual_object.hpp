@@ -1,4 +1,4 @@
-// virtual_object.hpp: a virtual object: model, pose and state in the room.
+// virtual_object.hpp: model, pose and state of a virtual object.
 #pragma once
 #include <memory>
 #include <optional>
@@ -18,21 +18,25 @@ namespace roomradar {
 struct VirtualObject {
   Body body;  ///< includes name and pose
   bool in_room = false;
-  bool began_in_unknown = false;                              ///< was placed in unknown space
-  bool in_unknown = false;                                    ///< has not left unknown space since placed
+  /// The object was in solid unknown space when it was last placed.
+  bool began_in_unknown = false;
+  /// The object has been in solid unknown space ever since it was placed.
+  bool in_unknown = false;
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< orientation when last placed
-  /// While carried by a user's hand: target position of its origin. Gravity does not act meanwhile.
+  /// Target position of the origin while a user carries the object, without gravity. Unset: not carried.
   std::optional<Eigen::Vector3d> carried_to_world;
-  /// Pose when it last fell asleep; unset: it has not slept so far, or has fallen out of the map from there.
+  /// Pose in which the object last slept. Unset: the object has not slept since it was added or since
+  /// end_departure() returned it.
   std::optional<Eigen::Isometry3d> T_world_rested;
   int departures = 0;  ///< number of times that it fell out of the map
-  /// True: it has been awake without moving for 1 s, a surface intersects it, and no free pose is near. Reset
-  /// when it moves.
+  /// True if the object has been awake and at rest for 1 s, a surface intersects it, and no free pose is
+  /// within 10 cm. Reset when the object moves.
   bool stuck = false;
-  double still_s = 0.0;  ///< time awake within 2 mm of T_world_still
+  double still_s = 0.0;  ///< time for which it has been awake and within 2 mm of T_world_still
+  /// Pose from which its motion is measured for still_s.
   Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
-  double waited_s = 0.0;  ///< time since it was last advanced
-  /// Cells of the last frame's dynamic mesh refined to full resolution because of this object.
+  double waited_s = 0.0;  ///< time since advance() was last called for it
+  /// Number of cells of the last frame's dynamic mesh that have full resolution because this object is near.
   std::size_t fine_cells = 0;
   std::shared_ptr<const ObjectModel> model;  ///< not null
   ContactShadow shadow;                      ///< valid for ContactShadow::R_world_object
@@ -40,33 +44,36 @@ struct VirtualObject {
   VirtualObject(std::string name, std::shared_ptr<const ObjectModel> its_model);
 };
 
-/// Makes an object of this model; shares the ObjectModel of another object if that was made from the same
+/// Makes an object of a model. Reuses the ObjectModel of another object that was made from an identical
 /// model. Throws Error as object_parts() and ObjectModel do.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, Model source,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
-/// Same, of a mesh without textures.
+/// Makes an object of a mesh without textures.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
-/// The same, with the model's parts already made; they are discarded if a model can be shared.
+/// Makes an object from the result of object_parts(), which is discarded if an existing ObjectModel can be
+/// reused.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
-/// Return the height of its lowest and highest point above its origin, in its present orientation, m.
+/// Return the heights of the object's lowest and highest vertex above its origin in its current orientation,
+/// m.
 double lowest_m(const VirtualObject& object);
 double highest_m(const VirtualObject& object);
-/// Returns the height of its lowest point above its origin in another orientation, m.
+/// Returns the height of the object's lowest vertex above its origin in the given orientation, m.
 double lowest_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
-/// Returns the radius of the sphere around its bounding box, m.
+/// Returns the radius of the sphere circumscribed about the object's bounding box, m.
 double radius_m(const VirtualObject& object);
-/// Returns its horizontal extent from its centre, in this orientation, m.
+/// Returns the max horizontal distance of the object's vertices from the centre of its bounding box in the
+/// given orientation, m.
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
-/// Returns the horizontal vector from its origin to its centre in the world, in this orientation, m. A mesh's
-/// origin may be at a corner, or outside.
+/// Returns the horizontal vector, in world axes, from the object's origin to the centre of its bounding box
+/// in the given orientation, m.
 Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
-/// Returns the coarsest level of the object within error_px of the full one, as the camera sees it at its
-/// nearest point. Valid as long as the object's model.
+/// Returns the coarsest level of detail that deviates by at most error_px pixels from the full mesh, at the
+/// object's point nearest to the camera. Valid while the object's model exists.
 DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
                          const Eigen::Isometry3d& T_world_camera, double error_px);
 /// Returns the mesh of drawn_object().

@@ -1,4 +1,4 @@
-// body.hpp: a rigid body, its centre and inertia in the world, and the report of one step.
+// body.hpp: rigid body, its centre of mass and inertia in the world, and the report of one physics step.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -19,42 +19,47 @@ struct Body {
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();            ///< of the centre of mass
   Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< right-handed
   bool asleep = false;
-  double sleep_timer_s = 0.0;  ///< time supported and within sleep_drift_m of sleep_pose_candidate
+  /// Time for which the body has been supported, within PhysicsConfig::sleep_drift_m of sleep_pose_candidate.
+  double sleep_timer_s = 0.0;
   Eigen::Isometry3d sleep_pose_candidate = Eigen::Isometry3d::Identity();
-  SurfaceKind rests_on = SurfaceKind::kNothing;  ///< surface kind that supported it in its last motion
-  /// Bodies in contact when this one fell asleep, and their poses then.
+  /// Kind of the surface that supported the body when it last moved.
+  SurfaceKind rests_on = SurfaceKind::kNothing;
+  /// Another body in contact with this one when this one fell asleep.
   struct SupportingBody {
     const Body* on;
+    /// Pose of `on` when this body fell asleep.
     Eigen::Isometry3d T_world_other;
   };
   std::vector<SupportingBody> supporting_bodies;
 };
 
 enum class StepStatus {
-  kMoved,    ///< moved, or was free to move; also if asleep
-  kHeld,     ///< the radar returned no usable result: body stopped in place
-  kInvalid,  ///< dt or the body is not finite: nothing changed
+  kMoved,    ///< normal result, also for a body that stayed asleep or at rest
+  kHeld,     ///< a radar query gave no usable result; both velocities are set to zero
+  kInvalid,  ///< dt_s is negative or not finite, or the body's state is not finite; nothing changed
 };
 
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
-  int contacts = 0;  ///< number of surface kinds touched, summed over the step's stops at contacts
-  std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< the same, by kind of surface
-  int queries = 0;                                    ///< number of radar queries along a direction
-  /// Deepest overlap before depenetration, along the shortest depenetration direction, >= 0.
+  /// Number of impacts in the step. Simultaneous impacts on one kind of surface count once.
+  int contacts = 0;
+  std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< `contacts` per surface kind
+  int queries = 0;                                    ///< number of CollisionQueries::travel calls
+  /// Overlap of the body with the scene before depenetration, >= 0, measured along the tested direction in
+  /// which it is least.
   double deepest_overlap_m = 0.0;
-  double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only
-  bool woke = false;                      ///< was asleep before this step, and is awake now
+  double deepest_static_overlap_m = 0.0;  ///< deepest_overlap_m if the prescanned room causes it, else 0
+  bool woke = false;                      ///< this step woke the body
 };
 
-/// Counts a contact with a surface of this kind in `report`.
+/// Adds one contact with a surface of kind `touched` to `report`.
 void note_contact(SurfaceKind touched, StepReport& report);
 
-/// Makes the rotation orthonormal again after accumulated rounding.
+/// Restores the orthonormality of T's rotation, which rounding errors degrade.
 void make_orthonormal(Eigen::Isometry3d& T);
 
-/// Returns an upper bound of how far any point of the body moved since T_world_before: translation of the
-/// centre of mass plus rotation angle times radius.
+/// Returns an upper bound of the distance that any point of the body has moved since the pose T_world_before.
+/// The bound is the translation of the centre of mass plus the rotation angle times MassProperties::radius_m.
 double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before);
 
 /// Returns the centre of mass in the world.

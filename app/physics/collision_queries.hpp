@@ -1,4 +1,4 @@
-// collision_queries.hpp: the radar queries by which a moving body finds contacts.
+// collision_queries.hpp: collision queries of a moving body against the scene.
 #pragma once
 #include <Eigen/Geometry>
 #include <functional>
@@ -13,33 +13,38 @@
 
 namespace roomradar {
 
-/// Finds the first contact of the object at T_world_object along a unit direction, within distance_m. Calls
-/// CyberRadar::query() with the object's mesh and the frame's scene, or an analytic room in tests.
+/// Returns the first contact of the object at T_world_object when it is translated by up to distance_m along
+/// a unit direction. Implemented by CyberRadar::query(); tests substitute an analytic room.
 using DistanceQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
                                             const Eigen::Vector3d& direction_world, double distance_m)>;
 
-/// The body of one of the scene's trees.
+/// The rigid body, if any, to which one triangle tree of the scene belongs.
 struct SceneBody {
-  Body* body = nullptr;     ///< null: the tree is not a body
-  double mass_ratio = 0.0;  ///< as SolverBody::mass_ratio; 0: the body is held, such as in a user's hand
+  Body* body = nullptr;  ///< null: the tree is a static or dynamic surface, not a body
+  /// See SolverBody::mass_ratio. 0: impulses do not move the body, as while a user carries it.
+  double mass_ratio = 0.0;
 };
 
 /// Collision queries of a moving body: its own mesh against the frame's scene.
 struct CollisionQueries {
+  /// First contact along a direction.
   DistanceQuery travel;
-  /// As ProximityQuery::near() and ProximityQuery::free_time().
+  /// Closest features within reach_m; see ProximityQuery::near().
   std::function<SurfaceKindMask(const Eigen::Isometry3d& T_world_object, double reach_m,
                                 SurfaceKindMask left_out, std::vector<ClosestPoint>& points)>
       near;
+  /// Contact-free duration of a motion; see ProximityQuery::free_time().
   std::function<FreeTime(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
                          double duration_s, double keep_m, SurfaceKindMask left_out)>
       free_time;
-  /// One entry per tree of the scene, in its order; trees beyond the last entry are static.
+  /// One entry per tree of the scene, in the scene's order. Trees beyond the last entry do not belong to
+  /// bodies.
   std::span<const SceneBody> others = {};
 };
 
-/// Binds the queries to an object's tree. All references must outlive the returned queries.
-/// @param spent_ms  accumulates the time of all queries; may be null
+/// Returns queries of `object` against `scene`. All arguments passed by reference must outlive the returned
+/// queries.
+/// @param spent_ms  the duration of each query is added; may be null
 CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
                                         const RadarScene& scene, double* spent_ms = nullptr);
 

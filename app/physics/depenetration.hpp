@@ -1,4 +1,4 @@
-// depenetration.hpp: directions for depenetration from moving surfaces, and a test for engulfed bodies.
+// depenetration.hpp: directions in which a body leaves dynamic surfaces, and a test for engulfed bodies.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -13,14 +13,15 @@
 
 namespace roomradar {
 
-/// Returns true if the inferred backs of dynamic surfaces, queried by `back`, engulf the body: they overlap
-/// it, along gravity and all depenetration directions by more than a pushing surface can enter in one step.
-/// Callers then leave the backs out of the scene, since resolving such an overlap would throw the body.
+/// Returns true if the inferred backs of dynamic surfaces engulf the body. They do if they overlap the body
+/// along gravity or a depenetration direction, and each such overlap exceeds max_depenetration_mps * dt_s +
+/// wake_overlap_m. Callers then omit the backs from the scene, since resolving such deep overlaps would throw
+/// the body.
 bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
                  std::span<const Eigen::Vector3d> depenetration_directions_world);
 
-/// Horizontal unit directions from a body to nearby moving surfaces: to the nearest vertex, and to the mean
-/// of all vertices of the meshes within reach_m of centre_world. None, one or two.
+/// Up to two horizontal unit directions from a body towards dynamic surfaces near it: to their nearest
+/// vertex, and to the mean of all their vertices within reach_m.
 struct PushDirections {
   int count = 0;
   std::array<Eigen::Vector3d, 2> direction_world{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
@@ -28,6 +29,8 @@ struct PushDirections {
     return {direction_world.data(), static_cast<std::size_t>(count)};
   }
 };
+/// Returns the directions from centre_world to the vertices of the meshes moving_world. Omits a direction
+/// within about 11 degrees of vertical, and a second direction within about 14 degrees of the first.
 PushDirections depenetration_directions(std::initializer_list<const Mesh*> moving_world,
                                         const Eigen::Vector3d& centre_world, double reach_m,
                                         const Eigen::Vector3d& up_world = Eigen::Vector3d::UnitZ());

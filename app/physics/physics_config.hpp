@@ -1,4 +1,4 @@
-// physics_config.hpp: settings of the rigid bodies' physics.
+// physics_config.hpp: settings of rigid-body physics.
 #pragma once
 #include <Eigen/Core>
 
@@ -6,29 +6,37 @@ namespace roomradar {
 
 struct PhysicsConfig {
   Eigen::Vector3d gravity_world_mps2{0.0, 0.0, -9.81};
-  /// Fraction of the normal velocity returned by an impact, 0..1; 0 for impacts below bounce_mps.
+  /// Restitution coefficient, 0..1. Impacts up to bounce_mps have no restitution.
   double restitution = 0.0;
   double bounce_mps = 0.3;  ///< min impact speed for restitution
   double friction = 0.5;    ///< Coulomb's coefficient, >= 0
-  /// Rolling resistance: max torque = this x normal force x contact offset; >= 0. A ball that rolls at 0.5
-  /// m/s stops after 0.9 m.
+  /// Rolling resistance, >= 0: max torque = `rolling` x normal force x length of the contact offset. With
+  /// 0.02, a ball that rolls at 0.5 m/s stops after 0.9 m.
   double rolling = 0.02;
-  /// Gap kept to surfaces, in addition to the radar's uncertainty (lower_m is less than the true distance).
-  /// Without a gap, rounding would decide between rest and overlap.
+  /// Gap between resting bodies and surfaces, measured from Contact::lower_m, the radar's lower bound of the
+  /// distance. Without a gap, rounding errors would turn contacts into overlaps.
   double contact_margin_m = 0.001;
   double max_step_s = 1.0 / 60.0;  ///< max substep, exceeded by 5 % at most
-  /// Max time simulated per call; the rest is dropped (a stalled camera must not launch objects).
+  /// Max time simulated per call of advance(). Time beyond it is not simulated, so objects do not jump after
+  /// a camera stall.
   double max_advance_s = 0.5;
-  int max_slides = 16;           ///< max stops at contacts per substep; the rest of the substep is dropped
-  double sleep_drift_m = 0.012;  ///< max motion of any point over sleep_after_s to fall asleep on a support
+  /// Max number of contact events per substep. The time left after the last event is not simulated.
+  int max_slides = 16;
+  /// A supported body falls asleep if no point of it moves farther than this within sleep_after_s.
+  double sleep_drift_m = 0.012;
+  /// Time to sleep for a balanced body. An unbalanced body needs four times as long.
   double sleep_after_s = 0.3;
-  double wake_gap_m = 0.012;         ///< asleep: wakes if its support sinks by more; sensor noise is a few mm
-  double wake_moved_m = 0.001;       ///< asleep: wakes if another body it touched moves by more than this
-  double wake_overlap_m = 0.008;     ///< asleep: wakes and is moved out if a surface enters by more than this
-  double overlap_allowed_m = 0.001;  ///< awake: overlap up to this is left uncorrected
-  double max_depenetration_mps = 1.0;  ///< max depenetration speed, and max speed of a pushing hand
+  /// A sleeping body wakes if the gap to its support grows beyond this. Sensor noise is a few mm.
+  double wake_gap_m = 0.012;
+  /// A sleeping body wakes if a body that it touches moves farther than this.
+  double wake_moved_m = 0.001;
+  /// A sleeping body wakes and is moved out if it overlaps a surface by more than this.
+  double wake_overlap_m = 0.008;
+  double overlap_allowed_m = 0.001;  ///< overlaps of an awake body up to this depth are not corrected
+  /// Max speed of depenetration, and of a dynamic surface that pushes a body.
+  double max_depenetration_mps = 1.0;
   double max_speed_mps = 20.0;
-  double max_angular_rad_s = 60.0;  ///< max angular velocity, about ten turns per second
+  double max_angular_rad_s = 60.0;  ///< about ten revolutions per second
 };
 
 /// Throws Error such as "physics.friction = -1: must be >= 0".

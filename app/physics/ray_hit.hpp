@@ -1,4 +1,4 @@
-// ray_hit.hpp: ray casting against a mesh, e.g. to find the surface under the mouse pointer.
+// ray_hit.hpp: ray casting against a mesh, such as for the surface under the mouse pointer.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -19,12 +19,13 @@ struct Ray {
   Eigen::Vector3d direction_world = Eigen::Vector3d::UnitZ();  ///< unit
 };
 
-/// Returns the ray from the camera through image coordinates (u, v); pixel (0, 0) has its centre at (0, 0).
+/// Returns the ray from the camera's centre through image coordinates (u, v). Integer coordinates are pixel
+/// centres.
 Ray ray_through(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, double u_px, double v_px);
 
-/// Returns the first triangle that the ray hits, on either side, within reach_m. Returns nothing for a null
-/// or empty mesh, or a ray that is not finite. Source: Möller and Trumbore, Fast, minimum storage
-/// ray-triangle intersection, 1997, in double.
+/// Returns the nearest intersection of the ray with the mesh within reach_m. Both sides of triangles count.
+/// Returns nullopt if there is none, if the mesh is null or empty, or if the ray is not finite. Source:
+/// Möller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, in double.
 std::optional<MeshHit> hit_mesh(const TreeInstance& mesh, const Ray& ray, double reach_m);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// frame_load.hpp: the parts of a frame, and quantities, known in advance, that predict their times.
+// frame_load.hpp: the parts of a frame, and the quantities that predict their times.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -6,12 +6,13 @@
 
 namespace roomradar {
 
+/// Parts of a frame's processing, in order. The quality can change before each part.
 enum class FramePart {
-  kLocate,   ///< localisation and foreground
+  kLocate,   ///< localisation and detection of dynamic pixels
   kMesh,     ///< mesh of the dynamic foreground
   kPhysics,  ///< motion of the objects
   kCompose,  ///< picture
-  kDone,     ///< not a part: the frame is finished
+  kDone,     ///< after the last part
 };
 inline constexpr std::size_t kFrameParts = 4;
 constexpr std::size_t index_of(FramePart part) { return static_cast<std::size_t>(part); }
@@ -32,9 +33,12 @@ constexpr std::string_view to_string(FramePart part) {
   return "locate";
 }
 
+/// Quantities that predict the times of a frame's parts, known before the parts begin.
 struct FrameLoad {
-  double dynamic_fraction = 0.0;  ///< dynamic part of the depth pixels; before kMesh: previous frame's
-  int moving = 0;                 ///< virtual objects in the room that are not asleep
+  /// Dynamic fraction of the depth pixels. Before kMesh: that of the previous frame.
+  double dynamic_fraction = 0.0;
+  int moving = 0;  ///< virtual objects in the room that are not asleep
+  /// Virtual objects in the room that are asleep.
   int resting = 0;
 };
 

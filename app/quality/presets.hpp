@@ -1,4 +1,4 @@
-// presets.hpp: file of measured qualities: named presets, and a Pareto front from accurate to fast.
+// presets.hpp: file with measured quality settings: named presets, and a Pareto front from accurate to fast.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -21,18 +21,19 @@ struct Preset {
   Figures figures;
 };
 
-/// Pareto-optimal setting of a run: no other setting is both faster and more accurate.
+/// Pareto-optimal quality of a run: no other measured quality is both faster and more accurate.
 struct FrontStep {
   RunQuality run;
-  /// Median time of each FramePart relative to the default quality in the same measurement; > 0.
+  /// Median time of each FramePart divided by its time at the default quality in the same measurement; > 0.
   std::array<double, kFrameParts> part_ratios{1.0, 1.0, 1.0, 1.0};
-  /// Number of objects in the room during the measurement, for settings with move_every_n_frames; 0: unknown.
+  /// Number of objects in the room during the measurement; needed if move_every_n_frames > 1. 0: unknown.
   int objects = 0;
   Figures figures;
 };
 
 struct Presets {
-  std::map<std::string, std::string> made_by;  ///< machine, renderer, command; free text
+  /// Machine, renderer and command of the measurement; free text.
+  std::map<std::string, std::string> made_by;
   std::map<std::string, Preset> presets;
   std::vector<FrontStep> front;  ///< from accurate to fast
 };
@@ -44,20 +45,20 @@ struct Presets {
 ///      {"frame_ratio": 0.4}}}, "front": [{"run": {}, "part_ratios": {"locate": 1, "mesh": 1, "physics": 1,
 ///      "compose": 1}, "objects": 50, "figures": {}}]}
 ///
-/// Omitted settings have their defaults. Throws Error "FILE: ..." if the file is cut short, of another
-/// version or longer than 1 MiB, or has an unknown key or a value out of range.
+/// Omitted settings have their defaults. Throws Error "FILE: ..." if the file is truncated, has another
+/// version or more than 1 MiB, or contains an unknown key or a value out of range.
 Presets read_presets(const std::filesystem::path& path);
-/// Parses the text of a presets file; `where` replaces the file's name in messages.
+/// Parses the text of a presets file. Error messages contain `where` in place of the file's name.
 Presets presets_of(std::string_view text, const std::string& where);
 
-/// Writes all presets, with every setting. Throws Error if the file cannot be written.
+/// Writes all presets with all settings, defaults included. Throws Error if the file cannot be written.
 void write_presets(const Presets& presets, const std::filesystem::path& path);
 
-/// Returns `given`; if empty, the program's own presets.json: beside the executable, or in its installed
-/// location. Throws Error if there is none.
+/// Returns `given` if it is not empty. Otherwise returns the path of the program's presets.json, beside the
+/// executable or in its installed location. Throws Error if there is none.
 std::filesystem::path presets_file(const std::string& given);
 
-/// Throws Error listing the existing names if there is no such preset.
+/// Returns the preset of this name. Throws Error with a list of the existing names if there is none.
 const Preset& preset_named(const Presets& presets, const std::string& name, const std::string& where);
 
 }  // namespace roomradar

@@ -1,5 +1,4 @@
-// quality.hpp: settings that trade accuracy for time: one struct for scans and one for runs, each with a list
-// of its fields.
+// quality.hpp: quality settings, which trade accuracy for time, of scans and of runs.
 #pragma once
 #include <string>
 #include <string_view>
@@ -11,7 +10,7 @@
 
 namespace roomradar {
 
-/// Settings of a prescan.
+/// Quality settings of a prescan. visit_fields() describes each field.
 struct ScanQuality {
   double resolution_m = 0.01;
   double deviation_m = 0.002;
@@ -20,7 +19,7 @@ struct ScanQuality {
   friend bool operator==(const ScanQuality&, const ScanQuality&) = default;
 };
 
-/// Settings of a run, and of each of its frames.
+/// Quality settings of a run, which can change from frame to frame. visit_fields() describes each field.
 struct RunQuality {
   int depth_stride = 1;
   int tracking_px = 160;
@@ -38,19 +37,18 @@ struct RunQuality {
   friend bool operator==(const RunQuality&, const RunQuality&) = default;
 };
 
-/// Describes one field of a quality.
+/// Description of one field of ScanQuality or RunQuality.
 struct QualityField {
   const char* name;
   const char* option;  ///< name on the command line
-  const char* unit;    ///< as printed in help; counts have "N"
+  const char* unit;    ///< placeholder of the value in help; "N" for counts
   const char* help;
   double low = 0.0, high = 0.0;  ///< range of numbers, inclusive
-  const char* old_name = "";     ///< former name, read until the next version; empty: none
+  const char* old_name = "";     ///< former name, accepted until the next version; empty: none
   const char* old_option = "";   ///< former name on the command line; empty: none
 };
 
-/// Calls visit(QualityField, field) for each field, in the order of files and help. The only list of the
-/// fields.
+/// Calls visit(QualityField, field) for each field, in the order of files and help.
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, ScanQuality>
 void visit_fields(Quality& quality, Visit&& visit) {
@@ -135,8 +133,8 @@ void visit_fields(Quality& quality, Visit&& visit) {
 void require_valid(const ScanQuality& quality);
 void require_valid(const RunQuality& quality);
 
-/// Sets a field from a word: "2", "0.5", "on", "sampled". Throws Error naming field, word and rule, or the
-/// unknown name, and then changes nothing. Former names of fields are accepted.
+/// Sets the field `name` from a word such as "2", "0.5", "on" or "sampled". Accepts former names of fields.
+/// Throws Error for an unknown name or an invalid word, and then changes nothing.
 void set_field(ScanQuality& quality, std::string_view name, std::string_view word);
 void set_field(RunQuality& quality, std::string_view name, std::string_view word);
 
@@ -149,8 +147,8 @@ void set_fields(Quality& quality, const FieldWords& words) {
   for (const auto& [name, word] : words) set_field(quality, name, word);
 }
 
-/// Returns the fields that differ from `defaults`, in the order of visit_fields(). set_fields() on `defaults`
-/// restores the same quality from them, bit by bit.
+/// Returns the fields that differ from `defaults`, in the order of visit_fields(). Calling set_fields() with
+/// them on a copy of `defaults` restores `quality` exactly.
 FieldWords words_of(const ScanQuality& quality, const ScanQuality& defaults = {});
 FieldWords words_of(const RunQuality& quality, const RunQuality& defaults = {});
 

@@ -1,4 +1,4 @@
-// quality_json.hpp: converts qualities to and from JSON; the input is not trusted.
+// quality_json.hpp: converts quality settings to and from JSON; input is validated.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -7,12 +7,13 @@
 
 namespace roomradar {
 
-/// Returns all fields, by name.
+/// Returns all fields as name-value pairs.
 nlohmann::ordered_json to_json(const ScanQuality& quality);
 nlohmann::ordered_json to_json(const RunQuality& quality);
 
-/// Missing fields have their defaults; former names of fields are accepted. Throws Error "WHERE: ..." if
-/// `json` is not an object, a name is unknown, or a value has the wrong type or is out of range.
+/// Parse quality settings. Missing fields have their defaults; former names of fields are accepted. Throw
+/// Error "WHERE: ..." if `json` is not an object, a name is unknown, or a value has the wrong type or is out
+/// of range.
 ScanQuality scan_quality_of(const nlohmann::ordered_json& json, const std::string& where);
 RunQuality run_quality_of(const nlohmann::ordered_json& json, const std::string& where);
 

@@ -13,52 +13,57 @@ namespace roomradar {
 
 struct ComposeConfig {
   OcclusionConfig occlusion;
-  /// Darkness of shadows. 0: no shadows; 1: black where the object occludes the whole sky.
+  /// Darkness of shadows, 0 to 1. 0: no shadows; 1: a point from which objects occlude the whole sky is
+  /// black.
   float shadow_strength = 0.75F;
 };
 /// Checks that all values are in their ranges.
 /// @throws Error naming the field, its value and the rule
 void require_valid(const ComposeConfig& config);
 
-/// An object that casts a shadow on surfaces below it. The shadow was made for about its present orientation.
+/// An object that casts a shadow on surfaces below it. `shadow` was computed for an orientation close to the
+/// object's current one.
 struct ShadowCaster {
   const ContactShadow* shadow = nullptr;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
 
-/// Returns the pixels whose real depth is needed: the pixels of the object layer, enlarged by the occlusion
-/// margin, and the pixels of the shadows.
+/// Returns the rectangle of pixels in which the functions below need the depth of real surfaces. The
+/// rectangle contains the object layer, enlarged by occlusion_margin_px(), and the shadows.
 PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
                             const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
                             const OcclusionConfig& config);
 
-/// Copies the background and darkens it by the objects' shadows. Does not draw the objects. The cost is one
-/// copy plus the shadows' rectangles.
+/// Copies the background and darkens it by the objects' shadows. Does not draw the objects. The run time is
+/// that of one copy, plus a time proportional to the area of the shadows' rectangles.
 ///
-/// @param background       colour image of the camera, or depth shaded by shade_depth(); of the camera's size
+/// @param background       colour image of the camera, or result of shade_depth(); must have the size of
+///                         `camera`
 /// @param camera           colour camera
 /// @param T_world_camera   camera pose
-/// @param real_depth_m     depth of real surfaces in this camera, of its size; pixels of 0 get no shadow
+/// @param real_depth_m     depth of real surfaces in `camera`, with its size; pixels with depth 0 get no
+///                         shadow
 /// @param casters          objects that cast a shadow
-/// @param strength         0: no shadows; 1: black where an object occludes the whole sky
-/// @param[out] picture     resized to the camera's size; must not be `background`
+/// @param strength         see ComposeConfig::shadow_strength
+/// @param[out] picture     resized to the size of `camera`; must not be `background`
 /// @throws Error if sizes differ
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
                   std::span<const ShadowCaster> casters, float strength, ColourImage& picture);
 
-/// Blends the objects over an image that already has their shadows.
+/// Blends the objects over an image that already contains their shadows.
 ///
-/// @param layer         objects rendered in the image's camera (ObjectDrawer)
-/// @param real_depth_m  depth of real surfaces, of the image's size; pixels of 0 occlude nothing
+/// @param layer         objects rendered by ObjectDrawer with the camera of `picture`
+/// @param real_depth_m  depth of real surfaces, with the size of `picture`; pixels with depth 0 occlude
+///                      nothing
 /// @param[out] occlusion    occlusion of the objects; its buffers are reused
-/// @param[in,out] picture   image with the shadows
+/// @param[in,out] picture   image that contains the shadows
 /// @throws Error if sizes differ, or the layer exceeds the image
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
                  Occlusion& occlusion, ColourImage& picture);
 
-/// Renders a depth image as a grey image lit from the camera, for sources without colour. Pixels without
-/// depth are dark.
+/// Renders a depth image as a grey image with a light source at the camera, for sources without colour.
+/// Pixels without depth are dark.
 void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture);
 
 }  // namespace roomradar

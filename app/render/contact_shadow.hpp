@@ -1,4 +1,5 @@
-// contact_shadow.hpp: soft shadow of an object on surfaces below it, as ambient occlusion in a lookup table.
+// contact_shadow.hpp: soft shadow of an object on surfaces below it, stored as a lookup table of ambient
+// occlusion.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>
@@ -7,22 +8,22 @@
 
 namespace roomradar {
 
-/// Points sampled uniformly on an object's surface, in the object's frame, from which its contact shadow is
-/// computed.
+/// Points sampled uniformly on an object's surface, in the object's frame. An object's contact shadow is
+/// computed from them.
 struct SurfacePoints {
   std::vector<Eigen::Vector3f> p_object_m;
   /// Centre of the object's bounding box.
   Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();
 };
 
-/// Samples about 8,000 points; each represents the same area. A triangle smaller than this area gets a point
-/// with a probability proportional to its area. Deterministic. Ignores invalid triangles; a mesh without
-/// valid triangles gets no points.
+/// Samples about 8,000 points, each of which represents the same area, deterministically. A triangle smaller
+/// than that area gets a point with a probability proportional to the triangle's area. Ignores invalid
+/// triangles. Returns no points for a mesh without valid triangles.
 SurfacePoints spread_points(const Mesh& mesh);
 
-/// Lookup table of the ambient occlusion by an object's underside, for one orientation. Three-dimensional:
-/// columns along x, rows along y, levels of clearance. x and y are world axes (z up), relative to the
-/// object's origin. The clearance of a point is its distance below the object's lowest point.
+/// Lookup table of the ambient occlusion by an object's underside, for one orientation of the object. The
+/// table has columns along x, rows along y, and levels of clearance. x and y are world axes (z up), relative
+/// to the object's origin. The clearance of a point is its vertical distance below the object's lowest point.
 struct ContactShadow {
   /// Orientation of the object for which the table was made.
   Eigen::Matrix3d R_world_object = Eigen::Matrix3d::Identity();
@@ -35,7 +36,7 @@ struct ContactShadow {
   int columns = 0, rows = 0;
   /// Height of the object's lowest point relative to its origin.
   float bottom_m = 0.0F;
-  /// Max clearance: points at least this far below the lowest point get no shadow.
+  /// Max clearance. Points with at least this clearance get no shadow.
   float extent_m = 0.0F;
   /// Clearance of each level, ascending.
   std::vector<float> clearances_m;
@@ -45,25 +46,25 @@ struct ContactShadow {
   std::vector<float> covered;
 };
 
-/// Computes the lookup table. The object's underside is divided into patches. A horizontal surface point at
-/// distance H below a patch and horizontal distance r from it has the differential form factor dF = H^2 dA /
-/// (pi (r^2 + H^2)^2), where dA is the patch's area element; the factors of all patches are summed. Source:
-/// Cohen, Wallace, Radiosity and Realistic Image Synthesis 1993, section 4. An object without points gives an
-/// empty table. Reuses the shadow's memory. Takes a few milliseconds.
-/// @param cells_across  number of cells along the longer side of the object's bounding box; the time grows
-///                      with its fourth power. 16 gives cells of 1.5 cm for a 25 cm teapot, which is fine
+/// Computes the lookup table. The object's underside is divided into patches. For a horizontal surface point
+/// at distance H below a patch and at horizontal distance r from it, the differential form factor is dF = H^2
+/// dA / (pi (r^2 + H^2)^2), where dA is the patch's area. The occlusion is the sum of the form factors of all
+/// patches. Source: Cohen, Wallace, Radiosity and Realistic Image Synthesis 1993, section 4. An object
+/// without points gives an empty table. Reuses the shadow's memory. Takes a few milliseconds.
+/// @param cells_across  number of cells along the longer side of the object's bounding box; run time grows
+///                      with its fourth power. With 16, the cells of a 25 cm teapot are 1.5 cm wide, fine
 ///                      enough for a soft shadow.
 void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_world_object,
                          ContactShadow& shadow, int cells_across = 16);
 
 /// Returns the world position of the table's origin for an object at this pose. If the object has rotated
-/// slightly since the table was made, the table stays aligned with the centre of the object's bounding box,
-/// even if the object's origin is elsewhere.
+/// slightly since the table was made, the table is aligned with the centre of the object's bounding box, not
+/// with the object's origin.
 Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3d& T_world_object);
 
 /// Returns the occluded fraction of the sky at a real surface point. Returns 0 for points more than 4 cm
 /// above the object's lowest point.
-/// @param p_object_m  the point minus the object's origin, world axes, m
+/// @param p_object_m  surface point relative to the table's origin (origin_world()), world axes, m
 float ambient_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// hatched_patch.hpp: hatches the level patch on which an object rests at the border of unknown space.
+// hatched_patch.hpp: draws hatching under objects that rest on the frontier of unknown space.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -8,16 +8,17 @@
 
 namespace roomradar {
 
-/// A level disc in the world.
+/// A horizontal disc in the world to be hatched.
 struct HatchedPatch {
   Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();
   double radius_m = 0.0;
 };
 
-/// Draws orange stripes, 1 cm wide and 2 cm apart, over the pixels that see a patch.
+/// Draws orange stripes, 1 cm wide and 2 cm apart, over the pixels in which a patch is visible. Skips patches
+/// that are behind the camera, have a radius <= 0 or are not finite.
 /// @param camera        camera of the picture
-/// @param real_depth_m  depth of real surfaces, of the picture's size; hides patches behind it, 0 hides
-/// nothing Patches behind the camera, with a radius that is not > 0, or not finite are skipped.
+/// @param real_depth_m  depth of real surfaces, with the size of `picture`; hides patches farther away;
+///                      depth 0 hides nothing
 void hatch(std::span<const HatchedPatch> patches, const Intrinsics& camera,
            const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m, ColourImage& picture);
 

@@ -6,16 +6,16 @@
 namespace roomradar {
 
 /// Rendered objects in a rectangle of the camera's image. Each pixel (x, y) of rect has samples x samples
-/// sub-pixels. Its sub-pixels are ((x - rect.x) * samples + i, (y - rect.y) * samples + j) with i, j <
-/// samples.
+/// sub-pixels. In `colour` and `depth_m`, they are the pixels ((x - rect.x) * samples + i, (y - rect.y) *
+/// samples + j) with 0 <= i, j < samples.
 struct ObjectLayer {
   /// Rectangle in the camera's image; width 0 if no object is in view.
   PixelRect rect;
   /// Number of sub-pixels per pixel along each axis.
   int samples = 2;
-  /// Colours of the sub-pixels; undefined if depth_m is 0.
+  /// Colours of the sub-pixels; undefined where depth_m is 0.
   ColourImage colour;
-  /// Depth of the sub-pixels along the optical axis; 0 if there is no object.
+  /// Depth of the sub-pixels along the optical axis; 0 where no object was drawn.
   DepthImage depth_m;
 };
 

@@ -1,4 +1,4 @@
-// dropped_frames.hpp: counts the frames that a live source dropped in favour of newer ones.
+// dropped_frames.hpp: counts the frames that a live source dropped because newer frames had arrived.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -6,10 +6,11 @@
 
 namespace roomradar {
 
-/// Counts gaps in the frames' indices: the source numbers dropped frames too.
+/// Counts dropped frames as gaps in the frames' indices, since the source numbers dropped frames too.
 struct DroppedFrames {
-  std::int64_t count = 0;                   ///< number of frames dropped so far
-  std::optional<std::int64_t> first_index;  ///< index of the first frame seen, less the frames read before
+  std::int64_t count = 0;  ///< number of frames dropped so far
+  /// Index of the first frame that was passed to see(), minus the number of frames read before it.
+  std::optional<std::int64_t> first_index;
 
   /// Updates the count with a frame.
   /// @param index  index of the frame

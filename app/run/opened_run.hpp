@@ -27,24 +27,24 @@ struct OpenedRun {
   Script script;
   SavedMap map;
   bool is_live = false;
-  /// Set for --record-session.
+  /// Set with --record-session.
   std::optional<SessionRecorder> recorder;
   /// Set if the source is a recorded session.
   std::optional<ReplayCheck> check;
   /// Last frame to process; unset if the run ends with the source or with a quit event.
   std::optional<std::int64_t> last_frame;
   std::optional<Interrupt> interrupt;
-  /// Frame source; also ends on Ctrl-C.
+  /// Frame source. Ends at the source's end or on Ctrl-C.
   std::unique_ptr<FrameSource> source;
-  /// The playback wrapper inside `source`.
+  /// The part of `source` that executes camera commands such as hold and rewind; owned by `source`.
   PlaybackSource* playback = nullptr;
-  /// Set for --budget-ms.
+  /// Set with --budget-ms.
   std::unique_ptr<RunBudget> budget;
   /// The AR session, with the script's objects loaded.
   std::unique_ptr<Session> session;
-  /// Set for --video.
+  /// Set with --video.
   std::unique_ptr<VideoWriter> video;
-  /// Set for --frames-csv.
+  /// Set with --frames-csv.
   std::optional<FrameUseFile> frames_csv;
   /// Connection to the window; unset if there is no window.
   std::optional<PlayHost> host;
@@ -53,9 +53,9 @@ struct OpenedRun {
   bool was_quit = false;
 };
 
-/// Opens all inputs and outputs that the options name, reads the map and creates the session.
+/// Opens all inputs and outputs named in the options, reads the map, and creates the session.
 /// @param link  connection to the window; null if there is no window
-/// @throws Error if any of this fails, before the first frame
+/// @throws Error if an input, an output, the map or the session cannot be opened
 std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link);
 
 }  // namespace roomradar

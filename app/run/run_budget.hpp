@@ -1,5 +1,4 @@
-// run_budget.hpp: keeps a run within a time budget per frame, by switching among quality settings on a Pareto
-// front.
+// run_budget.hpp: keeps frames within a time budget by switching between quality settings of a Pareto front.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -14,41 +13,42 @@
 
 namespace roomradar {
 
-/// Returns the quality settings (steps) that a run may use: first `most`, then the steps of the presets'
-/// Pareto front that follow it. If `most` is not in the front, the steps that are faster than the default
-/// quality follow. Settings in `fixed` are the same in all steps. Adjacent steps that become equal are
-/// merged. Adjacent steps whose settings for a part of the frame are equal get equal time ratios for that
-/// part.
+/// Returns the quality settings that a run may use, each called a step. The first step is `most`. If `most`
+/// is in the presets' Pareto front, the steps after it in the front follow. Otherwise the front's steps that
+/// are faster than the default quality follow. Settings in `fixed` are the same in all steps. Adjacent steps
+/// that are equal as a result are merged. If adjacent steps have equal settings for a part of the frame, they
+/// get equal time ratios for it.
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed);
 
 /// Returns the time of a monotonic clock, ms.
 double steady_ms();
 
-/// Chooses the quality for each part of each frame, so frames stay within the budget.
+/// Chooses the quality for each part of each frame so that frames stay within the budget.
 class RunBudget {
  public:
-  /// @param front  quality settings, from accurate to fast; not empty; the run begins with the first
+  /// @param front  quality settings, from accurate to fast; not empty; the first is used at the start
   /// @param budget_ms    time limit per frame
   /// @param has_picture  false: the run never renders images
-  /// @param now_ms       clock, ms
+  /// @param now_ms       returns the current time, ms
   RunBudget(std::vector<FrontStep> front, double budget_ms, bool has_picture,
             std::function<double()> now_ms = steady_ms);
 
-  /// Callback for SessionConfig::watch. Returns the new quality if it changes before this part of the frame.
+  /// Callback for SessionConfig::watch. Returns the quality for the part of the frame that begins, if the
+  /// quality changes.
   std::optional<RunQuality> before(FramePart part, const FrameLoad& load);
-  /// Ends a frame; call after each frame. Returns the quality changes within the frame, in order, as events
-  /// without a frame number.
+  /// Call after each frame. Returns the frame's quality changes, in order, as script events without a frame
+  /// number.
   std::vector<ScriptEvent> end_frame();
-  /// Returns a message for the user if the step has changed since the last message, at most once per second;
-  /// otherwise an empty string.
+  /// Returns a message for the user if the step has changed since the last message. Returns an empty string
+  /// otherwise, and within 1 s after a message.
   std::string news();
-  /// Sets the radar's mode and resolution in all steps; call after the user has chosen them.
+  /// Sets the radar's mode and resolution in all steps. Call after the user has changed them.
   void keep(const RadarConfig& radar);
-  /// Returns the settings in which the current step differs from the run's first step, for example
-  /// "depth_stride 2, shadows off". Empty if there are none.
+  /// Returns the settings in which the current step differs from the run's first step, such as "depth_stride
+  /// 2, shadows off".
   [[nodiscard]] std::string given_up() const;
-  /// Returns the report's entry: the budget, the number of frames over it, the number of quality changes, and
-  /// the number of frames that began with each setting.
+  /// Returns the report's entry: the budget, the number of frames that exceeded the budget, the number of
+  /// quality changes, and the number of frames that began with each step.
   [[nodiscard]] nlohmann::json report() const;
 
  private:

@@ -1,4 +1,4 @@
-// run_results.hpp: results of a run, for its report and for the user.
+// run_results.hpp: results of a run, for its report and for messages to the user.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -16,12 +16,12 @@ namespace roomradar {
 
 /// Sums and maxima over the frames of a run.
 struct RunTotals {
-  /// Number of frames read, unusable, localised, and localised from depth that does not constrain all six
-  /// degrees of freedom; number of contacts, of objects that left the map, and of placements refused.
+  /// Frames: read; skipped as unusable; localised; localised with depth that does not constrain all six
+  /// degrees of freedom. Then: contacts, objects that fell out of the map, and placements refused.
   std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0,
                places_refused = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
-  /// Sums over localised frames: dynamic fraction of the pixels with depth, and number of dynamic, inferred
+  /// Sums over localised frames: dynamic fraction of the pixels with depth, and numbers of dynamic, inferred
   /// and drawn static triangles.
   double dynamic_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;
@@ -61,10 +61,10 @@ struct RunTotals {
 /// Returns the message about an object that fell out of the map, with a remedy.
 std::string sentence_of(const Departure& departure, const Session& session);
 
-/// Returns the position of the camera in the last picture; the world's origin if there was none.
+/// Returns the position of the last picture's camera in the world; the origin if there is no such picture.
 Eigen::Vector3d camera_position_world(const Session& session);
 
-/// Returns the keys that only a run's report has.
+/// Returns the entries that a run's report has in addition to those of all reports.
 nlohmann::json results_of(const RunTotals& totals, const Session& session);
 
 }  // namespace roomradar

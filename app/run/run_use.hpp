@@ -17,8 +17,8 @@ namespace roomradar {
 
 struct VirtualObject;
 
-/// Distribution of a fraction in 0..1 over many frames, in constant memory. Percentiles are accurate to 1 %
-/// of their value from 0.01 up, and to 0.0001 below.
+/// Distribution of a fraction in 0..1 over many frames, in constant memory. Percentiles of at least 0.01 are
+/// accurate to 1 % of their value, smaller ones to 0.0001.
 class Shares {
  public:
   /// Adds the fraction part / whole.
@@ -36,20 +36,20 @@ class Shares {
 
 /// Sums and distributions over the localised frames of a run.
 struct RunUse {
-  /// Number of localised frames; number of frames in which an earlier rendering of the room was reused;
-  /// number of frames in which no pixel was meshed.
+  /// Numbers of localised frames, of frames in which an earlier rendering of the room was reused, and of
+  /// frames without meshed pixels.
   std::size_t frames = 0, frames_kept = 0, frames_still = 0;
   /// Number of frames in which the dynamic mesh had full-resolution cells near some object.
   std::size_t frames_fine_near = 0;
   /// Number of the room's triangles in the last frame.
   std::size_t room_triangles = 0;
-  /// Distributions over the frames: fraction of the room's triangles that were drawn, fraction of the room's
-  /// triangles that the radar examined, and fraction of the pixels with depth that were meshed.
+  /// Distributions over the frames. Fractions of the room's triangles: drawn, and tested by the radar.
+  /// Fraction of the pixels with depth: meshed.
   Shares drawn, asked, meshed;
-  /// Sums over the frames: triangles of the room drawn, triangles of the room examined by the radar, pixels
-  /// meshed, and triangles of the dynamic mesh.
+  /// Sums over the frames: room triangles drawn, room triangles tested by the radar, pixels meshed, and
+  /// triangles of the dynamic mesh.
   double room_drawn = 0.0, room_asked = 0.0, meshed_px = 0.0, mesh_triangles = 0.0;
-  /// Sums over the frames of the dynamic mesh's cells: flat, cut by outlines, and at full resolution.
+  /// Sums over the frames of the dynamic mesh's cells by kind: flat, cut by outlines, and full resolution.
   double flat = 0.0, cut = 0.0, full = 0.0;
   /// Per object, number of frames in which the dynamic mesh had full-resolution cells near the object.
   std::map<std::string, std::size_t> frames_fine;
@@ -58,13 +58,13 @@ struct RunUse {
   void add(const FrameUse& use, std::span<const std::unique_ptr<VirtualObject>> objects);
 };
 
-/// Returns the value of the report's key `needed`.
+/// Returns the statistics as the value of the report's key `needed`.
 nlohmann::json to_json(const RunUse& use);
 /// Prints the statistics to stdout, in two lines.
 void print_use(const RunUse& use);
 
-/// Returns the reasons for a frame's counts in words, as in --frames-csv: whether the camera moved, the
-/// fraction of the depth that was dynamic, and the objects near which the mesh has full resolution.
+/// Returns the reasons for a frame's counts in words, for --frames-csv: whether the camera moved, the dynamic
+/// fraction of the depth pixels, and the objects near which the mesh has full resolution.
 std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<VirtualObject>> objects);
 
 /// Writes a CSV file with one line per localised frame.

@@ -1,4 +1,4 @@
-// drop_request.hpp: requests to drop an object, and the search for a surface in view to drop it on.
+// drop_request.hpp: requests to drop an object, and the search for a visible surface to drop it on.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -15,46 +15,49 @@
 
 namespace roomradar {
 
-/// Drops an object from above a position, or from above a level surface in view.
+/// Request to drop an object from above a given position or from above a level surface in view.
 struct DropRequest {
   std::string name{};
-  std::optional<Eigen::Vector3d> position_world{};  ///< unset: over a level surface in view
-  /// Without position_world: the surface nearest to this point, at most 25 cm away; unset: the surface
-  /// nearest to the picture's centre.
+  std::optional<Eigen::Vector3d> position_world{};  ///< unset: above a level surface in view
+  /// Used without position_world. Set: the search takes the surface point nearest to near_world, at most 25
+  /// cm away. Unset: the search takes the surface point nearest to the image centre.
   std::optional<Eigen::Vector3d> near_world{};
-  double height_m = 0.3;  ///< height of the object's lowest point above the position or surface
+  double height_m = 0.3;  ///< initial height of the object's lowest vertex above the position or surface
   std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation
 };
 
-/// A drop over a surface in view for which no surface has been found so far.
+/// A drop request without a position, for which no surface has been found so far.
 struct WaitingDrop {
   DropRequest drop;
-  std::int64_t try_at_frame = 0;  ///< earliest localised frame for the next search
-  /// Reason why the last search failed, as the end of a sentence; empty: no search so far.
+  std::int64_t try_at_frame = 0;  ///< the next search is in this localised frame or later
+  /// Reason why the last search failed, as the end of a sentence. Empty: not searched so far.
   std::string why{};
 };
 
-/// Throws Error if the object is too large for any place in view.
+/// Throws Error if the object's footprint radius is above kMostFootprint_m (1 m), the largest that the search
+/// for a surface supports.
 void require_small_enough(const VirtualObject& object, const DropRequest& drop);
 
-/// Surfaces of a frame, and the queries that check whether an object's fall is free.
+/// Surfaces of a frame, and the radar that checks whether an object's fall is unobstructed.
 struct DropScene {
   const SessionRoom& room;
-  const std::vector<SceneTree>& surfaces;  ///< everything that the object can touch
+  const std::vector<SceneTree>& surfaces;  ///< all surfaces that the object can touch
   CyberRadar& radar;
 };
 
 /// Result of find_drop_position().
 struct [[nodiscard]] DropPosition {
   std::optional<Eigen::Vector3d>
-      position_world;  ///< position of the object's origin, with its centre on the surface
-  std::string why;     ///< if there is no position: the end of a sentence
+      /// Position of the object's origin for which its centre is above the surface point; z is the surface's
+      /// height. Unset: no surface was found.
+      position_world;
+  std::string why;  ///< reason why no surface was found, as the end of a sentence
 };
 
-/// Searches for a level surface of the room in view on which the object can stand, with free space above.
-/// Dynamic surfaces do not count.
+/// Searches the view for a level surface of the static room on which the object can stand and onto which it
+/// can fall freely. Dynamic surfaces do not count.
 /// @param camera                the depth camera
-/// @param expected, foreground  of this frame
+/// @param expected, foreground results for the current frame
 DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,
                                 const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                                 const ExpectedView& expected, const FrameForeground& foreground,

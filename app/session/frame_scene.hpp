@@ -1,4 +1,4 @@
-// frame_scene.hpp: the surfaces that virtual objects can touch in a frame: the saved room and the dynamic
+// frame_scene.hpp: surfaces that virtual objects can touch in a frame: the static room and the dynamic
 // foreground.
 #pragma once
 #include <Eigen/Geometry>
@@ -24,81 +24,81 @@ namespace roomradar {
 struct FrameSceneConfig {
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   ForegroundConfig foreground = {};
-  DynamicSurfaceConfig moved = {};  ///< used with kMap
+  DynamicSurfaceConfig moved = {};  ///< used with SurfacePolicy::kMap
   DepthMeshConfig mesh = {};        ///< used with the other policies
 };
 
 /// Depth of the static room in a camera's image.
 struct ExpectedView {
-  Intrinsics camera{};  ///< size 0: nothing rendered so far
+  Intrinsics camera{};  ///< image size 0: nothing was rendered
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   DepthImage depth_m;
-  std::size_t triangles = 0;  ///< triangles drawn
+  std::size_t triangles = 0;  ///< number of triangles drawn
 };
 
-/// The pixels of a frame, labelled against an expected view.
+/// Labels of a frame's pixels, from the comparison of live and expected depth.
 struct FrameForeground {
   LabelImage labels;
-  MaskImage dynamic_mask;  ///< not 0: dynamic
+  MaskImage dynamic_mask;  ///< non-zero: dynamic pixel
   ForegroundCounts counts;
 };
 
-/// The touchable surfaces, rebuilt from each frame in steps; each step takes the previous step's result.
-/// Results are references to the scene's buffers, valid until the next call of the same function. Not thread
-/// safe.
+/// Rebuilds the touchable surfaces for each frame, in steps: render_expected(), find_dynamic(),
+/// mesh_surfaces(). Each step takes the results of the steps before it. Returned references are valid until
+/// the next call of the function that returned them. Not thread safe.
 class FrameScene {
  public:
-  /// @param room     static mesh in the world
-  /// @param unknown  border of unknown space, which can be touched but is not drawn; null: unknown space is
+  /// @param room     static mesh of the room, in the world
+  /// @param unknown  frontier of unknown space, which can be touched but is not drawn; null: unknown space is
   ///                 free
-  /// Context, room and unknown must outlive the scene. Throws Error if the config is invalid.
+  /// Context, room and unknown must outlive the scene. Throws Error if `config` is invalid.
   FrameScene(GlContext& context, const Shape& room, const FrameSceneConfig& config,
              const TriangleTree* unknown = nullptr);
 
-  /// Renders the room's depth at a pose. Reuses the last rendering if the view has changed by only a fraction
-  /// of a pixel.
+  /// Renders the room's depth from a camera pose. Reuses the last result if the pose has changed by less than
+  /// 0.2 mm and 0.2 mrad, a tenth of a pixel.
   const ExpectedView& render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
-  /// Replaces all of the config except `surfaces`, from the next frame on. The config must be valid (not
-  /// checked).
+  /// Replaces all config fields except `surfaces`, from the next frame on. Does not check `config`, which
+  /// must be valid.
   void set_fineness(const FrameSceneConfig& config) {
     config_.foreground = config.foreground;
     config_.moved = config.moved;
     config_.mesh = config.mesh;
   }
-  /// Changes which surfaces can be touched, from the next frame on.
+  /// Sets the policy that selects the touchable surfaces, from the next frame on.
   void set_surfaces(SurfacePolicy surfaces);
-  /// Replaces the border of unknown space; null: unknown space is free.
+  /// Replaces the frontier of unknown space; null: unknown space is free.
   void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
-  /// Discards the expected depth after the room's shape has changed.
+  /// Discards the expected depth. Call after the room's mesh has changed.
   void room_changed() { expected_.camera = {}; }
-  /// Returns the previous frame's mask of dynamic pixels, resized to this camera's image by nearest pixel;
-  /// empty if there is none.
+  /// Returns the previous frame's mask of dynamic pixels, resized to the image size of `camera` by nearest
+  /// neighbour. Returns an empty mask if there is no previous frame.
   const MaskImage& previous_dynamic_mask(const Intrinsics& camera);
-  /// Labels the frame's pixels by the expected depth and the previous frame's labels.
+  /// Labels the frame's pixels from live depth, expected depth and the previous frame's labels.
   const FrameForeground& find_dynamic(const Frame& frame, const ExpectedView& expected);
-  /// kMap: meshes the dynamic pixels, at full resolution in the given regions, and infers their back. Other
-  /// policies mesh all pixels.
+  /// With kMap, meshes the dynamic pixels and infers the back of the dynamic surface. The mesh has full
+  /// resolution in the regions `fine`. With other policies, meshes all pixels.
   /// @param expected, foreground  of this frame
   void mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                      const ExpectedView& expected, const FrameForeground& foreground,
                      std::span<const FineRegion> fine = {});
-  /// Meshes all pixels. For policies other than kMap, which need no foreground.
+  /// Meshes all pixels. Used by the policies other than kMap, which need no foreground.
   void mesh_all_pixels(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Returns all surfaces that can be touched. kMap: the room, the dynamic surface, its inferred back, and
-  /// the border of unknown space. Other policies: the frame's own mesh.
+  /// Returns all surfaces that can be touched. With kMap: the room, the dynamic surface, its inferred back,
+  /// and the frontier of unknown space. With other policies: the mesh of the frame's pixels.
   [[nodiscard]] std::vector<SceneTree> surfaces() const;
-  /// Renders the depth of the surfaces that can be both touched and seen, from any camera, inside `rect` of
-  /// its image. Pixels outside rect are unchanged.
+  /// Renders the depth of the room (kMap only) and the frame's mesh from any camera, inside the image
+  /// rectangle `rect`. Pixels outside `rect` are unchanged.
   void render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                        const PixelRect& rect, DepthImage& depth_m);
 
-  /// Number of views that render_expected() has rendered so far, and of room triangles drawn in them.
+  /// Totals since construction: views rendered by render_expected(), and room triangles drawn in them.
   struct RoomDrawn {
     std::size_t views = 0, triangles = 0;
   };
   [[nodiscard]] RoomDrawn room_drawn() const { return room_drawn_; }
-  /// Cells of the last dynamic mesh, by kind and by region; kMap only.
+  /// Cells of the last dynamic mesh, counted by kind and by fine region; kMap only.
   [[nodiscard]] const DynamicCells& dynamic_cells() const { return dynamic_scratch_.cells; }
 
   /// The last view rendered by render_expected().
@@ -123,7 +123,7 @@ class FrameScene {
   DepthMeshScratch mesh_scratch_;
   DynamicSurfaceScratch dynamic_scratch_;
   DynamicSurface dynamic_world_;
-  TriangleTree inferred_;  ///< inferred backs; touched, never drawn
+  TriangleTree inferred_;  ///< inferred backs; can be touched, but are never drawn
 };
 
 }  // namespace roomradar

@@ -1,5 +1,4 @@
-// map_updater.hpp: commits lasting changes of the room (objects added or removed) to a session's copy of the
-// map.
+// map_updater.hpp: adds lasting changes of the room, such as a moved chair, to a session's copy of the map.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -21,14 +20,16 @@
 namespace roomradar {
 
 struct MapUpdateConfig {
-  /// Commits a change after it was observed unchanged for this long. Unset: only on request.
+  /// A change is committed once it has been observed without motion for this long. Unset: changes are
+  /// committed only after ask().
   std::optional<double> after_s;
-  double asked_after_s = 0.5;  ///< the same after ask(); long enough to exclude objects in motion
-  int views = 12;              ///< number of frames from which a detected change is measured
-  /// The changed room takes effect this many frames after its last view, never earlier.
+  /// after_s for changes requested by ask(); long enough to exclude objects in motion.
+  double asked_after_s = 0.5;
+  int views = 12;  ///< number of frames whose depth is fused to measure a change
+  /// Frames between the last measured frame and the first frame that uses the changed room.
   int apply_after_frames = 15;
   /// true: the frame in which the changed room is due waits for the worker thread, so results are
-  /// reproducible. false: no frame waits; the room takes effect in the first frame after it is ready.
+  /// reproducible. false: frames do not wait, and the changed room may take effect later.
   bool wait = true;
   ChangeTrackerConfig tracker;
   SurfaceConfig surface;
@@ -39,53 +40,56 @@ void require_valid(const MapUpdateConfig& config);
 /// A change that was committed to the room.
 struct CommittedChange {
   LastingKind kind = LastingKind::kCame;
-  double stamp_s = 0.0;           ///< time of the first frame that used the changed room
+  double stamp_s = 0.0;           ///< timestamp of the first frame that used the changed room
   std::int64_t frame = 0;         ///< index of that frame
-  Eigen::AlignedBox3d box_world;  ///< bounds of the observed part of its surface
+  Eigen::AlignedBox3d box_world;  ///< bounds of the change's observed points
 };
 
-/// The room with all changes committed so far. `tree` (of `mesh`) and `unknown_tree` are for the radar.
+/// The room with all changes committed so far. `tree` and `unknown_tree` are the radar's trees of `mesh` and
+/// `unknown`.
 struct ChangedRoom {
   Mesh mesh;
   TriangleTree tree;
-  UnknownSurface unknown;  ///< empty unless keep_up_unknown() was called
+  UnknownSurface unknown;  ///< frontier of unknown space; empty unless keep_up_unknown() was called
   TriangleTree unknown_tree;
 };
 
-/// Watches the dynamic foreground of a session's frames for lasting changes. A change that was unchanged for
-/// long enough (settled) is measured from a few more frames. A worker thread then fuses it into the octree
-/// and extracts the surface near it again; frames see the old room until then. Handles one change, or several
-/// that settled together, at a time. Not thread safe: make all calls from one thread.
+/// Watches the dynamic foreground of a session's frames for lasting changes. A change that has not moved for
+/// after_s is measured from the depth of `views` further frames. A worker thread then fuses these frames into
+/// the octree and extracts the surface near the change again. Until the worker is done, frames use the old
+/// room. Changes that become due in the same frame are handled together; later ones wait. Not thread safe:
+/// make all calls from one thread.
 class MapUpdater {
  public:
-  /// @param octree  the room's octree; modified in place, by the worker thread during a commit
-  /// @param mesh    the room's surface, in the world
+  /// @param octree  the room's octree; the worker thread modifies it in place during a commit
+  /// @param mesh    the room's surface mesh, in the world
   /// Throws Error if the octree holds no surface or a config is invalid.
   MapUpdater(StaticMap& octree, const Mesh& mesh, const MapUpdateConfig& config);
   ~MapUpdater();
   MapUpdater(const MapUpdater&) = delete;
   MapUpdater& operator=(const MapUpdater&) = delete;
 
-  /// Requests a commit of the objects in view that came and stand still, or that are gone. The request
-  /// expires after 1 s of frame time.
+  /// Requests a commit of changes in view: objects that were added and stand still, or that were removed. The
+  /// request expires after 1 s of frame time.
   void ask() { asked_until_s_ = kNow; }
 
-  /// From now on each commit also extracts the border of unknown space again.
+  /// From now on, each commit also extracts the frontier of unknown space again.
   void keep_up_unknown() { keeps_up_unknown_ = true; }
 
-  /// Call before each frame. Returns true if the room has changed; callers must then use the new room().
+  /// Call before each frame. Returns true if a commit takes effect in this frame; callers must then use the
+  /// new room().
   bool is_due(const Frame& frame);
   [[nodiscard]] ChangedRoom& room() { return room_; }
-  /// Call after a frame's pixels are labelled. Ignores a frame with the previous frame's index, since in a
-  /// repeated frame everything seems to stand still.
+  /// Call after a frame's pixels have been labelled. Ignores a frame with the previous frame's index, since
+  /// in a repeated frame all objects appear to stand still.
   void watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
              const Eigen::Isometry3d& T_world_camera);
 
   /// Returns the changes committed so far, in order of time.
   [[nodiscard]] const std::vector<CommittedChange>& committed_changes() const { return committed_; }
-  /// Waits for a running commit and applies it as if it were due; the octree may be read afterwards. Rethrows
-  /// the commit's exception. After such a failure every call throws Error, because the octree is half
-  /// changed.
+  /// Waits for a running commit and applies it. The octree may be read afterwards. Rethrows an exception of
+  /// the worker thread. After such an exception, each call of finish() throws Error, because the octree is
+  /// partly modified.
   void finish();
 
  private:
@@ -93,22 +97,25 @@ class MapUpdater {
 
   struct FrameClock {
     double stamp_s = 0.0;    ///< time of the current frame
-    std::int64_t frame = 0;  ///< its index
+    std::int64_t frame = 0;  ///< index of the current frame
     std::optional<std::int64_t> watched_frame;
     double next_look_s = 0.0;
   };
   struct Measurement {
-    std::vector<LastingChange> pending;  ///< settled changes that are being measured or committed
-    std::vector<RegionView> views;       ///< the first view_count are in use; the others are buffers to reuse
+    std::vector<LastingChange> pending;  ///< changes that are being measured or committed
+    /// The first view_count entries are valid; the others are reusable buffers.
+    std::vector<RegionView> views;
     int view_count = 0;
-    int frames_left = 0;  ///< frames until measuring is given up, or until the changed room is due
+    /// While measuring: frames until it is abandoned. While committing: frames until the changed room is due.
+    int frames_left = 0;
   };
 
   StaticMap& octree_;
   MapUpdateConfig config_;
   ChangeTracker tracker_;
   std::vector<CommittedChange> committed_;
-  std::optional<double> asked_until_s_;  ///< time at which ask()'s request expires; kNow: set at next frame
+  /// Time at which ask()'s request expires. kNow: to be set in the next frame.
+  std::optional<double> asked_until_s_;
   bool keeps_up_unknown_ = false;
   FrameClock clock_;
   Measurement measured_;

@@ -1,4 +1,4 @@
-// object_motion.hpp: moves one object: by physics, carried by a user, or by a turn.
+// object_motion.hpp: motion of one object: by physics, carried by a user, or rotated by a user.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -23,29 +23,30 @@ struct ContactCounts {
   std::array<int, kSurfaceKinds> by_kind{};  ///< contacts per kind of surface touched
 };
 
-/// Advances an object by the time since it was last moved. A carried object moves to its target by the end of
-/// this time, without gravity, friction and restitution, unless something is in the way.
-/// @param waited_s  time since the object was last moved; may exceed config.max_advance_s
-/// @param counts    the object's contacts are added
+/// Advances an object by waited_s. A carried object moves towards its target at the speed that reaches it
+/// after waited_s, without gravity, friction and restitution, and stops at obstacles.
+/// @param waited_s  time since the object was last advanced; may exceed config.max_advance_s
+/// @param counts    contacts of this call are added
 void advance_object(VirtualObject& object, double waited_s, const CollisionQueries& probe,
                     const PhysicsConfig& config, const PushDirections& push, ContactCounts& counts);
 
-/// Removes the inferred back from the object's scene if the back engulfs the object (is_engulfed()).
-/// @param radar_ms  the time of the queries is added
+/// Removes the dynamic surface's inferred back from `scene` if it engulfs the object (is_engulfed()).
+/// @param radar_ms  duration of the queries is added
 void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
                          const PhysicsConfig& config, CyberRadar& radar, ProximityQuery& proximity,
                          std::vector<SceneTree>& scene, double& radar_ms);
 
-/// Returns balls around the objects in the room, in which the dynamic mesh has full resolution.
+/// Returns one ball around each object in the room. Inside the balls, the dynamic mesh gets full resolution.
 std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects);
 
-/// Sets fine_cells of all objects from the counts per region of fine_regions(), in its order; 0 without a
-/// region.
+/// Sets VirtualObject::fine_cells of all objects. Objects without a region get 0.
+/// @param cells_of_region  number of cells per region, in the order of fine_regions()
 void set_fine_cells(std::span<const std::unique_ptr<VirtualObject>> objects,
                     std::span<const std::uint32_t> cells_of_region);
 
-/// Rotates an object about its centre, degrees about the world's axes, until a surface of the scene is in the
-/// way, and wakes the object. Does nothing if the radar returns no usable result.
+/// Rotates an object about the centre of its bounding box and wakes it. The rotation stops early at the first
+/// contact with a surface of the scene. Does nothing if the radar returns no usable result.
+/// @param turn_world_deg  rotation vector (axis times angle) in world axes, degrees
 void turn_until_contact(VirtualObject& object, const Eigen::Vector3d& turn_world_deg,
                         std::span<const SceneTree> scene, CyberRadar& radar);
 

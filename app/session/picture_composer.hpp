@@ -17,35 +17,39 @@
 
 namespace roomradar {
 
-/// Camera and pose of a picture.
+/// Camera model and pose from which a picture is seen.
 struct ShownView {
   Intrinsics camera;
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Not thread safe; GL calls are made on the constructing thread.
+/// Draws virtual objects and their shadows into the camera's picture. Not thread safe: call all functions on
+/// the constructing thread, whose GL context is used.
 class PictureComposer {
  public:
-  /// All arguments must outlive the composer; config is read at each call.
+  /// All arguments must outlive the composer. Changes of `config` take effect at the next call.
   PictureComposer(GlContext& context, FrameScene& scene,
                   const std::vector<std::unique_ptr<VirtualObject>>& objects, const SessionConfig& config);
 
-  /// First call for each frame. If no frame has had colour for half a second, pictures show the depth.
+  /// First call for each frame. After 15 frames without a colour image, pictures show the shaded depth image
+  /// instead.
   void begin_frame(const Frame& frame);
-  /// Keeps the colour of a localised frame, with the pose at the time of the colour image. dt_s is the time
-  /// since the previous frame.
+  /// Stores the colour image of a localised frame, with the pose at the colour image's timestamp.
+  /// @param dt_s  time since the previous frame
   void keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
-  /// Composes the picture of a localised frame. Recomputes at most one shadow, at full resolution only if
-  /// may_refine_shadow.
+  /// Composes the picture of a localised frame. Recomputes the shadow of at most one object, with 16 instead
+  /// of 8 cells across only if may_refine_shadow.
   void compose(const Frame& frame, const Eigen::Isometry3d& T_world_camera, bool may_refine_shadow);
-  /// For a frame that is not localised: the picture is the camera's own image, without objects.
+  /// Call instead of compose() for a frame that is not localised. The picture is the camera's own image,
+  /// without objects.
   void show_camera_alone(const Frame& frame);
-  /// Last call for each frame. Stores the pose, from which the motion to the next frame is computed; unset if
-  /// the frame is not localised.
+  /// Last call for each frame. Stores the pose, unset if the frame is not localised, to compute the camera's
+  /// motion to the next frame.
   void end_frame(const std::optional<Eigen::Isometry3d>& T_world_camera) { T_world_before_ = T_world_camera; }
 
   [[nodiscard]] const ColourImage& picture() const { return picture_; }
-  /// Camera and pose of the picture; unset before the first localised frame with a picture.
+  /// Camera and pose of the picture. Unset before the first localised frame with a picture, and after a frame
+  /// that is not localised.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return shown_view_; }
 
  private:
@@ -55,20 +59,24 @@ class PictureComposer {
   ObjectDrawer drawer_;
   ObjectLayer layer_;
   Occlusion occlusion_;
-  DepthImage real_depth_m_;  ///< depth of the real surfaces in the shown view, around objects
-  std::optional<Eigen::Isometry3d> T_world_before_;  ///< the previous frame's pose, if localised
+  /// Depth of the real surfaces in the picture's view, in the pixels around objects.
+  DepthImage real_depth_m_;
+  /// Pose of the previous frame; unset if it was not localised.
+  std::optional<Eigen::Isometry3d> T_world_before_;
   std::optional<ShownView> shown_view_;
-  std::optional<ShownView> colour_view_;                 ///< view of the last colour image, if recent
-  static constexpr int kColourLasts_frames = 15;         ///< half a second of a Kinect's frames
-  int frames_without_colour_ = kColourLasts_frames + 1;  ///< since the last colour image
-  std::vector<HatchedPatch> patches_;                    ///< scratch: under objects on unknown space
-  std::size_t last_shadow_ = 0;  ///< index of the object whose shadow was renewed last
+  /// View of the last colour image; unset if older than 15 frames.
+  std::optional<ShownView> colour_view_;
+  static constexpr int kColourLasts_frames = 15;         ///< half a second at a Kinect's 30 frames/s
+  int frames_without_colour_ = kColourLasts_frames + 1;  ///< number of frames since the last colour image
+  /// Buffer: hatched areas under objects that rest on unknown space.
+  std::vector<HatchedPatch> patches_;
+  std::size_t last_shadow_ = 0;  ///< index of the object whose shadow was recomputed last
   ColourImage background_;
   ColourImage picture_;
 
-  /// Returns the view to show: that of the last colour image, or the depth camera's.
+  /// Returns the view of the last colour image, or that of the depth camera if there is none.
   ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
-  /// Recomputes the contact shadow of one object that has turned, or come to rest.
+  /// Recomputes the contact shadow of one object that has rotated by more than 0.05 rad or has fallen asleep.
   void renew_a_shadow(bool may_refine);
 };
 

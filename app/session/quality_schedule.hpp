@@ -1,4 +1,4 @@
-// quality_schedule.hpp: changes of quality, each due at a part of the next frame.
+// quality_schedule.hpp: scheduled changes of the quality settings, one per part of a frame.
 #pragma once
 #include <array>
 #include <optional>
@@ -9,13 +9,15 @@
 
 namespace roomradar {
 
+/// Scheduled changes of the quality settings. A change takes effect when the next frame reaches its part
+/// (FramePart: localisation, mesh, physics or picture).
 class QualitySchedule {
  public:
-  /// Schedules a change; replaces one that is due at the same part.
+  /// Schedules a change for a part. Replaces an earlier change scheduled for the same part.
   void set(FramePart part, const RunQuality& quality) { due_[index_of(part)] = quality; }
-  /// Returns the change that is due at this part, and removes it.
+  /// Returns and removes the change scheduled for a part.
   std::optional<RunQuality> take(FramePart part) { return std::exchange(due_[index_of(part)], std::nullopt); }
-  /// Calls apply(quality) with all scheduled changes, in the order of the parts, and removes them.
+  /// Calls apply(quality) for each scheduled change, in the order of FramePart, and removes the changes.
   template <typename Apply>
   void take_all(const Apply& apply) {
     for (std::optional<RunQuality>& due : due_)

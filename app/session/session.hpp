@@ -1,4 +1,4 @@
-// session.hpp: augmented reality in a saved room: turns each frame into a composed picture.
+// session.hpp: augmented reality in a saved room: computes a composed picture from each frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -23,9 +23,9 @@
 
 namespace roomradar {
 
-/// The state of an AR run from frame to frame. The saved map is only read. Not thread safe; GL calls are made
-/// on the constructing thread. Objects, policies and quality change between frames; a call that is impossible
-/// throws Error and changes nothing.
+/// State of an AR run. The saved map is not modified. Not thread safe: call all functions on the constructing
+/// thread, whose GL context is used. Objects, policies and quality may be changed between frames. A function
+/// that throws Error changes nothing.
 class Session {
  public:
   /// `map` must outlive the session. Throws Error if GL is not available or a config is invalid.
@@ -35,26 +35,26 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Processes one frame, from sensor data to picture. Stages timed: reduce adopt locate expected foreground
-  /// changes mesh place physics radar compose frame, and contact: from the frame's arrival until its contacts
-  /// have moved the objects.
+  /// changes mesh place physics radar compose frame. Stage contact is the time from the call until all
+  /// objects have been advanced.
   FrameResult step(const Frame& frame, StageTimes& times);
 
-  /// Adds an object, at first outside the room. Throws Error if the name is taken or the mesh is unsuitable.
+  /// Adds an object, outside the room until placed. Throws Error if the name is taken or the mesh is invalid.
   void add_object(const std::string& name, const Mesh& mesh) { objects_.add(name, mesh); }
-  /// Same, with the model's textures; its notes become notices.
+  /// Adds an object with textures. Model::notes become notices.
   void add_object(const std::string& name, Model model) { objects_.add(name, std::move(model)); }
-  /// Adds an object from parts that were prepared earlier, such as on another thread.
+  /// Adds an object from the result of object_parts(), which can be computed on another thread.
   void add_object(const std::string& name, ObjectParts parts) { objects_.add(name, std::move(parts)); }
-  /// Puts an object into the room; see ObjectSet::place(). This call and those below throw Error if there is
-  /// no object of that name.
+  /// Puts an object into the room; see ObjectSet::place(). place() and the functions below that take a name
+  /// throw Error if there is no object of that name.
   void place(const std::string& name, const ObjectState& state) { objects_.place(name, state); }
   /// Puts an object into the room with the velocities of `state`.
   void throw_object(const std::string& name, const ObjectState& state) { objects_.place(name, state); }
   /// Drops an object from above a position, or from above a level surface in view. Without a position, the
-  /// drop waits for a frame that shows such a surface, or until another call for the object replaces it.
-  /// Throws Error if the object is too large for any place in view.
+  /// drop waits for a frame that shows such a surface; another call for the object cancels it. Throws Error
+  /// without a position if the object's footprint radius is above kMostFootprint_m.
   void drop(const DropRequest& drop) { objects_.drop(drop, frames_); }
-  /// Moves an object towards a position until something is in the way; lasts until release().
+  /// Moves an object towards a position and holds it there until release(). Obstacles stop it on the way.
   void carry(const std::string& name, const Eigen::Vector3d& position_world) {
     objects_.carry(name, position_world);
   }
@@ -62,61 +62,61 @@ class Session {
   void release(const std::string& name, const Eigen::Vector3d& velocity_world_mps) {
     objects_.release(name, velocity_world_mps);
   }
-  /// Rotates an object about its centre, degrees about the world's axes, until something is in the way. No
-  /// effect on an object that is not in the room.
+  /// Rotates an object in the room about its centre until the first contact. turn_world_deg is a rotation
+  /// vector in world axes.
   void turn(const std::string& name, const Eigen::Vector3d& turn_world_deg) {
     objects_.turn(name, turn_world_deg);
   }
   /// Takes an object out of the room; its name stays in use.
   void remove(const std::string& name) { objects_.remove(name); }
 
-  /// From now on objects cannot enter space that the map's scan has not observed. An object placed in such
-  /// space can leave it. Stage timed: unknown. Throws Error unless the surface policy is kMap. With
-  /// config().map_updates, the first call must come before the first frame; otherwise throws Error.
+  /// From now on, objects cannot enter space that the map's scan has not observed. Objects that are in
+  /// unobserved space can leave it. Stage timed: unknown. Throws Error unless the surface policy is kMap.
+  /// With config().map_updates, throws Error if the first call comes after the first frame.
   void make_unknown_solid(StageTimes& times);
-  /// From now on unknown space is free; all objects count as placed in observed space.
+  /// From now on, objects can enter unknown space.
   void make_unknown_free();
   /// Takes effect in the next frame. With policies other than kMap, unknown space is free. Throws Error for
-  /// these policies if config().map_updates is set.
+  /// policies other than kMap if config().map_updates is set.
   void set_surfaces(SurfacePolicy surfaces);
   /// Takes effect in the next frame. Throws Error if the config is invalid.
   void set_radar(const RadarConfig& config);
-  /// Takes effect at once; a depth stride in the next frame. Throws Error if the quality is invalid.
+  /// Takes effect at once, depth_stride in the next frame. Throws Error if the quality is invalid.
   void set_quality(const RunQuality& quality);
-  /// Takes effect in the next frame, from this part on. Throws Error if the quality is invalid.
+  /// Takes effect in the next frame, from part `part` on. Throws Error if the quality is invalid.
   void set_quality_from(FramePart part, const RunQuality& quality);
-  /// Commits objects in view that stand still, or are gone, to the map. Throws Error unless
-  /// config().map_updates is set.
+  /// Commits changes in view, see MapUpdater::ask(). Throws Error unless config().map_updates is set.
   void commit_changes();
-  /// Returns the notices since the last frame or call, for calls made before the first frame.
+  /// Returns the notices since the last frame or call. Later frames return them as FrameResult::notices.
   std::vector<ObjectNotice> take_notices() { return objects_.take_notices(); }
   /// Returns the changes committed to the room so far.
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
-  /// Waits for a running commit, so the octree may be read.
+  /// Waits for a running commit. Afterwards the octree may be read.
   void finish_commits();
 
-  /// Makes this session's GL context current. Needed only if a thread has several sessions: before each is
-  /// used or destroyed. Throws Error if the renderer refuses.
+  /// Makes this session's GL context current. Call it before using or destroying one of several sessions of a
+  /// thread. Throws Error if GL fails.
   void make_current() const { context_.make_current(); }
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_.all(); }
   [[nodiscard]] const std::vector<WaitingDrop>& waiting_drops() const { return objects_.waiting_drops(); }
-  /// Returns everything that `object` can touch, so all but itself; null: everything.
+  /// Returns the frame's surfaces and the objects in the room, without `object` (may be null).
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const {
     return objects_.scene_without(object);
   }
   [[nodiscard]] const ColourImage& picture() const { return composer_.picture(); }
-  /// Camera and pose of the picture; unset before the first localised frame with a picture.
+  /// Camera and pose of the picture. Unset before the first localised frame with a picture, and after a frame
+  /// that is not localised.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return composer_.shown_view(); }
   [[nodiscard]] const FrameScene& scene() const { return scene_; }
-  /// The room's current shape, with all committed changes.
+  /// The room's current mesh, with all committed changes.
   [[nodiscard]] const Shape& room() const { return room_.shape; }
-  /// Longest side of the known room, m, when the session began.
+  /// Longest side of the bounding box of surface and observed space at the session's start, m.
   [[nodiscard]] double room_extent_m() const { return room_.extent_m; }
-  /// Null until unknown space is made solid for the first time.
+  /// Frontier of unknown space. Null until unknown space is made solid for the first time.
   [[nodiscard]] const UnknownSurface* unknown() const { return room_.unknown.get(); }
   [[nodiscard]] bool unknown_is_solid() const { return room_.unknown_is_solid; }
-  /// The config as given, updated by the set_ functions.
+  /// The config given to the constructor, with all changes by the set_ functions.
   [[nodiscard]] const SessionConfig& config() const { return config_; }
 
  private:
@@ -125,30 +125,30 @@ class Session {
   GlContext context_;
   SessionRoom room_;
   FrameScene scene_;
-  std::unique_ptr<MapUpdater> map_updater_;  ///< null: the room does not change
+  std::unique_ptr<MapUpdater> map_updater_;  ///< null unless config.map_updates is set
   Locator locator_;
   ObjectSet objects_;
   PictureComposer composer_;
   QualitySchedule schedule_;
-  Frame reduced_;  ///< copy of the frame with reduced depth
+  Frame reduced_;  ///< buffer: copy of the frame with reduced depth
   double moved_fraction_ = 0.0;
   std::int64_t frames_ = 0;  ///< number of localised frames
   std::optional<double> last_stamp_s_;
 
   FrameResult pass_through(const Frame& frame, StageTimes& times);
-  /// Returns the time since the previous frame, s, >= 0; 0 for the first. Stores the stamp.
+  /// Returns the time since the previous frame, s, >= 0; 0 for the first frame. Stores stamp_s.
   double seconds_since_last(double stamp_s);
-  /// Begins a part of the frame: applies a quality that is due and calls config.watch.
+  /// Begins a part of the frame: applies the quality scheduled for it, and calls config.watch.
   void begin(FramePart part);
   [[nodiscard]] FrameLoad load() const;
-  /// Returns true if work done every n frames is due in this frame.
+  /// Returns true in every n-th localised frame.
   [[nodiscard]] bool is_due_every(int n_frames) const { return frames_ % n_frames == 0; }
-  /// Returns the frame, or reduced_ if the depth stride is not 1.
+  /// Returns `frame`, or reduced_ if the depth stride is not 1.
   const Frame& with_depth_reduced(const Frame& frame);
-  /// Replaces the room by the map updater's changed room.
+  /// Replaces the room by the map updater's room().
   void renew_room();
   Tracking locate_camera(const Frame& frame);
-  /// Ends a frame without a camera pose.
+  /// Completes a frame that was not localised.
   FrameResult pass_unlocated(const Frame& frame, TrackStatus tracking);
 };
 

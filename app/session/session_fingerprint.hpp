@@ -6,11 +6,11 @@ namespace roomradar {
 
 class Session;
 
-/// Hashes of a frame's result; equal hashes in two runs show that the runs agree.
+/// Hashes of a frame's result. Equal hashes in two runs indicate equal results.
 struct FrameFingerprint {
   std::int64_t run_frame = 0;
-  std::uint64_t objects = 0;  ///< names and poses of the objects in the room, bit by bit
-  std::uint64_t picture = 0;  ///< 0: no picture was made
+  std::uint64_t objects = 0;  ///< hash of names and poses (all bits) of the objects in the room
+  std::uint64_t picture = 0;  ///< hash of the picture's pixels; 0: no picture was made
 };
 FrameFingerprint fingerprint_of(std::int64_t run_frame, const Session& session);
 

@@ -1,4 +1,4 @@
-// session_room.hpp: the static room of a session: its surface, and the border of unknown space.
+// session_room.hpp: the static room of a session: its surface, and the frontier of unknown space.
 #pragma once
 #include <memory>
 
@@ -12,23 +12,23 @@ namespace roomradar {
 
 struct SessionRoom {
   Shape shape;                  ///< the map's mesh in the world, with all committed changes
-  double lowest_known_m = 0.0;  ///< least height of the map's surface and observed space, in the world
-  double extent_m = 0.0;        ///< longest side of the box around surface and observed space
-  /// Null until unknown space is made solid for the first time.
+  double lowest_known_m = 0.0;  ///< world z of the lowest point of the map's surface and observed space
+  double extent_m = 0.0;        ///< longest side of the bounding box of surface and observed space
+  /// Frontier of unknown space. Null until unknown space is made solid for the first time.
   std::shared_ptr<const UnknownSurface> unknown{};
   TriangleTree unknown_tree{};
   bool unknown_is_solid = false;  ///< effective only with SurfacePolicy::kMap
 };
 
-/// Returns true if unknown space is solid and a corner or the centre of a triangle of the object is in it.
+/// Returns true if unknown space is solid and a vertex or triangle centroid of the object is in it.
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object);
-/// The same, with the object at another pose.
+/// Returns is_in_solid_unknown() for the object at another pose.
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object,
                          const Eigen::Isometry3d& T_world_object);
 
-/// Returns the least height of the map's surface and observed space, m in the world.
+/// Returns the world z (m) of the lowest point of the map's surface and observed space.
 double lowest_known_m(const SavedMap& map);
-/// Returns the longest side of the box around the map's surface and observed space, m.
+/// Returns the longest side (m) of the bounding box of the map's surface and observed space.
 double extent_m(const SavedMap& map);
 
 }  // namespace roomradar

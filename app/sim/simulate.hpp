@@ -9,12 +9,13 @@
 
 namespace roomradar {
 
-/// Writes the frames of `options` into `folder` (new or empty) as a recording of `format`, together with
+/// Writes the frames of a SimulatedSource into `folder` (new or empty) as a recording in `format`, and the
+/// ground truth as
 ///   truth/depth/NNNNNN.png  exact depth, 16 bit, 1/5000 m; 0: outside the sensor's range
 ///   truth/moved/NNNNNN.png  8 bit; 255 if the nearest surface is a moving object
 ///   truth/mover/NNNNNN.png  8 bit; 0 for the room, otherwise the number of the moving object in sim.json,
 ///                           from 1; a crate that appears has the next number after the moving objects
-///   truth/revealed/NNNNNN.png  8 bit; 255 if a crate that disappeared would be the nearest surface
+///   truth/revealed/NNNNNN.png  8 bit; 255 if a crate that has disappeared would be the nearest surface
 ///   truth/trajectory.txt    exact poses of the depth camera, TUM format
 ///   truth/room.ply          surface of the room, without moving objects
 ///   truth/sim.json          the options, and the spec that reproduces these frames

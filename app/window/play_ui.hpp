@@ -1,4 +1,4 @@
-// play_ui.hpp: content of the window, and the actions of its keys.
+// play_ui.hpp: content of the window, and the actions of keys.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,23 +16,24 @@
 
 namespace roomradar {
 
-/// Call on the window's thread, within Dear ImGui's frames.
+/// Draws the window and handles its keys. All calls must come from the window's thread, within Dear ImGui's
+/// frames.
 class PlayUi {
  public:
-  /// @param meshes     objects that can be added besides the built-in teapot
-  /// @param budget_ms  the run's time limit per frame, if it has one
+  /// @param meshes     objects that can be added, in addition to the built-in teapot
+  /// @param budget_ms  the run's time limit per frame; unset: none
   PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<ObjectSource>& meshes,
          std::optional<double> budget_ms);
 
-  /// Takes the newest snapshot and message; returns true if there was one.
+  /// Takes the newest snapshot and message. Returns true if either is new.
   bool take_news();
   void draw(float width, float height);
-  /// @param key        as returned by key_meant()
+  /// @param key        result of key_meant()
   /// @param modifiers  GLFW's bits
   void press(int key, int modifiers = 0);
-  /// Returns true if a key acts repeatedly while it is held down.
+  /// Returns true if a key's action is repeated while the key is held down.
   static bool repeats(int key);
-  /// Adds an object from a mesh file, and offers the file in the list from now on.
+  /// Adds an object from a mesh file, and adds the file to the list of objects.
   void take_file(const std::string& path);
   [[nodiscard]] bool wants_to_quit() const { return quits_; }
 
@@ -43,7 +44,7 @@ class PlayUi {
   };
   struct FrameRate {
     double from_s = 0.0;  ///< start of the current interval
-    int frames = 0;       ///< frames since from_s
+    int frames = 0;       ///< number of frames since from_s
     double frames_per_s = 0.0;
   };
 
@@ -66,7 +67,7 @@ class PlayUi {
   void ask_at_mouse(UserCommandKind kind);
   void add_object();
   void choose_next();
-  // Each handles one group of keys; returns false for other keys.
+  // Each function handles one group of keys and returns false for other keys.
   bool press_run_key(int key);
   bool press_object_key(int key);
   bool press_scene_key(int key);

@@ -10,15 +10,16 @@
 
 namespace roomradar {
 
-/// Opens a window, runs `work` on another thread, and shows its snapshots until the user closes the window.
-/// The window stays open after `work` has returned. Call on the main thread.
+/// Opens a window, runs `work` on another thread, and shows the snapshots of `work` until the user closes the
+/// window. The window remains open after `work` has returned. Call on the main thread.
 ///
 /// @param title      title of the window
-/// @param meshes     objects that can be added besides the built-in teapot
-/// @param budget_ms  the run's time limit per frame, if it has one
-/// @param ui_scale   scale of text and panes; unset: the monitor's
-/// @return the value returned by `work`; rethrows what `work` throws
-/// @throws Error with advice if this build has no window, or there is no display with OpenGL 3.3
+/// @param meshes     objects that can be added, in addition to the built-in teapot
+/// @param budget_ms  the run's time limit per frame; unset: none
+/// @param ui_scale   scale of text and panes; unset: that of the monitor
+/// @return the value that `work` returns; exceptions of `work` are rethrown
+/// @throws Error with advice if the program was built without a window, or if there is no display with OpenGL
+/// 3.3
 int run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,
                   std::optional<double> budget_ms, std::optional<double> ui_scale,
                   const std::function<int(UiChannel&)>& work);

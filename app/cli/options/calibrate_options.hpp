@@ -21,7 +21,7 @@ struct CalibrateOptions {
   Board board;
   /// Range of frames to use; unset: all.
   std::optional<FrameRange> frames;
-  /// PNG file to write; empty: not written.
+  /// PNG file of calibration_plot(); empty: not written.
   std::string plot;
   /// JSON file to write; empty: not written.
   std::string report;

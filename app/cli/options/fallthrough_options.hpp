@@ -19,13 +19,13 @@ struct FallthroughOptions {
   std::string source;
   /// Folder of the room's map.
   std::string map;
-  /// Folder of the map whose surface is the ground truth; empty: the same as `map`.
+  /// Folder of the map whose surface is the ground truth; empty: `map` is the ground truth.
   std::string reference;
-  /// Origin of the frame's pose in the map: estimated, or the recording's.
+  /// Origin of the frame's pose in the map: estimated or recorded.
   PoseOrigin poses = PoseOrigin::kTracked;
-  /// Range whose first frame is used; unset: frame 0.
+  /// Range of frames, of which only the first is used; unset: frame 0.
   std::optional<FrameRange> frames;
-  /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
+  /// Calibration file; empty: see calibration_for().
   std::string calibration;
   /// Side of the cells of the grid of drop positions.
   double cell_m = 0.1;
@@ -37,17 +37,17 @@ struct FallthroughOptions {
   int scenarios = 200;
   /// Seed of the scenarios.
   std::uint64_t seed = 1;
-  /// Number of random rooms, in addition to the named ones.
+  /// Number of random rooms, in addition to room_names().
   int random_rooms = 3;
   /// Number of threads; 0: one per processor.
   int threads = 0;
-  /// Number of the only scenario to run and to show as a video; unset: all scenarios.
+  /// Number of the single scenario to run; unset: all scenarios are run.
   std::optional<std::int64_t> scenario;
-  /// Video file to write; used with `scenario`.
+  /// Video file of the single scenario; used with `scenario`.
   std::string video;
   /// Folder in which the rooms' maps are stored and reused.
   std::string maps;
-  /// CSV file with a line per scenario and policy; empty: not written.
+  /// CSV file with one line per scenario and policy; empty: not written.
   std::string csv;
   /// HTML file for tables, plots and images; empty: not written.
   std::string html;
@@ -60,7 +60,7 @@ struct FallthroughOptions {
 /// @param options  receives the values; must outlive the parsing
 void add_options(CLI::App& command, FallthroughOptions& options);
 
-/// Checks the options against each other; call after parsing. Throws CLI::ParseError for wrong usage.
+/// Checks combinations of options. Call after parsing. Throws CLI::ParseError for wrong usage.
 void complete_options(const CLI::App& command, FallthroughOptions& options);
 
 }  // namespace roomradar

@@ -26,7 +26,7 @@ struct MapExportOptions {
   std::string map;
   /// File to write; its extension selects the format.
   std::string path;
-  /// True: exports the border of unknown space instead of the mesh.
+  /// True: exports the frontier of unknown space instead of the mesh.
   bool unknown = false;
 };
 
@@ -37,7 +37,7 @@ struct MapMergeOptions {
   std::string b;
   /// Map folder to write.
   std::string map;
-  /// Max deviation of the merged surface; unset: as in map `a`.
+  /// Max deviation of the merged surface's simplification; unset: that of map `a`.
   std::optional<double> deviation_m;
   /// JSON file to write; empty: not written.
   std::string report;
@@ -54,8 +54,8 @@ struct MapDiffOptions {
   std::string picture;
 };
 
-/// Adds the options of `map info` with their help texts and checks. The options must outlive the parsing,
-/// here and in the functions below.
+/// Adds the options of `map info` with their help texts and checks. For this function and those below,
+/// `options` must outlive the parsing.
 void add_options(CLI::App& command, MapInfoOptions& options);
 /// Adds the options of `map verify`.
 void add_options(CLI::App& command, MapVerifyOptions& options);

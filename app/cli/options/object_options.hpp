@@ -15,24 +15,25 @@ namespace roomradar {
 
 /// A virtual object of a run without a script.
 struct ObjectOption {
-  std::string text{};  ///< as given: "chair.glb,size=0.9,up=y,at=0.4,-0.1,0.75"
+  std::string text{};  ///< text as given, such as "chair.glb,size=0.9,up=y,at=0.4,-0.1,0.75"
   ObjectSource source{};
-  std::optional<Eigen::Vector3d> at_world{};  ///< point above which it is dropped; unset: a surface in view
+  /// Point above which the object is dropped; unset: the object is dropped above a surface in view.
+  std::optional<Eigen::Vector3d> at_world{};
 };
 
-/// Options as given, before they are joined.
+/// Values of the options as given, before objects_of() combines them.
 struct ObjectOptions {
-  std::vector<std::string> texts;  ///< of --object
-  std::optional<double> size_m;    ///< of --object-size
-  std::optional<std::string> up;   ///< of --object-up
+  std::vector<std::string> texts;  ///< values of --object
+  std::optional<double> size_m;    ///< value of --object-size
+  std::optional<std::string> up;   ///< value of --object-up
 };
 
 /// Adds the options with their help texts.
 /// @param options  receives the values; must outlive the parsing
 void add_object_options(CLI::App& command, ObjectOptions& options);
 
-/// Returns the objects; a teapot if none is given. --object-size and --object-up apply to all objects that
-/// have no size or up axis of their own. Throws CLI::ValidationError if a value is wrong.
+/// Returns the objects, or a teapot if no object is given. --object-size and --object-up apply to the objects
+/// for which --object gives no size or up axis. Throws CLI::ValidationError if a value is wrong.
 std::vector<ObjectOption> objects_of(const ObjectOptions& options);
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// option_checks.hpp: checks of option values that CLI11 lacks: ranges that reject "nan", named values,
-// decimal integers.
+// option_checks.hpp: checks of option values that CLI11 lacks: ranges without "nan", named values, decimal
+// integers.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <map>
@@ -7,18 +7,19 @@
 
 namespace roomradar {
 
-/// Returns a range check; both ends are allowed. Unlike CLI11's own Range, it rejects "nan".
-/// @param unit  unit in the plural, for the message
+/// Returns a check that a number is in low..high. Unlike CLI11's Range, the check rejects "nan".
+/// @param unit  unit in the plural, for the error message
 CLI::Validator within(double low, double high, const std::string& unit);
 
-/// Rejects numbers that CLI11 would misread: 010 as 8, and -1 for a seed as 18446744073709551615. Checks all
-/// options of type "N" of the program and its commands. Call after all options were added.
+/// Adds checks that reject numbers that CLI11 would misread: 010 as 8, and the seed -1 as
+/// 18446744073709551615. The checks apply to all options of type "N" of the program and its commands. Call
+/// after all options were added.
 void refuse_other_bases(CLI::App& app);
 
-/// Adds an option whose value is one of several words. CLI11's own transformer would list the values as
+/// Adds an option with a value that is one of several words. CLI11's transformer would list the values as
 /// numbers.
 /// @param value  must outlive the parsing
-/// @param choices  value of each word
+/// @param choices  words, and the values that they set
 template <typename Value>
 void add_choice(CLI::App& command, const std::string& name, Value& value,
                 const std::map<std::string, Value>& choices, const std::string& help) {

@@ -1,4 +1,4 @@
-// option_groups.hpp: the help's groups of options, everyday options first, and its examples.
+// option_groups.hpp: groups of options in the help, with common options first, and examples.
 #pragma once
 
 namespace CLI {
@@ -7,8 +7,8 @@ class App;
 
 namespace roomradar {
 
-/// Sorts the options of all commands into the help's groups, and adds examples. Options that no group lists
-/// come last, under "Other". Call after all commands were added.
+/// Assigns the options of all commands to groups, and adds examples to the help. Options without a group come
+/// last, under "Other". Call after all commands were added.
 void arrange_help(CLI::App& app);
 
 }  // namespace roomradar

@@ -20,29 +20,29 @@ struct PrescanOptions {
   std::string source;
   /// Map folder to write.
   std::string map;
-  /// Quality: the preset's, with the fields of `fixed` replaced.
+  /// Quality: that of the preset, with the fields in `fixed` replaced.
   ScanQuality quality;
-  /// Settings given as options; no preset changes them.
+  /// Settings given as options. They take precedence over the preset.
   FieldWords fixed;
   /// Name of the preset; empty: none.
   std::string preset;
-  /// Presets file; empty: the program's own.
+  /// Presets file; empty: see presets_file().
   std::string presets;
-  /// Origin of the camera poses: estimated, or the recording's.
+  /// Origin of the camera poses: estimated or recorded.
   PoseOrigin poses = PoseOrigin::kTracked;
   /// Range of frames to use; unset: all.
   std::optional<FrameRange> frames;
-  /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
+  /// Calibration file; empty: see calibration_for().
   std::string calibration;
-  /// Up direction of the map; unset: from gravity, else from level surfaces.
+  /// Up direction of the map; unset: estimated from gravity or, without gravity, from level surfaces.
   std::optional<GivenUp> up;
-  /// N > 0: every Nth frame is used to evaluate the map instead of being fused into it.
+  /// N > 0: every Nth frame is not fused into the map, but used to evaluate it.
   std::int64_t hold_out = 0;
   /// True: continues an interrupted scan, or extends an existing map.
   bool resume = false;
   /// Time between checkpoints; 0: no checkpoints.
   double checkpoint_every_s = 2.5;
-  /// Memory cap of the process, 10^6 bytes; 0: no cap.
+  /// Max memory of the process, 10^6 bytes; 0: unlimited.
   double max_memory_mb = 0.0;
   /// JSON file to write; empty: not written.
   std::string report;
@@ -52,8 +52,8 @@ struct PrescanOptions {
 /// @param options  receives the values; must outlive the parsing
 void add_options(CLI::App& command, PrescanOptions& options);
 
-/// Checks the options against each other and sets `quality`. Call after parsing. Throws CLI::ParseError for
-/// wrong usage, and Error if the preset cannot be read.
+/// Checks combinations of options and sets `quality`. Call after parsing. Throws CLI::ParseError for wrong
+/// usage, and Error if the preset cannot be read.
 void complete_options(const CLI::App& command, PrescanOptions& options);
 
 }  // namespace roomradar

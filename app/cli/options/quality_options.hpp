@@ -1,4 +1,4 @@
-// quality_options.hpp: options for the fields of a scan's or run's quality, and --preset.
+// quality_options.hpp: options for the fields of ScanQuality and RunQuality, and --preset.
 #pragma once
 #include <string>
 
@@ -10,11 +10,11 @@ class App;
 
 namespace roomradar {
 
-/// Adds one option per field of the scan quality, and the fields' former names. The parser checks the values
-/// and appends them to `fixed`, which must outlive the parsing. complete_quality() then sets the fields from
-/// it.
+/// Adds one option per field of ScanQuality, and options with the fields' former names. Parsing checks the
+/// values and appends them to `fixed`, which must outlive the parsing. complete_quality() then sets the
+/// fields from `fixed`.
 void add_scan_quality_options(CLI::App& command, FieldWords& fixed);
-/// Adds one option per field of the run quality, in the same way.
+/// Adds one option per field of RunQuality, as add_scan_quality_options() does.
 void add_run_quality_options(CLI::App& command, FieldWords& fixed);
 
 /// Adds --preset and --presets.
@@ -22,13 +22,13 @@ void add_run_quality_options(CLI::App& command, FieldWords& fixed);
 /// @param[out] presets  the presets file
 void add_preset_options(CLI::App& command, std::string& preset, std::string& presets);
 
-/// Sets the quality to that of the named preset, if a name is given, then sets the fields of `fixed`. Throws
-/// Error if the presets file cannot be read or has no such preset.
-/// @param preset   name; empty: the quality is not replaced
-/// @param presets  file; empty: the program's own
+/// Sets `quality` to that of the preset, if a name is given, then sets the fields in `fixed`. Throws Error if
+/// the presets file cannot be read or has no such preset.
+/// @param preset   name of the preset; empty: none
+/// @param presets  presets file; empty: see presets_file()
 void complete_quality(ScanQuality& quality, const std::string& preset, const std::string& presets,
                       const FieldWords& fixed);
-/// Sets the quality of a run in the same way.
+/// Sets the quality of a run, as for a scan.
 void complete_quality(RunQuality& quality, const std::string& preset, const std::string& presets,
                       const FieldWords& fixed);
 

@@ -19,7 +19,7 @@ struct RecordOptions {
   std::string folder;
   /// Range of frames to record; unset: all.
   std::optional<FrameRange> frames;
-  /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
+  /// Calibration file; empty: see calibration_for().
   std::string calibration;
   /// Format of the recording.
   RecordingFormat format = RecordingFormat::kTum;

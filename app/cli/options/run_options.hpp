@@ -24,40 +24,40 @@ struct RunOptions {
   std::string source;
   /// Map folder to read.
   std::string map;
-  /// Origin of the camera poses; kTracked: localised in the map.
+  /// Origin of the camera poses: localised in the map (kTracked) or recorded.
   PoseOrigin poses = PoseOrigin::kTracked;
   /// Range of frames to process; unset: all.
   std::optional<FrameRange> frames;
-  /// Calibration file with the cameras and their errors; empty: the source decides (see open_source()).
+  /// Calibration file; empty: see calibration_for().
   std::string calibration;
   /// Objects as given on the command line.
   ObjectOptions given_objects;
   /// Objects of a run without a script, from given_objects.
   std::vector<ObjectOption> objects;
-  /// Events file; empty: drops the objects over level surfaces in view, or where they are wanted.
+  /// Events file; empty: the objects are dropped by drop_objects().
   std::string script;
   /// Surfaces that objects can touch.
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   /// True: objects cannot enter space that the scan has not observed. Applies to SurfacePolicy::kMap only.
   bool unknown_is_solid = true;
-  /// Quality: the preset's or the recorded session's, with the fields of `fixed` replaced.
+  /// Quality: that of the preset or the recorded session, with the fields in `fixed` replaced.
   RunQuality quality;
-  /// Settings given as options; no preset, script or budget changes them.
+  /// Settings given as options. They take precedence over preset, script and budget.
   FieldWords fixed;
   /// Name of the preset; empty: none.
   std::string preset;
-  /// Presets file; empty: the program's own.
+  /// Presets file; empty: see presets_file().
   std::string presets;
   /// Time limit per frame; unset: none.
   std::optional<double> budget_ms;
-  /// Duration after which a change of the room is committed to the map; unset: only script events commit
-  /// changes.
+  /// Time for which a change of the room must be observed before it is committed to the map; unset: only
+  /// script events commit changes.
   std::optional<double> commit_after_s;
   /// Behaviour after the source's last frame.
   AtEnd at_end = AtEnd::kEnd;
-  /// True: shows a window, in which the user can act.
+  /// True: shows a window in which users can move objects and change settings.
   bool window = false;
-  /// Scale of the window's text and panes; unset: the monitor's.
+  /// Scale of the window's text and panes; unset: that of the monitor.
   std::optional<double> ui_scale;
   /// Folder in which frames, events and settings are recorded; empty: not recorded.
   std::string record_session;
@@ -67,12 +67,11 @@ struct RunOptions {
   std::string video;
   /// Folder for composed images as PNG; empty: not written.
   std::string pictures;
-  /// N: only every Nth frame is written to `pictures`.
+  /// N: every Nth frame is written to `pictures`.
   std::int64_t pictures_stride = 10;
-  /// CSV file with one line per frame: how much of room and depth the frame used, with reasons. Empty: not
-  /// written.
+  /// CSV file with the FrameUse of each frame and its reasons; empty: not written.
   std::string frames_csv;
-  /// True: the summary also says how much of the room and of the depth the frames needed.
+  /// True: the summary includes RunUse.
   bool verbose = false;
   /// JSON file to write; empty: not written.
   std::string report;
@@ -82,12 +81,12 @@ struct RunOptions {
 /// @param options  receives the values; must outlive the parsing
 void add_options(CLI::App& command, RunOptions& options);
 
-/// Returns the options of a recorded session; unset if the source is no session.
+/// Returns the options of a recorded session; nullopt if the source is not a session.
 using ReadRecordedOptions = std::function<std::optional<RunOptions>(const std::string& source)>;
 
-/// Checks the options against each other and sets `quality`. Call after parsing. If the source is a recorded
-/// session, options that are not on the command line are taken from it. Throws CLI::ParseError for wrong
-/// usage, and Error if the preset or the session cannot be read.
+/// Checks combinations of options and sets `quality`. Call after parsing. If the source is a recorded
+/// session, options that are not on the command line are taken from the session. Throws CLI::ParseError for
+/// wrong usage, and Error if the preset or the session cannot be read.
 void complete_options(const CLI::App& command, RunOptions& options, const ReadRecordedOptions& read_recorded);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// shared_options.hpp: options that several commands share.
+// shared_options.hpp: options that several commands have in common.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,10 +16,10 @@ namespace roomradar {
 // Each function adds one option to a command. The value must outlive the parsing.
 
 /// Adds the required argument SOURCE.
-/// @param more  text placed before the general help on sources
+/// @param more  text that precedes the general help on sources
 void add_source_argument(CLI::App& command, std::string& source, const std::string& more = {});
 
-/// Adds --poses. The help text ends with the default value.
+/// Adds --poses. The default value is appended to `help`.
 void add_poses_option(CLI::App& command, PoseOrigin& poses, const std::string& help);
 
 void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames);

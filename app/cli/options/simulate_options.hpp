@@ -14,7 +14,7 @@ namespace roomradar {
 struct SimulateOptions {
   /// Folder to write.
   std::string folder;
-  /// Name of the room, as in `sim:`.
+  /// Name of the room, see make_room().
   std::string room = "table";
   /// Seed of the camera path, the noise and a random room's furniture.
   std::uint64_t seed = 1;
@@ -22,7 +22,7 @@ struct SimulateOptions {
   std::int64_t frames = 300;
   /// Name of the camera path: scan, view or swing.
   std::string path = "scan";
-  /// Moving objects, for example "hand,ball,person"; empty: nothing moves.
+  /// Moving objects, such as "hand,ball,person"; empty: none.
   std::string moving;
   /// Format of the recording.
   RecordingFormat format = RecordingFormat::kTum;

@@ -13,23 +13,23 @@ namespace roomradar {
 struct TradeOptions {
   /// Folders of recordings with poses, in addition to `rooms`.
   std::vector<std::string> recordings;
-  /// Simulated rooms, in the form that `sim:` takes.
+  /// Simulated rooms, as after `sim:`.
   std::vector<std::string> rooms = {"table", "random?seed=2"};
   /// Command to measure, prescan or run; empty: both.
   std::string only;
-  /// Number of random settings per command, in addition to the default.
+  /// Number of randomly selected settings per command, in addition to the default.
   std::size_t settings = 30;
   /// Number of measurements per setting and scene.
   int repeats = 2;
-  /// Seed of the settings and of their order.
+  /// Seed for the selection of settings and for their order.
   std::uint64_t seed = 1;
-  /// Time by which settings are compared: wall or cpu.
+  /// Kind of time by which settings are compared: wall or cpu.
   std::string time = "wall";
   /// Default number of virtual objects in a run.
   int objects = 1;
   /// True: uses few frames of small images.
   bool quick = false;
-  /// True: only compares with the table of the published radar.
+  /// True: only compares with table 1 of the Cyber Radar paper.
   bool compare_published = false;
   /// CSV file with one line per measurement; empty: not written.
   std::string csv;
@@ -45,7 +45,7 @@ struct TradeOptions {
 /// @param options  receives the values; must outlive the parsing
 void add_options(CLI::App& command, TradeOptions& options);
 
-/// Checks the options against each other; call after parsing. Throws CLI::ParseError for wrong usage.
+/// Checks combinations of options. Call after parsing. Throws CLI::ParseError for wrong usage.
 void complete_options(const CLI::App& command, TradeOptions& options);
 
 }  // namespace roomradar

@@ -13,58 +13,58 @@
 
 namespace roomradar {
 
-/// Selects a room: `table`, `shelf`, `wall` with seed 1, or `random` with its own seed.
+/// Name and seed of a simulated room. The rooms `table`, `shelf` and `wall` have seed 1; each `random` room
+/// has its own seed.
 struct RoomChoice {
   std::string name;
   std::uint64_t seed = 1;
 };
-/// Returns the furnished rooms, followed by this many random ones.
+/// Returns the rooms of room_names(), followed by random_rooms random rooms.
 std::vector<RoomChoice> choose_rooms(int random_rooms);
 
 struct RoomScan {
   double resolution_m = 0.01;
-  int every = 3;       ///< fuse only every n-th of the walk's 720 frames
-  int width_px = 640;  ///< width of the depth images, 4:3
-  std::string maps;    ///< folder in which maps are stored and reused; empty: none
+  int every = 3;       ///< every n-th of the prescan's 720 frames is fused
+  int width_px = 640;  ///< width of the 4:3 depth images
+  std::string maps;    ///< folder in which maps are stored and from which they are reused; empty: none
 };
 
 /// A room and its map.
 struct ScannedRoom {
-  std::string title;  ///< "table", "random 3"
+  std::string title;  ///< such as "table" or "random 3"
   ScenarioRoom simulated;
   Mesh mesh_world;
-  Mesh unknown_world;  ///< border of unknown space
+  Mesh unknown_world;  ///< frontier of unknown space
 };
-/// Walks round the room with its noisy depth camera at known poses, fuses the frames and extracts the
-/// surface. If an earlier run stored this map, loads it instead.
-/// @param progress  called after each frame, possibly from several threads at once
-/// Throws Error if the room shows no surface or a stored map is damaged.
+/// Simulates a prescan of the room with noisy depth at known poses, fuses the frames and extracts the
+/// surface. If scan.maps contains this room's map from an earlier run, loads it instead.
+/// @param progress  called after each frame, possibly from several threads concurrently
+/// Throws Error if no surface was found or a stored map is damaged.
 ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std::function<void()>& progress);
 
-/// A scanned room in the renderer's memory, with a scene per policy.
+/// A scanned room in GPU memory, with one FrameScene per policy.
 struct MappedRoom {
   ScannedRoom scanned;
   Shape shape;
   TriangleTree unknown;
-  std::vector<std::unique_ptr<FrameScene>> scenes;  ///< one per policy
+  std::vector<std::unique_ptr<FrameScene>> scenes;  ///< one per entry of kFallthroughPolicies
 
   MappedRoom(GlContext& context, ScannedRoom room);
 };
 
-/// Assignment of a run's scenario to a room. Rooms alternate, and each room numbers its own scenarios. Kinds
-/// of occluder, motion and shape alternate by this number; with the run's number, a room would get only some
-/// of them.
+/// Room of a run's scenario, and the scenario's number in that room. Rooms take turns. Since the number in
+/// the room determines occluder, motion and shape, each room gets all combinations.
 struct ScenarioTurn {
-  std::size_t room = 0;     ///< index among the rooms
+  std::size_t room = 0;     ///< index of the room
   std::int64_t number = 0;  ///< number of the scenario in that room
 };
-/// Returns the room and number of the run's scenario `number`.
+/// Returns room and number in the room of the run's scenario `number`.
 inline ScenarioTurn turn_of(std::int64_t number, std::size_t rooms) {
   const auto count = static_cast<std::int64_t>(rooms);
   return {static_cast<std::size_t>(number % count), number / count};
 }
 
-/// Scans the rooms, up to `threads` at a time, and shows progress on stderr.
+/// Scans the rooms, up to `threads` of them concurrently, and shows progress on stderr.
 std::vector<std::unique_ptr<MappedRoom>> map_rooms(GlContext& context, const std::vector<RoomChoice>& rooms,
                                                    const RoomScan& scan, int threads);
 

@@ -1,4 +1,4 @@
-// page.hpp: writes a run's HTML file: table, plots, pictures of failures.
+// page.hpp: writes the HTML file of a fall-through test: table, plots and pictures of failures.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -14,9 +14,9 @@ struct FailurePicture {
   ColourImage picture;
 };
 
-/// Writes a self-contained file that needs no network. Does nothing if the path is empty. Throws Error if it
-/// cannot be written.
-/// @param about  a line that names scenarios, seed, rooms and machine
+/// Writes a self-contained file that loads nothing from the network. Does nothing if `path` is empty. Throws
+/// Error if the file cannot be written.
+/// @param about  line of text with the number of scenarios, the seed, the rooms and the machine
 void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
                 const std::vector<FailurePicture>& pictures, const std::filesystem::path& path);
 

@@ -8,12 +8,12 @@
 namespace roomradar {
 
 struct FallthroughPolicy {
-  std::string_view name;  ///< for tables and reports
+  std::string_view name;  ///< name in tables and reports
   SurfacePolicy surfaces = SurfacePolicy::kMap;
-  bool unknown_solid = false;  ///< true: the border of unknown space can be touched, too
+  bool unknown_solid = false;  ///< true: the frontier of unknown space can be touched too
 };
 
-/// The first policy is the reference for the cost of the others.
+/// Costs of the policies are relative to that of the first.
 inline constexpr std::array kFallthroughPolicies{
     FallthroughPolicy{"holes", SurfacePolicy::kHoles}, FallthroughPolicy{"skirt", SurfacePolicy::kSkirt},
     FallthroughPolicy{"border", SurfacePolicy::kBorder}, FallthroughPolicy{"map", SurfacePolicy::kMap},

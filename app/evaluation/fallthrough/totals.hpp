@@ -11,9 +11,9 @@
 
 namespace roomradar {
 
-/// One scenario under all policies, reduced to the data for tables and plots.
+/// Results of one scenario with all policies, for tables and plots.
 struct ScenarioRow {
-  std::int64_t number = 0;  ///< number in the run
+  std::int64_t number = 0;  ///< the scenario's number in the run
   std::size_t room = 0;     ///< index among the run's rooms
   std::string room_title;
   Occluder occluder = Occluder::kFurniture;
@@ -30,25 +30,27 @@ ScenarioRow row_of(const Scenario& scenario, std::int64_t number, std::size_t ro
 struct PolicyTotals {
   int passed = 0;
   int false_stops = 0;
-  /// Median of |travelled distance - true distance| over stopped objects; NaN if none was stopped.
+  /// Median of |travelled distance - true distance| over the objects that stopped; NaN if none stopped.
   double contact_error_median_m = 0.0;
   double contact_error_p95_m = 0.0;
   double frame_median_ms = 0.0;
-  double cost_ratio = 0.0;  ///< median over scenarios of frame time / first policy's frame time
+  /// Median over scenarios of the ratio of frame_ms to frame_ms of the first policy.
+  double cost_ratio = 0.0;
 };
 std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>& rows);
 
-/// Returns the nearest-rank percentile, 0 <= part <= 1; NaN if there are no values.
+/// Returns the nearest-rank percentile `part`, 0 to 1; NaN if there are no values.
 double percentile(std::vector<double> values, double part);
-/// Returns text such as "3.2 mm"; "-" if not finite.
+/// Returns text such as "3.2 mm", or "-" for a value that is not finite.
 std::string millimetres(double metres);
 
 std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int scenarios);
-/// Return the report's `policies`, and its `failures`: all trials that did not stop at the right place.
+/// Return the values of the report's keys `policies` and `failures`; failures are all trials with an outcome
+/// other than kStoppedRight.
 nlohmann::json to_json(const std::array<PolicyTotals, kPolicyCount>& totals);
 nlohmann::json failures_of(const std::vector<ScenarioRow>& rows);
-/// Writes a header and a line per scenario and policy. Does nothing if the path is empty. Throws Error if the
-/// file cannot be written.
+/// Writes a CSV file with one line per scenario and policy. Does nothing if `path` is empty. Throws Error if
+/// the file cannot be written.
 void write_csv(const std::vector<ScenarioRow>& rows, const std::filesystem::path& path);
 
 }  // namespace roomradar

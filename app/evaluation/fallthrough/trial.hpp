@@ -1,4 +1,4 @@
-// trial.hpp: moves one object through one scenario under one policy.
+// trial.hpp: moves the object of one scenario with one policy.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,7 +13,8 @@
 
 namespace roomradar {
 
-/// Frames of a scenario, rendered on first use. If nothing moves, the first rendering serves for all frames.
+/// Frames of a scenario, rendered on first use. If the occluder does not move, all frames are the first
+/// rendered one.
 class ScenarioFrames {
  public:
   ScenarioFrames(const Scenario& scenario, const Room& room) : scenario_(scenario), room_(room) {}
@@ -25,7 +26,7 @@ class ScenarioFrames {
   std::map<int, Frame> frames_;
 };
 
-/// A scenario with its object's tree and the frames rendered so far.
+/// A scenario with the triangle tree of its object and with its rendered frames.
 struct PreparedScenario {
   Scenario scenario;
   TriangleTree object;
@@ -40,36 +41,37 @@ struct Trial {
   double travelled_m = 0.0;
   Verdict verdict;
   SurfaceKind rested_on = SurfaceKind::kNothing;
-  double frame_ms = 0.0;  ///< time for the first frame's surfaces plus the mean time of a radar query
+  double frame_ms = 0.0;  ///< time to make the first frame's surfaces, plus the mean time of a radar query
 };
 
 /// One frame of a trial.
 struct TrialStep {
   int frame = 0;
-  std::span<const SceneTree> surfaces;  ///< all that can be touched
+  std::span<const SceneTree> surfaces;  ///< all surfaces that can be touched
   double from_m = 0.0, to_m = 0.0;      ///< distance travelled at the frame's start and end
   bool is_last = false;
 };
 using WatchTrial = std::function<void(const TrialStep& step)>;
 
-/// Settings for making the surfaces of a trial.
+/// Settings by which the surfaces of a trial are made.
 struct TrialSurfaces {
   SurfacePolicy policy = SurfacePolicy::kMap;  ///< policy of the scene
-  int depth_stride = 1;                        ///< 1, 2 or 4: factor by which depth images are reduced first
-  bool fine_mesh = false;                      ///< near the object, every dynamic pixel is a vertex
+  int depth_stride = 1;                        ///< factor by which depth images are reduced: 1, 2 or 4
+  bool fine_mesh = false;                      ///< true: each dynamic pixel near the object is a vertex
 };
 
-/// Sets the scene's surfaces to those of one frame of the scenario, at the simulated tracker's inexact pose.
-/// Frame 0 is processed twice, so the foreground has a history. Returns the time taken, ms.
+/// Sets the scene's surfaces to those of one frame of the scenario, with the camera at T_world_believed.
+/// Frame 0 is processed twice, so that previous labels exist for the foreground detection. Returns the run
+/// time, ms.
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
                   std::span<const FineRegion> about_objects, FrameScene& scene);
 
-/// Runs the scenario frame by frame: makes the policy's surfaces from the camera's frame and moves the object
-/// as far as the radar allows. Ends when the object is stopped or passes the scenario's limit. Uses the
-/// simulated tracker's inexact camera pose.
+/// Runs the scenario frame by frame. Makes the policy's surfaces from each camera frame, with the camera at
+/// Scenario::T_world_believed, and moves the object as far as the radar permits. Ends when the object stops
+/// or has travelled Scenario::limit_m.
 Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& surfaces,
                 CyberRadar& radar, const WatchTrial& watch = {});
-/// Runs the scenario in the room's scene of kFallthroughPolicies[policy].
+/// Runs the scenario in the room's scene for kFallthroughPolicies[policy].
 Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
                 const WatchTrial& watch = {});
 

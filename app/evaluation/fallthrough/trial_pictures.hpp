@@ -10,17 +10,18 @@ namespace roomradar {
 
 inline constexpr Rgb kStartColour{40, 110, 220}, kTruthColour{20, 150, 70}, kEndColour{214, 40, 40};
 
-/// Section through the true contact, spanned by the object's path and the line to the camera. The true room
-/// is grey, the occluder orange.
+/// Drawing of a planar section of the scene. The plane contains the true contact, the object's path and the
+/// camera. The true room is grey, the occluder orange.
 class SideView {
  public:
   SideView(const Scenario& scenario, const Room& room, int width_px, int height_px);
 
-  /// Draws room and occluder in a frame.
+  /// Draws the sections of room and occluder at a frame's time.
   [[nodiscard]] ColourImage room_at(int frame) const;
-  /// Adds the surfaces' intersection lines: static black, dynamic blue, inferred back violet, unknown red.
+  /// Adds the lines in which surfaces intersect the plane: static black, dynamic blue, inferred back violet,
+  /// frontier of unknown space red.
   void add_surfaces(std::span<const SceneTree> surfaces, ColourImage& picture) const;
-  /// Adds the object's section after it has travelled travelled_m, with opacity `part`.
+  /// Adds the section of the object after travelling travelled_m, with opacity `part`.
   void add_object(double travelled_m, Rgb colour, double part, ColourImage& picture) const;
 
  private:
@@ -28,18 +29,19 @@ class SideView {
   [[nodiscard]] Eigen::Vector2d pixel_of(const Eigen::Vector3d& p_world) const;
 
   const Scenario& scenario_;
-  ColourImage room_;  ///< without the occluder
+  ColourImage room_;  ///< drawing of the room without the occluder
   Eigen::Vector3d middle_world_, right_world_, up_world_;
   double m_per_px_ = 0.01;
   MaskImage object_;  ///< the object's section at its start position
 };
 
-/// Returns the camera's depth image, shaded. add_outline() draws the object's outline after it has travelled
-/// travelled_m.
+/// Returns the camera's depth image, shaded and scaled to width_px.
 ColourImage camera_view(const Scenario& scenario, const Frame& frame, int width_px);
+/// Draws the outline of the object after travelling travelled_m into the camera's view.
 void add_outline(const Scenario& scenario, double travelled_m, Rgb colour, double part, ColourImage& picture);
 
-/// Returns both views side by side, with the object's start (blue), true contact (green) and end (red).
+/// Returns camera view and section side by side, with the object at its start (blue), at the true contact
+/// (green) and at its end (red).
 ColourImage picture_of_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy,
                              CyberRadar& radar);
 

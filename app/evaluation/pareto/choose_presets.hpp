@@ -1,4 +1,4 @@
-// choose_presets.hpp: selects the settings of a sweep that become presets.
+// choose_presets.hpp: selects presets and Pareto front from the measured settings of a sweep.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -9,25 +9,28 @@
 
 namespace roomradar {
 
-/// Returns a setting's loss: its errors relative to the default's, as the geometric mean over the kError
-/// figures of (error + negligible) / (default's error + negligible). 1 for the default; NaN if nothing was
-/// measured or the setting is not complete.
+/// Returns a setting's loss, its mean error relative to the default setting. The loss is the geometric mean
+/// of (error + negligible) / (default's error + negligible) over all figures of kind kError. It is 1 for the
+/// default. Returns NaN if no error was measured or the setting is not complete.
 double loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
-/// Returns the largest of the ratios averaged by loss_of().
+/// Returns the largest of the ratios that loss_of() averages.
 double worst_loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
-/// Indices of the chosen settings among the summaries.
+/// The chosen settings, as indices in the summaries.
 struct PresetChoice {
-  std::vector<std::size_t> front;  ///< Pareto front of time and loss, fastest first
+  std::vector<std::size_t> front;  ///< Pareto front of time ratio and loss, fastest first
   std::optional<std::size_t> fast, balanced, accurate;
 };
 
-inline constexpr double kMostWorstLoss = 10.0;  ///< max ratio of any error to the default's, on the front
+inline constexpr double kMostWorstLoss = 10.0;  ///< max worst_loss_of() on the front
+/// Max worst_loss_of() of a preset.
 inline constexpr double kMostWorstLossOfPreset = 3.0;
+/// Max losses of the presets fast and balanced.
 inline constexpr double kMostLossOfFast = 1.5, kMostLossOfBalanced = 1.1;
-inline constexpr double kMostTimeOfAccurate = 3.0;   ///< max time relative to the default's
-inline constexpr double kMostLossOfAccurate = 0.99;  ///< max loss; a smaller gain may be chance
+inline constexpr double kMostTimeOfAccurate = 3.0;  ///< max time ratio of the preset accurate
+/// Max loss of the preset accurate; a smaller gain may be random.
+inline constexpr double kMostLossOfAccurate = 0.99;
 
 /// Computes the Pareto front of time ratio and loss over complete settings with the default load. Presets
 /// come from a second front, over settings with no error above kMostWorstLossOfPreset times the default's;

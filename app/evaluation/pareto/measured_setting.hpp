@@ -1,4 +1,4 @@
-// measured_setting.hpp: work that trades time for accuracy (a prescan, a run): its parameters, measured
+// measured_setting.hpp: work that trades time for accuracy, such as a prescan or a run: parameters, measured
 // quantities (figures) and scenes.
 #pragma once
 #include <cstddef>
@@ -12,39 +12,41 @@
 namespace roomradar {
 
 enum class FigureKind {
-  kTime,    ///< noisy: summarised by the median of all measurements
-  kMemory,  ///< noisy, as kTime
-  kError,   ///< smaller is better; Pareto fronts use these
-  kFact,    ///< neither good nor bad, such as a number of triangles
+  kTime,    ///< a time; noisy, so summarised by the median of all measurements
+  kMemory,  ///< memory use; summarised as kTime
+  kError,   ///< an error; Pareto fronts minimise times and errors
+  kFact,    ///< a quantity without preference, such as a number of triangles
 };
 
-/// Describes one measured quantity.
+/// Description of one measured quantity.
 struct FigureName {
-  std::string name;    ///< column name, with unit: "surface_error_median_m"
-  std::string title;   ///< title on the page, with the page's unit: "surface error, median, mm"
+  std::string name;  ///< column name with unit, such as "surface_error_median_m"
+  /// Title on the HTML page with the page's unit, such as "surface error, median, mm".
+  std::string title;
   double shown = 1.0;  ///< factor from the measured unit to the page's unit
   FigureKind kind = FigureKind::kFact;
-  double negligible = 0.0;  ///< kError, > 0: errors that differ by less count as equal
+  double negligible = 0.0;  ///< for kError, > 0: smaller differences of errors are neglected
 };
 
 /// One value per entry of MeasuredWork::figures; kNotMeasured if there is none.
 using Readings = std::vector<double>;
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Does the work once with a setting and returns its figures. Throws Error if this is impossible.
+/// Does the work once with a setting and returns the measured figures. Throws Error if the work fails.
 using Measure = std::function<Readings(const Setting& setting)>;
 
 struct MeasuredWork {
-  std::string name;  ///< "prescan", "run"
+  std::string name;  ///< "prescan" or "run"
   std::vector<Parameter> parameters = {};
   std::vector<FigureName> figures = {};
-  std::size_t time = 0;                  ///< index of the figure that serves as time in comparisons
+  std::size_t time = 0;                  ///< index in `figures` of the time used in comparisons
   std::vector<std::string> scenes = {};  ///< names of the scenes in which the work is done
-  /// Prepares a scene; the returned function owns its data. Throws Error if that fails.
+  /// Prepares a scene and returns the function that measures in it and owns the scene's data. Throws Error if
+  /// the scene cannot be prepared.
   std::function<Measure(std::size_t scene)> open = {};
 };
 
-/// Returns the index of a figure among the work's; throws Error if there is none of that name.
+/// Returns the index of a figure in MeasuredWork::figures. Throws Error if there is no figure of that name.
 std::size_t place_of(const MeasuredWork& work, const std::string& figure);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// parameter.hpp: parameters that trade time for accuracy, with the values to try.
+// parameter.hpp: parameters that trade time for accuracy, with the values to measure.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -7,16 +7,17 @@
 
 namespace roomradar {
 
-/// One field of a quality (ScanQuality, RunQuality), and the values to try, as words.
+/// One field of ScanQuality or RunQuality, and the values to measure, as words.
 struct Parameter {
-  std::string name;                ///< field name, and column name
+  std::string name;                ///< name of the field and of the CSV column
   std::vector<std::string> words;  ///< fastest first
-  std::size_t defaults = 0;        ///< index of the default among the words
-  /// True: sets the amount of work, not its quality. Changed only alone, and never on a front.
+  std::size_t defaults = 0;        ///< index of the default in `words`
+  /// True: the parameter sets the amount of work (load), not its quality. It is changed only alone, and
+  /// changed values are never on a front.
   bool is_load = false;
 };
 
-/// A value for each parameter: index into its words.
+/// A value for each parameter, as index in Parameter::words.
 using Setting = std::vector<std::size_t>;
 
 Setting default_setting(const std::vector<Parameter>& parameters);
@@ -24,7 +25,8 @@ Setting default_setting(const std::vector<Parameter>& parameters);
 /// Returns true if all load parameters have their defaults.
 bool has_default_load(const std::vector<Parameter>& parameters, const Setting& setting);
 
-/// Returns the differences from the default, "radar sampled, radar_px 32"; "default" if there are none.
+/// Returns the differences from the default, such as "radar sampled, radar_px 32", or "default" if there are
+/// none.
 std::string describe(const std::vector<Parameter>& parameters, const Setting& setting);
 
 }  // namespace roomradar

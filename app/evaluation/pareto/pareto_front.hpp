@@ -10,11 +10,11 @@ struct CostAndError {
   double error = 0.0;
 };
 
-/// Returns true if a is nowhere worse than b and somewhere better.
+/// Returns true if neither cost nor error of a is larger than b's, and one is smaller.
 bool dominates(const CostAndError& a, const CostAndError& b);
 
-/// Returns the indices of the points that no other point dominates, cheapest first; of equal points only the
-/// first. Points that are not finite are never on the front.
+/// Returns the indices of the points that no other point dominates, in order of increasing cost. Of equal
+/// points, only the first is returned. Points that are not finite are never returned.
 std::vector<std::size_t> pareto_front_of(const std::vector<CostAndError>& points);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// pareto_plot.hpp: plots settings over time and error with their Pareto front, as SVG text.
+// pareto_plot.hpp: plots time and error of settings with their Pareto front, as SVG text.
 #pragma once
 #include <string>
 #include <vector>
@@ -20,9 +20,9 @@ struct ParetoPlot {
   std::vector<PlotDot> dots = {};
 };
 
-/// Returns the plot. Both axes are logarithmic; y is linear if a dot's y is 0. Dots that are not finite are
-/// omitted. The front is drawn as steps: dots above and to the right of the line are dominated. Colours are
-/// the page's CSS variables --ink --grid --dot --front --mark --paper.
+/// Returns the plot. Both axes are logarithmic, but y is linear if any dot has y = 0. Dots that are not
+/// finite are omitted. The front is drawn as a staircase: dots above and to the right of it are dominated.
+/// Colours are the page's CSS variables --ink --grid --dot --front --mark --paper.
 std::string pareto_plot(const ParetoPlot& plot);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// sample_settings.hpp: draws the settings of a sweep at random.
+// sample_settings.hpp: selects the settings of a sweep at random.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -7,15 +7,17 @@
 
 namespace roomradar {
 
-/// Returns up to `count` different settings without the default, in random order; the same for the same seed.
+/// Returns up to `count` different settings other than the default, in random order. The seed determines the
+/// result.
 ///
-/// Up to two thirds of the settings change a single parameter, to show its effect. If not all such changes
-/// fit, faster values have priority because fronts consist of them, then values close to the default.
+/// Up to two thirds of the settings change a single parameter, which shows its effect. If there are more such
+/// changes, faster values have priority, since fronts consist mostly of them, then values close to the
+/// default.
 ///
-/// The others change all quality parameters at once. Each parameter's values occur about equally often, in
-/// random combinations that tend to pair fast values with fast ones and slow with slow, since others are
-/// rarely on a front. Every value of a quality parameter occurs if there are at least as many combinations as
-/// values. Fewer settings are returned if not enough different ones are found.
+/// The other settings (combinations) change all quality parameters. The values of each parameter occur about
+/// equally often. Random combinations tend to pair fast values with fast ones and slow values with slow ones,
+/// since mixed combinations are rarely on a front. Each value of a quality parameter occurs if there are at
+/// least as many combinations as values. Fewer settings are returned if not enough different ones are found.
 std::vector<Setting> draw_settings(const std::vector<Parameter>& parameters, std::size_t count,
                                    std::uint64_t seed);
 

@@ -1,4 +1,4 @@
-// setting_summary.hpp: summarises all measurements of each setting.
+// setting_summary.hpp: summary of all measurements of each setting.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -10,18 +10,18 @@ namespace roomradar {
 struct SettingSummary {
   Setting setting = {};
   int rows = 0;                                ///< number of successful measurements
-  double time_ratio = 0.0;                     ///< median of time / default's time in the same measurement
-  double least_ratio = 0.0, most_ratio = 0.0;  ///< range of that ratio
-  Readings ratios = {};                        ///< per figure: median of value / default's value
-  /// Times and memory: median of all rows. Other figures: mean over each scene's rows, then mean over the
-  /// scenes.
+  double time_ratio = 0.0;                     ///< median of time / default's time (SweepRow::ratios)
+  double least_ratio = 0.0, most_ratio = 0.0;  ///< min and max of time / default's time
+  Readings ratios = {};                        ///< per figure: median of SweepRow::ratios
+  /// Per figure. kTime and kMemory: median of all rows. Other kinds: mean over each scene's rows, then mean
+  /// over the scenes.
   Readings figures = {};
-  /// True if measured in every scene in which any setting was measured; only complete settings are
-  /// comparable.
+  /// True if the setting was measured in each scene in which any setting was measured. Only complete settings
+  /// can be compared.
   bool is_complete = false;
 };
 
-/// Returns one summary per setting, in order.
+/// Returns one summary per setting, in the order of `settings`.
 std::vector<SettingSummary> summarise(const MeasuredWork& work, const std::vector<Setting>& settings,
                                       const std::vector<SweepRow>& rows);
 

@@ -12,15 +12,15 @@ namespace roomradar {
 
 /// One measurement of a setting.
 struct SweepRow {
-  std::size_t setting = 0;  ///< index among the plan's settings
-  std::size_t scene = 0;    ///< index among the work's scenes
+  std::size_t setting = 0;  ///< index in SweepPlan::settings
+  std::size_t scene = 0;    ///< index in MeasuredWork::scenes
   int repeat = 0;           ///< index of the repetition, from 0
   Readings figures = {};
-  /// Figures of the default, measured just before and after.
+  /// Figures of the default setting, measured immediately before and after.
   Readings default_before = {}, default_after = {};
-  /// Per figure: the setting's value / mean of the default's two values.
+  /// Per figure: the setting's value divided by the mean of the default's two values.
   Readings ratios = {};
-  std::string fault = {};  ///< reason of a failure; the figures are then NaN
+  std::string fault = {};  ///< reason why the measurement failed; `figures` are then NaN
 };
 
 struct SweepPlan {
@@ -31,21 +31,23 @@ struct SweepPlan {
 
 struct SweptRows {
   std::vector<SweepRow> rows;
-  std::string fault;  ///< reason of an early end; empty if complete, or stopped on request
+  std::string fault;  ///< reason of an early end; empty if the sweep is complete or was stopped by is_stopped
 };
 
 struct SweepWatch {
   std::function<void(const SweepRow& row)> on_row;  ///< called after each measurement; may be empty
-  std::function<bool()> is_stopped;                 ///< called before each measurement; may be empty
+  /// Called before each measurement; true ends the sweep; may be empty.
+  std::function<bool()> is_stopped;
 };
 
-/// Measures all settings, per scene and repetition, in a new random order each time, the default's own row
-/// first. The default is also measured between any two settings, and each setting is compared with the
-/// default before and after it. A machine that slows down for a while thus slows all three.
+/// Measures all settings in each scene and repetition, each time in a new random order that begins with the
+/// default. The default is also measured between any two settings, and each setting is compared with the
+/// default measured before and after it. A temporary slowdown of the machine thus affects all three
+/// measurements.
 ///
-/// A failing setting's row has the fault, and the sweep goes on. The sweep ends early if it is stopped, the
-/// default fails, a scene cannot be opened, or on_row throws Error. It then returns the rows of completed
-/// scenes, or those of the first scene if none is complete.
+/// If a setting fails, its row contains the fault, and the sweep continues. The sweep ends early if
+/// is_stopped returns true, the default fails, a scene cannot be opened, or on_row throws Error. Then only
+/// the rows of completed scenes are returned, or those of the first scene if no scene is complete.
 SweptRows sweep(const MeasuredWork& work, const SweepPlan& plan, const SweepWatch& watch = {});
 
 }  // namespace roomradar

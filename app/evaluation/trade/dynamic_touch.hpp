@@ -1,5 +1,5 @@
-// dynamic_touch.hpp: measures contact errors of balls thrown at visible dynamic objects, against exact
-// solids.
+// dynamic_touch.hpp: measures the errors of contacts between balls and visible dynamic objects, relative to
+// exact solids.
 #pragma once
 #include <cstddef>
 #include <limits>
@@ -12,31 +12,35 @@
 
 namespace roomradar {
 
-/// One ball in front of a scenario's occluder, which was absent from the prescan.
+/// A ball that flies against a scenario's occluder, a dynamic object that was absent from the prescan.
 struct DynamicTouch {
-  std::size_t scenario = 0;                                    ///< index among the given scenarios
-  Eigen::Vector3d start_world = Eigen::Vector3d::Zero();       ///< centre of the ball
-  Eigen::Vector3d direction_world = Eigen::Vector3d::UnitX();  ///< unit, away from the camera
+  std::size_t scenario = 0;                               ///< index in the scenarios
+  Eigen::Vector3d start_world = Eigen::Vector3d::Zero();  ///< centre of the ball
+  /// Unit direction of flight, away from the camera.
+  Eigen::Vector3d direction_world = Eigen::Vector3d::UnitX();
   double true_travel_m = 0.0;
 };
 
+/// Radius of the balls.
 inline constexpr double kTouchRadius_m = 0.04;
-inline constexpr double kTouchLimit_m = 0.5;  ///< max distance that a ball flies
+inline constexpr double kTouchLimit_m = 0.5;  ///< max distance of flight
 
-/// Draws up to 4 balls for each scenario with an occluder that was absent from the prescan. Each ball flies
-/// through a pixel that shows the occluder at 0.8 to 3.5 m, and touches it well before the room.
+/// Draws at random up to 4 balls for each scenario with an occluder that was absent from the prescan. Each
+/// ball flies along the ray of a pixel that shows the occluder at 0.8 to 3.5 m, and would touch the occluder
+/// well before the room.
 std::vector<DynamicTouch> draw_dynamic_touches(
     const std::vector<std::unique_ptr<PreparedScenario>>& scenarios, const Room& room);
 
-/// The radar's errors; NaN if there are no touches.
+/// Errors of the radar's contacts; NaN if there are no balls.
 struct DynamicTouchFacts {
-  double error_median_m = std::numeric_limits<double>::quiet_NaN();  ///< over balls that were stopped
+  /// Over balls for which the radar found a contact.
+  double error_median_m = std::numeric_limits<double>::quiet_NaN();
   double error_p95_m = error_median_m;
-  double missed = error_median_m;  ///< fraction of balls that were not stopped
+  double missed = error_median_m;  ///< fraction of balls without contact
 };
-/// Measures the touches with the radar.
-/// @param touches  in the order of their scenarios
-/// @param how      with kMap; fine_mesh applies around the true contacts
+/// Measures the contacts of all balls with the radar.
+/// @param touches  balls, sorted by scenario
+/// @param how      its policy must be kMap; fine_mesh applies around the true contacts
 DynamicTouchFacts judge_dynamic_touches(const std::vector<DynamicTouch>& touches,
                                         const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
                                         FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar);

@@ -1,4 +1,5 @@
-// measured_sandboxed.hpp: runs a measurement in a child process, so its memory use is measured alone.
+// measured_sandboxed.hpp: runs a measurement in a child process, so that its memory use can be measured
+// separately.
 #pragma once
 #include <functional>
 #include <string>
@@ -7,13 +8,13 @@
 
 namespace roomradar {
 
-/// Runs `work` in a child process and returns its result. This process must have no GL context (the child
-/// creates its own), and no threads that the work needs. Rethrows Error from the work; throws Error if the
+/// Runs `work` in a child process and returns its result. The calling process must have no GL context, since
+/// the child creates its own, and no threads that `work` needs. Rethrows Error of `work`; throws Error if the
 /// child crashes.
-/// @param what  for messages: "run in table"
+/// @param what  name of the work in error messages, such as "run in table"
 Readings measured_sandboxed(const std::string& what, const std::function<Readings()>& work);
 
-/// Returns the process's peak resident memory minus start_bytes, in 10^6 bytes, at least 0.
+/// Returns the process's peak resident memory minus start_bytes, in 10^6 bytes, >= 0.
 double peak_growth_mb(std::size_t start_bytes);
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// prescan_work.hpp: MeasuredWork of a prescan: scans of simulated rooms and of recordings, with ground truth.
+// prescan_work.hpp: MeasuredWork for the prescan: scans of simulated rooms and of recordings, compared with
+// ground truth.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,13 +10,16 @@
 
 namespace roomradar {
 
-/// Returns the parameters of ScanQuality, and the quality for a setting of them.
+/// Returns one parameter per field of ScanQuality.
 std::vector<Parameter> scan_parameters();
+/// Returns the quality for a setting of scan_parameters().
 ScanQuality scan_quality_of(const Setting& setting);
 
-/// Scenes: the rooms (as in `sim:`, "table", "random?seed=3"), then the recordings (folders with poses). In
-/// rooms, the mesh is compared with the exact solids; in recordings, with held-out frames (every seventh).
-/// The tracked trajectory is compared with the room's or the recording's poses.
+/// Returns the work. Its scenes are the rooms, then the recordings. In rooms, the mesh is compared with the
+/// exact solids; in recordings, it is compared with every seventh frame, which is held out. The tracked
+/// trajectory is compared with the poses of the room or recording.
+/// @param rooms  specs as after `sim:`, such as "table" or "random?seed=3"
+/// @param recordings  folders of recordings with poses
 MeasuredWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
                           const TradeScale& scale);
 

@@ -1,4 +1,5 @@
-// run_facts.hpp: runs a session on a scene's frames, and drops objects onto the scene's hidden surfaces.
+// run_facts.hpp: measurements of a session on a scene's frames, and of objects dropped onto the scene's
+// hidden surfaces.
 #pragma once
 #include <limits>
 #include <string>
@@ -17,34 +18,38 @@ struct RunSetting {
   int objects = 1;
 };
 
-/// Measurements of a session. The first 10 frames are not counted: caches and drivers warm up in them.
+/// Measurements of a session, without the first 10 frames, in which caches and drivers warm up.
 struct RunFacts {
   std::string renderer;
   StageTimes times;
-  double frame_ms = 0.0;   ///< mean over frames; with work that alternates, no single frame is typical
-  double cpu_ms = 0.0;     ///< CPU time of all threads per frame
-  double moved_ms = 0.0;   ///< mean physics time over frames that move objects; NaN: no such frame
+  /// Mean over frames; the median would be misleading if work alternates between frames.
+  double frame_ms = 0.0;
+  double cpu_ms = 0.0;     ///< mean CPU time of all threads per frame
+  double moved_ms = 0.0;   ///< mean physics time over frames that advance objects; NaN: no such frame
   double memory_mb = 0.0;  ///< peak growth of the process's memory
   double located = 0.0;    ///< fraction of the frames that were localised
   /// Means over the localised frames; NaN if there are none.
   double dynamic_triangles = 0.0, static_triangles = 0.0;
   double pose_error_m = 0.0;            ///< RMS error of the camera's position
-  double object_age_ms = 0.0;           ///< mean age of the shown object poses at the frame's time
-  std::vector<JudgedPicture> pictures;  ///< one per true view of the scene
+  double object_age_ms = 0.0;           ///< mean age of the displayed object poses at the frame's time
+  std::vector<JudgedPicture> pictures;  ///< one per RunScene::true_views
 };
 
-/// Runs a session with objects of this mesh. Each object is dropped every 25 frames, staggered, at the
-/// scene's drop positions or over a surface in view.
+/// Runs a session with objects of mesh `object`. Each object is dropped every 25 frames, staggered among the
+/// objects, at the scene's drop positions or above a surface in view.
 RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mesh& object);
 
-/// Results of the scene's scenarios and of its touches; NaN if it has none.
+/// Results of the scene's scenarios and touches; NaN if it has none.
 struct ContactFacts {
-  double error_median_m = std::numeric_limits<double>::quiet_NaN();  ///< over objects that were stopped
+  double error_median_m = std::numeric_limits<double>::quiet_NaN();  ///< over objects that stopped
   double error_p95_m = error_median_m;
-  double passed = error_median_m;       ///< fraction that fell through
-  double false_stops = error_median_m;  ///< fraction stopped where there is no surface
+  double passed = error_median_m;       ///< fraction of objects that passed through a surface
+  double false_stops = error_median_m;  ///< fraction of objects that stopped short of the true contact
+  /// Contacts with dynamic objects.
   DynamicTouchFacts moved;
 };
+/// Runs the scene's scenarios and touches with the surfaces of a quality, and compares them with the exact
+/// solids.
 ContactFacts touch_true_surfaces(const RunScene& scene, const RunQuality& quality);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// run_scene.hpp: scene of a run: a mapped room or recording, with frames and their ground truth.
+// run_scene.hpp: scene of a run: a mapped room or recording, with frames and ground truth.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -15,26 +15,30 @@ namespace roomradar {
 
 /// Ground truth for the picture of a frame.
 struct TrueView {
-  std::size_t frame = 0;  ///< index among the scene's frames
-  DepthImage depth_m;     ///< exact
+  std::size_t frame = 0;  ///< index in RunScene::frames
+  DepthImage depth_m;     ///< exact depth
 };
 
 struct RunScene {
   std::string name;
   SavedMap map;
-  std::vector<Frame> frames;                                 ///< with true poses, in the recording's world
-  std::vector<TrueView> true_views;                          ///< for some frames; empty for recordings
-  std::unique_ptr<ScenarioRoom> room;                        ///< null for recordings
-  Mesh mesh_room;                                            ///< the map's mesh in the room's frame
-  std::vector<std::unique_ptr<PreparedScenario>> scenarios;  ///< with all their frames; they refer to `room`
+  /// Frames with true poses, in the recording's world.
+  std::vector<Frame> frames;
+  /// Ground truth of some frames; empty for recordings.
+  std::vector<TrueView> true_views;
+  std::unique_ptr<ScenarioRoom> room;  ///< null for recordings
+  Mesh mesh_room;                      ///< the map's mesh in the room's frame
+  /// Scenarios with all frames rendered; they refer to `room`.
+  std::vector<std::unique_ptr<PreparedScenario>> scenarios;
   std::vector<DynamicTouch> touches;
-  std::vector<Eigen::Vector3d> drop_at_world;  ///< positions to drop objects at; empty: over surfaces in view
+  /// Positions at which objects are dropped; empty: objects are dropped above surfaces in view.
+  std::vector<Eigen::Vector3d> drop_at_world;
 };
 
-/// @param spec  room as in a `sim:` source: "table", "random?seed=3"
+/// @param spec  room as after `sim:`, such as "table" or "random?seed=3"
 std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const TradeScale& scale);
-/// Maps the first frames of the recording and uses the rest, at most half, for the run. Throws Error as
-/// frames_of_recording() does.
+/// Maps the first frames of the recording, and uses the rest, at most half of the recording, for the run.
+/// Throws Error as frames_of_recording() does.
 std::unique_ptr<RunScene> run_scene_of_recording(const std::string& folder, const TradeScale& scale);
 
 }  // namespace roomradar

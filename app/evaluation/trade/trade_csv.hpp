@@ -1,4 +1,4 @@
-// trade_csv.hpp: writes a sweep's measurements to a CSV file as they are made.
+// trade_csv.hpp: writes each measurement of a sweep to a CSV file when it is made.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -9,20 +9,20 @@
 
 namespace roomradar {
 
-/// Returns a field as in RFC 4180: quoted if it contains a comma, a quote or a line break.
+/// Returns `text` as a CSV field (RFC 4180), quoted if it contains a comma, a quote or a line break.
 std::string csv_field(const std::string& text);
 
-/// CSV file with one header for all kinds of work; fields that do not apply are empty.
+/// CSV file with one header for all works; fields that do not apply to a work are empty.
 class TradeCsv {
  public:
-  /// Writes nothing if the path is empty. An existing file, possibly hours of work, is overwritten only when
-  /// the first line is written.
+  /// Writes nothing if `path` is empty. An existing file, which may contain hours of measurements, is
+  /// overwritten only when the first line is written.
   TradeCsv(const std::filesystem::path& path, const std::vector<MeasuredWork>& works);
 
   /// Writes and flushes one measurement. Throws Error if the file cannot be written.
   void write(const MeasuredWork& work, const std::vector<Setting>& settings, const SweepRow& row);
-  /// Writes a line per setting: the summary of its measurements, its loss, and whether it is the default, a
-  /// preset or on the front.
+  /// Writes a line per setting with the summary of its measurements and its loss. The line also states if the
+  /// setting is the default, a preset or on the front.
   void write(const MeasuredWork& work, const std::vector<SettingSummary>& summaries, std::size_t defaults,
              const PresetChoice& choice);
 
@@ -33,7 +33,7 @@ class TradeCsv {
 
   std::filesystem::path path_;
   std::ofstream file_;
-  std::vector<std::string> parameters_, figures_;  ///< of all works, without duplicates
+  std::vector<std::string> parameters_, figures_;  ///< names of all works, without duplicates
 };
 
 }  // namespace roomradar

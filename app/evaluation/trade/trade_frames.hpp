@@ -1,4 +1,4 @@
-// trade_frames.hpp: reads the frames on which settings are measured.
+// trade_frames.hpp: reads the frames of a recording on which settings are measured.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,10 +9,12 @@
 
 namespace roomradar {
 
+/// Min number of readable frames of a recording.
 inline constexpr std::size_t kFewestTradeFrames = 30;
 
-/// Returns the readable frames among a recording's first `count`. Throws Error if the recording cannot be
-/// read, has fewer than kFewestTradeFrames readable frames, or has a frame without a pose (the ground truth).
+/// Returns the readable frames among the first `count` frames of a recording. Throws Error if the recording
+/// cannot be read, if fewer than kFewestTradeFrames frames are readable, or if a frame has no pose, which
+/// serves as ground truth.
 std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t count);
 
 }  // namespace roomradar

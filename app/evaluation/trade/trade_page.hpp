@@ -8,24 +8,24 @@
 
 namespace roomradar {
 
-/// One kind of work with all its measurements.
+/// One work with all its measurements.
 struct TradeResult {
   MeasuredWork work = {};
   std::vector<Setting> settings = {};
   std::vector<SweepRow> rows = {};
   std::vector<SettingSummary> summaries = {};
-  std::size_t defaults = 0;  ///< index of the default among the settings
+  std::size_t defaults = 0;  ///< index of the default in `settings`
   PresetChoice choice = {};
-  bool was_cut_short = false;  ///< not all settings were measured in all scenes
-  std::string fault = {};      ///< reason, unless the user stopped the sweep
+  bool was_cut_short = false;  ///< true if not all settings were measured in all scenes
+  std::string fault = {};      ///< reason of an early end; empty if the user stopped the sweep
 };
 
-/// Returns a line for each setting that failed: setting, scene and reason.
+/// Returns a line with setting, scene and reason for each failed measurement.
 std::vector<std::string> faults_of(const TradeResult& result);
 
-/// Writes a self-contained file that needs no network, in the light or dark theme of the reader's system.
-/// Does nothing if the path is empty. Throws Error if it cannot be written.
-/// @param about  lines on machine, renderer, seed and scenes
+/// Writes a self-contained file that loads nothing from the network. Browsers show it in their light or dark
+/// theme. Does nothing if `path` is empty. Throws Error if the file cannot be written.
+/// @param about  lines of text on machine, renderer, seed and scenes
 void write_trade_page(const std::vector<TradeResult>& results, const std::vector<std::string>& about,
                       const std::filesystem::path& path);
 

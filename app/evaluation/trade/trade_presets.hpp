@@ -1,4 +1,4 @@
-// trade_presets.hpp: converts a sweep's chosen settings to the presets read by `--preset` and `--budget-ms`.
+// trade_presets.hpp: converts a sweep's chosen settings to the presets used by `--preset` and `--budget-ms`.
 #pragma once
 #include <map>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace roomradar {
 
-/// Returns the presets fast, balanced and accurate with their figures, from the sweeps of prescan and run,
-/// and the run's front from accurate to fast. Work that was not swept, or has no such preset, gets the
-/// default.
+/// Returns the presets fast, balanced and accurate with their figures, from the sweeps of prescan and run.
+/// Also returns the run's front, from accurate to fast. Where a sweep is missing or has no such preset, the
+/// default quality is used.
 Presets chosen_presets(const std::vector<TradeResult>& results,
                        const std::map<std::string, std::string>& made_by);
 

@@ -1,4 +1,5 @@
-// script.hpp: events file of `roomradar run --script FILE`: actions on virtual objects, and their times.
+// script.hpp: reads the events file of `roomradar run --script FILE`: timed actions on virtual objects and
+// the session.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -9,54 +10,59 @@
 
 namespace roomradar {
 
-/// Events in the order of the file, which is the order of execution: a due event waits for the events before
-/// it. All numbers are finite. Each name is added once, before its first use.
+/// Events in the order of the file, which is the order of execution. An event is executed when it is due and
+/// all events before it have been executed. All numbers are finite. Each name is added once, before its first
+/// use.
 struct Script {
   std::vector<ScriptEvent> events;
 };
 
-/// Treatment of a last line without a line end. kWhole: an event. kMayBeCut: ignored, since its writer may
-/// have been killed.
+/// Treatment of a last line without a line end. kWhole: the line is read as an event. kMayBeCut: the line is
+/// ignored, since its writing may have been interrupted.
 enum class LastLine { kWhole, kMayBeCut };
 
 /// Reads an events file. One event per line, words separated by blanks, # begins a comment:
 ///
 ///     frame 0    add pot teapot size 0.2
 ///     frame 0    add chair chair.obj size 0.9 up z        longest side (m); axis of the file that points up
-///     frame 10   drop pot view height 0.3         over the free level surface nearest to the view's middle
-///     frame 11   drop pot near 0.4 -0.1 0.7       over the one nearest to this point, at most 25 cm away
+///     frame 10   drop pot view height 0.3         above the free level surface nearest to the image centre
+///     frame 11   drop pot near 0.4 -0.1 0.7       above the one nearest to this point, at most 25 cm away
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
 ///     time 4     place pot 0.4 -0.1 0.9
 ///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
 ///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0       spin in rad/s about x y z; speeds
 ///                                                              are limited to 20 m/s, spins to 60 rad/s
 ///     time 5.5   turn pot 0 0 45                  about the world's axes (degrees)
-///     time 5.6   carry pot 0.4 -0.1 1.0           held in the air, on its way there
+///     time 5.6   carry pot 0.4 -0.1 1.0           moved to this position and held there
 ///     time 5.9   release pot velocity 0 0 0
 ///     time 6     remove pot
-///     time 7     adopt                           objects in view that stand still become part of the room
+///     time 7     adopt                           objects in view that stand still are added to the map
 ///     frame 200  surfaces skirt                   holes, skirt, border or map
 ///     frame 210  unknown solid                    or free
-///     frame 220  radar sampled 64                 exact or sampled; pixels
-///     frame 225  quality depth_stride 2 shadows off       others get their defaults; options keep theirs
-///     frame 226  quality from physics move_every_n_frames 4      from that part on; mesh, compose
-///     frame 230  camera hold                      repeats this frame; go, rewind, loop, stay, resume
+///     frame 220  radar sampled 64                 mode exact or sampled; resolution in pixels
+///     frame 225  quality depth_stride 2 shadows off       others as on the command line, or default
+///     frame 226  quality from physics move_every_n_frames 4      from that frame's physics on; or mesh,
+///                                                              compose
+///     frame 230  camera hold                      repeats this frame; or go, rewind, loop, stay, resume
 ///     frame 300  quit
 ///
-/// An object that would start inside another object starts on top of it, if the room leaves space there.
-/// place, drop and throw may end with `turned YAW PITCH ROLL`: degrees about z, then the rotated y, then the
-/// rotated x axis. Without it an object keeps its last orientation, initially upright.
+/// place, throw and drop put an object that would overlap another object on top of it, if no surface of the
+/// room is in the way. They may end with `turned YAW PITCH ROLL`: degrees about z, then about the rotated y
+/// axis, then about the rotated x axis. Without `turned`, an object keeps its last orientation, initially
+/// upright.
 ///
-/// Throws Error "FILE:LINE: ..." with the text found and the text expected. Reasons: an unknown, missing or
-/// surplus word; a number that is malformed, not finite or out of range; a negative frame or time; a name not
-/// added, or added twice; a file that is unreadable, binary or longer than 64 MiB.
+/// Throws Error "FILE:LINE: ..." with the text found and the text expected. Errors in words are unknown,
+/// missing and surplus words, and names that are not added or added twice. Errors in numbers are malformed,
+/// non-finite and out-of-range numbers, and negative frames and times. Throws Error for a file that is
+/// unreadable, binary or longer than 64 MiB.
 Script read_script(const std::filesystem::path& path, LastLine last_line = LastLine::kWhole);
 
-/// Parses an events file's text. `where` replaces the file's name in messages; mesh paths are unchanged.
+/// Parses the text of an events file. Error messages contain `where` in place of the file's name. Relative
+/// mesh paths are returned unchanged.
 Script parse_script(std::string_view text, std::string_view where);
 
-/// Returns the event as a line of the file, without a line end. parse_script() restores the same event from
-/// it, bit by bit.
+/// Returns the event as a line of an events file, without a line end. parse_script() restores all fields of
+/// the event exactly.
 std::string to_line(const ScriptEvent& event);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// script_event.hpp: one event of a run: an action of a virtual object or of the session, and its time.
+// script_event.hpp: one event of a run: an action on a virtual object or on the session, and its time.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -14,76 +14,81 @@
 namespace roomradar {
 
 enum class Action {
-  kAdd,       ///< load a mesh; not in the room until placed, dropped or thrown
-  kPlace,     ///< put it at a position, without velocity
-  kDrop,      ///< let it fall from above a point, or from above a level surface in view
-  kThrow,     ///< put it at a position with a velocity
-  kRemove,    ///< take it out of the room
-  kTurn,      ///< rotate it about its centre until something is in the way
-  kCarry,     ///< hold it and move it to a position, until something is in the way; lasts until kRelease
+  kAdd,       ///< load an object's mesh; the object is outside the room until placed, dropped or thrown
+  kPlace,     ///< put an object at a position, with zero velocity
+  kDrop,      ///< let an object fall from above a point, or from above a level surface in view
+  kThrow,     ///< put an object at a position, with a velocity
+  kRemove,    ///< take an object out of the room
+  kTurn,      ///< rotate an object about its centre until the first contact
+  kCarry,     ///< move an object towards a position and hold it there until kRelease; obstacles stop it
   kRelease,   ///< let go of a carried object, with a velocity
   kSurfaces,  ///< change which surfaces can be touched
   kUnknown,   ///< make unknown space free or solid
   kRadar,     ///< change the radar's mode and resolution
   kQuality,   ///< change the quality
   kCamera,    ///< change which frame of the source is next
-  kCommit,    ///< commit objects in view that stand still, or are gone, to the map
+  kCommit,    ///< add objects in view that stand still to the map, and remove vanished objects from it
   kQuit,      ///< end the run before this frame
 };
 
-/// The frame that follows the current one.
+/// Selection of the next frame.
 enum class CameraPlay {
-  kHold,    ///< the same frame, repeatedly, while time continues
+  kHold,    ///< the same frame again in each step, while time continues
   kGo,      ///< the source's next frame
   kRewind,  ///< the source's first frame
-  kLoop,    ///< at the end of the source, its first frame
-  kStay,    ///< at the end of the source, its last frame, held
-  kResume,  ///< next frame, 1/30 s after the last, since a device's clock runs on during a pause
+  kLoop,    ///< after the source's last frame, continue with its first frame
+  kStay,    ///< after the source's last frame, repeat that frame
+  /// The source's next frame, timed 1/30 s after the previous one; a device's clock continues during a pause.
+  kResume,
 };
 
 inline constexpr double kMaxTurn_deg = 3600.0;  ///< max angle of one kTurn, per axis
 
 /// One line of a script (script.hpp). Positions are those of the object's origin, in the world (m, +z up).
 struct ScriptEvent {
-  int line = 0;                       ///< line in the file, from 1; 0: not from a file
-  std::optional<std::int64_t> frame;  ///< due before this frame of the run, from 0; alternative to time_s
-  std::optional<double> time_s;       ///< due before the first frame at or after this time of the run
+  int line = 0;  ///< line number in the file, from 1; 0: not from a file
+  /// The event is due before this frame of the run, from 0; alternative to time_s.
+  std::optional<std::int64_t> frame;
+  /// The event is due before the first frame at or after this time of the run.
+  std::optional<double> time_s;
   Action action = Action::kQuit;
-  std::string name;              ///< name of the object; empty for actions without an object
-  std::string mesh;              ///< kAdd: `teapot`, or a mesh file, relative to the script's folder
+  std::string name;  ///< name of the object; empty for actions without an object
+  /// kAdd: `teapot`, or a mesh file; in a script, relative to the script's folder.
+  std::string mesh;
   std::optional<double> size_m;  ///< kAdd: length of the longest side after scaling; unset: not scaled
-  std::optional<UpAxis> up;      ///< kAdd: axis of the file that points up; unset: the format's
-  /// kAdd: kAsInFile in sessions recorded before origins were brought near.
+  std::optional<UpAxis> up;      ///< kAdd: axis of the file that points up; unset: the format's default
+  /// kAdd: kAsInFile only when replaying sessions recorded before ModelOrigin::kNear was introduced.
   ModelOrigin origin = ModelOrigin::kNear;
-  /// kPlace, kDrop, kThrow, kCarry. kDrop without a position: over a surface in view.
+  /// kPlace, kDrop, kThrow, kCarry: position. kDrop without a position: above a level surface in view.
   std::optional<Eigen::Vector3d> position_world;
-  /// kDrop without a position: over the surface in view nearest to this point; unset: nearest to the view's
-  /// middle.
+  /// kDrop without a position. Set: the drop is above the surface point in view nearest to near_world. Unset:
+  /// it is above the surface point nearest to the image centre.
   std::optional<Eigen::Vector3d> near_world;
-  double height_m = 0.3;  ///< kDrop: initial height of its lowest point above the position or surface
+  /// kDrop: initial height of the object's lowest vertex above the position or surface.
+  double height_m = 0.3;
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow, kRelease: velocity of the centre
                                                                  ///< of mass
   Eigen::Vector3d angular_velocity_world_rad_s =
       Eigen::Vector3d::Zero();  ///< kThrow: angular velocity, right-handed
   /// kPlace, kDrop, kThrow: orientation; unset: unchanged.
   std::optional<Eigen::Matrix3d> R_world_object;
-  Eigen::Vector3d turned_deg = Eigen::Vector3d::Zero();  ///< R_world_object as yaw, pitch, roll, as in the
-                                                         ///< file
+  /// R_world_object as yaw, pitch and roll, as written in the file.
+  Eigen::Vector3d turned_deg = Eigen::Vector3d::Zero();
   Eigen::Vector3d turn_world_deg = Eigen::Vector3d::Zero();  ///< kTurn: rotation vector, axis times angle
   SurfacePolicy surfaces = SurfacePolicy::kMap;              ///< kSurfaces
   bool unknown_is_solid = false;                             ///< kUnknown
   RadarConfig radar;                                         ///< kRadar
   RunQuality quality;                                        ///< kQuality
-  FramePart from = FramePart::kLocate;  ///< kQuality: first part of the due frame that uses it
+  FramePart from = FramePart::kLocate;  ///< kQuality: first part of the frame that uses `quality`
   CameraPlay camera = CameraPlay::kGo;  ///< kCamera
 };
 
 /// Returns the model that a kAdd event names.
 ObjectSource source_of(const ScriptEvent& add);
-/// Returns true if the action is followed by an object's name.
+/// Returns true if an object's name follows the action in a script.
 bool has_object(Action action);
 
-/// Returns true if an event is due before a frame, by frame number or by time.
+/// Returns true if an event is due before a frame with this index and time in the run.
 bool is_due(const ScriptEvent& event, std::int64_t run_frame, double run_time_s);
 
 }  // namespace roomradar

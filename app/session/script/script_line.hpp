@@ -10,14 +10,14 @@
 
 namespace roomradar {
 
-/// A word of a script and the value that it stands for.
+/// Keyword of a script, and its value.
 template <typename Value>
 struct Word {
   std::string_view word;
   Value value;
 };
 
-/// Returns a list such as "add, place or drop".
+/// Returns the keywords as a list such as "add, place or drop".
 template <typename Value, std::size_t kCount>
 std::string listed(const std::array<Word<Value>, kCount>& words) {
   std::string list;
@@ -26,7 +26,7 @@ std::string listed(const std::array<Word<Value>, kCount>& words) {
   return list;
 }
 
-/// Returns the word of a value; empty if it has none.
+/// Returns the keyword of a value; empty if the value has none.
 template <typename Value, std::size_t kCount>
 std::string_view word_of(const std::array<Word<Value>, kCount>& words, Value value) {
   const auto found =
@@ -36,24 +36,26 @@ std::string_view word_of(const std::array<Word<Value>, kCount>& words, Value val
 
 std::string in_quotes(std::string_view text);
 
-/// Reads the words of one line in order. Errors name the file and the line.
+/// Reads the blank-separated words of one line, in order. Error messages contain the file's name and the line
+/// number.
 class LineReader {
  public:
-  /// @param where  name of the file, for messages; must outlive the reader, as must `text`
+  /// @param where  name of the file, for error messages. `text` and `where` must outlive the reader
   LineReader(std::string_view text, std::string_view where, int line);
   [[nodiscard]] bool done() const { return next_ == words_.size(); }
 
   /// Throws Error "FILE:LINE: complaint".
   [[noreturn]] void fail(const std::string& complaint) const;
-  /// Returns the next word. `wanted` describes it in the message if the line has ended.
+  /// Returns the next word. Throws Error if the line has ended; `wanted` describes the expected word in the
+  /// message.
   std::string_view word(const char* wanted);
-  /// Consumes the next word if it is `expected`; returns true if so.
+  /// Consumes the next word and returns true if it equals `expected`; else returns false.
   bool take_if(std::string_view expected);
   void expect(std::string_view expected);
   /// Reads a finite number in lowest..highest.
   double number(const char* wanted, double lowest, double highest);
   double whole_number(const char* wanted, double lowest, double highest);
-  /// Returns the value of the next word, which must be one of `words`.
+  /// Returns the value of the next word. Throws Error if the word is not in `words`.
   template <typename Value, std::size_t kCount>
   Value choice(const char* wanted, const std::array<Word<Value>, kCount>& words) {
     const std::string list = listed(words);

@@ -1,4 +1,4 @@
-// session_events.hpp: executes the events of scripts and users in a session.
+// session_events.hpp: executes events of scripts and of the user interface in a session.
 #pragma once
 #include <string>
 
@@ -7,15 +7,17 @@
 
 namespace roomradar {
 
-/// Name of the object of a run without a script and with one --object.
+/// Name of the object in a run with one --object and without a script.
 inline constexpr const char* kOnlyObject = "object";
 
-/// Returns a name for an object of this mesh: the file's name without folder and extension, as one word.
+/// Returns an object name derived from a mesh path: the file's name without folder and extension. Blanks and
+/// `#` become underscores.
 std::string object_name(const std::string& mesh);
 
-/// Executes an event before the frame in which it is due: adds, moves or removes an object, or changes a
-/// policy. kCamera and kQuit are for the caller and do nothing here. Throws Error and changes nothing if the
-/// event is impossible: unknown object, name taken, unreadable mesh, absurd size, incompatible policies.
+/// Executes an event: adds, moves or removes an object, or changes a policy. Call it before the frame in
+/// which the event is due. Ignores kCamera and kQuit, which callers handle. Throws Error, and changes
+/// nothing, for an unknown object, a name that is taken, an unreadable mesh, a size refused by
+/// require_sensible_size() or incompatible policies.
 void apply(Session& session, const ScriptEvent& event);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// material.hpp: procedural surface patterns, with coordinates in metres.
+// material.hpp: procedural surface patterns as functions of surface coordinates in metres.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,19 +8,19 @@
 namespace roomradar {
 
 enum class Pattern {
-  /// One colour with fine speckle.
+  /// One colour with fine speckles.
   kPortable,
-  /// Wall paint: speckle and faint blotches.
+  /// Wall paint: speckles and faint blotches.
   kPlaster,
-  /// Wood with grain along u.
+  /// Wood with its grain along u.
   kWood,
   /// Floor boards along u, each with its own grain.
   kPlanks,
-  /// Square tiles with joints.
+  /// Square tiles separated by joints.
   kTiles,
   /// Carpet with a woven border and ornaments.
   kCarpet,
-  /// Poster: shapes on a ground, different for each seed.
+  /// Poster: shapes on a plain background; the seed determines the shapes.
   kPoster,
   /// Landscape: sky, hills and meadow.
   kLandscape,
@@ -32,7 +32,7 @@ enum class Pattern {
   kStone,
   /// Skin of hands and faces.
   kSkin,
-  /// Checkerboard with squares of kCheckerSquare_m, centred, with a margin at least half a square wide.
+  /// Centred checkerboard with squares of side kCheckerSquare_m. Its margin is at least half a square wide.
   kChecker,
 };
 
@@ -47,8 +47,8 @@ struct Material {
   float infrared = 0.6F;
 };
 
-/// Returns the colour (gamma-encoded red, green, blue, 0 to 1) of a point on a face of the given size. (u_m,
-/// v_m) is relative to the face's centre; v points up on upright faces.
+/// Returns the colour of point (u_m, v_m) of a face of the given size, as gamma-encoded red, green and blue,
+/// 0 to 1. (0, 0) is the face's centre; v points up on vertical faces.
 std::array<float, 3> pattern_colour(const Material& material, float u_m, float v_m, float width_m,
                                     float height_m);
 

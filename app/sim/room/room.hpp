@@ -1,5 +1,5 @@
-// room.hpp: a simulated furnished room: solids, materials, lamps, and the paths of the camera and of moving
-// objects.
+// room.hpp: a simulated furnished room: solids, materials, lamps, and endpoints for the paths of camera and
+// moving objects.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace roomradar {
 
 struct Lamp {
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
-  /// Relative irradiance at 1 m.
+  /// Irradiance at 1 m, in relative units.
   float power = 1.0F;
   /// Radius of the light source, which determines the softness of shadows.
   double radius_m = 0.2;
 };
 
-/// A simulated room: z is up, the floor is at z = 0, units are metres. Solids do not overlap but may touch;
-/// each solid's surface is part of the room's surface except where solids touch. Solids must not change after
-/// the room is made.
+/// A simulated room. z is up, the floor is at z = 0, units are metres. Solids may touch but not overlap. The
+/// room's surface is the solids' surfaces without the areas where two solids touch. Solids must not change
+/// after make_room().
 struct Room {
   std::string name;
   std::vector<Solid> solids;
@@ -37,9 +37,9 @@ struct Room {
   Eigen::Vector3d interior_min_world = Eigen::Vector3d::Zero();
   /// Upper corner of the volume inside floor, walls and ceiling.
   Eigen::Vector3d interior_max_world = Eigen::Vector3d::Zero();
-  /// Surface point that a viewer looks at.
+  /// Surface point at which the camera of CameraPathKind::kView looks.
   Eigen::Vector3d focus_world = Eigen::Vector3d::Zero();
-  /// Azimuth of the viewer as seen from focus_world.
+  /// Azimuth of that camera as seen from focus_world.
   double view_azimuth_rad = 0.0;
   /// Centre, at eye height, of the ellipse along which the camera moves during a scan.
   Eigen::Vector3d walk_centre_world = Eigen::Vector3d::Zero();
@@ -55,7 +55,7 @@ struct Room {
   Eigen::Vector3d person_to_world = Eigen::Vector3d::Zero();
 };
 
-/// Returns the names of the furnished rooms that make_room() makes.
+/// Returns the names of the fixed furnished rooms that make_room() accepts.
 const std::vector<std::string>& room_names();
 /// Another name that make_room() accepts: a room with furniture drawn at random from the seed.
 inline constexpr std::string_view kRandomRoom = "random";
@@ -63,7 +63,7 @@ inline constexpr std::string_view kRandomRoom = "random";
 inline constexpr std::string_view kBoardRoom = "board";
 /// Throws Error listing the known names if `name` is none of them.
 void require_room(std::string_view name);
-/// Makes the room with this name.
+/// Makes the room of this name.
 /// @param crate  true: adds a crate on the ball's path
 /// @param seed   selects the furniture of kRandomRoom; other rooms do not depend on it
 /// @throws Error listing the known names if `name` is none of them
@@ -76,13 +76,13 @@ Solid crate_in(const Room& room);
 /// Returns the crate's material.
 Material crate_material();
 
-/// Returns the distance (m) from a point to the nearest surface, negative inside a solid. It is exact
-/// outside. Inside, it is the depth in the deepest single solid, which is a lower bound of the depth in the
-/// union of touching solids.
+/// Returns the signed distance (m) from a point to the nearest surface, negative inside a solid. The distance
+/// is exact outside. Inside, its magnitude is the depth in the single solid that contains the point deepest,
+/// a lower bound of the depth in the union of touching solids.
 double signed_distance_m(const Room& room, const Eigen::Vector3d& p_world);
 
-/// Returns the first surface that a ray enters from outside, computed exactly. RayHit::range_m is in units of
-/// the direction's length.
+/// Returns the exact first intersection at which a ray enters a solid from outside. RayHit::range_m is in
+/// units of the length of direction_world.
 std::optional<RayHit> cast_ray(const Room& room, const Eigen::Vector3d& origin_world,
                                const Eigen::Vector3d& direction_world);
 

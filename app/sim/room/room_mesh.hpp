@@ -8,8 +8,8 @@ namespace roomradar {
 /// Max distance of a triangle from the curved surface that it approximates. Vertices lie on the surface.
 inline constexpr double kMeshDeviation_m = 0.0005;
 
-/// Appends the closed surface of one solid, counter-clockwise seen from outside. Vertices are relative to the
-/// mesh's origin.
+/// Appends the closed surface of one solid. Triangles are counter-clockwise seen from outside; vertices are
+/// relative to the mesh's origin.
 void append_mesh(const Solid& solid, Rgb colour, double deviation_m, Mesh& mesh);
 
 /// Returns a mesh of all solids of a room. Each solid's surface is closed; where two solids touch, both

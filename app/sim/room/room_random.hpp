@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Makes a room with a random arrangement of furniture; deterministic in the seed.
+/// Makes a room with a random arrangement of furniture, determined by the seed.
 Room make_random_room(std::uint64_t seed);
 
 }  // namespace roomradar

@@ -8,13 +8,13 @@
 
 namespace roomradar {
 
-/// Textures with mip levels, and lighting on a coarse grid, for every face of every solid that is visible
-/// inside the room. Lighting consists of the lamps' shadows (by ray casting) and ambient occlusion (by
-/// distances to the room).
+/// Textures with mip levels, and lighting on a coarse grid, for each face that is visible inside the room.
+/// Lighting includes the lamps' shadows, computed by ray casting, and ambient occlusion, computed from
+/// distances to the room's surface.
 class SurfaceAppearance {
  public:
-  /// Prepares the room's own solids.
-  /// @param texel_m  finest texture detail; should not be finer than a pixel's width on the surface
+  /// Prepares the room's solids.
+  /// @param texel_m  size of the finest texture detail; should be at least a pixel's width on the surface
   SurfaceAppearance(const Room& room, double texel_m);
   /// Prepares solids that move through the room. Only textures are precomputed; lighting is computed per
   /// pixel.
@@ -25,7 +25,7 @@ class SurfaceAppearance {
   /// @param index           index of the solid
   /// @param p_solid         the point in the solid's frame, m
   /// @param normal_solid    surface normal in the solid's frame
-  /// @param footprint_m     width of one pixel on the surface, which selects the mip level
+  /// @param footprint_m     width of one pixel on the surface, m; selects the mip level
   /// @param T_world_solid   current pose of the solid; used for moving solids
   [[nodiscard]] Rgb shade(std::size_t index, const Eigen::Vector3d& p_solid,
                           const Eigen::Vector3d& normal_solid, double footprint_m,
@@ -40,10 +40,10 @@ class SurfaceAppearance {
   struct Face {
     float width_m = 0.0F, height_m = 0.0F;
     float texel_m = 0.0F;
-    /// Mip levels, each half the size of the previous one; empty if the face is hidden.
+    /// Mip levels, each half as wide and high as the previous one; empty if the face is hidden.
     std::vector<Level> levels;
     int light_columns = 0, light_rows = 0;
-    /// Factors on the colour at the nodes of a grid over the face, row by row; empty for moving solids.
+    /// Brightness factors at the nodes of a grid over the face, row by row; empty for moving solids.
     std::vector<float> light;
   };
   /// Faces of a solid: +x, -x, +y, -y, +z, -z, and a cylinder's side.

@@ -1,4 +1,5 @@
-// scenario.hpp: a test case: an object moves in a straight line towards a surface that an occluder hides.
+// scenario.hpp: a test case in which an object moves in a straight line towards a surface that an occluder
+// hides from the camera.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -13,26 +14,26 @@
 
 namespace roomradar {
 
-/// Kind of object that hides the surface on which the drop or push should end.
+/// Kind of object that hides the surface at which the object should stop.
 enum class Occluder {
-  /// The room's own furniture, as seen from the camera's present pose.
+  /// The room's furniture.
   kFurniture,
   /// A box carried between the camera and the surface.
   kBox,
-  /// A hand and arm, which move in every other scenario of this kind.
+  /// A hand and forearm. They move in every second scenario of this kind.
   kHand,
   /// A person standing between the camera and the surface.
   kPerson,
 };
 std::string_view to_string(Occluder occluder);
 
-/// Number of prescan frames of a room: one walk around it.
+/// Number of prescan frames of a room: one round of the camera.
 inline constexpr std::int64_t kScenarioPrescanFrames = 720;
 
 /// A room with its prescan path. All scenarios of a room share it, so one map per room suffices.
 struct ScenarioRoom {
   Room room;
-  /// Options that produce the prescan frames, without moving objects.
+  /// Options of the SimulatedSource that produces the prescan frames, without moving objects.
   SimOptions prescan;
   /// Camera poses of every tenth prescan frame.
   std::vector<Eigen::Isometry3d> T_world_prescan;
@@ -46,7 +47,7 @@ struct Scenario {
   std::int64_t number = 0;
   std::string room;
   Occluder occluder = Occluder::kFurniture;
-  /// Solids of the occluder at frame 0; they are absent in the prescan.
+  /// Solids of the occluder at frame 0. The prescan does not contain them.
   std::vector<Solid> occluder_solids;
   /// Materials of the occluder, one per solid.
   std::vector<Material> occluder_materials;
@@ -54,8 +55,8 @@ struct Scenario {
   Eigen::Vector3d occluder_velocity_world = Eigen::Vector3d::Zero();
   /// True camera pose while the object moves.
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  /// Camera pose as tracking would estimate it: the true pose with errors of 1.5 mm and 0.1 degrees standard
-  /// deviation.
+  /// Camera pose as tracking would estimate it: the true pose plus random errors with standard deviations of
+  /// 1.5 mm and 0.1 degrees.
   Eigen::Isometry3d T_world_believed = Eigen::Isometry3d::Identity();
   Intrinsics depth_camera = kKinectDepthCamera;
 
@@ -66,7 +67,7 @@ struct Scenario {
   /// Unit direction of motion.
   Eigen::Vector3d direction_world = -Eigen::Vector3d::UnitZ();
   double speed_m_s = 0.0;
-  /// Distance after which an object without contact stops: 0.4 m beyond the true contact.
+  /// Distance at which an object without contact stops, 0.4 m beyond the true contact.
   double limit_m = 0.0;
   /// True distance to the first contact with the room.
   double true_travel_m = 0.0;
@@ -74,9 +75,9 @@ struct Scenario {
   Eigen::Vector3d contact_world = Eigen::Vector3d::Zero();
 };
 
-/// Returns the object's travel per frame, m; at most 33 cm.
+/// Returns the distance that the object travels per frame, m; at most 0.33.
 inline double step_m(const Scenario& scenario) { return scenario.speed_m_s * kScenarioFrame_s; }
-/// Returns the last frame before contact: the object touches the true surface between this frame and the
+/// Returns the last frame before the contact. The object touches the true surface between this frame and the
 /// next.
 inline int contact_frame(const Scenario& scenario) {
   return static_cast<int>(scenario.true_travel_m / step_m(scenario));

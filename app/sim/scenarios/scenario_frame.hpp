@@ -11,7 +11,7 @@ namespace roomradar {
 std::vector<Solid> occluder_at(const Scenario& scenario, int frame);
 
 /// Renders the camera's depth frame of the room and the occluder, without colour.
-/// @param noise_scale  factor on the Kinect's noise as in SimOptions; 0: exact depth
+/// @param noise_scale  factor on the Kinect's noise, see SimOptions::noise_scale; 0: exact depth
 void render_scenario(const Scenario& scenario, const Room& room, int frame_number, double noise_scale,
                      Frame& frame);
 

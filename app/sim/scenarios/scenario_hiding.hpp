@@ -1,4 +1,4 @@
-// scenario_hiding.hpp: tests which room surfaces the prescan observed, and places occluders that hide them.
+// scenario_hiding.hpp: tests if the prescan observed room surfaces, and places occluders that hide them.
 #pragma once
 #include <optional>
 #include <vector>
@@ -8,8 +8,7 @@
 
 namespace roomradar {
 
-/// Surfaces that could stop the object are hidden from the camera up to this distance behind the true
-/// contact.
+/// Occluders hide all surfaces that could stop the object within the true travel plus this distance.
 inline constexpr double kBeyond_m = 0.05;
 
 /// A surface point and its unit normal.
@@ -20,27 +19,26 @@ struct Patch {
 /// Returns a random unit vector.
 Eigen::Vector3d random_unit(CounterRandom& random);
 
-/// Returns the surface point at a random pixel of a random prescan frame, or nothing if the pixel's ray hits
-/// nothing.
+/// Returns the surface point at a random pixel of a random prescan frame, or nullopt if the pixel's ray hits
+/// no surface.
 std::optional<Patch> draw_patch(const ScenarioRoom& from, CounterRandom& random);
 
-/// Returns true if at least three prescan views observed the patch, unoccluded, at 0.6 to 3.5 m and not at a
-/// grazing angle.
+/// Returns true if at least three prescan views observed the patch without occlusion, at 0.6 to 3.5 m and not
+/// at a grazing angle.
 bool was_seen(const ScenarioRoom& from, const Patch& patch);
 
-/// Returns true if the prescan observed the space that the object sweeps from its start to the true contact:
-/// at least three views observed each of several hundred sample points. The object then never enters unknown
-/// space.
+/// Returns true if the object enters no unknown space between its start and the true contact. The swept space
+/// is tested at several hundred sample points; at least three prescan views must have observed each of them.
 bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario);
 
-/// Returns the points of the room that could stop the object within the limit. They are found by casting
+/// Returns the room's surface points that could stop the object within limit_m. They are found by casting
 /// several hundred rays from the object's front.
 std::vector<Patch> stopping_patches(const Room& room, const Scenario& scenario, double limit_m);
 
-/// Draws a camera pose, an occluder and its motion for a placed object until the points that could stop the
-/// object are hidden.
-/// @param patches  points that could stop the object
-/// @return false if 12 draws fail
+/// Draws camera pose, occluder and occluder motion at random until the occluder hides `patches` from the
+/// camera.
+/// @param patches  surface points that could stop the object
+/// @return false if 12 draws have failed
 bool hide(const ScenarioRoom& from, const std::vector<Patch>& patches, CounterRandom& random,
           Scenario& scenario);
 

@@ -1,5 +1,5 @@
-// scenario_object.hpp: objects to drop and push, from a needle to a table, built of solids so their distance
-// to contact is exact.
+// scenario_object.hpp: objects to drop and push, from a needle to a table. They consist of solids, so their
+// distance to contact can be computed exactly.
 #pragma once
 #include <string_view>
 #include <vector>
@@ -41,11 +41,11 @@ struct ScenarioObject {
   double reach_m = 0.0;
 };
 
-/// Draws an object of this shape with random size and proportions.
+/// Makes an object of this shape with random size and proportions.
 ScenarioObject draw_object(ObjectShape shape, CounterRandom& random);
 
-/// Returns a mesh of all parts. Each part's surface is closed and at most kMeshDeviation_m inside the true
-/// surface.
+/// Returns a mesh of all parts. Each part's surface is closed, and at most kMeshDeviation_m inside the true
+/// surface of the part.
 Mesh object_mesh(const ScenarioObject& object);
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// scenarios.hpp: makes and judges test cases of objects dropped or pushed onto surfaces that are hidden now
-// but were observed in the prescan.
+// scenarios.hpp: makes and judges test cases in which objects are dropped or pushed onto surfaces that the
+// prescan observed but that are now hidden from the camera.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -16,18 +16,19 @@ namespace roomradar {
 ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed = 1);
 
 /// Makes scenario `number` of a seed. The result depends on room, seed and number only. Guarantees:
-/// - Every room point that could stop the object, up to 5 cm behind the true contact, is hidden from the
-///   camera in the contact frame. The contact projects into the image.
-/// - At least three of T_world_prescan observed each of those points, at 0.6 to 3.5 m and not at a grazing
-///   angle.
-/// - The prescan also observed the space on the object's path, so the object never enters unknown space.
-/// - The object starts at least 2 cm from the room, and its path keeps 4 cm from the occluder.
+/// - In the contact frame, all room points that could stop the object up to 5 cm beyond the true contact are
+///   hidden from the camera. The contact point projects into the image.
+/// - At least three cameras of T_world_prescan observed each of these points, at 0.6 to 3.5 m and not at a
+///   grazing angle.
+/// - The prescan observed the space that the object sweeps, so the object never enters unknown space.
+/// - The object starts at least 2 cm from the room's surfaces, and stays at least 4 cm from the occluder.
 /// - If the object started 5 mm to the side, in any of four directions, its distance to contact would change
-///   by at most 15 mm. This excludes contacts that depend on detail finer than the map's cells.
+///   by at most 15 mm. This condition excludes contacts that depend on detail finer than the map's voxels.
 ///
-/// Scenarios alternate between four drops and four pushes; each group of four has all four kinds of occluder.
-/// Object shapes alternate too. The occluder alone hides at least half of the stopping points. If 3,000 draws
-/// find no placement, the next kind of occluder is tried, then the next shape. Throws Error if all fail.
+/// Four drops and four pushes follow each other in turn; each group of four contains all four kinds of
+/// occluder. Object shapes also take turns. The occluder alone, without the room, hides at least half of the
+/// points that could stop the object. If 3,000 random draws find no placement, the next kind of occluder is
+/// tried, then the next shape. Throws Error if all fail.
 Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number);
 
 enum class Outcome {
@@ -40,13 +41,13 @@ enum class Outcome {
 std::string_view to_string(Outcome outcome);
 struct Verdict {
   Outcome outcome = Outcome::kStoppedRight;
-  /// Travelled distance minus true distance, m; positive if the object moved too far.
+  /// Travelled distance minus true_travel_m, m; positive if the object moved too far.
   double error_m = 0.0;
 };
 /// Max distance beyond the true contact that does not count as passing through.
 inline constexpr double kTooFar_m = 0.02;
-/// Judges the distance that the object travelled with the surfaces of a policy. If the policy found no
-/// contact, travelled_m is limit_m.
+/// Compares the distance that the object travelled with the true distance.
+/// @param travelled_m  measured distance to contact; Scenario::limit_m if no contact was found
 Verdict judge(const Scenario& scenario, double travelled_m);
 
 }  // namespace roomradar

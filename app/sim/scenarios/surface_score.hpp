@@ -1,5 +1,5 @@
-// surface_score.hpp: accuracy and completeness of a mesh against the simulated room it was reconstructed
-// from.
+// surface_score.hpp: accuracy and completeness of a reconstructed mesh, relative to the surface of the
+// simulated room.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -13,17 +13,17 @@
 
 namespace roomradar {
 
-/// Max distance between mesh and true surface at which the surface counts as found.
+/// Max distance between mesh and true surface at which they count as coincident.
 inline constexpr double kSurfaceFound_m = 0.02;
 
-/// The part of a room's true surface that depth frames measured within 5 m, as one point per cube of edge
+/// The part of a room's true surface that depth frames measured within 5 m, as one point per cube of side
 /// kSurfaceFound_m.
 class SeenSurface {
  public:
   /// Adds a frame of a simulated source, with its ground truth. Pixels of moving objects are ignored.
   void add(const Frame& frame, const SimTruth& truth);
 
-  /// Returns the points that at least three frames measured, in the room's frame.
+  /// Returns the points that at least three frames measured, in the room's coordinate frame.
   [[nodiscard]] std::vector<Eigen::Vector3d> points() const;
 
  private:
@@ -38,17 +38,17 @@ class SeenSurface {
 struct SurfaceScore {
   /// Median distance from points sampled uniformly on the mesh to the room's surface, m.
   double error_median_m = 0.0;
-  /// 95th percentile of the same distances, m.
+  /// 95th percentile of these distances, m.
   double error_p95_m = 0.0;
-  /// Fraction of the mesh within kSurfaceFound_m of the room's surface.
+  /// Fraction of the mesh's area within kSurfaceFound_m of the room's surface.
   double precision = 0.0;
-  /// Fraction of the measured surface points that have mesh within kSurfaceFound_m.
+  /// Fraction of the points `seen` within kSurfaceFound_m of the mesh.
   double cover = 0.0;
 };
 
 /// Compares a mesh with the true surface. All results are 0 for a mesh without triangles.
 /// @param T_room_map  pose of the mesh's world frame in the room's frame
-/// @param seen        points of SeenSurface::points()
+/// @param seen        result of SeenSurface::points()
 /// @param spacing_m   distance between sample points on the mesh, > 0 and well below kSurfaceFound_m
 SurfaceScore score_surface(const Mesh& mesh, const Eigen::Isometry3d& T_room_map, const Room& room,
                            const std::vector<Eigen::Vector3d>& seen, double spacing_m);

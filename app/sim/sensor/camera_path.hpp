@@ -16,8 +16,8 @@ struct Sway {
   double phase_rad = 0.0;
 };
 
-/// A smooth camera path. Without sway, a scan follows an ellipse at constant angular speed, and a viewer
-/// stands still. Sway is a sum of sines of time, so all derivatives are continuous.
+/// A smooth camera path. A scan (kScan) follows an ellipse at constant angular speed; a viewer (kView) stands
+/// still. Sway, a sum of sines of time, is added to both, so all derivatives are continuous.
 struct CameraPath {
   CameraPathKind kind = CameraPathKind::kScan;
   /// Centre of the ellipse, or position of a viewer.
@@ -26,26 +26,27 @@ struct CameraPath {
   Eigen::Vector2d half_m = Eigen::Vector2d::Zero();
   /// Angle on the ellipse at the start.
   double start_rad = 0.0;
-  /// Time per round; negative for clockwise motion.
+  /// Time per round of the ellipse; negative for clockwise motion.
   double loop_s = 1.0;
   /// Point at which the camera looks.
   Eigen::Vector3d target_world = Eigen::Vector3d::Zero();
-  /// Sway of the position, m. First index: axis x, y, z of the world. Second index: the sines to add.
+  /// Sway of the position, m. First index: world axis x, y or z. Second index: terms of the sum.
   std::array<std::array<Sway, 3>, 3> position_sway{};
-  /// Sway of the target, m, along x, y, z of the world.
+  /// Sway of the target, m, along the world axes x, y and z.
   std::array<Sway, 3> target_sway{};
-  /// Rotation of the camera about its own axes, rad. First index: axis. Second index: the sines to add.
+  /// Sway of the camera's rotation about its own axes, rad. First index: axis. Second index: terms of the
+  /// sum.
   std::array<std::array<Sway, 2>, 3> turn_sway{};
 };
 
-/// Draws up to 64 paths at random and returns the first that keeps 0.5 m from all solids, or else the one
-/// with the greatest clearance. During a scan the camera moves at 0.3 to 0.6 m/s and rotates by less than 40
-/// degrees per second. If duration_s is long enough for a full round at that speed, the path ends where it
-/// began.
+/// Draws up to 64 paths at random. Returns the first path with a clearance of 0.5 m from all solids, or the
+/// path with the greatest clearance if there is none. During a scan, the camera moves at 0.3 to 0.6 m/s and
+/// rotates by less than 40 degrees/s. If duration_s permits a full round at this speed, the path ends at its
+/// start.
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s);
 
-/// Returns the pose of a camera without roll at `eye_world` that looks at `target_world`. The viewing
-/// direction must not be vertical.
+/// Returns the pose of a camera at eye_world that looks at target_world, with a horizontal x axis. The
+/// viewing direction must not be vertical.
 Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world);
 
 /// Returns the depth camera's pose t_s seconds after the start.

@@ -1,4 +1,4 @@
-// kinect_depth.hpp: simulates the depth that a Kinect v1 measures, from exact depth.
+// kinect_depth.hpp: simulates the depth images of a Kinect v1 from exact depth.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -10,25 +10,26 @@
 
 namespace roomradar {
 
-/// Offset of the projector from the depth camera, along the camera's +x.
+/// Distance of the projector from the depth camera, along the camera's +x.
 inline constexpr double kKinectBaseline_m = 0.075;
 /// Min measured depth.
 inline constexpr double kKinectNearest_m = 0.5;
 /// Max measured depth.
 inline constexpr double kKinectFarthest_m = 8.0;
 
-/// Exact images of a view, one value per pixel.
+/// Exact images of a view.
 struct ExactView {
-  /// Depth of the first surface, at any range, m; 0 if there is none.
+  /// Depth of the first surface, m, not limited to the sensor's range; 0 if there is none.
   DepthImage depth_m;
-  /// Index of the solid; -1 if there is none.
+  /// Index of the solid of the first surface; -1 if there is none.
   Image<int> solid;
   /// Cosine of the angle between ray and surface normal, 0 to 1.
   Image<float> cosine;
 };
 
-/// Renders exact depth, solid and angle along the ray through every pixel's centre.
-/// @param rays  each pixel's viewing ray, in image coordinates of `camera`; empty: rays of the pinhole camera
+/// Renders exact depth, solid and cosine along each pixel's ray.
+/// @param rays  each pixel's viewing ray, as an image point of `camera`; empty: rays through the pixels'
+///              centres
 void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
                   const PixelRays& rays, ExactView& exact);
 
@@ -40,34 +41,35 @@ double quantisation_step_m(const Intrinsics& camera, double depth_m);
 /// Rounds a depth to the nearest disparity that the Kinect can represent.
 double quantised_depth_m(const Intrinsics& camera, double depth_m);
 
-/// Calibration errors of the depth camera; empty images mean no error. See SensorFaults.
+/// Calibration errors of the depth camera, see SensorFaults. Empty images: no errors.
 struct DepthFaults {
   PixelRays rays;
   Image<float> inverse_offset_per_m;
   double inverse_scale = 1.0;
 };
 
-/// Returns the viewing ray of pixel (x, y), in image coordinates of the declared camera.
+/// Returns the viewing ray of pixel (x, y), as an image point of the declared camera.
 PlanePoint<double> ray_of(const PixelRays& rays, int x, int y);
 
 /// Returns the depth that a camera with these errors reports at a pixel for a true depth > 0, m.
 double reported_m(const DepthFaults& faults, int x, int y, double depth_m);
 
-/// Scratch memory of measure_depth().
+/// Buffers of measure_depth().
 struct KinectScratch {
   ViewCaster projector;
   std::vector<float> lattice;
 };
 
-/// Simulates the sensor's depth image for frame `frame_index`, in these steps. z is depth, theta the angle
-/// between ray and normal.
+/// Simulates the sensor's depth image of frame `frame_index` by the steps below. z is the depth, theta the
+/// angle between ray and surface normal.
 /// - Lateral noise: each ray deviates from its pixel's centre, with standard deviation
 ///   sigma_L = 0.8 + 0.035 theta / (pi/2 - theta) px.
-/// - Shadow: 0 if a solid blocks the line from the projector to the surface.
-/// - Dropouts: 0 if too little light returns (dark, grazing or far surface), with a ragged boundary.
-/// - Axial noise: standard deviation sigma(z, theta) of depth_noise.hpp, minus the part due to quantisation,
-///   correlated over about 3 pixels.
-/// - Quantisation of the disparity, and 0 outside 0.5 to 8 m.
+/// - Shadow: depth 0 if a solid blocks the line from the projector to the surface.
+/// - Dropouts: depth 0 if too little light returns from a dark, grazing or far surface; the boundary of such
+///   areas is ragged.
+/// - Axial noise: standard deviation sigma(z, theta) of depth_noise.hpp without the contribution of
+///   quantisation; correlated over about 3 pixels.
+/// - Quantisation of the disparity; depth 0 outside 0.5 to 8 m.
 ///
 /// The result is deterministic in (seed, frame_index) and independent of other frames. Source: Nguyen, Izadi,
 /// Lovell, 3DIMPVT 2012, equations (1) and (3).

@@ -1,4 +1,4 @@
-// mover_shadow.hpp: shadows of moving objects, in addition to the precomputed lighting.
+// mover_shadow.hpp: shadows of moving objects, applied in addition to the precomputed lighting.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace roomradar {
 
-/// Shadows that one frame's moving solids cast from the room's first and strongest lamp.
+/// Shadows of one frame's moving solids in the light of the room's first lamp, its strongest.
 class MoverShadow {
  public:
   void prepare(std::span<const Solid> movers);
 
-  /// Returns the factor on the colour of a point on the room's surface: about 0.75 if a moving solid blocks
-  /// the lamp; 1 if the point is lit, or already in the room's own shadow.
+  /// Returns the brightness factor of a point on the room's surface. It is about 0.75 if a moving solid
+  /// blocks the lamp, and 1 if the lamp lights the point or the room itself shadows it.
   [[nodiscard]] float factor(const Room& room, const Eigen::Vector3d& p_world,
                              const Eigen::Vector3d& normal_world) const;
 

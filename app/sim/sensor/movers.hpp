@@ -1,4 +1,4 @@
-// movers.hpp: shapes and motion of the moving objects in a simulated room: a hand, a ball, a person.
+// movers.hpp: shapes and motions of moving objects in a simulated room: hand, ball and person.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace roomradar {
 
-/// A moving object. Its motion determines its solids at any time.
+/// A moving object. append_solids() returns its solids at any time.
 struct Mover {
   MoverKind kind = MoverKind::kHand;
   /// Hand: position when withdrawn. Ball, person: one end of the path.
   Eigen::Vector3d from_world = Eigen::Vector3d::Zero();
-  /// Hand: position over the room's focus. Ball, person: other end of the path.
+  /// Hand: position above Room::focus_world. Ball, person: other end of the path.
   Eigen::Vector3d to_world = Eigen::Vector3d::Zero();
   /// Hand only: unit direction from the fingers to the elbow.
   Eigen::Vector3d arm_world = Eigen::Vector3d::UnitX();
   /// Ball only: radius.
   double radius_m = 0.0;
-  /// Time for moving there and back.
+  /// Time for the motion from one end to the other and back.
   double period_s = 1.0;
   double phase_rad = 0.0;
   Pace pace = Pace::kSteady;
@@ -33,13 +33,13 @@ struct Mover {
 };
 
 /// Plans the motion of a moving object.
-/// @param viewer_world  camera position; a hand passes between it and the room's focus
-/// @param duration_s    duration of the recording; with Pace::kLeaves the object leaves at half of it
+/// @param viewer_world  camera position; a hand passes between the camera and Room::focus_world
+/// @param duration_s    duration of the recording; with Pace::kLeaves, the object leaves after half of it
 Mover plan_mover(MoverKind kind, const Room& room, const Eigen::Vector3d& viewer_world, std::uint64_t seed,
                  Pace pace = Pace::kSteady, double duration_s = 0.0);
 
-/// Appends the object's solids at time t_s. Their number and order never change, and their positions have
-/// continuous derivatives in time.
+/// Appends the object's solids at time t_s. Number and order of the solids do not depend on t_s; their
+/// positions have continuous derivatives.
 void append_solids(const Mover& mover, double t_s, std::vector<Solid>& solids);
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// sensor_faults.hpp: calibration errors of a simulated Kinect: its true cameras differ from the cameras that
-// its frames declare.
+// sensor_faults.hpp: calibration errors of a simulated Kinect: differences between its true cameras and the
+// cameras that its frames declare.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -10,23 +10,23 @@
 
 namespace roomradar {
 
-/// The true cameras. The errors have the size that calibrations of real Kinects report.
+/// Parameters of the true cameras. Their errors are as large as calibrations of real Kinects report.
 struct SensorFaults {
   Intrinsics depth_camera, colour_camera;
   Lens depth_lens, colour_lens;
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
-  /// `scale` in: 1 / reported depth = (1 / true depth - offset) / scale, with inverse_depth_offset_per_m() as
-  /// offset.
+  /// `scale` in 1 / reported depth = (1 / true depth - offset) / scale, where offset is
+  /// inverse_depth_offset_per_m().
   double inverse_depth_scale = 1.0;
 };
 
-/// Returns the true cameras of one simulated device, always the same, whose frames declare `depth_camera`,
-/// `colour_camera` and `T_colour_depth`. Focal lengths differ by about 1 %, principal points by 3 px.
+/// Returns the true cameras of a simulated device whose frames declare `depth_camera`, `colour_camera` and
+/// `T_colour_depth`. The errors are always the same: about 1 % in focal lengths, 3 px in principal points.
 SensorFaults sensor_faults(const Intrinsics& depth_camera, const Intrinsics& colour_camera,
                            const Eigen::Isometry3d& T_colour_depth);
 
-/// Returns the disparity error at a pixel of the depth camera, as inverse depth, 1/m. It consists of rings
-/// about the centre and a slope: at most 3 mm at 1 m and 27 mm at 3 m.
+/// Returns the disparity error at a pixel of the depth camera, as inverse depth, 1/m. The error consists of
+/// rings about the image centre plus a linear slope. It corresponds to at most 3 mm at 1 m and 27 mm at 3 m.
 double inverse_depth_offset_per_m(const Intrinsics& depth_camera, double x_px, double y_px);
 
 /// Per pixel of the true camera: the point in the declared pinhole camera's image to which the pixel's

@@ -10,15 +10,15 @@
 namespace roomradar {
 
 enum class CameraPathKind {
-  /// Walks around the room and back to the start, looking across it.
+  /// The camera moves around the room, back to its start, and looks across the room.
   kScan,
-  /// Stays at one place, hand-held, and looks at the room's focus point.
+  /// The hand-held camera stays at one position and looks at Room::focus_world.
   kView,
-  /// Swings in front of the focus point, near, far and tilted, for calibration.
+  /// The camera swings in front of Room::focus_world, near, far and tilted, for calibration.
   kSwing,
 };
 enum class MoverKind {
-  /// A hand and forearm that reach over the focus point and withdraw.
+  /// A hand and forearm that reach over Room::focus_world and withdraw.
   kHand,
   /// A ball that rolls back and forth.
   kBall,
@@ -31,9 +31,9 @@ enum class Pace {
   kSteady,
   /// Moves continuously at a third of kSteady's speed.
   kSlow,
-  /// Alternates between 2 s still and 2 s moving.
+  /// Alternates between 2 s at rest and 2 s of motion.
   kWaits,
-  /// Stays still from the first frame on, and leaves the room after half of the frames.
+  /// Rests from the first frame on, and leaves the room after half of the frames.
   kLeaves,
 };
 /// An additional crate on the ball's path.
@@ -49,19 +49,19 @@ enum class CrateKind {
 std::string_view to_string(CameraPathKind kind);
 std::string_view to_string(MoverKind kind);
 std::string_view to_string(Pace pace);
-/// Returns the value as in a spec: 0, 1, comes or goes.
+/// Returns the value's name in a spec: 0, 1, comes or goes.
 std::string_view to_string(CrateKind kind);
 
 /// The Kinect's depth camera at full resolution.
 inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 240.0};
 
-/// Returns the Kinect's depth camera scaled to images of this width, 4:3.
+/// Returns the Kinect's depth camera scaled to 4:3 images of this width.
 Intrinsics kinect_of_width(int width_px);
 
 struct SimOptions {
   /// Name of the room: one of room_names(), kRandomRoom or kBoardRoom.
   std::string room = "table";
-  /// Seed of the camera path, the phase of moving objects, the noise, and a random room's furniture.
+  /// Seed of the camera path, the phases of moving objects, the noise, and the furniture of a random room.
   std::uint64_t seed = 1;
   /// Number of frames, >= 1.
   std::int64_t frames = 300;
@@ -76,9 +76,10 @@ struct SimOptions {
   /// Factor on the Kinect's noise; 0: exact depth, without shadow or dropouts.
   double noise_scale = 1.0;
   Intrinsics depth_camera = kKinectDepthCamera;
-  /// True: the true cameras differ from those that the frames declare; see sensor_faults.hpp.
+  /// True: the true cameras differ from the cameras that the frames declare; see sensor_faults.hpp.
   bool faults = false;
-  /// False: the colour camera is separate, 2.5 cm beside the depth camera.
+  /// True: colour images have the depth camera's view. False: the colour camera is 2.5 cm beside the depth
+  /// camera.
   bool registered_colour = true;
   /// False: frames have depth only, which is several times as fast.
   bool with_colour = true;
@@ -89,10 +90,11 @@ struct SimOptions {
 ///   (steady, slow, waits, leaves), noise (0: none, 1: as a Kinect), crate (0, 1: an additional crate; comes,
 ///   goes: after half of the frames), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
 ///   separate, none), faults (0, 1: the true cameras differ from those the frames declare).
-/// @throws Error naming a key or value that is unknown or out of range, and listing the valid ones
+/// @throws Error with the key or value that is unknown or out of range, and the list of valid ones
 SimOptions parse_sim_spec(std::string_view spec);
 
-/// Returns the shortest spec that gives `options` when parsed. The depth camera must be a scaled Kinect.
+/// Returns the shortest spec that parse_sim_spec() converts to `options`. The depth camera must be a result
+/// of kinect_of_width().
 std::string sim_spec(const SimOptions& options);
 
 /// Throws Error naming the field and the rule if a value is out of range.

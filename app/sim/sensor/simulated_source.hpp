@@ -1,4 +1,4 @@
-// simulated_source.hpp: a simulated Kinect in a procedurally made room, with ground truth for every frame.
+// simulated_source.hpp: a simulated Kinect in a procedural room, with ground truth for each frame.
 #pragma once
 #include <memory>
 #include <optional>
@@ -11,23 +11,23 @@ namespace roomradar {
 
 struct Room;
 
-/// Ground truth of the last frame.
+/// Ground truth of one frame. Images have the depth image's size.
 struct SimTruth {
   /// Exact depth along the pixel's centre ray, m; 0 if outside the sensor's range.
   DepthImage depth_m;
   /// 255 if the nearest surface is a moving object.
   MaskImage moved;
-  /// 0 for the room, otherwise 1 + index in SimOptions::movers. A crate that appears has the next number
-  /// after the moving objects.
+  /// 0 for the room, otherwise 1 + index in SimOptions::movers. A crate that appears has the number 1 +
+  /// SimOptions::movers.size().
   MaskImage mover;
-  /// 255 if a crate that disappeared would be the nearest surface.
+  /// 255 if a crate that has disappeared would be the nearest surface.
   MaskImage revealed;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Frames of a simulated Kinect. Frame i depends only on the options and on i, so rereading it gives
-/// identical pixels. World coordinates are the room's: z up, metres, floor at z = 0. A crate that appears or
-/// disappears is not among room()'s solids.
+/// Frames of a simulated Kinect. Frame i depends only on the options and on i, so reading it again gives
+/// identical pixels. The world frame is that of the room: z up, metres, floor at z = 0. room() does not
+/// contain a crate that appears or disappears.
 class SimulatedSource final : public FrameSource {
  public:
   /// Throws Error if the options are not valid.
@@ -35,7 +35,7 @@ class SimulatedSource final : public FrameSource {
   ~SimulatedSource() override;
 
   ReadResult next(Frame& frame) override;
-  /// Renders the frame of any index, at time index / rate, from another camera pose. Does not affect next().
+  /// Renders the scene at time index / rate_hz from the given camera pose. Does not affect next().
   void look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame);
   bool rewind() override;
   bool seek(std::int64_t index) override;

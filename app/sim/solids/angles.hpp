@@ -1,4 +1,4 @@
-// angles.hpp: the angle of a full turn.
+// angles.hpp: the angle of a full rotation.
 #pragma once
 #include <numbers>
 

@@ -1,4 +1,4 @@
-// counter_random.hpp: counter-based random numbers, determined by a seed and a position.
+// counter_random.hpp: counter-based random numbers, determined by a seed and a counter.
 #pragma once
 #include <cstdint>
 
@@ -20,8 +20,8 @@ inline std::uint64_t hash_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) 
 /// Maps a hash to a number in [0, 1).
 inline double unit_interval(std::uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1.0p-53; }
 
-/// Approximates a standard normal distribution by the sum of the hash's four 16-bit parts. Mean 0, variance
-/// 1, magnitude at most 3.47.
+/// Maps a hash to an approximately standard normal number, the scaled sum of the hash's four 16-bit parts.
+/// Mean 0, variance 1, magnitude at most 3.47.
 inline float gaussian(std::uint64_t hash) {
   const auto part = [hash](int i) { return static_cast<float>((hash >> (16 * i)) & 0xffffU); };
   constexpr float kMean = 4.0F * 32767.5F;
@@ -30,7 +30,7 @@ inline float gaussian(std::uint64_t hash) {
   return (part(0) + part(1) + part(2) + part(3) - kMean) / kDeviation;
 }
 
-/// Generates a short sequence of random numbers for one (seed, position).
+/// Generates a short sequence of random numbers, determined by a seed and a counter value (`position`).
 class CounterRandom {
  public:
   CounterRandom(std::uint64_t seed, std::uint64_t position) : state_(hash_of(seed, position)) {}

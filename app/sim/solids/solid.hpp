@@ -38,9 +38,9 @@ double signed_distance_m(const Solid& solid, const Eigen::Vector3d& p_world);
 /// Returns the unit outward normal, in the solid's frame, of the surface point nearest to p_solid.
 Eigen::Vector3d normal_local(const Solid& solid, const Eigen::Vector3d& p_solid);
 
-/// Returns the smallest t > 0 at which the ray origin + t * direction enters the solid from outside. Returns
-/// a negative number if the ray misses the solid or starts inside. Both arguments are in the solid's frame;
-/// the direction may have any length.
+/// Returns the smallest t > 0 at which the ray origin_solid + t * direction_solid enters the solid from
+/// outside. Returns a negative number if the ray misses the solid or starts inside. The direction may have
+/// any length > 0.
 double ray_entry_local(const Solid& solid, const Eigen::Vector3d& origin_solid,
                        const Eigen::Vector3d& direction_solid);
 

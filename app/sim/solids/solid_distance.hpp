@@ -17,12 +17,12 @@ struct Separation {
   Eigen::Vector3d point_b_world = Eigen::Vector3d::Zero();
 };
 
-/// Computes the distance between a and b, with an error of at most 1e-9 m and never too large. Source:
+/// Computes the distance between a and b. The result is at most 1e-9 m too small and never too large. Source:
 /// Gilbert, Johnson, Keerthi, IEEE Journal of Robotics and Automation 1988.
 Separation separation(const Solid& a, const Solid& b);
 
-/// Returns the least distance between `obstacles` and an object that consists of `parts`, at pose
-/// T_world_object. Returns enough_m if the distance is larger.
+/// Returns the distance between the nearest of `obstacles` and an object at T_world_object that consists of
+/// `parts`, or enough_m if the distance is larger.
 double clearance_m(std::span<const Solid> obstacles, std::span<const Solid> parts,
                    const Eigen::Isometry3d& T_world_object, double enough_m);
 

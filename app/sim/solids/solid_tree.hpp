@@ -16,8 +16,8 @@ struct RayHit {
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
 };
 
-/// A bounding volume hierarchy over solids. Stores only indices, so a copy of the tree works with a copy of
-/// the solids. All calls must pass the solids from which the tree was built, unchanged.
+/// A bounding volume hierarchy over solids. The tree stores only indices, so a copy of the tree works with a
+/// copy of the solids. All calls must pass the unchanged solids from which the tree was built, or a copy.
 class SolidTree {
  public:
   SolidTree() = default;
@@ -26,7 +26,7 @@ class SolidTree {
   /// Returns the least signed distance over the solids, m; infinity if there are none.
   [[nodiscard]] double signed_distance_m(const std::vector<Solid>& solids,
                                          const Eigen::Vector3d& p_world) const;
-  /// Returns the first surface that the ray enters.
+  /// Returns the first intersection at which the ray enters a solid.
   /// @param farthest  max distance, in units of the direction's length
   [[nodiscard]] std::optional<RayHit> cast(const std::vector<Solid>& solids,
                                            const Eigen::Vector3d& origin_world,
@@ -38,7 +38,7 @@ class SolidTree {
  private:
   struct Node {
     Eigen::AlignedBox3d bounds_world;
-    /// Index of a leaf's solid. -1 for an inner node; its children are the next node and node `second`.
+    /// Index of a leaf's solid. -1 for an inner node, whose children are the next node and node `second`.
     int solid = -1;
     int second = -1;
   };

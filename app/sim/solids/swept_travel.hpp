@@ -1,4 +1,4 @@
-// swept_travel.hpp: exact distance to contact of an object made of solids that moves in a straight line.
+// swept_travel.hpp: distance to contact of an object made of solids that moves in a straight line.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -8,9 +8,9 @@
 namespace roomradar {
 
 struct SweptTravel {
-  /// Distance to the first contact; equal to the limit if there is none.
+  /// Distance to the first contact; limit_m if there is none.
   double contact_distance_m = 0.0;
-  /// True if there is a contact within the limit.
+  /// True if there is a contact within limit_m.
   bool touches = false;
   /// Contact point on the obstacle, m.
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
@@ -18,9 +18,9 @@ struct SweptTravel {
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
 };
 
-/// Moves each part towards each obstacle by conservative advancement, until they touch or cannot touch any
-/// more. The error is below 1e-7 m, and the distance is never too large. Source: Mirtich, PhD thesis,
-/// Berkeley 1996, section 2.3.
+/// Moves each part towards each obstacle by conservative advancement until they touch or can no longer touch.
+/// The result is less than 1e-7 m too small and never too large. Source: Mirtich, PhD thesis, Berkeley 1996,
+/// section 2.3.
 /// @param parts            solids of the object, in its own frame; they may overlap
 /// @param T_world_object   start pose
 /// @param direction_world  unit direction of motion

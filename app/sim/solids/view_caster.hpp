@@ -1,4 +1,4 @@
-// view_caster.hpp: casts rays from one camera at solids, fast enough for every pixel.
+// view_caster.hpp: casts rays from one camera at solids, fast enough for one ray per pixel.
 #pragma once
 #include <span>
 #include <vector>
@@ -15,19 +15,20 @@ struct PixelHit {
   int solid = -1;
 };
 
-/// Bins solids into image tiles once per frame. A ray then tests only the solids of its tile, nearest first.
-/// A ray through a point outside the image tests all solids in front of the camera.
+/// Casts rays from one camera. prepare() assigns the solids to image tiles once per frame. A ray then tests
+/// only the solids of its tile, nearest first. A ray through a point outside the image tests all solids in
+/// front of the camera.
 class ViewCaster {
  public:
-  /// Bins the solids for this view. Ignores solids behind the camera. Reuses memory from earlier frames.
+  /// Assigns the solids to tiles. Ignores solids behind the camera. Reuses memory of earlier frames.
   void prepare(std::span<const Solid> solids, const Intrinsics& camera,
                const Eigen::Isometry3d& T_world_camera);
 
   /// Returns the first surface on the ray through image point (u, v).
   [[nodiscard]] PixelHit cast(double u_px, double v_px) const;
-  /// Returns the depth of one solid on the ray, ignoring all others; 0 if the ray misses it.
+  /// Returns the depth at which the ray enters one solid, ignoring all others; 0 if the ray misses the solid.
   [[nodiscard]] double depth_of(int solid, double u_px, double v_px) const;
-  /// Returns true if any solid on the ray is nearer than depth_m.
+  /// Returns true if the ray enters any solid at a depth below depth_m.
   [[nodiscard]] bool is_blocked(double u_px, double v_px, double depth_m) const;
   /// Returns the point at depth_m on the ray through (u, v), in the frame of a solid, m.
   [[nodiscard]] Eigen::Vector3d local_point(int solid, double u_px, double v_px, double depth_m) const;
@@ -38,7 +39,7 @@ class ViewCaster {
     Eigen::Matrix3d R_solid_camera;
     /// Camera centre in the solid's frame, m.
     Eigen::Vector3d camera_solid;
-    /// Lower bound of the depth of the solid's points.
+    /// Lower bound of the depths of the solid's points.
     double nearest_m;
     /// Range of columns of tiles in which the solid may appear.
     int column_begin, column_end;

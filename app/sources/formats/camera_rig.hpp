@@ -1,4 +1,5 @@
-// camera_rig.hpp: intrinsics and relative pose of a depth and a colour camera, and their files.
+// camera_rig.hpp: intrinsics and relative pose of a depth and a colour camera, and the files that contain
+// them.
 #pragma once
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -12,7 +13,7 @@ struct CameraRig {
   Intrinsics depth_camera;
   /// Intrinsics of the colour camera; unset if there is no colour.
   std::optional<Intrinsics> colour_camera;
-  /// Transform of points from the depth camera's frame to the colour camera's.
+  /// Transforms points from the depth camera's frame to the colour camera's frame.
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
   /// True if lens and depth errors were removed from the frames before recording.
   bool was_calibrated = false;
@@ -24,20 +25,21 @@ struct CameraRig {
 ///    "colour": {... the same fields; absent if there is no colour},
 ///    "T_colour_depth": [[r, r, r, tx], [r, r, r, ty], [r, r, r, tz], [0, 0, 0, 1]],       (metres)
 ///    "calibrated": true}                           (absent if frames are as the device delivered them)
-/// Throws Error naming the file, and the field if a field is missing, of the wrong type or impossible.
+/// Throws Error with the file's name, and with the name of a field that is missing, has the wrong type or an
+/// impossible value.
 CameraRig read_camera_file(const std::filesystem::path& path);
-/// Writes camera.json. Throws Error naming the file if it cannot be written.
+/// Writes camera.json. Throws Error with the file's name if it cannot be written.
 void write_camera_file(const CameraRig& rig, const std::filesystem::path& path);
 
-/// Reads camera-intrinsics.txt, the 3 x 3 matrix fx 0 cx / 0 fy cy / 0 0 1, for images of the given size. The
-/// file does not contain the image size. A principal point farther than a fifth of the image from the image
-/// centre is rejected, since the file then belongs to another size. Throws Error naming the file and the
-/// problem.
+/// Reads camera-intrinsics.txt, the 3 x 3 matrix fx 0 cx / 0 fy cy / 0 0 1. The file does not contain the
+/// image size, which callers pass. Throws Error with the file's name and the problem if the file is invalid.
+/// Also throws Error if the principal point is farther from the image centre than a fifth of the image size,
+/// since the file then belongs to another image size.
 Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_px, int height_px);
 
-/// Returns the rotation nearest to `almost` (Frobenius norm, by SVD). Returns nothing if `almost` has an
-/// entry that is not finite, differs from that rotation by more than 0.01 in any entry, or contains a
-/// reflection.
+/// Returns the rotation nearest to `almost` in the Frobenius norm, computed by SVD. Returns nullopt if
+/// `almost` has an entry that is not finite or is more than 0.01 from the rotation's, or if `almost` contains
+/// a reflection.
 std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& almost);
 
 }  // namespace roomradar

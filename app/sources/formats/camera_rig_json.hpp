@@ -1,4 +1,4 @@
-// camera_rig_json.hpp: reads and writes the JSON that all files with cameras share.
+// camera_rig_json.hpp: reads and writes the JSON fields that all files with cameras have in common.
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,18 +9,18 @@
 
 namespace roomradar {
 
-/// Reads the whole file, at most 1 MiB. Throws Error naming the file if that fails.
+/// Reads the whole file, at most 1 MiB. Throws Error with the file's name if it cannot be read or is larger.
 std::string read_json_text(const std::filesystem::path& path);
-/// Parses a JSON file and checks its fields "format" and "version" against the arguments. Throws Error naming
-/// the file and the problem.
+/// Parses a JSON file. Throws Error, with the file's name and the problem, if it is not JSON or its fields
+/// "format" and "version" differ from the arguments.
 nlohmann::json parse_json_of_format(const std::filesystem::path& path, const char* format, int version);
-/// Writes a JSON file. Throws Error naming the file if it cannot be written.
+/// Writes a JSON file. Throws Error with the file's name if it cannot be written.
 void write_json(const nlohmann::json& root, const std::filesystem::path& path);
 
-/// Returns a required field. Throws Error if it is missing.
-/// @param where  name of the file, or of the part of it that contains the object, for the message
+/// Returns the field `name`. Throws Error if it is missing.
+/// @param where  for the error message: name of the file, or of the part of the file that contains `object`
 const nlohmann::json& json_field(const nlohmann::json& object, const char* name, const std::string& where);
-/// Returns a required number. Throws Error if the field is missing or not a number.
+/// Returns the number in field `name`. Throws Error if the field is missing or not a number.
 double json_number(const nlohmann::json& object, const char* name, const std::string& where);
 
 /// Returns the field "calibrated": true if lens and depth errors were removed from the frames before
@@ -33,8 +33,8 @@ bool said_calibrated(const Json& root, const std::string& where) {
   return said->template get<bool>();
 }
 
-/// Reads the fields depth, colour and T_colour_depth of camera.json. Throws Error, naming the field, if a
-/// field is missing, of the wrong type or impossible.
+/// Reads the fields depth, colour and T_colour_depth of camera.json. Throws Error with the name of a field
+/// that is missing, has the wrong type or an impossible value.
 CameraRig rig_from_json(const nlohmann::json& root, const std::string& where);
 /// Returns the fields depth, colour and T_colour_depth of camera.json.
 nlohmann::json json_of(const CameraRig& rig);

@@ -14,14 +14,14 @@ struct FrameRange {
   std::int64_t last = 0;
 };
 
-/// Parses "A:B", two integers with 0 <= A <= B. Otherwise throws Error that quotes `text` and gives an
-/// example.
+/// Parses "A:B", two integers with 0 <= A <= B. Throws Error, with `text` and an example, for any other text.
 FrameRange parse_frame_range(std::string_view text);
 
-/// Returns a source that delivers only frames first to last of `source`, with their original index and stamp.
-/// Unreadable frames count too. Also works for sources of unknown length, since nothing is read ahead.
-/// @throws Error with the number of frames if the range exceeds the recording: immediately if the length is
-///         known, otherwise from next() at the premature end. Also throws unless 0 <= first <= last.
+/// Returns a source that delivers only the frames `first` to `last` of `source`, with their original indices
+/// and stamps. Unreadable frames are counted too. Works for sources of unknown length, since nothing is read
+/// ahead.
+/// @throws Error unless 0 <= first <= last, or if the range exceeds the recording. If the recording's length
+///         is unknown, next() throws that error at the recording's end.
 std::unique_ptr<FrameSource> limit_frames(std::unique_ptr<FrameSource> source, std::int64_t first,
                                           std::int64_t last);
 

@@ -17,16 +17,16 @@ enum class DepthEncoding {
   kKinectRaw,
 };
 
-/// Reads a depth image, converted to metres (0: invalid). Throws Error naming the file if it is missing,
-/// truncated, of another type, or cannot be decoded.
+/// Reads a depth image and converts it to metres; 0: invalid. Throws Error with the file's name if the file
+/// is missing, truncated, of another type, or cannot be decoded.
 void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, DepthImage& depth_m);
 
 /// Reads a colour or grey image (PNG, JPEG or PPM). Throws Error as read_depth_file() does.
 void read_colour_file(const std::filesystem::path& path, ColourImage& colour);
 
-/// Writes the nearest representable depth of each pixel. Invalid depth, and depth outside the encoding's
-/// range, is written as the encoding's invalid value: 0 or 2047. Throws Error naming the file if it cannot be
-/// written completely (disk full).
+/// Writes a depth image, with each depth rounded to the nearest one that the encoding can represent. Invalid
+/// depth, and depth outside the encoding's range, is written as the encoding's invalid value, 0 or 2047.
+/// Throws Error with the file's name if it cannot be written completely.
 void write_depth_file(const DepthImage& depth_m, DepthEncoding encoding, const std::filesystem::path& path);
 
 /// Writes a lossless image: PPM if the path ends in .ppm, else PNG. Throws Error as write_depth_file() does.
@@ -35,8 +35,8 @@ void write_colour_file(const ColourImage& colour, const std::filesystem::path& p
 /// Writes an 8 bit grey PNG. Throws Error as write_depth_file() does.
 void write_mask_file(const MaskImage& mask, const std::filesystem::path& path);
 
-/// Writes all 32 bits of each pixel's float, as a 16 bit PNG of twice the height. The top half has the upper
-/// 16 bits, the bottom half the lower 16 bits.
+/// Writes a depth image without loss as a 16 bit PNG of twice the height. The top half contains the upper 16
+/// bits of each pixel's float, the bottom half the lower 16 bits.
 void write_exact_depth_file(const DepthImage& depth_m, const std::filesystem::path& path);
 /// Reads an image that write_exact_depth_file() wrote.
 void read_exact_depth_file(const std::filesystem::path& path, DepthImage& depth_m);

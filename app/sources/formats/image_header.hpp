@@ -12,7 +12,8 @@ struct ImageHeader {
   ImageKind kind = ImageKind::kPng;
   int width_px = 0;
   int height_px = 0;
-  /// Number of channels: 1 grey, 3 colour (including palette images); 2 and 4 are the same with transparency.
+  /// Number of channels. 1: grey; 3: colour, including palette images; 2 and 4: grey and colour with
+  /// transparency.
   int channels = 0;
   /// Bits per channel.
   int bits = 0;
@@ -20,10 +21,11 @@ struct ImageHeader {
   std::size_t pixels_at = 0;
 };
 
-/// Recognises a PNG, JPEG, binary PGM (P5) or PPM (P6) by its content. Checks as far as possible without
-/// decoding that the file is complete: PNG and JPEG by their end marks, PGM and PPM by their length.
-/// @param name  file name for messages
-/// @throws Error if the file is empty, none of these types, truncated, or wider or higher than 16384 px
+/// Reads the header of a PNG, JPEG, binary PGM (P5) or binary PPM (P6), recognised by its content. Checks
+/// that the file is complete without decoding it: PNG and JPEG by their end markers, PGM and PPM by their
+/// length.
+/// @param name  file name for error messages
+/// @throws Error if the file is empty, of another type, truncated, or wider or higher than 16384 px
 ImageHeader read_image_header(std::span<const std::uint8_t> bytes, const std::string& name);
 
 /// Returns a description, for example "640 x 480 16 bit grey PNG".

@@ -9,25 +9,26 @@ namespace roomradar {
 
 /// Raw value of a pixel without depth.
 constexpr std::uint16_t kRawNoDepth = 2047;
-/// Clock rate of the 32 bit image stamps, which wrap after 71.6 s.
+/// Clock rate of the images' 32 bit timestamps, which wrap after 71.6 s.
 constexpr double kKinectTicksPerSecond = 60e6;
 /// Accelerometer scale (KXSD9 data sheet; libfreenect.h).
 constexpr double kKinectCountsPerG = 819.0;
 /// Magnitude of 1 g.
 constexpr double kStandardGravity_m_s2 = 9.80665;
-/// Greatest valid raw value: 9.88 m. Beyond it one raw step is more than 0.5 m.
+/// Greatest valid raw value, 9.88 m. For greater values, one raw step is more than 0.5 m.
 constexpr std::uint16_t kRawFarthest = 1057;
 
 /// Converts a raw 11 bit disparity to depth along the optical axis, m: 0.1236 tan(raw / 2842.5 + 1.1863).
-/// Depth increases with raw from 0.31 m at 0 to 9.88 m at 1057; above 1057 the result is 0 (invalid). Source:
-/// Stephane Magnenat's fit, OpenKinect wiki, "Imaging Information". Nicolas Burrus' formula, 1 / (3.331 -
-/// 0.003071 raw), is also common. We compared both on our test recordings with the cameras of
-/// nominal_rig.cpp. His formula gives 94 to 95 degrees for the corner of two concrete walls; this formula
-/// gives 89 to 90 degrees and flatter walls.
+/// Depth increases with `raw` from 0.31 m at 0 to 9.88 m at 1057. Above 1057, the result is 0 (invalid).
+/// Source: Stephane Magnenat's fit, OpenKinect wiki, "Imaging Information". Nicolas Burrus' formula, 1 /
+/// (3.331 - 0.003071 raw), is also common. In our test recordings, with the cameras of nominal_rig.cpp,
+/// Burrus' formula gives 94 to 95 degrees between two perpendicular concrete walls. Magnenat's formula gives
+/// 89 to 90 degrees and flatter walls.
 float raw_depth_m(std::uint16_t raw);
 
-/// Returns the raw disparity with the nearest depth. Returns kRawNoDepth for 0 and for depth more than half a
-/// step outside the range. raw_from_depth_m(raw_depth_m(raw)) == raw for raw <= kRawFarthest.
+/// Returns the raw disparity whose depth is nearest to depth_m. Returns kRawNoDepth for depth 0, and for
+/// depths outside the range by more than half a raw step. raw_from_depth_m(raw_depth_m(raw)) == raw for raw
+/// <= kRawFarthest.
 std::uint16_t raw_from_depth_m(float depth_m);
 
 /// Factory calibration of a Kinect's depth measurement. Lengths are in centimetres, as the device stores
@@ -35,7 +36,7 @@ std::uint16_t raw_from_depth_m(float depth_m);
 struct KinectZeroPlane {
   /// Depth of the reference plane, at which the disparity is const_shift_px.
   double distance_cm = 120.0;
-  /// Width, on the reference plane, of one of the camera's 1280 columns.
+  /// Width of one of the camera's 1280 pixel columns, measured on the reference plane.
   double pixel_cm = 0.1042;
   /// Baseline from the depth camera to the projector.
   double emitter_cm = 7.5;
@@ -43,24 +44,25 @@ struct KinectZeroPlane {
   double const_shift_px = 200.0;
 };
 
-/// Converts a raw 11 bit disparity to depth (m) with the device's own constants. Returns 0 if it is invalid
-/// or outside 0.2 to 10 m. Source: libfreenect, registration.c, freenect_raw_to_mm, without its rounding to
-/// millimetres.
+/// Converts a raw 11 bit disparity to depth (m) with the device's factory calibration. Returns 0 if the
+/// disparity is invalid or the depth outside 0.2 to 10 m. Source: libfreenect, registration.c,
+/// freenect_raw_to_mm, without its rounding to millimetres.
 float raw_depth_m(std::uint16_t raw, const KinectZeroPlane& zero_plane);
 
 /// Computes the unit direction of gravity in the depth camera's frame (x right, y down, z forward) from an
-/// accelerometer reading in g. The accelerometer's axes are x left, y up, z forward; at rest it measures the
-/// support force, opposite to gravity, so the direction is (x, y, -z), normalised. Returns nothing if the
-/// magnitude is outside 0.8 to 1.2 g, since the device then moves or there was no measurement.
+/// accelerometer reading in g. The accelerometer's axes are x left, y up, z forward. At rest, the
+/// accelerometer measures the support force, opposite to gravity; the result is therefore (x, y, -z),
+/// normalised. Returns nullopt if the magnitude is outside 0.8 to 1.2 g, since the device then accelerates or
+/// has no reading.
 std::optional<Eigen::Vector3d> down_from_acceleration(const Eigen::Vector3d& acceleration_g);
 
-/// Returns the accelerometer reading at rest for this gravity direction, g; the inverse of
+/// Returns the accelerometer reading (g) at rest for a direction of gravity. Inverse of
 /// down_from_acceleration().
 Eigen::Vector3d acceleration_at_rest_g(const Eigen::Vector3d& down_camera);
 
-/// Converts the device's stamps, which wrap, to seconds. Successive stamps must be less than 35 s apart.
-/// Depth and colour share one clock: pass the stamps of both to the same object, in order of arrival. The
-/// device's clock starts over when it is unplugged and plugged in again; see restart().
+/// Converts the device's timestamps, which wrap, to seconds. Successive stamps must be less than 35 s apart.
+/// Depth and colour images share one clock, so pass the stamps of both to the same object, in order of
+/// arrival. The device's clock is reset when the device is unplugged; see restart().
 class KinectClock {
  public:
   double seconds(std::uint32_t ticks) {
@@ -71,7 +73,7 @@ class KinectClock {
     last_ticks_ = ticks;
     return static_cast<double>(total_ticks_) / kKinectTicksPerSecond;
   }
-  /// Makes the next stamp correspond to the time at_s, whatever its value.
+  /// Sets the time of the next stamp to at_s, whatever the stamp's value.
   void restart(double at_s) {
     last_ticks_.reset();
     restart_ticks_ = std::llround(at_s * kKinectTicksPerSecond);

@@ -24,15 +24,15 @@ struct ImageSize {
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// Returns published or measured intrinsics for a kind of recording, scaled to the images' width. If the
-/// images' aspect ratio differs from that of the published images, rows are assumed to be cropped equally at
-/// top and bottom.
+/// Returns default intrinsics, published or measured by us, for a kind of recording, scaled to the images'
+/// width. If the images' aspect ratio differs from that of the calibrated images, equal numbers of rows are
+/// assumed to be cropped at top and bottom.
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour);
 
-/// Returns the cameras of the recording in `folder`. The depth camera is the first that exists of
-/// `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt (depth camera only), and
-/// nominal_rig(). Throws Error with both sizes and a remedy if the cameras do not match the images' sizes, or
-/// if a file is invalid.
+/// Returns the cameras of the recording in `folder`. Intrinsics come from the first of these sources that
+/// exists: `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt (depth camera only), and
+/// nominal_rig(). Throws Error if a file is invalid, or, with both sizes and a remedy, if a camera's size
+/// differs from the image size.
 CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
                            const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
                            std::optional<ImageSize> colour);

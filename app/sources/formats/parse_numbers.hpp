@@ -10,11 +10,11 @@ namespace roomradar {
 /// Splits `line` at spaces, tabs and carriage returns.
 std::vector<std::string_view> split_words(std::string_view line);
 
-/// Parses `word` as a number; returns nothing unless all of it is a number. Accepts NaN and infinities in the
-/// spelling of C and of Microsoft (nan, inf, `-1.#IND`, `1.#QNAN`, `1.#INF`).
+/// Parses `word` as a number. Returns nullopt unless the whole word is a number. Accepts NaN and infinity in
+/// the spellings of C (nan, inf) and Microsoft (`-1.#IND`, `1.#QNAN`, `1.#INF`).
 std::optional<double> parse_number(std::string_view word);
 
-/// Parses `word` as an integer; returns nothing unless all of it is an integer.
+/// Parses `word` as an integer. Returns nullopt unless the whole word is an integer.
 std::optional<std::int64_t> parse_whole_number(std::string_view word);
 
 }  // namespace roomradar

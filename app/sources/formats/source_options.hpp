@@ -19,27 +19,26 @@ enum class KinectDepth {
   kRegistered,
 };
 
-/// Prints a line on stderr, preceded by a newline, so it does not continue a progress bar's line.
+/// Prints a line on stderr. Starts with a newline, since a progress bar may occupy the current line.
 inline void say_on_stderr(const std::string& sentence) {
   std::fprintf(stderr, "\nroomradar: %s\n", sentence.c_str());
 }
 
 struct SourceOptions {
-  /// Intrinsics of the depth camera. Override those in the recording's files and the published ones of its
-  /// format. Must match the depth image's size. If colour is registered to depth (TUM, numbered folders
-  /// without camera.json), the colour camera is derived from them.
+  /// Intrinsics of the depth camera. They replace those in the recording's files and the defaults of its
+  /// format. Their size must match the depth image's. If depth and colour have the same view (TUM and
+  /// numbered folders without camera.json), the colour camera's intrinsics are derived from them.
   std::optional<Intrinsics> depth_camera;
   /// Depth mode of a live Kinect.
   KinectDepth kinect_depth = KinectDepth::kRaw;
-  /// True: frames of a live device are queued until fetched, as far as memory allows; for a scan, which needs
-  /// every frame. False: only the newest frame is kept, for live display.
+  /// True: up to 120 frames of a live device are queued, for a scan, which needs every frame. False: only the
+  /// newest frame is kept, for live display.
   bool keep_all = false;
-  /// True: ignores a calibration.json beside a recording, so frames stay as the device delivered them.
+  /// True: a calibration.json beside a recording is ignored, so frames are delivered as recorded.
   bool as_recorded = false;
-  /// Time limit, s: a live device that has sent no depth for this long, despite repeated restarts, is given
-  /// up.
+  /// Max time without depth images from a live device, despite restarts, before next() throws Error, s.
   double device_timeout_s = 60.0;
-  /// Receives status messages about a live device. Called from another thread while the device is read.
+  /// Receives status messages about a live device. Called from the device's thread.
   std::function<void(const std::string&)> say = say_on_stderr;
 };
 

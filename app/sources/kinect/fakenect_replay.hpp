@@ -1,5 +1,5 @@
-// fakenect_replay.hpp: prepares a recording for replay by fakenect (libfreenect's replay library), which does
-// not check its files.
+// fakenect_replay.hpp: prepares a recording for replay by fakenect, libfreenect's replay library, which does
+// not check files.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -11,14 +11,14 @@ namespace roomradar {
 
 /// Environment variable that names the recording to replay.
 inline constexpr const char* kFakenectPath = "FAKENECT_PATH";
-/// Returns the folder that FAKENECT_PATH names if fakenect's library is loaded instead of libfreenect;
-/// fakenect then replays that recording in place of a device. Returns nothing otherwise, even if the variable
-/// is set.
+/// Returns the folder in FAKENECT_PATH if fakenect is loaded instead of libfreenect. fakenect then replays
+/// the folder's recording in place of a device. Returns nullopt if libfreenect is loaded, even if the
+/// variable is set.
 std::optional<std::filesystem::path> replayed_folder();
 
-/// Protects fakenect from broken files: it reads past the end of a truncated image, and ends the process if a
-/// file is missing. While this object exists, a recording with broken files is replayed from a folder of
-/// links to the intact ones.
+/// Protects the process from broken files: fakenect reads past the end of a truncated image, and exits if a
+/// file is missing. While a FakenectReplay exists, a recording with broken files is replayed from a temporary
+/// folder of links to the intact files.
 class FakenectReplay {
  public:
   /// Throws Error if INDEX.txt cannot be read or lists no intact depth image.
@@ -27,7 +27,8 @@ class FakenectReplay {
   FakenectReplay(const FakenectReplay&) = delete;
   FakenectReplay& operator=(const FakenectReplay&) = delete;
 
-  /// Returns the problem of each omitted depth image, by the image's index among all depth images, from 0.
+  /// Returns the problem of each omitted depth image. Keys are indices among all depth images of the
+  /// recording, from 0.
   [[nodiscard]] const std::map<std::int64_t, std::string>& broken() const { return broken_; }
 
  private:

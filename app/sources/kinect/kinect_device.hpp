@@ -13,18 +13,18 @@
 
 namespace roomradar {
 
-/// Callbacks that KinectDevice::serve() invokes. Images are in the device's own memory; stamps are the 32 bit
-/// stamps of its clock.
+/// Callbacks of KinectDevice::serve(). Images are in the device's buffers; stamps are the 32 bit stamps of
+/// its clock.
 struct KinectListener {
-  /// Called per depth image: 640 x 480 values in the chosen KinectDepth mode. Any other size is a broken
-  /// image.
+  /// Called per depth image, with 640 x 480 values in the requested KinectDepth mode. Another number of
+  /// values means a broken image.
   std::function<void(std::span<const std::uint16_t> pixels, std::uint32_t ticks)> on_depth;
-  /// Called per colour image: 640 x 480 pixels of red, green and blue.
+  /// Called per colour image, with 640 x 480 pixels of red, green and blue.
   std::function<void(std::span<const std::uint8_t> bytes, std::uint32_t ticks)> on_colour;
 };
 
-/// An open device that sends images; the destructor stops and closes it. Not thread safe: all calls come from
-/// one thread.
+/// An open device that sends images. The destructor stops and closes the device. Not thread safe: all calls
+/// must come from one thread.
 class KinectDevice {
  public:
   KinectDevice() = default;
@@ -32,24 +32,24 @@ class KinectDevice {
   KinectDevice& operator=(const KinectDevice&) = delete;
   virtual ~KinectDevice() = default;
 
-  /// Passes images that have arrived to the listener. Waits up to `patience_s` if there are none. Returns
-  /// false if the device has gone or its replay has ended.
+  /// Passes images that have arrived to the listener. Waits up to `patience_s` for an image. Returns false if
+  /// the device was disconnected or its replay has ended.
   virtual bool serve(double patience_s) = 0;
-  /// Reads the device's accelerometer. Must not be called by the listener.
+  /// Reads the device's accelerometer, for acceleration_g(). Must not be called by the listener.
   virtual void ask_acceleration() = 0;
-  /// Returns the last accelerometer reading, g, or nothing if there is none.
+  /// Returns the last accelerometer reading, g, or nullopt if there is none.
   [[nodiscard]] virtual std::optional<Eigen::Vector3d> acceleration_g() const = 0;
-  /// Returns the camera's serial number, or an empty string if unknown. It stays the same after the device
-  /// was unplugged and plugged in again.
+  /// Returns the camera's serial number, which identifies the device after it was unplugged, or an empty
+  /// string if unknown.
   [[nodiscard]] virtual std::string serial() const = 0;
-  /// Returns the device's constants, or nothing if unknown.
+  /// Returns the device's factory calibration, or nullopt if unknown.
   [[nodiscard]] virtual std::optional<KinectConstants> constants() const = 0;
 };
 
 struct KinectRequest {
   /// Index among the connected devices, from 0.
   int number = 0;
-  /// Serial number; if not empty, selects the device with this number, whatever its index.
+  /// Serial number. If not empty, selects the device instead of `number`.
   std::string serial;
   KinectDepth depth = KinectDepth::kRaw;
   KinectListener listener;

@@ -1,4 +1,5 @@
-// kinect_feed.hpp: reads and pairs a Kinect's images in a thread, and reopens the device if it stops sending.
+// kinect_feed.hpp: reads and pairs a Kinect's images in a thread, and reopens the device if it stops sending
+// images.
 #pragma once
 #include <memory>
 #include <optional>
@@ -11,9 +12,9 @@
 namespace roomradar {
 
 /// Reads the device in a thread for as long as the object exists. If the device sends no depth image for
-/// silence_s, or disappears, the feed reports that through config.say and reopens the device until it
-/// responds. Frame numbers and stamps continue across the gap; stamps advance by the elapsed host time. A
-/// device that sends depth but no colour is reopened once, then used without colour.
+/// config.silence_s, or is disconnected, the feed calls config.say and reopens the device until it responds.
+/// Frame numbers continue across such a gap, and stamps advance by the elapsed host time. A device that sends
+/// depth but no colour is reopened once, then used without colour.
 class KinectFeed {
  public:
   using Take = KinectQueue::Take;
@@ -25,10 +26,10 @@ class KinectFeed {
   KinectFeed(const KinectFeed&) = delete;
   KinectFeed& operator=(const KinectFeed&) = delete;
 
-  /// Moves the next frame into `frame`, whose memory is reused. Waits up to `wait_s` for a frame.
+  /// Moves the next frame into `frame` and reuses the memory of `frame`. Waits up to `wait_s` for a frame.
   Take take(KinectFrame& frame, double wait_s);
 
-  /// Returns the constants of the device as first opened.
+  /// Returns the factory calibration of the device that was opened first.
   [[nodiscard]] const std::optional<KinectConstants>& constants() const { return constants_; }
 
  private:

@@ -13,9 +13,9 @@
 
 namespace roomradar {
 
-/// A depth image with its colour image, or a problem that makes the frame unusable.
+/// A depth image with its colour image, or the error message of an unusable frame.
 struct KinectFrame {
-  /// Index of the depth image, from 0; broken and dropped images count too.
+  /// Index of the depth image, from 0; broken and dropped images are counted too.
   std::int64_t number = 0;
   double stamp_s = 0.0;
   /// Raw values, 640 x 480.
@@ -26,23 +26,24 @@ struct KinectFrame {
   double colour_after_depth_s = 0.0;
   /// Unit direction of gravity in the depth camera's frame, if known.
   std::optional<Eigen::Vector3d> down_camera{};
-  /// Error message if the frame is unusable; then only `number` is valid besides. Empty otherwise.
+  /// Error message if the frame is unusable; the other fields except `number` are then invalid. Empty
+  /// otherwise.
   std::string fault{};
 };
 
 struct KinectFeedConfig {
-  /// Name of the source, for messages.
+  /// Name of the source in messages.
   std::string name;
   /// Index among the connected devices.
   int number = 0;
   KinectDepth depth = KinectDepth::kRaw;
-  /// Max number of queued frames; if the queue is full, the oldest frame is dropped. A replay waits for the
-  /// reader instead.
+  /// Max number of queued frames. If the queue is full, the oldest frame of a live device is dropped; a
+  /// replay waits for the reader instead.
   std::size_t most_waiting = 1;
-  /// True if fakenect replays a recording: the feed ends with the replay, never treats a pause as silence,
-  /// and waits for its reader.
+  /// True if fakenect replays a recording. The feed then ends with the replay, waits for its reader, and does
+  /// not reopen the device after a pause.
   bool is_replay = false;
-  /// Depth images that the replayed device does not send but that count as frames: error message by index.
+  /// Error messages, by index, of depth images that are omitted from the replay but count as frames.
   std::map<std::int64_t, std::string> broken{};
   /// Time without a depth image after which the device is closed and opened again.
   double silence_s = 1.0;
@@ -50,7 +51,7 @@ struct KinectFeedConfig {
   double retry_s = 0.5;
   /// Time limit of the first opening.
   double patience_s = 10.0;
-  /// Time limit of closing the device; a device that hangs longer is abandoned.
+  /// Time limit of closing the device. If closing takes longer, the device's thread is abandoned.
   double stop_s = 2.0;
   /// Receives status messages.
   std::function<void(const std::string&)> say = [](const std::string&) {};

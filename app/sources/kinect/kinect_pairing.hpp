@@ -16,8 +16,8 @@
 
 namespace roomradar {
 
-/// Makes frames from the images of a device, in the order of the depth images. An unusable image becomes a
-/// frame with an error message. Used by the device's thread only.
+/// Makes frames from the images of a device, in the order of the depth images. An unusable depth image
+/// becomes a frame with an error message. Used by the device's thread only.
 class KinectPairing {
  public:
   /// @param config  must outlive the pairing
@@ -25,14 +25,14 @@ class KinectPairing {
   KinectPairing(const KinectFeedConfig& config, std::function<void(KinectFrame)> put)
       : config_(config), put_(std::move(put)) {}
 
-  /// Makes the stamps continue after a gap, by the host's time. Call before the device is opened again, since
-  /// its first images may arrive during the opening.
+  /// Makes stamps advance by the elapsed host time across a gap. Call before the device is reopened, since
+  /// its first images may arrive while it is being opened.
   void restart_clock();
   /// Adds a depth image. Returns false if its size is wrong.
   /// @param pixels          640 x 480 values
   /// @param ticks           stamp of the device's clock
-  /// @param memory          returns a frame whose memory is reused
-  /// @param acceleration_g  latest reading of the accelerometer, g, camera axes
+  /// @param memory          returns a frame with memory to reuse
+  /// @param acceleration_g  latest accelerometer reading, g, in the accelerometer's axes
   bool add_depth(std::span<const std::uint16_t> pixels, std::uint32_t ticks,
                  const std::function<KinectFrame()>& memory,
                  const std::optional<Eigen::Vector3d>& acceleration_g);
@@ -40,9 +40,9 @@ class KinectPairing {
   /// @param bytes  640 x 480 x 3 values
   /// @param ticks  stamp of the device's clock
   bool add_colour(std::span<const std::uint8_t> bytes, std::uint32_t ticks);
-  /// Passes on the frames whose pairs are decided.
+  /// Passes all frames with decided pairs to `put`.
   void hand_over();
-  /// Passes on all remaining frames. Call when the device has been closed, so no image follows.
+  /// Passes all remaining frames to `put`. Call after the device has been closed.
   void finish();
 
  private:
@@ -54,7 +54,7 @@ class KinectPairing {
 
   double stamp_of(std::uint32_t ticks);
   void pass_over_broken();
-  /// Queues an error among the depth images that wait for colour, so the frames keep their order.
+  /// Adds an error to the depth images that wait for colour, so frames keep their order.
   void fail(std::int64_t number, const std::string& what);
   [[nodiscard]] KinectFrame broken_frame(std::int64_t number, const std::string& what) const;
   void put_broken();

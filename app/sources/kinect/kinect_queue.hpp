@@ -12,7 +12,8 @@
 
 namespace roomradar {
 
-/// Queue of frames, and the state that both threads share. Thread safe.
+/// Queue of frames between a Kinect's thread and the reader's thread, with the state that both share. Thread
+/// safe.
 class KinectQueue {
  public:
   enum class Take { kFrame, kNothing, kEnd };
@@ -22,26 +23,26 @@ class KinectQueue {
 
   // ---- called by the device's thread ----
 
-  /// Reports that the device is open.
+  /// Tells the reader that the device is open.
   void announce(const KinectDevice& device);
-  /// Reports that the device cannot be opened.
+  /// Tells the reader that the device cannot be opened.
   void refuse(const std::string& fault);
-  /// Reports that no frame follows.
+  /// Tells the reader that no frame follows.
   void end();
-  /// Queues a frame. Returns true if the queue was full, so its oldest frame was dropped.
+  /// Queues a frame. Returns true if the queue was full and its oldest frame was dropped.
   bool put(KinectFrame frame);
   /// Returns an empty frame, with reused memory if available.
   KinectFrame empty_frame();
   /// Returns true if the reader has stopped the feed. During a replay, first waits until the reader has
   /// fetched the queued frames.
   bool must_stop();
-  /// Waits for wait_s and returns false. Returns true immediately if the reader stops the feed.
+  /// Waits for wait_s and returns false. Returns true as soon as the reader stops the feed.
   bool stopped_within(double wait_s);
 
   // ---- called by the reader's thread ----
 
-  /// Waits for the first opening, up to config.patience_s, and returns the device's constants. Throws Error
-  /// if the opening failed.
+  /// Waits up to config.patience_s until the device is open, and returns its factory calibration. Throws
+  /// Error if the device could not be opened.
   std::optional<KinectConstants> wait_for_opening();
   /// Moves the next frame into `frame`. Waits up to wait_s for a frame.
   Take take(KinectFrame& frame, double wait_s);
@@ -49,7 +50,7 @@ class KinectQueue {
   bool stop();
 
  private:
-  /// Stores a fetched frame's memory for reuse, unless the frame has an error message and thus no memory.
+  /// Stores the memory of `frame` for reuse, unless the frame has an error message and thus no memory.
   void keep_memory(KinectFrame frame);
 
   const KinectFeedConfig& config_;

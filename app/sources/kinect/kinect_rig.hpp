@@ -1,4 +1,4 @@
-// kinect_rig.hpp: cameras and depth conversion from the factory calibration stored in a Kinect.
+// kinect_rig.hpp: cameras and depth conversion from a Kinect's stored factory calibration.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -10,25 +10,26 @@
 
 namespace roomradar {
 
-/// A correspondence between the cameras: the depth camera sees a point at `depth_px`, `depth_m` along its
-/// optical axis; the colour camera sees the same point at `colour_px`.
+/// A correspondence between the cameras. The depth camera sees a point at pixel `depth_px` with depth
+/// `depth_m`; the colour camera sees the same point at pixel `colour_px`.
 struct SeenByBoth {
   Eigen::Vector2d depth_px;
   double depth_m = 0.0;
   Eigen::Vector2d colour_px;
 };
 
+/// Factory calibration stored in a Kinect.
 struct KinectConstants {
   KinectZeroPlane zero_plane;
-  /// Correspondences, distributed over the image and the depth range.
+  /// Correspondences of the device's registration, distributed over the image and the depth range.
   std::vector<SeenByBoth> seen_by_both;
 };
 
-/// Fits the colour camera to the device's own registration by least squares; keeps `nominal`'s depth camera.
-/// Fits the focal length (one for both axes), the principal point, the rotation, and the translation along x.
-/// A weak prior pulls each parameter to its nominal value, since the parameters partly compensate for one
-/// another. Returns nothing if the RMS error is above 3 px, since the device's constants then have another
-/// meaning than assumed.
+/// Fits the colour camera to correspondences of the device's registration by least squares. The depth camera
+/// is that of `nominal`. Parameters are one focal length for both axes, the principal point, the rotation,
+/// and the translation along x. Since the parameters partly compensate for each other, a weak prior pulls
+/// each of them towards its value in `nominal`. Returns nullopt if the RMS error is above 3 px, since the
+/// factory calibration is then not what this function assumes.
 std::optional<CameraRig> fit_kinect_rig(const std::vector<SeenByBoth>& seen_by_both,
                                         const CameraRig& nominal);
 

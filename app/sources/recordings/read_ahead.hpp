@@ -6,11 +6,11 @@
 
 namespace roomradar {
 
-/// Wraps a source so that it delivers the same results in the same order, but reads one frame ahead while
-/// frames are read in sequence. The first frame, and the first after a rewind or a seek, are read without a
-/// second thread: callers that jump from frame to frame would discard what was read ahead. A fault of a frame
-/// that was read ahead is thrown by the call of next() that would deliver it. Not for live devices, whose
-/// frames are kept in a queue of their own.
+/// Returns a source that delivers the results of `source` in the same order, but reads one frame ahead on a
+/// second thread. The first frame, and the first frame after a rewind or seek, are read without the second
+/// thread, since callers that seek repeatedly would discard frames read ahead. An error in a frame that was
+/// read ahead is thrown by the call of next() that delivers the frame. Not for live devices, which have their
+/// own queue.
 std::unique_ptr<FrameSource> read_ahead(std::unique_ptr<FrameSource> source);
 
 }  // namespace roomradar

@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// Max size of a text file that lists images; it suffices for weeks of frames.
+/// Max size of a text file that lists images; enough for weeks of frames.
 inline constexpr std::uintmax_t kLargestList_bytes = std::uintmax_t{1} << 30;
 
 /// A frame of a recording before its images are read.
@@ -24,7 +24,7 @@ struct RecordedFrame {
   std::filesystem::path colour_file{};
   /// Colour stamp minus depth stamp.
   double colour_after_depth_s = 0.0;
-  /// Pose file; if empty, the pose, if any, is in T_world_camera.
+  /// Pose file. If empty, T_world_camera contains the pose, if any.
   std::filesystem::path pose_file{};
   std::optional<Eigen::Isometry3d> T_world_camera{};
   /// Unit direction of gravity in the depth camera's frame, if known.
@@ -36,18 +36,18 @@ struct RecordedFrame {
 struct RecordingIndex {
   DepthEncoding depth_encoding = DepthEncoding::kMillimetres;
   NominalRig nominal = NominalRig::kSevenScenes;
-  /// Frames with increasing stamps, except for frames that cannot be used.
+  /// Frames; stamps of usable frames increase.
   std::vector<RecordedFrame> frames;
 };
 
-/// Recognises the format of a recording and lists its frames. Reads only its text files (and accelerometer
-/// dumps of 12 bytes). Throws Error as open_folder() does.
+/// Recognises the format of a recording and lists its frames. Reads only text files and accelerometer dumps,
+/// not images. Throws Error as open_folder() does.
 RecordingIndex index_recording(const std::filesystem::path& folder);
 
-/// Lists the frames of a folder in 7-Scenes format. index_tum() and index_fakenect() are in
-/// recording_index_tum.hpp and recording_index_fakenect.hpp.
+/// Lists the frames of a folder in 7-Scenes format. The other formats are in recording_index_tum.hpp and
+/// recording_index_fakenect.hpp.
 RecordingIndex index_seven_scenes(const std::filesystem::path& folder);
-/// Lists the frames of a numbered folder.
+/// Lists the frames of a numbered folder (depth/NNNNN.png, color/NNNNN.jpg or .png).
 RecordingIndex index_numbered(const std::filesystem::path& folder);
 
 /// A line of a file that lists images.
@@ -58,14 +58,14 @@ struct ListedImage {
   std::string fault{};
 };
 
-/// Assigns colour images to `frames`, by the decided pairs. If the colour image's line cannot be used, the
-/// frame cannot be used either. A frame whose stamp does not advance becomes unusable too.
+/// Assigns colour images to `frames` by the decided pairs of `pairing`. A frame becomes unusable if its
+/// colour image's line cannot be used, or if its stamp is not later than the previous frame's.
 void pair_up(StampPairing& pairing, const std::vector<ListedImage>& colours,
              std::vector<RecordedFrame>& frames);
 
-/// Reads a 7-Scenes pose: a 4 x 4 matrix, camera to world. Projects its rotation to the nearest exact
-/// rotation, since recordings are off by about 1e-4. Returns nothing if an entry is not finite, which means
-/// that tracking was lost while recording. Throws Error naming the file if it is missing or not a pose.
+/// Reads a 7-Scenes pose, a 4 x 4 matrix from camera to world. Replaces its rotation, which deviates by about
+/// 1e-4 in recordings, by the nearest exact rotation. Returns nullopt if an entry is not finite, which means
+/// that tracking was lost during recording. Throws Error with the file's name if it is missing or not a pose.
 std::optional<Eigen::Isometry3d> read_pose_file(const std::filesystem::path& path);
 
 }  // namespace roomradar

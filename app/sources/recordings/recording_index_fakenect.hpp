@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// Lists the frames of a folder that libfreenect recorded: INDEX.txt and the images that it names. Throws
-/// Error as open_folder() does.
+/// Lists the frames of a folder that libfreenect recorded, from its INDEX.txt. Throws Error as open_folder()
+/// does.
 RecordingIndex index_fakenect(const std::filesystem::path& folder);
 
 }  // namespace roomradar

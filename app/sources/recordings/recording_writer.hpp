@@ -24,20 +24,20 @@ std::string_view to_string(RecordingFormat format);
 ///                 beyond 10 m), colour, gravity to 1/819 g; no poses. Gaps over 30 s become 30 s, since
 ///                 the device's clock wraps after 72 s. 640 x 480 only, the one size that fakenect
 ///                 replays.
-/// Colour is lossless. All frames must have the first frame's cameras, which are written to camera.json.
+/// Colour is stored without loss. All frames must have the cameras of the first frame, which are written to
+/// camera.json.
 class RecordingWriter {
  public:
   /// Creates the folder, or uses an empty one. Throws Error if it is not empty or cannot be written.
-  /// @param are_calibrated  true if lens and depth errors of the frames are already corrected; recorded in
-  ///                        camera.json
+  /// @param are_calibrated  true if lens and depth errors were removed from the frames; stored in camera.json
   RecordingWriter(std::filesystem::path folder, RecordingFormat format, bool are_calibrated = false);
 
-  /// Appends a frame. Throws Error if a file cannot be written, the cameras change, the stamp does not
-  /// advance, or the images do not match the cameras' size.
+  /// Appends a frame. Throws Error if a file cannot be written, the cameras change, the stamp is not later
+  /// than the previous frame's, or an image's size differs from its camera's.
   void write(const Frame& frame);
 
-  /// Completes the lists. Throws Error if they are not on disk. No write() may follow. If close() is never
-  /// called, the recording so far is usually still readable.
+  /// Completes the recording's text files. Throws Error if they cannot be written. No write() may follow. A
+  /// recording without close() is usually readable.
   void close();
 
   [[nodiscard]] std::int64_t frames_written() const { return frames_written_; }
@@ -52,9 +52,9 @@ class RecordingWriter {
   bool are_calibrated_;
   std::optional<CameraRig> rig_;
   double last_stamp_s_ = 0.0;
-  // Total time that kFakenect cut from long gaps.
+  // Total time by which kFakenect has shortened gaps over 30 s.
   double left_out_s_ = 0.0;
-  // True if the last gravity entry written is a known direction.
+  // True if the last written gravity entry is a known direction.
   bool wrote_gravity_ = false;
   std::int64_t frames_written_ = 0;
   std::ofstream depth_list_, colour_list_, pose_list_, gravity_list_;

@@ -1,5 +1,4 @@
-// spooled_source.hpp: caches the frames of a live source on disk, so the source can be read again from its
-// first frame.
+// spooled_source.hpp: caches the frames of a live source on disk, so that they can be read again.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -19,37 +18,38 @@
 
 namespace roomradar {
 
-/// A frame cache on disk. From the first next() on, a background thread reads an inner source and writes each
-/// frame to a folder. next() reads the frames from the folder, bit-identical. A slow reader thus loses no
-/// frame of a live source. Costs about 0.7 MB and 14 ms of the background thread per 640 x 480 frame.
+/// A frame cache on disk (spool). From the first next() on, a background thread reads an inner source and
+/// writes each frame to a folder. next() reads the frames from the folder, identical in all bits. Hence a
+/// slow reader loses no frame of a live source. A 640 x 480 frame takes about 0.7 MB, and 14 ms of the
+/// background thread.
 class SpooledSource final : public FrameSource {
  public:
   /// Caches frames in a temporary folder that the destructor removes.
   /// @param parent_folder  folder in which the temporary folder is created; empty: the system's temporary
   ///                       folder
-  /// @throws Error if the folder cannot be created. If the folder cannot be written later (disk full) or the
-  ///         inner source throws, next() throws that error after the last good frame.
+  /// @throws Error if the folder cannot be created. If a frame cannot be written later or the inner source
+  ///         throws, next() throws that error after the last complete frame.
   explicit SpooledSource(std::unique_ptr<FrameSource> source,
                          const std::filesystem::path& parent_folder = {});
 
-  /// Caches frames in `folder`, which is kept. Frames that an earlier process left there are delivered first.
-  /// The source's frames continue the same recording: indices and stamps continue from the last frame.
+  /// Caches frames in `folder`, which is not removed. Frames of an earlier process in the folder are
+  /// delivered first. Indices and stamps of the source's frames then continue from the last of those frames.
   /// @param source      may be null if has_end(folder)
-  /// @param most_ahead  max number of unread frames; while there are this many, the source is not read, and
-  ///                    frames of a live source that arrive then are lost
-  /// @throws Error if the folder cannot be created, or its list is not a frame cache's
+  /// @param most_ahead  max number of unread frames. At this number, the source is not read, so a live source
+  ///                    loses frames
+  /// @throws Error if the folder cannot be created, or its list.bin is not a spool's list
   static std::unique_ptr<SpooledSource> kept(std::unique_ptr<FrameSource> source,
                                              const std::filesystem::path& folder,
                                              std::size_t most_ahead = kEveryFrame);
   static constexpr std::size_t kEveryFrame = std::numeric_limits<std::size_t>::max();
-  /// Returns true if the folder contains a frame cache whose source had ended.
+  /// Returns true if the folder contains a spool whose source had ended.
   static bool has_end(const std::filesystem::path& folder);
-  /// Returns true if the folder contains a cached frame. Throws Error as has_end() does.
+  /// Returns true if the folder contains a cached frame. Throws Error if its list.bin is not a spool's list.
   static bool has_frames(const std::filesystem::path& folder);
 
-  /// Reads the frames cached in `folder`, up to the source's end or the point where the writing process was
-  /// killed. Never writes to the folder.
-  /// @throws Error if the folder contains no frame cache
+  /// Reads the frames cached in `folder`, up to the source's end or the last frame before the writing process
+  /// was killed. Never writes to the folder.
+  /// @throws Error if the folder contains no spool
   static std::unique_ptr<SpooledSource> again(const std::filesystem::path& folder);
 
   ~SpooledSource() override;
@@ -100,15 +100,14 @@ class SpooledSource final : public FrameSource {
   std::deque<SpoolEntry> entries_;
   bool at_end_ = false;
   bool stop_ = false;
-  /// Latest result of the source if it had no frame available.
+  /// Last result of the source if that result was not a frame.
   std::optional<ReadResult> waiting_;
   std::exception_ptr failure_;
 
   std::thread thread_;
 };
 
-/// Returns `source` itself if it can rewind (tested before anything is read), otherwise a SpooledSource
-/// around it.
+/// Returns `source` if it can rewind, else a SpooledSource around it. Call before the first next().
 std::unique_ptr<FrameSource> make_rewindable(std::unique_ptr<FrameSource> source);
 
 }  // namespace roomradar

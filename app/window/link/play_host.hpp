@@ -1,4 +1,5 @@
-// play_host.hpp: connects a session to the window: paces frames, delivers user events, publishes results.
+// play_host.hpp: connects a session to the window: waits until frames are due, delivers the user's events,
+// and publishes results.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -16,38 +17,39 @@
 
 namespace roomradar {
 
-/// Used by the session's thread if the run has a window. All arguments of the constructor must outlive it.
+/// Used by the session's thread if the run has a window. All arguments of the constructor must outlive the
+/// object.
 class PlayHost {
  public:
-  /// @param is_live  frames are shown as they arrive; only repeated frames wait for their time stamps
+  /// @param is_live  true: frames are shown when they arrive; only repeated frames wait for their timestamps
   PlayHost(UiChannel& link, const Session& session, const PlaybackSource& source, const StageTimes& times,
            const Mesh& room, bool is_live)
       : link_(link), session_(session), source_(source), times_(times), is_live_(is_live), maker_(room) {}
 
-  /// Waits until the frame is due or the user steps to it. Returns false if the window is closed.
+  /// Waits until the frame is due or the user requests a single step. Returns false if the window is closed.
   bool wait_turn(const Frame& frame);
   [[nodiscard]] bool is_closed() const { return link_.is_closed(); }
-  /// Returns the user's events since the last frame, with at most one kAdd. New meshes are read on another
-  /// thread; their kAdd follows when they are ready. A mesh that cannot become an object is only reported in
-  /// the window.
+  /// Returns the user's events since the last frame, with at most one kAdd. Meshes of added objects are read
+  /// on another thread; the kAdd is returned when its mesh has been read. A mesh that is not suitable as an
+  /// object is only reported in the window.
   std::vector<ScriptEvent> take_events();
-  /// Returns the parts of the object of the last kAdd returned by take_events().
+  /// Returns the ObjectParts for the last kAdd that take_events() has returned.
   ObjectParts take_parts() { return std::move(new_.parts); }
-  /// Sets the settings that the budget has reduced; empty: none.
+  /// Sets the text on settings that the budget has reduced; empty: none.
   void say_given_up(std::string given_up) { given_up_ = std::move(given_up); }
   /// Tells the user that an event could not be applied.
   void complain(const std::string& fault) { link_.say(fault); }
   void show(std::int64_t run_frame, double run_time_s, const Frame& frame, const FrameResult& result);
 
  private:
-  /// Objects that the user adds, prepared on another thread.
+  /// Objects that the user adds; another thread prepares them.
   struct NewObjects {
-    std::deque<UserCommand> waiting{};  ///< requests; the first is being prepared
+    std::deque<UserCommand> waiting{};  ///< requests; the first one is being prepared
     std::future<ObjectParts> readying{};
     int frames_waited = 0;  ///< frames since the first request's preparation began
-    ObjectParts parts{};    ///< parts of the last object that became ready
+    ObjectParts parts{};    ///< data of the last object that became ready
   };
-  /// The newest frame shown.
+  /// The frame that was published last.
   struct ShownFrame {
     std::int64_t run_frame = -1;
     std::int64_t source_frame = 0;

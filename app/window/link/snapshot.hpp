@@ -14,21 +14,23 @@
 
 namespace roomradar {
 
+/// Fills snapshots for the window from a session.
 class SnapshotMaker {
  public:
-  /// @param room  mesh of the saved room, copied once
+  /// @param room  mesh of the saved room; copied
   explicit SnapshotMaker(const Mesh& room) : room_(std::make_shared<const Mesh>(room)) {}
 
-  /// Sets the fields of `shown` that come from the session; the radar's images are those of the object
-  /// `shown.chosen`. Reuses the allocations of `shown`.
+  /// Sets the fields of `shown` that come from the session. The radar's images are those of object
+  /// `shown.chosen`. Reuses the memory of `shown`.
   void fill(const Session& session, const FrameResult& result, const StageTimes& times,
             const ViewsWanted& wanted, Snapshot& shown);
 
  private:
   std::shared_ptr<const Mesh> room_;
-  std::uint64_t room_revision_ = 0;  ///< revision of the session's room that room_ copies; 0: none so far
+  std::uint64_t room_revision_ = 0;  ///< revision of the session's room in room_; 0: none
   std::map<std::shared_ptr<const ObjectModel>, std::shared_ptr<const Mesh>> object_meshes_;
-  std::map<std::string, std::size_t, std::less<>> counted_;  ///< samples per stage before this frame
+  /// Number of samples per stage before this frame.
+  std::map<std::string, std::size_t, std::less<>> counted_;
   CyberRadar radar_;
   RadarPictures pictures_;
   std::string pictures_of_;  ///< name of the object in pictures_

@@ -1,4 +1,4 @@
-// annotate.hpp: draws lines and labels over a picture of the room.
+// annotate.hpp: draws lines and labels over the camera's picture or the 3D view.
 #pragma once
 #include <imgui.h>
 
@@ -13,22 +13,24 @@
 
 namespace roomradar {
 
-/// Projects a world point to the window; returns nothing for points behind the eye.
+/// Projects a world point to window coordinates. Returns nullopt for points behind the eye.
 using ToWindow = std::function<std::optional<ImVec2>(const Eigen::Vector3d& p_world)>;
 
-/// Marks the corners around the chosen object and writes its state.
+/// Draws corner marks around the chosen object, and its state as text.
 void mark_chosen(ImDrawList& draw, const Snapshot& shown, const Area& image, double scale,
                  const look::Fonts& fonts);
 
-/// Draws the twelve edges of a box; `corner(i)` is the corner with bits 0, 1, 2 of i selecting x, y, z.
+/// Draws the twelve edges of a box. `corner(i)` returns corner i, for which bits 0, 1 and 2 of i select min
+/// or max of x, y and z.
 void draw_box(ImDrawList& draw, const std::function<Eigen::Vector3d(int)>& corner, const ToWindow& to_window,
               ImU32 colour, float thickness);
 
-/// Draws the box that the radar searched: rear plane, far plane, direction, and first contact.
+/// Draws the target volume that the radar searched, with rear plane, far plane and direction, and the first
+/// contact.
 void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindow& to_window,
                         const look::Fonts& fonts);
 
-/// Draws the camera's view frustum up to a depth.
+/// Draws the camera's view frustum up to depth_m.
 void draw_camera(ImDrawList& draw, const ShownView& view, double depth_m, const ToWindow& to_window);
 
 /// Returns the object's state as text, such as "at rest on seen static", "moves at 1.2 m/s" or "carried".

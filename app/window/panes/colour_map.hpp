@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// Returns the Viridis colour map's value, by a polynomial of degree six (fitted by Matt Zucker). 0: dark
-/// violet, 1: yellow.
+/// Returns the colour of the Viridis colour map for t in 0..1, from dark violet to yellow. Computed by
+/// polynomials of degree six, fitted by Matt Zucker.
 inline Rgb viridis(float t) {
   constexpr std::array<std::array<double, 7>, 3> kFit = {
       {{0.27772733, 0.10509304, -0.33086183, -4.63423050, 6.22826994, 4.77638500, -5.43545586},

@@ -1,13 +1,13 @@
-// gl_texture.hpp: texture in the window's own OpenGL context.
+// gl_texture.hpp: texture in the window's OpenGL context.
 #pragma once
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
 
-/// The window's context must be current for all calls.
+/// A texture in the window's OpenGL context, which must be current for all calls.
 class GlTexture {
  public:
-  /// @param smooth  interpolate between pixels when magnified
+  /// @param smooth  true: magnified pixels are interpolated
   explicit GlTexture(bool smooth) : smooth_(smooth) {}
   ~GlTexture();
   GlTexture(const GlTexture&) = delete;

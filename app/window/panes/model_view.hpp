@@ -1,4 +1,5 @@
-// model_view.hpp: 3D view of room, dynamic foreground, objects, camera, and the box that the radar searched.
+// model_view.hpp: 3D view of room, dynamic foreground, objects, camera, and the target volume that the radar
+// searched.
 #pragma once
 #include <Eigen/Geometry>
 #include <map>
@@ -10,7 +11,8 @@
 
 namespace roomradar {
 
-/// Orbiting eye. Azimuth is about +z, elevation is above the horizontal plane.
+/// Position of an eye that orbits a target. Azimuth is the angle about +z, elevation the angle above the
+/// horizontal plane.
 struct Orbit {
   Eigen::Vector3d target_world = Eigen::Vector3d::Zero();
   double azimuth_rad = 0.8;
@@ -20,8 +22,8 @@ struct Orbit {
 /// Returns the eye's pose: x right, y up, looking along -z (OpenGL).
 Eigen::Isometry3d eye_of(const Orbit& orbit);
 
-/// Renders into a texture, and only when something has changed: without a GPU, a room of half a million
-/// triangles takes tens of milliseconds. The window's context must be current.
+/// Renders the view into a texture, only when its content has changed. Without a GPU, a room of half a
+/// million triangles takes tens of milliseconds. The window's OpenGL context must be current for all calls.
 class ModelView {
  public:
   ModelView();
@@ -31,7 +33,7 @@ class ModelView {
 
   void upload(const Snapshot& shown);
   void draw(const Area& area, const Snapshot& shown, const look::Fonts& fonts);
-  /// Turns the view to the chosen object.
+  /// Makes the chosen object the target of the view.
   void look_at_chosen(const Snapshot& shown);
 
  private:

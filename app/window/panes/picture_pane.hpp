@@ -12,17 +12,17 @@
 
 namespace roomradar {
 
-/// Returns a position as a script has it: "X Y Z" in metres.
+/// Returns a position as in a script: "X Y Z" in metres.
 std::string position_words(const Eigen::Vector3d& p_world);
 
 class PicturePane {
  public:
   explicit PicturePane(UiChannel& link) : link_(link) {}
 
-  /// Call when there is a new snapshot.
+  /// Call for each new snapshot.
   void upload(const Snapshot& shown) { texture_.upload(shown.picture); }
   void draw(const Area& area, const Snapshot& shown, const look::Fonts& fonts, double drop_height_m);
-  /// Call if the pane is not drawn: releases a grabbed object.
+  /// Releases a grabbed object. Call when the pane is not drawn.
   void leave();
 
   /// Returns the mouse position in the picture, pixels; unset if the mouse is elsewhere.
@@ -33,7 +33,8 @@ class PicturePane {
   GlTexture texture_{/*smooth=*/true};
   std::optional<Eigen::Vector2d> pixel_;
   bool is_down_ = false, was_dragged_ = false;
-  Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();  ///< mouse position in the window at the press
+  /// Mouse position in the window when the button was pressed.
+  Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();
   double nearer_m_ = 0.0;
   struct Sample {
     double time_s = 0.0;

@@ -15,12 +15,13 @@ class RadarPane {
   void draw(const Area& area, const ShownRadar& radar, const look::Fonts& fonts);
 
  private:
-  /// Returns, as text, R, M and L at a pixel, if it is in the images, and the distance to contact.
+  /// Returns a text with the distance to contact, and with R, M and L at pixel (x, y) if the images contain
+  /// it.
   [[nodiscard]] std::string numbers_at(const ShownRadar& radar, int x, int y) const;
 
   GlTexture range_{false}, mask_{false}, lookat_{false};
   ColourImage coloured_;
-  int least_x_ = -1, least_y_ = -1;  ///< pixel of min L; -1: none
+  int least_x_ = -1, least_y_ = -1;  ///< pixel with the smallest L; -1: none
   float least_m_ = 0.0F;
 };
 

@@ -1,4 +1,4 @@
-// side_panel.hpp: panel with the user's choices: objects, policies, radar.
+// side_panel.hpp: panel with controls for objects, policies and radar.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,22 +10,22 @@
 
 namespace roomradar {
 
-/// The user's settings for new commands; not part of the session.
+/// The user's settings for future commands; not part of the session.
 struct PlaySettings {
   float drop_height_m = 0.3F;
   float throw_speed_mps = 3.0F;
-  float new_size_m = 0.0F;           ///< size of an added object; 0: as given for it, or that of its file
-  std::vector<ObjectSource> meshes;  ///< objects that can be added: `teapot`, and files
+  float new_size_m = 0.0F;           ///< size of an added object; 0: that of its ObjectSource
+  std::vector<ObjectSource> meshes;  ///< objects that can be added: `teapot` and files
   std::size_t mesh = 0;
-  int radar_px = 64;  ///< value of the slider while it is dragged
+  int radar_px = 64;  ///< value of the radar's resolution slider while it is dragged
 };
 
 void draw_side_panel(const Area& area, const Snapshot& shown, UiChannel& link, PlaySettings& settings,
                      const look::Fonts& fonts);
 
-/// Returns the command that adds an object with the mesh and size of the settings.
+/// Returns the command that adds an object with the mesh and size in `settings`.
 UserCommand new_object_command(const PlaySettings& settings);
-/// Return commands that change a policy, for keys and panels alike.
+/// Return commands that change a policy; used by keys and panels.
 UserCommand surfaces_command(SurfacePolicy surfaces);
 UserCommand unknown_command(bool is_solid);
 UserCommand radar_command(const RadarConfig& radar);

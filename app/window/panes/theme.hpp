@@ -25,10 +25,10 @@ struct Fonts {
   ImFont* large = nullptr;
 };
 
-/// Sets Dear ImGui's style and loads the fonts: DejaVu if installed, else Dear ImGui's own.
+/// Sets Dear ImGui's style and loads the fonts: DejaVu if installed, else Dear ImGui's font.
 Fonts apply(float scale);
 
-/// Converts a length at 96 dpi to pixels, with the scale given to apply().
+/// Converts a length in pixels at 96 dpi to window pixels, with the scale given to apply().
 float px(float length);
 
 /// Begins a pane that fills an area, without title and border. Always call end_pane() afterwards.
@@ -38,13 +38,14 @@ void end_pane();
 /// Draws the small heading of a group.
 void heading(const char* text, const Fonts& fonts);
 
-/// Draws a button, highlighted if is_lit; `key` is shown dim after the label. Returns true if clicked.
+/// Draws a button, highlighted if is_lit. The name of its `key` follows the label in a dim colour. Returns
+/// true if the button was clicked.
 bool button(const char* label, const char* key, bool is_lit, ImVec2 size = {0, 0}, bool enabled = true);
 
-/// Draws a row of buttons of which one is highlighted; returns the index clicked, or -1.
+/// Draws a row of buttons, with button `lit` highlighted. Returns the index of the clicked button, or -1.
 int segments(const char* id, const char* const* words, int count, int lit);
 
-/// Draws a coloured dot and a text.
+/// Draws a coloured dot followed by a text.
 void pill(ImU32 colour, const std::string& text);
 
 }  // namespace roomradar::look

@@ -1,4 +1,4 @@
-// timing_pane.hpp: shows the time of each stage over the last frames, against the budget.
+// timing_pane.hpp: chart of the time of each stage over the last frames, with the budget.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -17,16 +17,16 @@ inline constexpr double kGoal_ms = 16.6;  ///< period of frames at 60 Hz
 
 class TimingPane {
  public:
-  /// @param budget_ms  the run's time limit per frame; unset: the period of a Kinect's frames
+  /// @param budget_ms  the run's time limit per frame; unset: 33.3, the period of a Kinect's frames
   explicit TimingPane(std::optional<double> budget_ms) : budget_ms_(budget_ms.value_or(33.3)) {}
 
   void add(const Snapshot& shown);
   void draw(const Area& area, const look::Fonts& fonts) const;
 
   [[nodiscard]] double budget_ms() const { return budget_ms_; }
-  /// Returns the time to aim at: kGoal_ms, or the budget if that is less.
+  /// Returns the smaller of kGoal_ms and the budget.
   [[nodiscard]] double goal_ms() const { return std::min(kGoal_ms, budget_ms_); }
-  /// Returns the time of the last frame, without the time for reading it.
+  /// Returns the time of the last frame, without reading.
   [[nodiscard]] float frame_ms() const { return frames_.empty() ? 0.0F : frames_.back().whole_ms; }
 
   /// Stages from bottom to top of the chart; "rest" is the time outside all other stages.
@@ -39,7 +39,7 @@ class TimingPane {
     float whole_ms = 0.0F;
     float read_ms = 0.0F;
   };
-  /// Draws each stage's colour and median.
+  /// Draws each stage's colour and median time.
   void draw_legend(const Area& area, float median_ms, const look::Fonts& fonts) const;
 
   static constexpr std::size_t kKept = 240;

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// Pixels of the window, from its top left corner.
+/// Rectangle in the window, in pixels from the window's top left corner.
 struct Area {
   float x = 0.0F, y = 0.0F, width = 0.0F, height = 0.0F;
   [[nodiscard]] bool empty() const { return width < 8.0F || height < 8.0F; }
@@ -14,12 +14,12 @@ enum class MainView { kCamera, kModels, kBoth };
 
 struct WindowLayout {
   Area bar, camera, models, side, timing, radar;
-  bool has_two_rows = false;  ///< the bar is too narrow for one row
+  bool has_two_rows = false;  ///< true: the bar is too narrow for one row
 };
 
-/// Returns the panes of a window. In a narrow window the bar has two rows and the side panel takes less; in a
-/// low one the panes `timing` and `radar` are empty.
-/// @param scale  the screen's; 1 at 96 dpi
+/// Returns the panes of a window of this size. A narrow window has a bar with two rows and a narrower side
+/// panel; in a low window, the panes `timing` and `radar` are empty.
+/// @param scale  scale of the screen; 1 at 96 dpi
 constexpr WindowLayout window_layout(float width, float height, MainView view, float scale = 1.0F) {
   const bool has_two_rows = width < scale * 1240.0F;
   const float bar = scale * (has_two_rows ? 88.0F : 48.0F), side = std::min(scale * 292.0F, 0.42F * width);
