@@ -52,9 +52,12 @@ std::string meaning_of(const CLI::Option& option) {
 }
 
 std::string missing_argument(const CLI::App& command) {
-  for (const CLI::Option* option : command.get_options())
-    if (option->get_required() && option->count() == 0)
-      return option->get_name(true) + " is missing: " + meaning_of(*option);
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_required() || option->count() > 0) continue;
+    const std::vector<std::string>& long_names = option->get_lnames();
+    const std::string name = long_names.empty() ? option->get_name(true) : "--" + long_names.front();
+    return name + " is missing: " + meaning_of(*option);
+  }
   return {};
 }
 
@@ -93,6 +96,7 @@ std::string command_list(const CLI::App& app) {
   for (const CLI::App* command : commands_of(app)) {
     std::string what = command->get_description();
     what = what.substr(0, what.find_first_of(":;\n"));
+    if (what.ends_with(',')) what.pop_back();
     const std::string& name = command->get_name();
     list += "  " + name + std::string(name.size() < 13 ? 13 - name.size() : 1, ' ') + what + "\n";
   }
@@ -128,8 +132,9 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
     return name + fault + command_list(*command) + see_help.substr(1);
   }
   std::string fault = unknown_option(*command, std::span(arguments).subspan(at));
-  if (fault.empty() && error.get_name() == "RequiredError") fault = missing_argument(*command);
-  if (fault.empty() && error.get_name() == "ExtrasError") {
+  if (fault.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError))
+    fault = missing_argument(*command);
+  if (fault.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
     const std::string what = error.what();
     fault = "more arguments than it takes" + what.substr(std::min(what.find(':'), what.size()));
   }

@@ -34,6 +34,17 @@ void set_in_hand(VirtualObject& object, double dt_s) {
 
 }  // namespace
 
+bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config) {
+  const std::int64_t number = static_cast<std::int64_t>(index);
+  const std::int64_t pictures = config.picture_every_n_frames;
+  if (pictures == 1) return (frame_number + number) % config.move_every_n_frames == 0;
+  // Frames with a picture do not move objects. The same frames are left out if no pictures are made, so
+  // objects move the same with and without pictures.
+  const std::int64_t frame = frame_number % pictures;
+  const std::int64_t of_these = frame_number / pictures * (pictures - 1) + frame - 1;
+  return frame > 0 && (of_these + number) % config.move_every_n_frames == 0;
+}
+
 void advance_object(VirtualObject& object, double waited_s, const CollisionQueries& probe,
                     const PhysicsConfig& config, const PushDirections& push, ContactCounts& counts) {
   const int pieces = pieces_of(waited_s, config);

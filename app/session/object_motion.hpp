@@ -11,6 +11,7 @@
 #include "app/physics/collision_queries.hpp"
 #include "app/physics/depenetration.hpp"
 #include "app/physics/physics_config.hpp"
+#include "app/session/session_config.hpp"
 #include "dynamic/surface/dynamic_surface_config.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/geometry/radar_scene.hpp"
@@ -22,6 +23,10 @@ struct ContactCounts {
   int contacts = 0;
   std::array<int, kSurfaceKinds> by_kind{};  ///< contacts per kind of surface touched
 };
+
+/// Returns true if config.move_every_n_frames and config.picture_every_n_frames let the object with this
+/// index be advanced in this frame.
+bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config);
 
 /// Advances an object by waited_s. A carried object moves towards its target at the speed that reaches it
 /// after waited_s, without gravity, friction and restitution, and stops at obstacles.

@@ -13,6 +13,7 @@ namespace roomradar {
 namespace {
 
 constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
+
 }  // namespace
 
 ObjectSet::ObjectSet(GlContext& context, const FrameScene& scene, const SessionRoom& room,
@@ -159,17 +160,6 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
   }
 }
 
-bool ObjectSet::is_turn_to_move(std::size_t index, std::int64_t frame_number) const {
-  const std::int64_t number = static_cast<std::int64_t>(index);
-  const std::int64_t pictures = config_.picture_every_n_frames;
-  if (pictures == 1) return (frame_number + number) % config_.move_every_n_frames == 0;
-  // Frames with a picture do not move objects. The same frames are left out if no pictures are made, so
-  // objects move the same with and without pictures.
-  const std::int64_t frame = frame_number % pictures;
-  const std::int64_t of_these = frame_number / pictures * (pictures - 1) + frame - 1;
-  return frame > 0 && (of_these + number) % config_.move_every_n_frames == 0;
-}
-
 PushDirections ObjectSet::push_of(const VirtualObject& object) const {
   // Without the map, all surfaces are the frame's, and none is known to be dynamic.
   if (config_.scene.surfaces != SurfacePolicy::kMap) return {};
@@ -186,7 +176,7 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
     VirtualObject* const object = objects_[index].get();
     if (!object->in_room) continue;
     object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // longer gaps are stalls
-    if (!object->carried_to_world && !is_turn_to_move(index, frame_number)) continue;
+    if (!object->carried_to_world && !is_turn_to_move(index, frame_number, config_)) continue;
     if (object->stuck && object->waited_s < kStuckLooksAfter_s) continue;
     const double waited_s = std::exchange(object->waited_s, 0.0);
     if (!object->body.asleep) object->in_unknown = object->in_unknown && is_in_solid_unknown(room_, *object);

@@ -119,8 +119,6 @@ class ObjectSet {
   VirtualObject& take_over(const std::string& name);
   void put(VirtualObject& object, const ObjectState& state);
   [[nodiscard]] WayOut way_out_of(const VirtualObject& object);
-  /// Returns true if the object with this index is advanced in this frame.
-  [[nodiscard]] bool is_turn_to_move(std::size_t index, std::int64_t frame_number) const;
   /// Returns the directions from the object to nearby dynamic surfaces, see depenetration_directions().
   [[nodiscard]] PushDirections push_of(const VirtualObject& object) const;
   /// Returns one entry per tree of scene_without(): the body of an object's tree, null for other trees.

@@ -2,7 +2,6 @@
 #include "app/session/session.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -155,7 +154,6 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
     });
   composer_.end_frame(T_world_camera);
   ++frames_;
-
   FrameResult result;
   result.status = FrameStatus::kDone;
   result.tracking = tracking.status;
