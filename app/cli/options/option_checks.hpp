@@ -11,9 +11,9 @@ namespace roomradar {
 /// @param unit  unit in the plural, for the error message
 CLI::Validator within(double low, double high, const std::string& unit);
 
-/// Adds checks that reject numbers that CLI11 would misread: 010 as 8, and the seed -1 as
-/// 18446744073709551615. The checks apply to all options of type "N" of the program and its commands. Call
-/// after all options were added.
+/// Adds checks that reject numbers that CLI11 would misread: 010 as 8, and the seed -1 as 2^64 - 1. The
+/// checks apply to all options of type "N" of the program and its commands. Call after all options were
+/// added.
 void refuse_other_bases(CLI::App& app);
 
 /// Adds an option with a value that is one of several words. CLI11's transformer would list the values as

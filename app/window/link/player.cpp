@@ -174,7 +174,7 @@ void Player::drop_or_place(const UserCommand& command, const Session& session,
       event_of(command.kind == UserCommandKind::kPlace ? Action::kPlace : Action::kDrop, chosen_);
   event.height_m = command.event.height_m;
   const bool is_on_object = &hit == &pointed.object;
-  if (command.kind == UserCommandKind::kDrop && !is_on_object) {
+  if (command.kind != UserCommandKind::kPlace && !is_on_object) {
     event.near_world = hit->point_world;
   } else {
     event.position_world = hit->point_world - level_to_middle(*object, object->body.T_world_object.linear());

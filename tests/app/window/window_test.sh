@@ -46,7 +46,7 @@ until_true has_focus
 until_true has_frames 3
 
 echo "== a click drops the object where it points"
-xdotool mousemove 494 330
+xdotool mousemove 590 390  # on the table, beside the object
 xdotool click 1
 until_true has_event '^frame [0-9]+ drop object near '
 shot dropped
@@ -89,6 +89,7 @@ settle
 echo "== drag, throw, turn"
 xdotool key Tab
 xdotool mousemove 494 330
+settle  # keys act at the mouse position of the last picture
 xdotool key p
 until_true has_event ' place object '
 settle
