@@ -21,7 +21,8 @@ using DistanceQuery = std::function<Contact(const Eigen::Isometry3d& T_world_obj
 /// The rigid body, if any, to which one triangle tree of the scene belongs.
 struct SceneBody {
   Body* body = nullptr;  ///< null: the tree is a static or dynamic surface, not a body
-  /// See SolverBody::mass_ratio. 0: impulses do not move the body, as while a user carries it.
+  /// Mass of the querying body (AdvancedBody::mass_kg) divided by the mass of this body, for bodies that are
+  /// not advanced in the same call. 0: impulses do not move the body, as while a user carries it.
   double mass_ratio = 0.0;
 };
 

@@ -1,45 +1,31 @@
-// contact_solver.cpp: projected Gauss-Seidel over a body's contacts with static surfaces and other bodies.
+// contact_solver.cpp: projected Gauss-Seidel, one system of connected bodies at a time.
 #include "app/physics/contact_solver.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <numeric>
 
 namespace roomradar {
 namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr int kMaxIterations = 80;
+constexpr int kMaxSweeps = 200;
 constexpr double kSettled_mps = 1e-9;
-constexpr std::size_t kMaxContacts = 32;
 
-struct Effective {
-  Vec3 x, y;                        // tangents
-  double normal, along_x, along_y;  // effective masses, per kg of the body
-};
+bool is_movable(std::span<const SolverBody> bodies, std::size_t body) {
+  return body < bodies.size() && bodies[body].inverse_mass_per_kg > 0.0;
+}
 
-/// Returns the tangents and effective masses of a contact.
-/// @param inverse  inverse inertia of the body, 1/m^2, in world axes
-Effective effective_masses(const SolverContact& contact, const Eigen::Matrix3d& inverse,
-                           std::span<const SolverBody> others) {
-  const auto mass_along = [&](const Vec3& direction) {
-    const Vec3 lever = contact.contact_offset_m.cross(direction);
-    double yields = 1.0 + lever.dot(inverse * lever);
-    if (contact.other < others.size()) {
-      const SolverBody& other = others[contact.other];
-      const Vec3 other_lever = contact.other_offset_m.cross(direction);
-      yields += other.mass_ratio * (1.0 + other_lever.dot(other.inverse_inertia_m2 * other_lever));
-    }
-    return 1.0 / yields;
-  };
-  Effective e;
-  e.x = contact.normal.unitOrthogonal();
-  e.y = contact.normal.cross(e.x);
-  e.normal = mass_along(contact.normal);
-  e.along_x = mass_along(e.x);
-  e.along_y = mass_along(e.y);
-  return e;
+void apply(const SolverContact& contact, std::span<SolverBody> bodies, const Vec3& direction,
+           const Vec3& turns, const Vec3& other_turns, double impulse_Ns) {
+  SolverBody& body = bodies[contact.body];
+  body.velocity.linear_mps += impulse_Ns * body.inverse_mass_per_kg * direction;
+  body.velocity.angular_rad_s += impulse_Ns * turns;
+  if (contact.other >= bodies.size()) return;
+  SolverBody& other = bodies[contact.other];
+  other.velocity.linear_mps -= impulse_Ns * other.inverse_mass_per_kg * direction;
+  other.velocity.angular_rad_s -= impulse_Ns * other_turns;
 }
 
 }  // namespace
@@ -49,69 +35,175 @@ double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2) {
                 velocity.angular_rad_s.dot(inertia_m2 * velocity.angular_rad_s));
 }
 
-Eigen::Vector3d slip_at(const SolverContact& contact, const Velocity& velocity,
-                        std::span<const SolverBody> others) {
-  const Vec3 own = velocity_at(velocity, contact.contact_offset_m);
-  if (contact.other >= others.size()) return own;
-  return own - velocity_at(others[contact.other].velocity, contact.other_offset_m);
+double energy(std::span<const SolverBody> bodies) {
+  double sum_J = 0.0;
+  for (const SolverBody& body : bodies)
+    if (body.inverse_mass_per_kg > 0.0)
+      sum_J += energy(body.velocity, body.inertia_m2) / body.inverse_mass_per_kg;
+  return sum_J;
 }
 
-void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& inertia_m2,
-                    const FrictionConfig& rubbing, Velocity& velocity, std::span<SolverBody> others) {
-  contacts = contacts.first(std::min(contacts.size(), kMaxContacts));
-  if (contacts.empty()) return;
-  const Eigen::Matrix3d inverse = inertia_m2.inverse();
-  std::array<Effective, kMaxContacts> effective;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    contacts[i].impulse_mps = 0.0;
-    contacts[i].friction_impulse_mps.setZero();
-    effective[i] = effective_masses(contacts[i], inverse, others);
-  }
-  const auto apply = [&](const SolverContact& contact, const Vec3& impulse) {
-    velocity.linear_mps += impulse;
-    velocity.angular_rad_s += inverse * contact.contact_offset_m.cross(impulse);
-    if (contact.other >= others.size()) return;
-    SolverBody& other = others[contact.other];
-    other.velocity.linear_mps -= other.mass_ratio * impulse;
-    other.velocity.angular_rad_s -=
-        other.mass_ratio * other.inverse_inertia_m2 * contact.other_offset_m.cross(impulse);
-  };
-  Vec3 held_back = Vec3::Zero();  // angular impulse of rolling resistance
-  for (int round = 0; round < kMaxIterations; ++round) {
-    double change_mps = 0.0;
-    if (rubbing.rolling > 0.0) {
-      double limit = 0.0;
-      for (const SolverContact& contact : contacts)
-        limit += contact.impulse_mps * contact.contact_offset_m.norm();
-      limit *= rubbing.rolling;
-      Vec3 wanted = held_back - inertia_m2 * velocity.angular_rad_s;
-      const double size = wanted.norm();
-      if (size > limit) wanted *= limit / size;
-      velocity.angular_rad_s += inverse * (wanted - held_back);
-      held_back = wanted;
-    }
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      SolverContact& contact = contacts[i];
-      const Effective& e = effective[i];
-      const double enters_mps = contact.leaves_mps - slip_at(contact, velocity, others).dot(contact.normal);
-      const double impulse = std::max(contact.impulse_mps + e.normal * enters_mps, 0.0);
-      const double more = impulse - contact.impulse_mps;
-      contact.impulse_mps = impulse;
-      apply(contact, more * contact.normal);
+Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const SolverBody> bodies) {
+  const Vec3 own = velocity_at(bodies[contact.body].velocity, contact.contact_offset_m);
+  if (contact.other >= bodies.size()) return own;
+  return own - velocity_at(bodies[contact.other].velocity, contact.other_offset_m);
+}
 
-      const Vec3 slip = slip_at(contact, velocity, others);
-      Vec3 friction_impulse =
-          contact.friction_impulse_mps - e.along_x * slip.dot(e.x) * e.x - e.along_y * slip.dot(e.y) * e.y;
-      const double most = rubbing.friction * contact.impulse_mps;
-      const double size = friction_impulse.norm();
-      if (size > most) friction_impulse *= most / size;
-      const Vec3 more_friction = friction_impulse - contact.friction_impulse_mps;
-      contact.friction_impulse_mps = friction_impulse;
-      apply(contact, more_friction);
-      change_mps = std::max({change_mps, std::abs(more), more_friction.lpNorm<Eigen::Infinity>()});
-    }
-    if (change_mps < kSettled_mps) return;
+std::size_t ContactSolver::root_of(std::size_t body) {
+  while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
+  return body;
+}
+
+/// Joins movable bodies that touch, and sets each contact's system. A contact between immovable bodies has
+/// none.
+void ContactSolver::find_systems(std::span<const SolverContact> contacts,
+                                 std::span<const SolverBody> bodies) {
+  parent_.resize(bodies.size());
+  std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  for (const SolverContact& contact : contacts)
+    if (is_movable(bodies, contact.body) && is_movable(bodies, contact.other))
+      parent_[std::max(root_of(contact.body), root_of(contact.other))] =
+          std::min(root_of(contact.body), root_of(contact.other));
+  system_of_contact_.assign(contacts.size(), kNoOther);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    for (const std::size_t body : {contacts[i].body, contacts[i].other})
+      if (is_movable(bodies, body)) system_of_contact_[i] = root_of(body);
+}
+
+void ContactSolver::solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling) {
+  if (contacts.empty()) return;
+  find_systems(contacts, bodies);
+  rows_.resize(contacts.size());
+  rolling_.assign(bodies.size(), {Vec3::Zero(), 0.0});
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (system_of_contact_[i] != kNoOther) continue;
+    contacts[i].impulse_Ns = 0.0;
+    contacts[i].friction_impulse_Ns.setZero();
   }
+  for (std::size_t system = 0; system < bodies.size(); ++system) {
+    if (!is_movable(bodies, system) || root_of(system) != system) continue;
+    order_.clear();
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      if (system_of_contact_[i] == system) order_.push_back(i);
+    if (order_.empty()) continue;
+    members_.clear();
+    for (std::size_t body = system; body < bodies.size(); ++body)
+      if (is_movable(bodies, body) && root_of(body) == system) members_.push_back(body);
+    solve_system(contacts, bodies, rolling);
+  }
+}
+
+void ContactSolver::solve_system(std::span<SolverContact> contacts, std::span<SolverBody> bodies,
+                                 double rolling) {
+  for (const std::size_t i : order_) {
+    SolverContact& contact = contacts[i];
+    const SolverBody& body = bodies[contact.body];
+    const SolverBody* other = contact.other < bodies.size() ? &bodies[contact.other] : nullptr;
+    const auto row_along = [&](const Vec3& direction) {
+      Row row;
+      row.direction = direction;
+      row.lever = contact.contact_offset_m.cross(direction);
+      row.turns = body.inverse_mass_per_kg * (body.inverse_inertia_m2 * row.lever);
+      double yields = body.inverse_mass_per_kg + row.lever.dot(row.turns);
+      row.other_lever.setZero();
+      row.other_turns.setZero();
+      if (other != nullptr) {
+        row.other_lever = contact.other_offset_m.cross(direction);
+        row.other_turns = other->inverse_mass_per_kg * (other->inverse_inertia_m2 * row.other_lever);
+        yields += other->inverse_mass_per_kg + row.other_lever.dot(row.other_turns);
+      }
+      row.effective_mass_kg = 1.0 / yields;
+      return row;
+    };
+    const Vec3 x = contact.normal.unitOrthogonal();
+    Rows& rows = rows_[i];
+    rows = {row_along(contact.normal), row_along(x), row_along(contact.normal.cross(x))};
+    for (const Row* row : {&rows.normal, &rows.x, &rows.y}) {
+      const double guess_Ns =
+          row == &rows.normal ? contact.impulse_Ns : contact.friction_impulse_Ns.dot(row->direction);
+      if (guess_Ns != 0.0) apply(contact, bodies, row->direction, row->turns, row->other_turns, guess_Ns);
+    }
+  }
+  int sweeps = 0;
+  while (sweeps < kMaxSweeps) {
+    const double turned_mps = rolling > 0.0 ? resist_rolling(contacts, bodies, rolling) : 0.0;
+    const double change_mps = sweep(contacts, bodies, sweeps % 2 == 1);
+    ++sweeps;
+    if (std::max(change_mps, turned_mps) < kSettled_mps) break;
+  }
+  most_sweeps_ = std::max(most_sweeps_, sweeps);
+}
+
+/// Applies rolling resistance; returns the greatest change of a body's angular momentum per kg and m.
+double ContactSolver::resist_rolling(std::span<const SolverContact> contacts, std::span<SolverBody> bodies,
+                                     double rolling) {
+  for (const std::size_t i : members_) rolling_[i].limit_m2_rad_s = 0.0;
+  for (const std::size_t i : order_) {
+    const SolverContact& contact = contacts[i];
+    rolling_[contact.body].limit_m2_rad_s +=
+        contact.impulse_Ns * std::abs(contact.contact_offset_m.dot(contact.normal));
+    if (contact.other < bodies.size())
+      rolling_[contact.other].limit_m2_rad_s +=
+          contact.impulse_Ns * std::abs(contact.other_offset_m.dot(contact.normal));
+  }
+  double most = 0.0;
+  for (const std::size_t i : members_) {
+    SolverBody& body = bodies[i];
+    Rolling& resistance = rolling_[i];
+    const double limit = rolling * resistance.limit_m2_rad_s * body.inverse_mass_per_kg;
+    Vec3 wanted = resistance.held_m2_rad_s - body.inertia_m2 * body.velocity.angular_rad_s;
+    const double size = wanted.norm();
+    if (size > limit) wanted *= limit / size;
+    const Vec3 more = wanted - resistance.held_m2_rad_s;
+    body.velocity.angular_rad_s += body.inverse_inertia_m2 * more;
+    resistance.held_m2_rad_s = wanted;
+    most = std::max(most, more.lpNorm<Eigen::Infinity>());
+  }
+  return most;
+}
+
+/// Solves each contact of the system once; returns the greatest change of a velocity.
+double ContactSolver::sweep(std::span<SolverContact> contacts, std::span<SolverBody> bodies,
+                            bool is_backwards) {
+  double change_mps = 0.0;
+  const auto slip_along = [&](const SolverContact& contact, const Row& row) {
+    const Velocity& own = bodies[contact.body].velocity;
+    double slip_mps = own.linear_mps.dot(row.direction) + own.angular_rad_s.dot(row.lever);
+    if (contact.other < bodies.size()) {
+      const Velocity& other = bodies[contact.other].velocity;
+      slip_mps -= other.linear_mps.dot(row.direction) + other.angular_rad_s.dot(row.other_lever);
+    }
+    return slip_mps;
+  };
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const std::size_t i = order_[is_backwards ? order_.size() - 1 - k : k];
+    SolverContact& contact = contacts[i];
+    const Rows& rows = rows_[i];
+    const auto change = [&](const Row& row, double more_Ns) {
+      apply(contact, bodies, row.direction, row.turns, row.other_turns, more_Ns);
+      change_mps = std::max(change_mps, std::abs(more_Ns) / row.effective_mass_kg);
+    };
+    const double enters_mps = contact.leaves_mps - slip_along(contact, rows.normal);
+    const double impulse_Ns = std::max(contact.impulse_Ns + rows.normal.effective_mass_kg * enters_mps, 0.0);
+    change(rows.normal, impulse_Ns - contact.impulse_Ns);
+    contact.impulse_Ns = impulse_Ns;
+    if (!(contact.friction > 0.0)) continue;
+
+    const double before_x = contact.friction_impulse_Ns.dot(rows.x.direction);
+    const double before_y = contact.friction_impulse_Ns.dot(rows.y.direction);
+    double x_Ns = before_x - rows.x.effective_mass_kg * slip_along(contact, rows.x);
+    double y_Ns = before_y - rows.y.effective_mass_kg * slip_along(contact, rows.y);
+    const double most_Ns = contact.friction * impulse_Ns;
+    const double size_Ns = std::hypot(x_Ns, y_Ns);
+    if (size_Ns > most_Ns) {
+      x_Ns *= most_Ns / size_Ns;
+      y_Ns *= most_Ns / size_Ns;
+    }
+    change(rows.x, x_Ns - before_x);
+    change(rows.y, y_Ns - before_y);
+    contact.friction_impulse_Ns = x_Ns * rows.x.direction + y_Ns * rows.y.direction;
+  }
+  return change_mps;
 }
 
 }  // namespace roomradar

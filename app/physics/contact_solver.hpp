@@ -1,9 +1,11 @@
-// contact_solver.hpp: contact and friction impulses on a rigid body.
+// contact_solver.hpp: contact and friction impulses on rigid bodies that touch each other and static
+// surfaces.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace roomradar {
 
@@ -13,40 +15,35 @@ struct Velocity {
   Eigen::Vector3d angular_rad_s = Eigen::Vector3d::Zero();
 };
 
-/// State of another body that touches the solved body.
 struct SolverBody {
   Velocity velocity;
-  Eigen::Matrix3d inverse_inertia_m2 = Eigen::Matrix3d::Zero();  ///< per kg, 1/m^2, in world axes
-  /// Mass of the solved body divided by the mass of this other body, >= 0. 0: impulses do not move this body.
-  double mass_ratio = 0.0;
+  double inverse_mass_per_kg = 0.0;  ///< 0: impulses do not move this body
+  /// Inertia per kg about the centre of mass, in world axes, and its inverse.
+  Eigen::Matrix3d inertia_m2 = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d inverse_inertia_m2 = Eigen::Matrix3d::Identity();
 };
 
 /// Value of SolverContact::other for a contact with a static surface.
 constexpr std::size_t kNoOther = std::numeric_limits<std::size_t>::max();
 
 struct SolverContact {
-  Eigen::Vector3d contact_offset_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the contact
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();           ///< unit, towards the body
+  std::size_t body = 0;          ///< index of the body that the normal points to
+  std::size_t other = kNoOther;  ///< index of the other body
+  Eigen::Vector3d contact_offset_m = Eigen::Vector3d::Zero();  ///< from the body's centre of mass
+  Eigen::Vector3d other_offset_m = Eigen::Vector3d::Zero();    ///< from the other body's centre of mass
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();           ///< unit
   /// Lower bound of the separation speed along the normal after the solve. A negative bound permits approach
   /// at up to -leaves_mps.
   double leaves_mps = 0.0;
-  std::size_t other = kNoOther;  ///< index of the other body; kNoOther: static surface
-  /// From the other body's centre of mass to the contact.
-  Eigen::Vector3d other_offset_m = Eigen::Vector3d::Zero();
-  double impulse_mps = 0.0;  ///< out: normal impulse per kg, >= 0
-  Eigen::Vector3d friction_impulse_mps =
-      Eigen::Vector3d::Zero();  ///< out: friction impulse per kg, tangential
-};
-
-/// Returns the full velocity vector of the body at a contact, relative to the other body or static surface.
-Eigen::Vector3d slip_at(const SolverContact& contact, const Velocity& velocity,
-                        std::span<const SolverBody> others);
-
-struct FrictionConfig {
   double friction = 0.0;  ///< Coulomb's coefficient
-  /// Rolling resistance: max torque = `rolling` x normal force x length of contact_offset_m.
-  double rolling = 0.0;
+  /// In: initial guess; out: normal impulse on the body, >= 0.
+  double impulse_Ns = 0.0;
+  /// In: initial guess; out: friction impulse on the body, tangential.
+  Eigen::Vector3d friction_impulse_Ns = Eigen::Vector3d::Zero();
 };
+
+/// Returns the velocity of the body's point at a contact relative to the other body or static surface.
+Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const SolverBody> bodies);
 
 /// Returns the velocity of the body at contact_offset_m from its centre of mass.
 inline Eigen::Vector3d velocity_at(const Velocity& velocity, const Eigen::Vector3d& contact_offset_m) {
@@ -56,14 +53,55 @@ inline Eigen::Vector3d velocity_at(const Velocity& velocity, const Eigen::Vector
 /// Returns the kinetic energy per kg of body mass, m^2/s^2.
 double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2);
 
-/// Solves for contact impulses by projected Gauss-Seidel and applies them to `velocity` and `others`. After
-/// the solve, each contact separates at leaves_mps or faster and obeys Coulomb's friction law. Other bodies
-/// receive opposite impulses, so total momentum is conserved. If leaves_mps <= 0 at all contacts, impulses
-/// add no energy. Contacts beyond the first 32 are ignored.
-/// @param inertia_m2  about the centre of mass, in world axes
-/// @param others      indexed by SolverContact::other; an index out of range stands for a static surface
+/// Returns the kinetic energy of the bodies that impulses move, J.
+double energy(std::span<const SolverBody> bodies);
+
+/// Solves for contact impulses by projected Gauss-Seidel and applies them to the bodies' velocities. All
+/// contacts of bodies that touch each other, directly or through others, are solved as one system. After the
+/// solve, each contact separates at leaves_mps or faster and obeys Coulomb's friction law. The impulses on
+/// the two bodies of a contact are opposite, so momentum is conserved. If leaves_mps <= 0 at all contacts and
+/// all guesses are 0, impulses add no energy.
+///
+/// Sweeps alternate between the contacts' order and its reverse, which carries the weight of a stack whose
+/// contacts are ordered by height to its base in one sweep.
 /// Source: Catto, Iterative dynamics with temporal coherence, GDC 2005.
-void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& inertia_m2,
-                    const FrictionConfig& rubbing, Velocity& velocity, std::span<SolverBody> others = {});
+class ContactSolver {
+ public:
+  /// @param contacts  body and other index `bodies`; an `other` out of range stands for a static surface
+  /// @param rolling   rolling resistance of a body: max torque = rolling x normal force x distance of the
+  ///                  centre of mass from the contact's tangent plane, a ball's radius
+  void solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling);
+
+  /// Greatest number of sweeps that a system needed since construction.
+  [[nodiscard]] int most_sweeps() const { return most_sweeps_; }
+
+ private:
+  /// A direction of a contact, and what a unit impulse along it changes.
+  struct Row {
+    Eigen::Vector3d direction, lever, other_lever, turns, other_turns;
+    double effective_mass_kg;
+  };
+  struct Rows {
+    Row normal, x, y;
+  };
+  struct Rolling {
+    Eigen::Vector3d held_m2_rad_s;  ///< angular impulse per kg so far
+    double limit_m2_rad_s;
+  };
+
+  std::vector<Rows> rows_;
+  std::vector<Rolling> rolling_;
+  std::vector<std::size_t> parent_;  ///< of each body: another body of its system, or itself
+  std::vector<std::size_t> system_of_contact_;
+  std::vector<std::size_t> order_, members_;  ///< contacts and bodies of the system being solved
+  int most_sweeps_ = 0;
+
+  std::size_t root_of(std::size_t body);
+  void find_systems(std::span<const SolverContact> contacts, std::span<const SolverBody> bodies);
+  void solve_system(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling);
+  double sweep(std::span<SolverContact> contacts, std::span<SolverBody> bodies, bool is_backwards);
+  double resist_rolling(std::span<const SolverContact> contacts, std::span<SolverBody> bodies,
+                        double rolling);
+};
 
 }  // namespace roomradar

@@ -29,7 +29,7 @@ void HeightGrid::append(const Eigen::Vector3f& point) {
 /// Adds points between four neighbouring pixels that see one level surface and are more than a cell apart, as
 /// in images of few pixels: no pixel between them could show anything else.
 void HeightGrid::append_between(const std::array<Eigen::Vector3f, 4>& corners) {
-  constexpr float kFarthest_m = 0.12F;  // pixels farther apart may hide something
+  constexpr float kFarthest_m = 0.06F;  // pixels farther apart may hide something
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& corner : corners) {
     if (!corner.allFinite()) return;

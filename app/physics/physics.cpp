@@ -7,14 +7,13 @@
 #include <optional>
 
 #include "app/physics/rigid_motion.hpp"
+#include "app/physics/sliding.hpp"
 
 namespace roomradar {
 namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr double kShortest_m = 1e-13;  // shorter moves count as none
-constexpr double kGrazing = 0.05;      // min cosine that converts the margin to a distance along the motion
 constexpr double kDoubtful_m = 0.003;  // deeper overlap along gravity: sideways exits are tested too
 
 bool is_finite(const Body& body) {
@@ -23,29 +22,25 @@ bool is_finite(const Body& body) {
          body.mass.inertia_m2.allFinite();
 }
 
-/// Returns false if the radar's result is unusable. Replaces a normal that is missing or does not face the
-/// object by -direction.
-bool make_usable(Contact& contact, const Vec3& direction) {
-  if (contact.status == ContactStatus::kInvalidInput || contact.status == ContactStatus::kNoAnswer)
-    return false;
-  if (!contact) return true;
-  // lower_m of an overlap may be -infinity: deeper than the radar searched.
-  const bool has_lower = std::isfinite(contact.lower_m) || contact.status == ContactStatus::kOverlap;
-  if (!std::isfinite(contact.contact_distance_m) || !has_lower) return false;
-  const double length = contact.normal_world.norm();
-  const bool faces_object =
-      std::isfinite(length) && length > 0.5 && contact.normal_world.dot(direction) < -1e-3 * length;
-  contact.normal_world = faces_object ? Vec3(contact.normal_world / length) : Vec3(-direction);
-  return true;
+/// Returns the physics of a carried body: without gravity, friction and restitution, so it slides along
+/// surfaces.
+PhysicsConfig in_hand(PhysicsConfig config) {
+  config.gravity_world_mps2.setZero();
+  config.friction = config.restitution = 0.0;
+  return config;
 }
 
-/// State of one call of advance().
+/// One body in a call of advance_together(): what concerns it alone.
 class Stepper {
  public:
-  Stepper(Body& body, const CollisionQueries& probe, const PhysicsConfig& config, StepReport& report)
-      : body_(body), probe_(probe), config_(config), report_(report) {
-    const double g = config.gravity_world_mps2.norm();
-    if (g > 0.0) down_ = config.gravity_world_mps2 / g;
+  Stepper(AdvancedBody& advanced, const PhysicsConfig& config)
+      : advanced_(advanced),
+        body_(*advanced.body),
+        probe_(*advanced.probe),
+        config_(advanced.is_carried ? in_hand(config) : config),
+        report_(advanced.report) {
+    const double g = config_.gravity_world_mps2.norm();
+    if (g > 0.0) down_ = config_.gravity_world_mps2 / g;
   }
 
   /// Queries below the body, and moves it out of surfaces that entered it, along the shortest of gravity and
@@ -57,11 +52,14 @@ class Stepper {
   /// Returns true if a body in contact when this one fell asleep has moved or disappeared.
   [[nodiscard]] bool has_lost_a_neighbour() const;
 
-  /// Simulates one substep, and may put the body to sleep.
-  void move(double dt_s);
+  /// Wakes the body unless it can stay asleep.
+  void wake_if_due();
+  /// Ends a substep: moves a body that a surface crosses, and may put the body to sleep.
+  void end_substep(const MovingBody& moved, const SubstepResult& result);
 
   void wake();
   [[nodiscard]] bool failed() const { return report_.status == StepStatus::kHeld; }
+  [[nodiscard]] const std::optional<Push>& push() const { return push_; }
 
  private:
   struct Way {
@@ -70,42 +68,29 @@ class Stepper {
     Contact contact;
   };
 
-  /// Moves without rotation, by radar queries along the path. Returns true if a surface supported the body.
-  bool slide(double dt_s);
-  Contact ask(const Vec3& direction, double distance_m);
+  Contact ask(const Vec3& direction, double distance_m) {
+    return query_travel(body_, direction, distance_m, probe_, report_);
+  }
   /// Returns true if the overlap is only a surface between the body's parts, as in a handle, that crosses
   /// none of them.
   [[nodiscard]] bool is_in_a_hollow(const Way& way);
   static Way overlap_in(const Contact& contact, const Vec3& direction);
-  void hold();
-  void collide(const Contact& contact, Vec3& remaining);
-  void update_sleep(double dt_s, bool is_balanced);
+  void update_sleep(double dt_s, const SubstepResult& result);
+  void tell_moved() const {
+    if (advanced_.moved) advanced_.moved();
+  }
 
+  AdvancedBody& advanced_;
   Body& body_;
   const CollisionQueries& probe_;
-  const PhysicsConfig& config_;
+  const PhysicsConfig config_;
   StepReport& report_;
   Vec3 down_ = Vec3::Zero();
   Contact below_;                           // along gravity, before any motion
   std::optional<SurfaceKindMask> crossed_;  // kinds that cross the body before any motion, once queried
   std::optional<Push> push_;
-  RigidScratch scratch_;
-  std::array<Vec3, 2> met_normals_;
-  int met_count_ = 0;
+  std::vector<ClosestPoint> near_;
 };
-
-Contact Stepper::ask(const Vec3& direction, double distance_m) {
-  ++report_.queries;
-  Contact contact = probe_.travel(body_.T_world_object, direction, distance_m);
-  if (!make_usable(contact, direction)) hold();
-  return contact;
-}
-
-void Stepper::hold() {
-  report_.status = StepStatus::kHeld;
-  body_.velocity_world_mps.setZero();
-  body_.angular_velocity_world_rad_s.setZero();
-}
 
 void Stepper::wake() {
   if (!body_.asleep) return;
@@ -122,7 +107,7 @@ bool Stepper::is_in_a_hollow(const Way& way) {
   constexpr double kTouching_m = 1e-6;
   const SurfaceKind kind = way.contact.touched;
   if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind)) return false;
-  if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, scratch_.near);
+  if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, near_);
   return (*crossed_ & bit_of(kind)) == 0;
 }
 
@@ -172,6 +157,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_di
     free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
   if (behind.status == ContactStatus::kOverlap && behind.touched == SurfaceKind::kStatic) free_m = 0.0;
   body_.T_world_object.translation() -= std::min(push_m, free_m) * way.direction;
+  tell_moved();
   const double inward_mps = body_.velocity_world_mps.dot(way.direction);
   if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction;
 }
@@ -190,44 +176,9 @@ bool Stepper::has_lost_a_neighbour() const {
       });
 }
 
-/// Removes the velocity into the surface (with restitution and friction), and the remaining motion into it.
-/// With two surfaces, the motion continues along their crease; with three, it ends.
-void Stepper::collide(const Contact& contact, Vec3& remaining) {
-  const Vec3& normal = contact.normal_world;
-  Vec3& velocity = body_.velocity_world_mps;
-  const double into_mps = -velocity.dot(normal);
-  Vec3 along = velocity + into_mps * normal;
-  double kept = 1.0;
-  if (into_mps > 0.0) {
-    const double speed = along.norm();
-    kept = speed > 0.0 ? std::max(1.0 - config_.friction * into_mps / speed, 0.0) : 0.0;
-    const double back_mps = into_mps > config_.bounce_mps ? config_.restitution * into_mps : 0.0;
-    along *= kept;
-    velocity = along + back_mps * normal;
-  }
-  remaining -= std::min(remaining.dot(normal), 0.0) * normal;
-  remaining *= kept;
-
-  for (int i = 0; i < met_count_; ++i) {
-    const Vec3& other = met_normals_[static_cast<std::size_t>(i)];
-    if (remaining.dot(other) >= -1e-9) continue;
-    const Vec3 crease = other.cross(normal);
-    const double length2 = crease.squaredNorm();
-    const bool is_corner = met_count_ == 2 || length2 < 1e-6;
-    const auto on_crease = [&](const Vec3& v) -> Vec3 {
-      return is_corner ? Vec3::Zero() : Vec3(crease * (crease.dot(v) / length2));
-    };
-    remaining = on_crease(remaining);
-    if (velocity.dot(other) < 0.0) velocity = on_crease(velocity);
-    break;
-  }
-  if (met_count_ < 2) met_normals_[static_cast<std::size_t>(met_count_++)] = normal;
-  note_contact(contact.touched, report_);
-}
-
 /// Advances the sleep timer of a supported body, and puts it to sleep when it expires. An unbalanced body
 /// takes longer, since it may be about to tip.
-void Stepper::update_sleep(double dt_s, bool is_balanced) {
+void Stepper::update_sleep(double dt_s, const SubstepResult& result) {
   constexpr double kLongerUnbalanced = 4.0;
   if (body_.sleep_timer_s <= 0.0 ||
       !(strayed_m(body_, body_.sleep_pose_candidate) <= config_.sleep_drift_m)) {
@@ -235,90 +186,94 @@ void Stepper::update_sleep(double dt_s, bool is_balanced) {
     body_.sleep_timer_s = 0.0;
   }
   body_.sleep_timer_s += dt_s;
-  if (body_.sleep_timer_s < config_.sleep_after_s * (is_balanced ? 1.0 : kLongerUnbalanced)) return;
+  if (body_.sleep_timer_s < config_.sleep_after_s * (result.is_balanced ? 1.0 : kLongerUnbalanced)) return;
   body_.asleep = true;
   body_.supporting_bodies.clear();
-  for (const Body* other : scratch_.bodies) body_.supporting_bodies.push_back({other, other->T_world_object});
+  for (const Body* other : result.touches) body_.supporting_bodies.push_back({other, other->T_world_object});
   body_.sleep_timer_s = 0.0;  // the timer restarts when the body is set in motion again
   body_.velocity_world_mps.setZero();
   body_.angular_velocity_world_rad_s.setZero();
 }
 
-void Stepper::move(double dt_s) {
-  const SubstepResult piece = simulate_substep(body_, dt_s, probe_, config_, push_, scratch_, report_);
-  if (piece.crosses) {
-    if (slide(piece.left_s)) update_sleep(dt_s, /*is_balanced=*/true);
+void Stepper::wake_if_due() {
+  const bool is_still = body_.velocity_world_mps.isZero() && body_.angular_velocity_world_rad_s.isZero();
+  if (!(body_.asleep && is_still && is_held_up() && !has_lost_a_neighbour())) wake();
+}
+
+void Stepper::end_substep(const MovingBody& moved, const SubstepResult& result) {
+  if (moved.crosses) {
+    SubstepResult supported = result;
+    supported.is_balanced = true;
+    if (slide(body_, moved.left_s, probe_, config_, report_)) update_sleep(moved.dt_s, supported);
+    tell_moved();
     return;
   }
-  if (piece.is_held_up) {
-    body_.rests_on = piece.rests_on;
-    if (!push_) update_sleep(dt_s, piece.is_balanced);
+  if (result.is_held_up) {
+    body_.rests_on = result.rests_on;
+    if (!push_) update_sleep(moved.dt_s, result);
   } else {
     body_.rests_on = SurfaceKind::kNothing;
   }
 }
 
-bool Stepper::slide(double dt_s) {
-  body_.angular_velocity_world_rad_s.setZero();
-  body_.velocity_world_mps += config_.gravity_world_mps2 * dt_s;
-  const double speed_mps = body_.velocity_world_mps.norm();
-  if (speed_mps > config_.max_speed_mps) body_.velocity_world_mps *= config_.max_speed_mps / speed_mps;
-
-  auto position = body_.T_world_object.translation();
-  Vec3 remaining = body_.velocity_world_mps * dt_s;
-  bool is_supported = false;
-  body_.rests_on = SurfaceKind::kNothing;
-  met_count_ = 0;
-  for (int slide = 0; slide < config_.max_slides; ++slide) {
-    const double distance_m = remaining.norm();
-    if (distance_m < kShortest_m) break;
-    const Vec3 direction = remaining / distance_m;
-    const Contact contact = ask(direction, distance_m + config_.contact_margin_m / kGrazing);
-    if (failed()) return false;
-    // The gap is kept perpendicular to the surface; along a grazing motion it is longer.
-    const double steepness = std::max(-contact.normal_world.dot(direction), kGrazing);
-    const double free_m = contact ? contact.lower_m - config_.contact_margin_m / steepness : contact.lower_m;
-    if (free_m >= distance_m) {
-      position += remaining;
-      break;
-    }
-    const Vec3 moved = std::max(free_m, 0.0) * direction;
-    position += moved;
-    if (!contact) break;  // limited by the radar's search distance
-    remaining -= moved;
-    if (contact.normal_world.dot(down_) < -kSupportCosine) {
-      is_supported = true;
-      body_.rests_on = contact.touched;
-    }
-    collide(contact, remaining);
-  }
-  return is_supported;
-}
-
 }  // namespace
+
+void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& config, ContactSystem& system) {
+  std::vector<Stepper> steppers;
+  steppers.reserve(bodies.size());
+  std::vector<MovingBody> moving;
+  double longest_s = 0.0;
+  for (AdvancedBody& advanced : bodies) {
+    advanced.report = {};
+    if (!std::isfinite(advanced.dt_s) || advanced.dt_s < 0.0 || !is_finite(*advanced.body)) {
+      advanced.report.status = StepStatus::kInvalid;
+      continue;
+    }
+    if (advanced.dt_s == 0.0) continue;
+    const double dt_s = std::min(advanced.dt_s, config.max_advance_s);
+    Stepper& stepper = steppers.emplace_back(advanced, config);
+    stepper.leave_overlaps(dt_s, advanced.depenetration_directions_world);
+    if (stepper.failed()) {
+      steppers.pop_back();
+      continue;
+    }
+    stepper.wake_if_due();
+    longest_s = std::max(longest_s, dt_s);
+    moving.push_back({.body = advanced.body,
+                      .probe = advanced.probe,
+                      .mass_kg = advanced.mass_kg,
+                      .is_carried = advanced.is_carried,
+                      .push = stepper.push(),
+                      .report = &advanced.report,
+                      .dt_s = dt_s,
+                      .moved = &advanced.moved});
+  }
+  constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two substeps of 1/60 s, not three
+  const int pieces = std::max(static_cast<int>(std::ceil(longest_s / config.max_step_s - kOver)), 1);
+  for (MovingBody& body : moving) body.dt_s /= pieces;
+  std::vector<SubstepResult> results;
+  for (int piece = 0; piece < pieces; ++piece) {
+    if (std::none_of(moving.begin(), moving.end(), [](const MovingBody& m) { return !m.body->asleep; }))
+      return;
+    std::vector<bool> was_asleep;
+    for (const MovingBody& body : moving) was_asleep.push_back(body.body->asleep);
+    simulate_substep(moving, config, system, results);
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+      if (!was_asleep[i]) steppers[i].end_substep(moving[i], results[i]);
+      if (steppers[i].failed()) moving[i].dt_s = 0.0;  // stays where it is
+    }
+  }
+}
 
 StepReport advance(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,
                    std::span<const Eigen::Vector3d> depenetration_directions_world) {
-  StepReport report;
-  if (!std::isfinite(dt_s) || dt_s < 0.0 || !is_finite(body)) {
-    report.status = StepStatus::kInvalid;
-    return report;
-  }
-  if (dt_s == 0.0) return report;
-  dt_s = std::min(dt_s, config.max_advance_s);
-
-  Stepper stepper(body, probe, config, report);
-  stepper.leave_overlaps(dt_s, depenetration_directions_world);
-  if (stepper.failed()) return report;
-  const bool is_still = body.velocity_world_mps.isZero() && body.angular_velocity_world_rad_s.isZero();
-  if (body.asleep && is_still && stepper.is_held_up() && !stepper.has_lost_a_neighbour()) return report;
-  stepper.wake();
-
-  constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two substeps of 1/60 s, not three
-  const int pieces = std::max(static_cast<int>(std::ceil(dt_s / config.max_step_s - kOver)), 1);
-  for (int piece = 0; piece < pieces && !body.asleep && !stepper.failed(); ++piece)
-    stepper.move(dt_s / pieces);
-  return report;
+  ContactSystem system;
+  AdvancedBody advanced{.body = &body,
+                        .probe = &probe,
+                        .dt_s = dt_s,
+                        .depenetration_directions_world = depenetration_directions_world};
+  advance_together({&advanced, 1}, config, system);
+  return advanced.report;
 }
 
 }  // namespace roomradar

@@ -10,8 +10,9 @@ struct PhysicsConfig {
   double restitution = 0.0;
   double bounce_mps = 0.3;  ///< min impact speed for restitution
   double friction = 0.5;    ///< Coulomb's coefficient, >= 0
-  /// Rolling resistance, >= 0: max torque = `rolling` x normal force x length of the contact offset. With
-  /// 0.02, a ball that rolls at 0.5 m/s stops after 0.9 m.
+  /// Rolling resistance, >= 0: max torque = `rolling` x normal force x distance of the centre of mass from
+  /// the contact's tangent plane (a ball's radius). With 0.02, a ball that rolls at 0.5 m/s stops after 0.9
+  /// m.
   double rolling = 0.02;
   /// Gap between resting bodies and surfaces, measured from Contact::lower_m, the radar's lower bound of the
   /// distance. Without a gap, rounding errors would turn contacts into overlaps.

@@ -6,317 +6,331 @@
 #include <array>
 #include <cmath>
 
+#include "app/physics/sliding.hpp"
+
 namespace roomradar {
 namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr double kTouchingBand = 0.5;  // fraction of the margin by which contacts may exceed it
-constexpr double kKept = 0.5;          // fraction of the margin at which approaching surfaces stop the motion
-constexpr double kNoTime_s = 1e-12;
-constexpr double kNudge_mps = 0.05;  // slower impacts do not wake the body hit
+constexpr double kKept = 0.5;  // fraction of the margin at which approaching surfaces stop the motion
+/// Fraction of gravity's acceleration below which a body counts as balanced. A body whose support is 5 %
+/// short of its load starts with more; rounding and the solver's tolerance with less.
+constexpr double kUnbalanced = 0.004;
 
 void limit(Vec3& v, double most) {
   const double size = v.norm();
   if (size > most) v *= most / size;
 }
 
-Velocity velocity_of(const Body& body) {
-  return {body.velocity_world_mps, body.angular_velocity_world_rad_s};
+/// Upper bound of the speed of the body's points.
+double speed_of(const Body& body, const Velocity& velocity) {
+  return velocity.linear_mps.norm() + velocity.angular_rad_s.norm() * body.mass.radius_m;
 }
 
-/// State of one substep: the body, its contacts, and the time left.
-class Piece {
+/// State of one substep.
+class Substep {
  public:
-  Piece(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,
-        const std::optional<Push>& push, RigidScratch& scratch, StepReport& report)
-      : body_(body),
-        left_s_(dt_s),
-        probe_(probe),
-        config_(config),
-        push_(push),
-        scratch_(scratch),
-        report_(report),
-        velocity_(velocity_of(body)),
-        resting_{config.friction, config.rolling} {
+  Substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system,
+          std::vector<SubstepResult>& results)
+      : bodies_(bodies), config_(config), system_(system), results_(results) {
     const double g = config.gravity_world_mps2.norm();
     if (g > 0.0) up_ = -config.gravity_world_mps2 / g;
-    if (push) left_out_ = bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
   }
 
-  SubstepResult run();
+  void run();
 
  private:
-  bool find_contacts();
-  void set_room(double dt_s);
-  std::size_t other_on(const ClosestPoint& p);
-  void bounce();
-  void let_sleepers_lie();
-  [[nodiscard]] double energy_of_all() const;
-  [[nodiscard]] Velocity held_up_after(Velocity velocity, double dt_s);
-  [[nodiscard]] Velocity mean_with(const Velocity& after);
-  [[nodiscard]] Velocity lift_back(double dt_s);
-  void see_support(SubstepResult& piece);
-  void go(const Velocity& after);
-
-  Body& body_;
-  double left_s_;
-  const CollisionQueries& probe_;
+  std::span<MovingBody> bodies_;
   const PhysicsConfig& config_;
-  const std::optional<Push>& push_;
-  RigidScratch& scratch_;
-  StepReport& report_;
-  Velocity velocity_;
-  FrictionConfig resting_;
+  ContactSystem& system_;
+  std::vector<SubstepResult>& results_;
   Vec3 up_ = Vec3::Zero();
-  Vec3 centre_ = Vec3::Zero();
-  Eigen::Matrix3d inertia_ = Eigen::Matrix3d::Identity();
-  ClosestPoint limited_by_;
-  SurfaceKindMask left_out_ = 0;
+
+  [[nodiscard]] bool is_member(std::size_t solver_index) const { return solver_index < bodies_.size(); }
+  void solve(double rolling);
+
+  [[nodiscard]] bool bounce();
+  [[nodiscard]] bool note_impacts();
+  void hold_up(bool keeps_impulses);
+  void wake_unbalanced_sleepers();
+  void find_balanced();
+  void move();
+  [[nodiscard]] std::vector<Velocity> corrections();
+  [[nodiscard]] std::vector<Velocity> mean_velocities();
+  void move(MovingBody& moving, const Velocity& mean, const Velocity& correction, bool is_free);
 };
 
-/// Finds contacts at the present pose. Returns false if a surface other than the pushing one crosses the
-/// body.
-bool Piece::find_contacts() {
-  const double margin_m = config_.contact_margin_m;
-  const double reach_m = (1.0 + kTouchingBand) * margin_m;
-  if (probe_.near(body_.T_world_object, std::max(reach_m, 1e-6), left_out_, scratch_.near) != 0) return false;
-  centre_ = centre_world(body_);
-  inertia_ = inertia_world_m2(body_);
-  if (limited_by_.kind != SurfaceKind::kNothing) {
-    const bool is_known = std::any_of(scratch_.near.begin(), scratch_.near.end(), [&](const ClosestPoint& p) {
-      return (p.point_world - limited_by_.point_world).norm() < margin_m &&
-             p.normal_world.dot(limited_by_.normal_world) > 0.99;
-    });
-    if (!is_known && limited_by_.gap_m <= reach_m) scratch_.near.push_back(limited_by_);
-  }
-  scratch_.contacts.clear();
-  scratch_.kinds.clear();
-  scratch_.others.clear();
-  scratch_.bodies.clear();
-  for (const ClosestPoint& p : scratch_.near) {
-    SolverContact& contact = scratch_.contacts.emplace_back();
-    contact.contact_offset_m = p.point_world + p.gap_m * p.normal_world - centre_;
-    contact.normal = p.normal_world;
-    contact.other = other_on(p);
-    if (contact.other != kNoOther)
-      contact.other_offset_m = p.point_world - centre_world(*scratch_.bodies[contact.other]);
-    scratch_.kinds.push_back(p.kind);
-  }
-  if (push_) {
-    SolverContact& contact = scratch_.contacts.emplace_back();
-    contact.contact_offset_m = push_->point_world - centre_;
-    contact.normal = push_->normal_world;
-    scratch_.kinds.push_back(push_->touched);
-  }
-  return true;
-}
-
-/// Returns the index of the body in contact at p, adding it if new; kNoOther for a static surface.
-std::size_t Piece::other_on(const ClosestPoint& p) {
-  if (p.tree >= probe_.others.size() || probe_.others[p.tree].body == nullptr) return kNoOther;
-  const auto& [body, mass_ratio] = probe_.others[p.tree];
-  const auto known = std::find(scratch_.bodies.begin(), scratch_.bodies.end(), body);
-  if (known != scratch_.bodies.end()) return static_cast<std::size_t>(known - scratch_.bodies.begin());
-  scratch_.bodies.push_back(body);
-  scratch_.others.push_back({velocity_of(*body), inertia_world_m2(*body).inverse(), mass_ratio});
-  return scratch_.bodies.size() - 1;
-}
-
-/// Returns the energy of the body and all bodies in contact, per kg of the body.
-double Piece::energy_of_all() const {
-  double sum = energy(velocity_, inertia_);
-  for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
-    const SolverBody& other = scratch_.others[i];
-    if (other.mass_ratio > 0.0)
-      sum += energy(other.velocity, inertia_world_m2(*scratch_.bodies[i])) / other.mass_ratio;
-  }
-  return sum;
-}
-
-/// Keeps sleeping bodies static that are hit more slowly than kNudge_mps.
-void Piece::let_sleepers_lie() {
-  for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
-    if (!scratch_.bodies[i]->asleep || !scratch_.others[i].velocity.linear_mps.isZero()) continue;
-    const bool is_woken =
-        std::any_of(scratch_.contacts.begin(), scratch_.contacts.end(), [&](const SolverContact& contact) {
-          return contact.other == i &&
-                 -velocity_at(velocity_, contact.contact_offset_m).dot(contact.normal) > kNudge_mps;
-        });
-    if (!is_woken) scratch_.others[i].mass_ratio = 0.0;
-  }
-}
+void Substep::solve(double rolling) { system_.solver.solve(system_.contacts, system_.bodies, rolling); }
 
 /// Cancels the velocity into contacts that would close within the time left, with restitution for fast
-/// impacts.
-void Piece::bounce() {
-  bool enters = false, is_fast = false;
-  let_sleepers_lie();
-  set_room(left_s_);
-  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
-    SolverContact& contact = scratch_.contacts[i];
-    const bool is_push = i >= scratch_.near.size();
-    const double closing_mps = -slip_at(contact, velocity_, scratch_.others).dot(contact.normal);
+/// impacts. Returns true if it woke a sleeping body, whose contacts are not in the system.
+bool Substep::bounce() {
+  allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
+  bool enters = false, is_fast = false, is_pushed = false;
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+    SolverContact& contact = system_.contacts[i];
+    is_pushed |= system_.is_push[i];
+    const double closing_mps = -slip_at(contact, system_.bodies).dot(contact.normal);
     if (!(closing_mps > -contact.leaves_mps + 1e-9)) continue;
     enters = true;
-    if (is_push || !(closing_mps > config_.bounce_mps)) continue;
+    const bool is_carried = bodies_[contact.body].is_carried && contact.other == kNoOther;
+    if (system_.is_push[i] || is_carried || !(closing_mps > config_.bounce_mps)) continue;
     is_fast = true;
     contact.leaves_mps = config_.restitution * closing_mps;
   }
-  if (!enters) return;
+  if (!enters) return false;
+  set_masses(bodies_, Movable::kAllButSleeping, system_);
+  clear_impulses(system_);
   constexpr double kSame = 1.0 + 1e-9;
-  const double before = energy_of_all();
-  const Velocity entering = velocity_;
-  const FrictionConfig rubbing{config_.friction, 0.0};
-  solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_, scratch_.others);
-  if (is_fast && !push_ && energy_of_all() > kSame * before) {
+  const double before_J = energy(system_.bodies);
+  const std::vector<SolverBody> entering = system_.bodies;
+  solve(0.0);
+  if (is_fast && !is_pushed && energy(system_.bodies) > kSame * before_J) {
     // Newton's restitution with friction at several contacts may add energy: repeat without restitution.
-    velocity_ = entering;
-    for (std::size_t i = 0; i < scratch_.others.size(); ++i)
-      scratch_.others[i].velocity = velocity_of(*scratch_.bodies[i]);
-    for (SolverContact& contact : scratch_.contacts) contact.leaves_mps = std::min(contact.leaves_mps, 0.0);
-    solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_, scratch_.others);
+    system_.bodies = entering;
+    for (SolverContact& contact : system_.contacts) contact.leaves_mps = std::min(contact.leaves_mps, 0.0);
+    clear_impulses(system_);
+    solve(0.0);
   }
-  for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
-    scratch_.bodies[i]->velocity_world_mps = scratch_.others[i].velocity.linear_mps;
-    scratch_.bodies[i]->angular_velocity_world_rad_s = scratch_.others[i].velocity.angular_rad_s;
-  }
-  std::array<bool, kSurfaceKinds> is_met{};  // each kind counts once, whatever its number of points
-  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i)
-    if (scratch_.contacts[i].impulse_mps > 0.0) is_met[static_cast<std::size_t>(scratch_.kinds[i])] = true;
-  for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
-    if (is_met[kind]) note_contact(static_cast<SurfaceKind>(kind), report_);
+  return note_impacts();
 }
 
-/// Allows each contact to close its gap, down to the margin, within dt_s.
-void Piece::set_room(double dt_s) {
-  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
-    const bool is_push = i >= scratch_.near.size();
-    const double room_m = is_push ? 0.0 : scratch_.near[i].gap_m - config_.contact_margin_m;
-    scratch_.contacts[i].leaves_mps = is_push ? push_->speed_mps : -std::max(room_m, 0.0) / dt_s;
+/// Takes over the velocities after impacts, and wakes the sleeping bodies that were hit. Returns true if
+/// there are any.
+bool Substep::note_impacts() {
+  bool woke = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    MovingBody& moving = bodies_[i];
+    const bool was_moved = system_.bodies[i].inverse_mass_per_kg > 0.0;
+    if (was_moved) moving.velocity = system_.bodies[i].velocity;
+    if (!was_moved || !moving.body->asleep) continue;
+    moving.body->asleep = false;
+    moving.report->woke = woke = true;
+    moving.left_s = moving.dt_s;
+  }
+  for (std::size_t i = 0; i < system_.bystanders.size(); ++i) {
+    Body& body = *system_.bystanders[i].body;
+    const SolverBody& solved = system_.bodies[bodies_.size() + i];
+    body.velocity_world_mps = solved.velocity.linear_mps;
+    body.angular_velocity_world_rad_s = solved.velocity.angular_rad_s;
+  }
+  // Each kind counts once per body, whatever its number of points.
+  std::vector<std::array<bool, kSurfaceKinds>> is_met(bodies_.size());
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+    const SolverContact& contact = system_.contacts[i];
+    if (!(contact.impulse_Ns > 0.0)) continue;
+    is_met[contact.body][static_cast<std::size_t>(system_.kinds[i])] = true;
+    if (is_member(contact.other))
+      is_met[contact.other][static_cast<std::size_t>(SurfaceKind::kObject)] = true;
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
+      if (is_met[i][kind]) note_contact(static_cast<SurfaceKind>(kind), *bodies_[i].report);
+  return woke;
+}
+
+/// Sets the velocities after the time left, with gravity, support and friction. The weight of a body acts on
+/// all bodies below it, sleeping ones included.
+/// @param keeps_impulses  keeps them as guesses for the next substep
+void Substep::hold_up(bool keeps_impulses) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) system_.bodies[i].velocity = bodies_[i].velocity;
+  set_masses(bodies_, Movable::kActiveAndKnownSleepers, system_);
+  double scale = 0.0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const MovingBody& moving = bodies_[i];
+    if (moving.is_carried || !(system_.bodies[i].inverse_mass_per_kg > 0.0)) continue;
+    const double left_s = moving.body->asleep ? moving.dt_s : moving.left_s;
+    system_.bodies[i].velocity.linear_mps += config_.gravity_world_mps2 * left_s;
+    scale = std::max(scale, left_s);
+  }
+  allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
+  guess_impulses(bodies_, scale, system_);
+  solve(config_.rolling);
+  if (keeps_impulses && scale > 0.0) keep_impulses(bodies_, 1.0 / scale, system_);  // as forces
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    if (is_active(bodies_[i])) bodies_[i].after = system_.bodies[i].velocity;
+}
+
+/// Wakes sleeping bodies that the weight on them would set in motion.
+void Substep::wake_unbalanced_sleepers() {
+  const double g = config_.gravity_world_mps2.norm();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    MovingBody& moving = bodies_[i];
+    if (!moving.body->asleep || !(system_.bodies[i].inverse_mass_per_kg > 0.0)) continue;
+    if (speed_of(*moving.body, system_.bodies[i].velocity) < kUnbalanced * g * moving.dt_s) continue;
+    moving.body->asleep = false;
+    moving.report->woke = true;  // moves from the next substep on
   }
 }
 
-/// Returns the velocity after dt_s of gravity supported by the contacts; bodies in contact are unaffected.
-Velocity Piece::held_up_after(Velocity velocity, double dt_s) {
-  velocity.linear_mps += config_.gravity_world_mps2 * dt_s;
-  set_room(dt_s);
-  for (SolverBody& other : scratch_.others) other.mass_ratio = 0.0;
-  solve_contacts(scratch_.contacts, inertia_, resting_, velocity, scratch_.others);
-  return velocity;
+/// Finds the slow bodies that would stay at rest if all were at rest.
+void Substep::find_balanced() {
+  const double g = config_.gravity_world_mps2.norm();
+  constexpr double kSlow_mps = 0.3;
+  const bool is_any_slow = std::any_of(bodies_.begin(), bodies_.end(), [](const MovingBody& moving) {
+    return is_active(moving) && speed_of(*moving.body, moving.velocity) < kSlow_mps;
+  });
+  if (!is_any_slow) return;
+  for (std::size_t i = 0; i < system_.bodies.size(); ++i) {
+    system_.bodies[i].velocity = {};
+    if (is_member(i) && !bodies_[i].is_carried && system_.bodies[i].inverse_mass_per_kg > 0.0)
+      system_.bodies[i].velocity.linear_mps = config_.gravity_world_mps2 * bodies_[i].dt_s;
+  }
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i)
+    system_.contacts[i].leaves_mps =
+        system_.is_push[i] ? bodies_[system_.contacts[i].body].push->speed_mps : 0.0;
+  guess_impulses(bodies_, bodies_.front().dt_s, system_);
+  solve(config_.rolling);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (!is_active(bodies_[i])) continue;
+    const double begins_mps2 = speed_of(*bodies_[i].body, system_.bodies[i].velocity) / bodies_[i].dt_s;
+    results_[i].is_balanced = begins_mps2 < kUnbalanced * g;
+  }
 }
 
-/// Returns a position correction, without momentum, that restores the margin at contacts nearer than it.
-Velocity Piece::lift_back(double dt_s) {
+/// Returns position corrections, without momentum, that restore the margin at contacts nearer than it.
+std::vector<Velocity> Substep::corrections() {
   constexpr double kAtOnce = 0.3, kFastest_mps = 0.1, kLeft = 0.05;
-  Velocity lift;
+  std::vector<Velocity> corrections(bodies_.size());
   bool is_needed = false;
-  for (std::size_t i = 0; i < scratch_.near.size(); ++i) {
-    const double missing_m = config_.contact_margin_m - scratch_.near[i].gap_m;
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+    SolverContact& contact = system_.contacts[i];
+    const double missing_m = system_.is_push[i] ? -1.0 : config_.contact_margin_m - system_.gap_m[i];
     is_needed |= missing_m > kLeft * config_.contact_margin_m;
-    scratch_.contacts[i].leaves_mps =
-        missing_m > 0.0 ? std::min(kAtOnce * missing_m / dt_s, kFastest_mps) : missing_m / dt_s;
+    const double left = left_s(bodies_, contact);
+    contact.leaves_mps =
+        missing_m > 0.0 ? std::min(kAtOnce * missing_m / left, kFastest_mps) : missing_m / left;
+    contact.friction = 0.0;
   }
-  if (is_needed) {
-    solve_contacts({scratch_.contacts.data(), scratch_.near.size()}, inertia_, {}, lift);
-  }
-  return lift;
+  if (!is_needed) return corrections;
+  for (SolverBody& body : system_.bodies) body.velocity = {};
+  set_masses(bodies_, Movable::kActive, system_);
+  clear_impulses(system_);
+  solve(0.0);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) corrections[i] = system_.bodies[i].velocity;
+  return corrections;
 }
 
-void Piece::see_support(SubstepResult& piece) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
-    const SolverContact& contact = scratch_.contacts[i];
-    if (!(contact.impulse_mps > most) || contact.normal.dot(up_) < kSupportCosine) continue;
-    most = contact.impulse_mps;
-    piece.is_held_up = true;
-    piece.rests_on = scratch_.kinds[i];
+/// Returns the means of the velocities before and after, without motion into bodies that do not move now.
+std::vector<Velocity> Substep::mean_velocities() {
+  for (std::size_t i = 0; i < system_.bodies.size(); ++i) {
+    if (!is_member(i) || !is_active(bodies_[i])) {
+      system_.bodies[i].velocity = {};
+      continue;
+    }
+    const MovingBody& moving = bodies_[i];
+    system_.bodies[i].velocity = {0.5 * (moving.velocity.linear_mps + moving.after.linear_mps),
+                                  0.5 * (moving.velocity.angular_rad_s + moving.after.angular_rad_s)};
   }
+  std::vector<Velocity> means(bodies_.size());
+  const bool meets_others = std::any_of(system_.contacts.begin(), system_.contacts.end(),
+                                        [](const auto& contact) { return contact.other != kNoOther; });
+  if (meets_others) {
+    set_masses(bodies_, Movable::kActive, system_);
+    allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
+    for (SolverContact& contact : system_.contacts) contact.friction = 0.0;
+    clear_impulses(system_);
+    solve(0.0);
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) means[i] = system_.bodies[i].velocity;
+  return means;
 }
 
-/// Returns the mean of the velocities before and after, without motion into other bodies: these keep their
-/// pose until they are advanced themselves.
-Velocity Piece::mean_with(const Velocity& after) {
-  Velocity mean{0.5 * (velocity_.linear_mps + after.linear_mps),
-                0.5 * (velocity_.angular_rad_s + after.angular_rad_s)};
-  if (scratch_.others.empty()) return mean;
-  set_room(left_s_);
-  solve_contacts(scratch_.contacts, inertia_, {}, mean);
-  return mean;
+/// Moves the active bodies, those in front first.
+void Substep::move() {
+  const std::vector<Velocity> means = mean_velocities();
+  const std::vector<Velocity> lifts = corrections();
+  std::vector<bool> is_free(bodies_.size(), true);
+  for (const SolverContact& contact : system_.contacts) {
+    is_free[contact.body] = false;
+    if (is_member(contact.other)) is_free[contact.other] = false;
+  }
+  Vec3 forward = Vec3::Zero();
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (!is_active(bodies_[i])) continue;
+    forward += means[i].linear_mps + lifts[i].linear_mps;
+    order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return centre_world(*bodies_[a].body).dot(forward) > centre_world(*bodies_[b].body).dot(forward);
+  });
+  for (const std::size_t i : order) move(bodies_[i], means[i], lifts[i], is_free[i]);
 }
 
-/// Moves with the mean velocity for as long as the motion is free.
-void Piece::go(const Velocity& after) {
-  const Velocity mean = mean_with(after);
+/// Moves a body with the mean velocity for as long as the motion is free.
+/// @param is_free  without contacts
+void Substep::move(MovingBody& moving, const Velocity& mean, const Velocity& correction, bool is_free) {
+  Body& body = *moving.body;
+  const Eigen::Matrix3d inertia_m2 = inertia_world_m2(body);
   RigidMotion motion;
-  motion.centre_object = body_.mass.centre_object;
+  motion.centre_object = body.mass.centre_object;
   motion.linear_m_s = mean.linear_mps;
   motion.angular_rad_s = mean.angular_rad_s;
-  if (scratch_.contacts.empty()) {
+  if (is_free) {
     // Free rotation conserves angular momentum, not angular velocity: use the angular velocity half-way.
-    const Eigen::Isometry3d T_half = pose_after(body_.T_world_object, motion, 0.5 * left_s_);
-    const Eigen::Matrix3d inertia_half =
-        T_half.linear() * body_.mass.inertia_m2 * T_half.linear().transpose();
-    motion.angular_rad_s = inertia_half.inverse() * (inertia_ * motion.angular_rad_s);
+    const Eigen::Isometry3d T_half = pose_after(body.T_world_object, motion, 0.5 * moving.left_s);
+    const Eigen::Matrix3d inertia_half = T_half.linear() * body.mass.inertia_m2 * T_half.linear().transpose();
+    motion.angular_rad_s = inertia_half.inverse() * (inertia_m2 * motion.angular_rad_s);
   }
   limit(motion.angular_rad_s, config_.max_angular_rad_s);
-  const Velocity lift = lift_back(left_s_);
-  motion.linear_m_s += lift.linear_mps;
-  motion.angular_rad_s += lift.angular_rad_s;
+  motion.linear_m_s += correction.linear_mps;
+  motion.angular_rad_s += correction.angular_rad_s;
 
-  const FreeTime free =
-      probe_.free_time(body_.T_world_object, motion, left_s_, kKept * config_.contact_margin_m, left_out_);
-  const double gone_s = std::clamp(free.free_s, 0.0, left_s_);
-  limited_by_ = free.limit;
+  constexpr SurfaceKindMask kMoving = bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
+  const FreeTime free = moving.probe->free_time(body.T_world_object, motion, moving.left_s,
+                                                kKept * config_.contact_margin_m, moving.push ? kMoving : 0);
+  const double gone_s = std::clamp(free.free_s, 0.0, moving.left_s);
+  moving.limited_by = free.limit;
   if (gone_s > 0.0) {
-    body_.T_world_object = pose_after(body_.T_world_object, motion, gone_s);
-    make_orthonormal(body_.T_world_object);
+    body.T_world_object = pose_after(body.T_world_object, motion, gone_s);
+    make_orthonormal(body.T_world_object);
+    if (moving.moved != nullptr && *moving.moved) (*moving.moved)();
   }
-  const double part = gone_s / left_s_;
-  velocity_.linear_mps += part * (after.linear_mps - velocity_.linear_mps);
+  const double part = gone_s / moving.left_s;
+  Velocity& velocity = moving.velocity;
+  velocity.linear_mps += part * (moving.after.linear_mps - velocity.linear_mps);
   const Vec3 momentum_after =
-      inertia_ * (velocity_.angular_rad_s + part * (after.angular_rad_s - velocity_.angular_rad_s));
-  velocity_.angular_rad_s = inertia_world_m2(body_).inverse() * momentum_after;
-  limit(velocity_.linear_mps, config_.max_speed_mps);
-  limit(velocity_.angular_rad_s, config_.max_angular_rad_s);
-  left_s_ -= gone_s;
+      inertia_m2 * (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
+  velocity.angular_rad_s = inertia_world_m2(body).inverse() * momentum_after;
+  limit(velocity.linear_mps, config_.max_speed_mps);
+  limit(velocity.angular_rad_s, config_.max_angular_rad_s);
+  moving.left_s -= gone_s;
 }
 
-SubstepResult Piece::run() {
-  SubstepResult piece;
-  limit(velocity_.linear_mps, config_.max_speed_mps);
-  limit(velocity_.angular_rad_s, config_.max_angular_rad_s);
-  const double whole_s = left_s_;
-  for (int stop = 0; stop < config_.max_slides && left_s_ > kNoTime_s; ++stop) {
-    if (!find_contacts()) {
-      piece.crosses = true;
-      piece.left_s = left_s_;
-      break;
-    }
-    if (!scratch_.contacts.empty()) {
-      bounce();
-      if (!piece.is_balanced) {
-        const Velocity moved = held_up_after({}, whole_s);
-        const double begins_mps = moved.linear_mps.norm() + moved.angular_rad_s.norm() * body_.mass.radius_m;
-        piece.is_balanced = begins_mps < 0.05 * config_.gravity_world_mps2.norm() * whole_s;
-      }
-    }
-    const Velocity after = held_up_after(velocity_, left_s_);
-    see_support(piece);
-    go(after);
+void Substep::run() {
+  results_.assign(bodies_.size(), {});
+  for (MovingBody& moving : bodies_) {
+    moving.velocity = {moving.body->velocity_world_mps, moving.body->angular_velocity_world_rad_s};
+    limit(moving.velocity.linear_mps, config_.max_speed_mps);
+    limit(moving.velocity.angular_rad_s, config_.max_angular_rad_s);
+    moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
+    moving.crosses = false;
+    moving.limited_by = {};
   }
-  body_.velocity_world_mps = velocity_.linear_mps;
-  body_.angular_velocity_world_rad_s = velocity_.angular_rad_s;
-  piece.is_balanced = piece.is_balanced && piece.is_held_up;
-  return piece;
+  const auto is_any_active = [&] { return std::any_of(bodies_.begin(), bodies_.end(), is_active); };
+  for (int stop = 0; stop < config_.max_slides && is_any_active(); ++stop) {
+    find_contacts(bodies_, config_, up_, system_);
+    if (bounce()) continue;
+    hold_up(stop == 0);
+    wake_unbalanced_sleepers();
+    note_support(bodies_, config_, up_, system_, results_);
+    if (stop == 0) find_balanced();
+    move();
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].body->velocity_world_mps = bodies_[i].velocity.linear_mps;
+    bodies_[i].body->angular_velocity_world_rad_s = bodies_[i].velocity.angular_rad_s;
+    results_[i].is_balanced = results_[i].is_balanced && results_[i].is_held_up;
+  }
 }
 
 }  // namespace
 
-SubstepResult simulate_substep(Body& body, double dt_s, const CollisionQueries& probe,
-                               const PhysicsConfig& config, const std::optional<Push>& push,
-                               RigidScratch& scratch, StepReport& report) {
-  return Piece(body, dt_s, probe, config, push, scratch, report).run();
+void simulate_substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system,
+                      std::vector<SubstepResult>& results) {
+  Substep(bodies, config, system, results).run();
 }
 
 }  // namespace roomradar

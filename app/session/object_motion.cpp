@@ -11,15 +11,7 @@
 namespace roomradar {
 namespace {
 
-/// Returns the physics of a carried object: without gravity, friction and restitution, so it slides along
-/// surfaces.
-PhysicsConfig in_hand(PhysicsConfig config) {
-  config.gravity_world_mps2.setZero();
-  config.friction = config.restitution = 0.0;
-  return config;
-}
-
-/// Returns the number of advance() calls for a time that may exceed the max of one call.
+/// Returns the number of advance_together() calls for a time that may exceed the max of one call.
 int pieces_of(double waited_s, const PhysicsConfig& config) {
   return std::max(1, static_cast<int>(std::ceil(waited_s / config.max_advance_s - 1e-9)));
 }
@@ -45,18 +37,62 @@ bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const Session
   return frame > 0 && (of_these + number) % config.move_every_n_frames == 0;
 }
 
-void advance_object(VirtualObject& object, double waited_s, const CollisionQueries& probe,
-                    const PhysicsConfig& config, const PushDirections& push, ContactCounts& counts) {
-  const int pieces = pieces_of(waited_s, config);
-  for (int left = pieces; left > 0; --left) {
-    const double piece_s = waited_s / pieces;
-    if (object.carried_to_world) set_in_hand(object, left * piece_s);
-    const StepReport moved =
-        advance(object.body, piece_s, probe, object.carried_to_world ? in_hand(config) : config, push.span());
-    counts.contacts += moved.contacts;
-    for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
-      counts.by_kind[kind] += moved.contacts_by_kind[kind];
+std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
+                                 std::span<const std::unique_ptr<VirtualObject>> objects,
+                                 const VirtualObject& object) {
+  std::vector<SceneBody> bodies;
+  for (const auto& other : objects) {
+    if (other.get() == &object || !other->in_room) continue;
+    const double mass_ratio = object.body.mass.mass_kg / other->body.mass.mass_kg;
+    bodies.push_back({&other->body, other->carried_to_world ? 0.0 : mass_ratio});
   }
+  bodies.insert(bodies.begin(), scene.size() - bodies.size(), SceneBody{});  // objects come last
+  return bodies;
+}
+
+ContactCounts advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
+                              ProximityQuery& proximity, ContactSystem& contacts_kept, double& radar_ms) {
+  std::vector<RadarScene> scenes;
+  std::vector<CollisionQueries> probes;
+  std::vector<AdvancedBody> advanced;
+  scenes.reserve(due.size());  // the queries refer to them
+  probes.reserve(due.size());
+  double longest_s = 0.0;
+  for (DueObject& one : due) {
+    scenes.push_back({one.scene, {}});
+    probes.push_back(
+        make_collision_queries(radar, proximity, one.object->model->shape.touched, scenes.back(), &radar_ms));
+    probes.back().others = one.bodies;
+    Body& body = one.object->body;
+    std::vector<SceneTree*> seen_as;  // in the scenes of the others
+    for (DueObject& other : due)
+      for (std::size_t i = 0; i < other.bodies.size(); ++i)
+        if (other.bodies[i].body == &body) seen_as.push_back(&other.scene[i]);
+    advanced.push_back({.body = &body,
+                        .probe = &probes.back(),
+                        .mass_kg = body.mass.mass_kg,
+                        .is_carried = one.object->carried_to_world.has_value(),
+                        .depenetration_directions_world = one.push.span(),
+                        .moved = [&body, seen_as = std::move(seen_as)] {
+                          for (SceneTree* tree : seen_as) tree->instance.T_world_mesh = body.T_world_object;
+                        }});
+    longest_s = std::max(longest_s, one.waited_s);
+  }
+  ContactCounts counts;
+  const int pieces = pieces_of(longest_s, config);
+  for (int left = pieces; left > 0; --left) {
+    for (std::size_t i = 0; i < due.size(); ++i) {
+      advanced[i].dt_s = due[i].waited_s / pieces;
+      if (due[i].object->carried_to_world) set_in_hand(*due[i].object, left * advanced[i].dt_s);
+    }
+    advance_together(advanced, config, contacts_kept);
+    for (const AdvancedBody& one : advanced) {
+      counts.contacts += one.report.contacts;
+      for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
+        counts.by_kind[kind] += one.report.contacts_by_kind[kind];
+    }
+  }
+  return counts;
 }
 
 void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,

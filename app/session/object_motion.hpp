@@ -9,6 +9,7 @@
 
 #include "app/objects/virtual_object.hpp"
 #include "app/physics/collision_queries.hpp"
+#include "app/physics/contact_system.hpp"
 #include "app/physics/depenetration.hpp"
 #include "app/physics/physics_config.hpp"
 #include "app/session/session_config.hpp"
@@ -28,12 +29,27 @@ struct ContactCounts {
 /// index be advanced in this frame.
 bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config);
 
-/// Advances an object by waited_s. A carried object moves towards its target at the speed that reaches it
-/// after waited_s, without gravity, friction and restitution, and stops at obstacles.
-/// @param waited_s  time since the object was last advanced; may exceed config.max_advance_s
-/// @param counts    contacts of this call are added
-void advance_object(VirtualObject& object, double waited_s, const CollisionQueries& probe,
-                    const PhysicsConfig& config, const PushDirections& push, ContactCounts& counts);
+/// An object that is moved in this frame, and what it can touch.
+struct DueObject {
+  VirtualObject* object = nullptr;
+  double waited_s = 0.0;  ///< time since the object was last advanced; may exceed config.max_advance_s
+  PushDirections push{};
+  std::vector<SceneTree> scene{};   ///< everything but the object; other objects come last
+  std::vector<SceneBody> bodies{};  ///< body of each tree of the scene; null for surfaces
+};
+
+/// Returns the body of each tree of the object's scene, in which the other objects come last; null for
+/// surfaces.
+std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
+                                 std::span<const std::unique_ptr<VirtualObject>> objects,
+                                 const VirtualObject& object);
+
+/// Advances the objects together; see advance_together(). A carried object moves towards its target at the
+/// speed that reaches it after waited_s, without gravity, friction and restitution, and stops at obstacles.
+/// @param contacts_kept  kept from frame to frame
+/// @param radar_ms       the duration of the radar's queries is added
+ContactCounts advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
+                              ProximityQuery& proximity, ContactSystem& contacts_kept, double& radar_ms);
 
 /// Removes the dynamic surface's inferred back from `scene` if it engulfs the object (is_engulfed()).
 /// @param radar_ms  duration of the queries is added

@@ -169,29 +169,30 @@ PushDirections ObjectSet::push_of(const VirtualObject& object) const {
 }
 
 ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes& times) {
-  ContactCounts counts;
   constexpr double kStuckLooksAfter_s = 0.5;  // overlaps are the most expensive contacts
   double radar_ms = 0.0;
+  ContactCounts counts;
   for (std::size_t index = 0; index < objects_.size(); ++index) {
     VirtualObject* const object = objects_[index].get();
     if (!object->in_room) continue;
     object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // longer gaps are stalls
     if (!object->carried_to_world && !is_turn_to_move(index, frame_number, config_)) continue;
     if (object->stuck && object->waited_s < kStuckLooksAfter_s) continue;
-    const double waited_s = std::exchange(object->waited_s, 0.0);
+    DueObject due{.object = object, .waited_s = std::exchange(object->waited_s, 0.0)};
     if (!object->body.asleep) object->in_unknown = object->in_unknown && is_in_solid_unknown(room_, *object);
-    const PushDirections push = push_of(*object);
-    std::vector<SceneTree> scene = scene_without(object);
-    drop_engulfing_back(*object, waited_s, push, config_.physics, radar_, proximity_, scene, radar_ms);
-    const RadarScene radar_scene{scene, {}};
-    CollisionQueries probe =
-        make_collision_queries(radar_, proximity_, object->model->shape.touched, radar_scene, &radar_ms);
-    probe.others = bodies_in(scene, *object);
-    advance_object(*object, waited_s, probe, config_.physics, push, counts);
-    if (is_still_too_long(*object, waited_s)) {
-      const std::string news = free_or_stuck(*object, way_out_of(*object));
-      if (!news.empty()) notices_.push_back({object->body.name, news});
-    }
+    due.push = push_of(*object);
+    due.scene = scene_without(object);
+    drop_engulfing_back(*object, due.waited_s, due.push, config_.physics, radar_, proximity_, due.scene,
+                        radar_ms);
+    due.bodies = bodies_in(due.scene, objects_, *object);
+    // One at a time: together, a heap of 50 teapots costs 2.7 times as much.
+    const ContactCounts more =
+        advance_objects({&due, 1}, config_.physics, radar_, proximity_, contacts_kept_, radar_ms);
+    counts.contacts += more.contacts;
+    for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind) counts.by_kind[kind] += more.by_kind[kind];
+    if (!is_still_too_long(*object, due.waited_s)) continue;
+    const std::string news = free_or_stuck(*object, way_out_of(*object));
+    if (!news.empty()) notices_.push_back({object->body.name, news});
   }
   times.add_ms("radar", radar_ms);
   return counts;
@@ -231,20 +232,6 @@ std::vector<SceneTree> ObjectSet::scene_without(const VirtualObject* object) con
   return scene;
 }
 
-std::span<const SceneBody> ObjectSet::bodies_in(const std::vector<SceneTree>& scene,
-                                                const VirtualObject& object) {
-  constexpr double kOfAHand = 1e6;  // mass ratio that makes a carried object immovable for others
-  bodies_.clear();
-  for (const auto& other : objects_) {
-    if (other.get() == &object || !other->in_room) continue;
-    const double gives =
-        object.carried_to_world ? kOfAHand : object.body.mass.mass_kg / other->body.mass.mass_kg;
-    bodies_.push_back({&other->body, other->carried_to_world ? 0.0 : gives});
-  }
-  bodies_.insert(bodies_.begin(), scene.size() - bodies_.size(), SceneBody{});  // objects come last
-  return bodies_;
-}
-
 std::vector<FineRegion> ObjectSet::fine_regions() const {
   return config_.fine_mesh ? roomradar::fine_regions(objects_) : std::vector<FineRegion>{};
 }
@@ -258,6 +245,10 @@ void ObjectSet::set_radar(const RadarConfig& config) {
   CyberRadar radar(config);
   tested_before_ += radar_.static_triangles_tested();
   radar_ = std::move(radar);
+}
+
+void ObjectSet::room_changed() {
+  for (const auto& object : objects_) object->body.asleep = false;
 }
 
 void ObjectSet::unknown_changed() {

@@ -94,6 +94,8 @@ class ObjectSet {
   [[nodiscard]] std::uint64_t static_triangles_tested() const {
     return tested_before_ + radar_.static_triangles_tested();
   }
+  /// Wakes all objects, so that those whose support was carved fall. Call after the room has changed.
+  void room_changed();
   /// Updates which objects are in solid unknown space. Call after unknown space became solid or free.
   void unknown_changed();
 
@@ -108,8 +110,8 @@ class ObjectSet {
   std::uint64_t tested_before_ = 0;  ///< static triangles tested before the last set_radar()
   ProximityQuery proximity_;
   std::vector<ObjectNotice> notices_;
-  std::vector<SceneBody> bodies_;  ///< result of bodies_in(), for the object being moved
-  CyberRadar exact_radar_;         ///< used for drops, moves out of surfaces, and penetration_m()
+  ContactSystem contacts_kept_;  ///< impulses of the last frame, first guesses of the next
+  CyberRadar exact_radar_;       ///< used for drops, moves out of surfaces, and penetration_m()
 
   VirtualObject& named(const std::string& name);
   void require_new(const std::string& name) const;
@@ -121,8 +123,6 @@ class ObjectSet {
   [[nodiscard]] WayOut way_out_of(const VirtualObject& object);
   /// Returns the directions from the object to nearby dynamic surfaces, see depenetration_directions().
   [[nodiscard]] PushDirections push_of(const VirtualObject& object) const;
-  /// Returns one entry per tree of scene_without(): the body of an object's tree, null for other trees.
-  std::span<const SceneBody> bodies_in(const std::vector<SceneTree>& scene, const VirtualObject& object);
 };
 
 }  // namespace roomradar

@@ -102,8 +102,7 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
   }
   FrameResult result = times.timed("frame", [&] { return pass_through(frame, times); });
   if (config_.watch) static_cast<void>(config_.watch(FramePart::kDone, load()));
-  // Parts that the frame did not reach:
-  schedule_.take_all([&](const RunQuality& quality) { set_quality(quality); });
+  schedule_.take_all([&](const RunQuality& quality) { set_quality(quality); });  // of parts not reached
   if (config_.measure_penetration && result.status == FrameStatus::kDone)
     result.deepest_penetration_m = objects_.penetration_m();
   return result;
@@ -232,6 +231,7 @@ void Session::renew_room() {
     room_.unknown_tree = std::move(room.unknown_tree);
   }
   scene_.room_changed();
+  objects_.room_changed();
 }
 
 std::vector<CommittedChange> Session::committed_changes() const {

@@ -11,6 +11,7 @@
 #include "app/physics/rigid_motion.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/body_group.hpp"
 
 namespace roomradar::bodies_together_test {
 namespace {
@@ -27,67 +28,16 @@ PhysicsConfig weightless(double restitution) {
   return config;
 }
 
-/// Two bodies, and optionally a floor at height 0, advanced alternately.
-class Pair {
+/// Two bodies.
+class Pair : public test::BodyGroup {
  public:
-  Pair(const Mesh& first, const Mesh& second) {
-    const std::array meshes{&first, &second};
-    for (std::size_t i = 0; i < 2; ++i) {
-      trees_[i].build_by_place(*meshes[i]);
-      bodies[i].mass = mass_properties(*meshes[i], trees_[i].is_closed());
-    }
-  }
+  Pair(const Mesh& first, const Mesh& second) : BodyGroup({first, second}) {}
   void put(const Vec3& first_world, const Vec3& second_world) {
-    bodies[0].T_world_object.translation() = first_world;
-    bodies[1].T_world_object.translation() = second_world;
+    BodyGroup::put(0, first_world);
+    BodyGroup::put(1, second_world);
   }
-  void hold_second() { is_second_held_ = true; }
-  void add_floor() { floor_.build_by_place(shapes::floor(4.0F, 0.0F)); }
-
-  void step(const PhysicsConfig& config) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      const std::size_t j = 1 - i;
-      const std::vector<SceneTree> scene{{{&floor_, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic},
-                                         {{&trees_[j], bodies[j].T_world_object}, SurfaceKind::kObject}};
-      const std::array others{SceneBody{}, SceneBody{&bodies[j], mass_ratio[i]}};
-      const RadarScene radar_scene{scene, {}};
-      CollisionQueries probe = make_collision_queries(radar_, field_, trees_[i], radar_scene);
-      probe.others = others;
-      PhysicsConfig own = config;
-      if (i == 1 && is_second_held_) own.gravity_world_mps2.setZero();
-      const StepReport report = advance(bodies[i], kFrame_s, probe, own);
-      deepest_m = std::max(deepest_m, report.deepest_overlap_m);
-    }
-  }
-  void run(double seconds, const PhysicsConfig& config) {
-    for (double t = 0.0; t < seconds - 1e-9; t += kFrame_s) step(config);
-  }
-  void weigh() {
-    mass_ratio = {bodies[0].mass.mass_kg / bodies[1].mass.mass_kg,
-                  bodies[1].mass.mass_kg / bodies[0].mass.mass_kg};
-  }
-  [[nodiscard]] Vec3 momentum() const {
-    return bodies[0].mass.mass_kg * bodies[0].velocity_world_mps +
-           bodies[1].mass.mass_kg * bodies[1].velocity_world_mps;
-  }
-  [[nodiscard]] Vec3 angular_momentum() const {
-    Vec3 sum = Vec3::Zero();
-    for (const Body& body : bodies)
-      sum += body.mass.mass_kg * (inertia_world_m2(body) * body.angular_velocity_world_rad_s +
-                                  centre_world(body).cross(body.velocity_world_mps));
-    return sum;
-  }
-
-  std::array<Body, 2> bodies;
-  std::array<double, 2> mass_ratio{1.0, 1.0};
-  double deepest_m = 0.0;
-
- private:
-  std::array<TriangleTree, 2> trees_;
-  TriangleTree floor_;
-  bool is_second_held_ = false;
-  CyberRadar radar_;
-  ProximityQuery field_;
+  void hold_second() { is_carried[1] = true; }
+  void add_floor() { add_surface(shapes::floor(4.0F, 0.0F)); }
 };
 
 Mesh box(double x, double y, double z) { return shapes::box(Vec3(x, y, z).cast<float>()); }
@@ -180,7 +130,7 @@ TEST(BodiesTogether, OneThatIsSetDownOnAnotherLetsItRest) {
 
 /// Puts a body of 10 cm on a board of 30 cm that a hand holds at 1 m.
 void put_on_a_held_board(Pair& pair, const Vec3& at) {
-  pair.mass_ratio = {0.0, 1e6};
+  pair.hold_second();
   pair.put(at, {0, 0, 1});
   pair.run(1.5, {});
 }
@@ -221,7 +171,7 @@ TEST(BodiesTogether, OneTipsWhoseSupportIsDrawnAwayFromUnderHalfOfIt) {
 
 TEST(BodiesTogether, OneInAHandGoesOnAndTakesTheOtherWithIt) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
-  pair.mass_ratio = {1e6, 0.0};
+  pair.is_carried[0] = true;
   pair.put({-0.3, 0, 1}, {0, 0, 1});
   pair.bodies[0].velocity_world_mps = {0.5, 0, 0};
   pair.run(1.0, weightless(0.0));
@@ -231,13 +181,86 @@ TEST(BodiesTogether, OneInAHandGoesOnAndTakesTheOtherWithIt) {
 }
 
 TEST(BodiesTogether, OneStandsStillThatIsNotNamedAsABody) {
-  Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
-  pair.mass_ratio = {0.0, 0.0};
-  pair.put({-0.3, 0, 1}, {0.3, 0, 1});
-  pair.bodies[0].velocity_world_mps = {2, 0, 0};
-  pair.run(0.5, weightless(0.0));
-  EXPECT_TRUE(pair.bodies[1].velocity_world_mps.isZero());
-  EXPECT_LT(pair.bodies[0].velocity_world_mps.norm(), 1e-6);
+  const Mesh cube = box(0.1, 0.1, 0.1);
+  TriangleTree tree;
+  tree.build_by_place(cube);
+  Body body;
+  body.mass = mass_properties(cube, true);
+  body.T_world_object.translation() = Vec3(-0.3, 0, 1);
+  body.velocity_world_mps = {2, 0, 0};
+  Eigen::Isometry3d T_world_other = Eigen::Isometry3d::Identity();
+  T_world_other.translation() = Vec3(0.3, 0, 1);
+  const std::vector<SceneTree> scene{{{&tree, T_world_other}, SurfaceKind::kObject}};
+  const RadarScene radar_scene{scene, {}};
+  CyberRadar radar;
+  ProximityQuery field;
+  const CollisionQueries probe = make_collision_queries(radar, field, tree, radar_scene);
+  for (int i = 0; i < 15; ++i) static_cast<void>(advance(body, kFrame_s, probe, weightless(0.0)));
+  EXPECT_LT(body.velocity_world_mps.norm(), 1e-6);
+}
+
+/// A tower of n cubes of 10 cm, 1 mm apart.
+test::BodyGroup tower(std::size_t n) {
+  test::BodyGroup group(std::vector<Mesh>(n, box(0.1, 0.1, 0.1)));
+  group.add_surface(shapes::floor(4.0F, 0.0F));
+  for (std::size_t i = 0; i < n; ++i) group.put(i, {0.0, 0.0, 0.051 + 0.101 * static_cast<double>(i)});
+  return group;
+}
+
+TEST(BodiesTogether, ATowerOfTenStands) {
+  test::BodyGroup group = tower(10);
+  group.run(3.0, {});
+  for (const Body& body : group.bodies) EXPECT_TRUE(body.asleep);
+  const std::vector<Body> slept = group.bodies;
+  group.run(57.0, {});
+  for (std::size_t i = 0; i < 10; ++i) {
+    const Vec3 at = group.bodies[i].T_world_object.translation();
+    EXPECT_LT((at - slept[i].T_world_object.translation()).norm(), 0.5e-3) << i;
+    EXPECT_NEAR(at.head<2>().norm(), 0.0, 1e-3) << i;
+    EXPECT_NEAR(at.z(), 0.051 + 0.101 * static_cast<double>(i), 2e-3) << i;
+  }
+  EXPECT_EQ(group.deepest_m, 0.0);
+}
+
+TEST(BodiesTogether, ALoadTipsTheBoardItIsPutOnOrNotAsStaticsSays) {
+  // A board of 1 kg, 40 cm long, over an edge at x = 0 of a base 20 cm wide to the left of it: it stays with
+  // a load at its right end as long as load x arm <= board x overlap.
+  for (const double factor : {0.95, 1.05}) {
+    for (const bool is_late : {false, true}) {  // put on the sleeping board, or there from the beginning
+      test::BodyGroup group({box(0.4, 0.2, 0.02), box(0.2, 0.2, 0.1), box(0.02, 0.1, 0.1)});
+      group.add_surface(shapes::floor(4.0F, 0.0F));
+      const double board_x = -0.05, load_x = board_x + 0.18;
+      group.mass_kg = {1.0, 50.0, factor * 0.05 / load_x};
+      group.put(1, {-0.1, 0.0, 0.051});
+      group.put(0, {board_x, 0.0, 0.112});
+      group.put(2, {is_late ? 3.0 : load_x, 0.0, is_late ? 0.051 : 0.173});
+      group.run(2.0, {});
+      if (is_late) {
+        ASSERT_TRUE(group.bodies[0].asleep);
+        group.put(2, {load_x, 0.0, 0.1732});
+        group.bodies[2].asleep = false;
+      }
+      group.run(3.0, {});
+      const bool has_tipped = group.bodies[0].T_world_object.linear()(2, 2) < 0.99;
+      EXPECT_EQ(has_tipped, factor > 1.0) << factor << (is_late ? ", later" : "");
+      EXPECT_EQ(group.deepest_m, 0.0);
+    }
+  }
+}
+
+TEST(BodiesTogether, AllAboveWakeAndFallWhenTheLowestGoes) {
+  test::BodyGroup group = tower(5);
+  group.run(3.0, {});
+  for (const Body& body : group.bodies) ASSERT_TRUE(body.asleep);
+  group.put(0, {3.0, 0.0, 0.051});
+  group.step({});
+  group.step({});
+  for (std::size_t i = 1; i < 5; ++i) EXPECT_FALSE(group.bodies[i].asleep) << i;
+  group.run(3.0, {});
+  for (std::size_t i = 1; i < 5; ++i)
+    EXPECT_NEAR(group.bodies[i].T_world_object.translation().z(), 0.051 + 0.101 * static_cast<double>(i - 1),
+                3e-3);
+  EXPECT_LT(group.deepest_m, 1e-3);
 }
 
 Eigen::Isometry3d pose(const Vec3& position, const Eigen::Quaterniond& turn) {

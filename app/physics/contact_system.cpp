@@ -1,0 +1,272 @@
+// contact_system.cpp: proximity queries of bodies that touch each other, each pair once.
+#include "app/physics/contact_system.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+constexpr double kTouchingBand = 0.5;  // fraction of the margin by which contacts may exceed it
+constexpr double kCarried = 1e6;       // factor of a carried body's mass: other bodies hardly move the hand
+constexpr SurfaceKindMask kMoving = bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
+
+const Body* body_of(const MovingBody& moving, const ClosestPoint& p) {
+  return p.tree < moving.probe->others.size() ? moving.probe->others[p.tree].body : nullptr;
+}
+
+/// Sets `near` of a body. Returns the kinds of surfaces that intersect the body.
+/// @param apart  queries objects and other surfaces apart, since a query returns few points
+SurfaceKindMask query_near(MovingBody& moving, double reach_m, bool apart) {
+  constexpr SurfaceKindMask kObjects = bit_of(SurfaceKind::kObject);
+  const CollisionQueries& probe = *moving.probe;
+  const Eigen::Isometry3d& T_world_object = moving.body->T_world_object;
+  const SurfaceKindMask left_out = moving.push ? kMoving : 0;
+  if (!apart) return probe.near(T_world_object, reach_m, left_out, moving.near);
+  std::vector<ClosestPoint> objects;
+  const SurfaceKindMask crossed = probe.near(T_world_object, reach_m, left_out | kObjects, moving.near) |
+                                  probe.near(T_world_object, reach_m, ~kObjects, objects);
+  moving.near.insert(moving.near.end(), objects.begin(), objects.end());
+  return crossed;
+}
+
+/// Adds the feature that ended the body's last motion, unless it is among the features found.
+void add_limit(MovingBody& moving, double margin_m, double reach_m) {
+  const ClosestPoint& limit = moving.limited_by;
+  if (limit.kind == SurfaceKind::kNothing || limit.gap_m > reach_m) return;
+  const bool is_known = std::any_of(moving.near.begin(), moving.near.end(), [&](const ClosestPoint& p) {
+    return (p.point_world - limit.point_world).norm() < margin_m &&
+           p.normal_world.dot(limit.normal_world) > 0.99;
+  });
+  if (!is_known) moving.near.push_back(limit);
+}
+
+SolverBody solver_body(const Body& body, const Velocity& velocity, double inverse_mass_per_kg) {
+  const Eigen::Matrix3d inertia_m2 = inertia_world_m2(body);
+  return {velocity, inverse_mass_per_kg, inertia_m2, inertia_m2.inverse()};
+}
+
+/// Returns the solver index of a body of the scene; adds a bystander for a body that is not moved here.
+std::size_t index_of(std::span<const MovingBody> bodies, const SceneBody& scene_body, double mass_kg,
+                     ContactSystem& system) {
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].body == scene_body.body) return i;
+  for (std::size_t i = 0; i < system.bystanders.size(); ++i)
+    if (system.bystanders[i].body == scene_body.body) return bodies.size() + i;
+  const double inverse_mass_per_kg = scene_body.mass_ratio / mass_kg;
+  system.bystanders.push_back({scene_body.body, inverse_mass_per_kg});
+  const Body& body = *scene_body.body;
+  system.bodies.push_back(
+      solver_body(body, {body.velocity_world_mps, body.angular_velocity_world_rad_s}, inverse_mass_per_kg));
+  return system.bodies.size() - 1;
+}
+
+/// Adds the contacts of one body, except those with bodies whose own contacts are in the system.
+void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const std::vector<bool>& is_listed,
+                  const PhysicsConfig& config, ContactSystem& system) {
+  const MovingBody& moving = bodies[index];
+  const Vec3 centre = centre_world(*moving.body);
+  for (const ClosestPoint& p : moving.near) {
+    SolverContact contact;
+    contact.body = index;
+    contact.contact_offset_m = p.point_world + p.gap_m * p.normal_world - centre;
+    contact.normal = p.normal_world;
+    contact.friction = moving.is_carried ? 0.0 : config.friction;
+    if (const Body* other = body_of(moving, p)) {
+      contact.other = index_of(bodies, moving.probe->others[p.tree], moving.mass_kg, system);
+      // Bodies are listed upwards, moving ones before sleeping ones; a sleeping body's features may be older.
+      if (contact.other < bodies.size() && is_listed[contact.other]) continue;
+      contact.other_offset_m = p.point_world - centre_world(*other);
+      // The hand that carries an object has no friction of its own.
+      if (contact.other < bodies.size() && !bodies[contact.other].is_carried)
+        contact.friction = config.friction;
+    }
+    system.contacts.push_back(contact);
+    system.gap_m.push_back(p.gap_m);
+    system.kinds.push_back(p.kind);
+    system.is_push.push_back(false);
+  }
+  if (!moving.push) return;
+  SolverContact& contact = system.contacts.emplace_back();
+  contact.body = index;
+  contact.contact_offset_m = moving.push->point_world - centre;
+  contact.normal = moving.push->normal_world;
+  contact.friction = config.friction;
+  system.gap_m.push_back(0.0);
+  system.kinds.push_back(moving.push->touched);
+  system.is_push.push_back(true);
+}
+
+/// Returns true if something hits the body of this solver index faster than kNudge_mps.
+bool is_hit(std::size_t index, const ContactSystem& system) {
+  constexpr double kNudge_mps = 0.05;
+  return std::any_of(system.contacts.begin(), system.contacts.end(), [&](const SolverContact& contact) {
+    return (contact.other == index || contact.body == index) &&
+           -slip_at(contact, system.bodies).dot(contact.normal) > kNudge_mps;
+  });
+}
+
+/// Makes the contacts of a sleeping body known. Returns false if they are not reliable: its support is not a
+/// surface at rest, or a surface intersects it. Such a body does not move by the weight of others.
+bool know_contacts(MovingBody& sleeper, double reach_m) {
+  if (is_moving_surface(sleeper.body->rests_on)) return false;
+  return query_near(sleeper, reach_m, /*apart=*/true) == 0;
+}
+
+/// Queries the features near all active bodies and near the sleeping ones that they touch, directly or
+/// through others. Returns which sleeping bodies are touched.
+std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, double reach_m) {
+  std::vector<bool> is_reached(bodies.size());
+  std::vector<std::size_t> reached;
+  const auto reach_others_of = [&](const MovingBody& moving) {
+    for (const ClosestPoint& p : moving.near) {
+      const Body* other = body_of(moving, p);
+      if (other == nullptr || !other->asleep) continue;
+      for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (bodies[i].body == other && !is_reached[i]) {
+          is_reached[i] = true;
+          reached.push_back(i);
+        }
+    }
+  };
+  for (MovingBody& moving : bodies) {
+    if (!is_active(moving)) continue;
+    moving.crosses = query_near(moving, reach_m, bodies.size() > 1) != 0;
+    if (moving.crosses) continue;
+    add_limit(moving, config.contact_margin_m, reach_m);
+    reach_others_of(moving);
+  }
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    MovingBody& sleeper = bodies[reached[k]];
+    if (!sleeper.contacts_known && !know_contacts(sleeper, reach_m)) continue;
+    sleeper.contacts_known = true;
+    reach_others_of(sleeper);
+  }
+  return is_reached;
+}
+
+}  // namespace
+
+bool is_active(const MovingBody& moving) {
+  constexpr double kNoTime_s = 1e-12;
+  return !moving.body->asleep && !moving.crosses && moving.left_s > kNoTime_s;
+}
+
+void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, const Eigen::Vector3d& up_world,
+                   ContactSystem& system) {
+  const double reach_m = std::max((1.0 + kTouchingBand) * config.contact_margin_m, 1e-6);
+  system.contacts.clear();
+  system.gap_m.clear();
+  system.kinds.clear();
+  system.is_push.clear();
+  system.bodies.clear();
+  system.bystanders.clear();
+  for (const MovingBody& moving : bodies)
+    system.bodies.push_back(solver_body(*moving.body, moving.velocity,
+                                        1.0 / ((moving.is_carried ? kCarried : 1.0) * moving.mass_kg)));
+
+  // Upwards, so that one sweep of the solver carries weight down to the lowest body.
+  system.upwards.resize(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) system.upwards[i] = i;
+  std::stable_sort(system.upwards.begin(), system.upwards.end(), [&](std::size_t a, std::size_t b) {
+    return centre_world(*bodies[a].body).dot(up_world) < centre_world(*bodies[b].body).dot(up_world);
+  });
+  const std::vector<bool> is_reached = query_contacts(bodies, config, reach_m);
+  std::vector<bool> is_listed(bodies.size());
+  for (const bool lists_sleeping : {false, true})
+    for (const std::size_t i : system.upwards) {
+      const bool is_known_sleeper = bodies[i].body->asleep && is_reached[i] && bodies[i].contacts_known;
+      if (lists_sleeping ? !is_known_sleeper : !is_active(bodies[i])) continue;
+      add_contacts(bodies, i, is_listed, config, system);
+      is_listed[i] = true;
+    }
+}
+
+double left_s(std::span<const MovingBody> bodies, const SolverContact& contact) {
+  double left_s = bodies[contact.body].left_s;
+  if (contact.other < bodies.size()) left_s = std::max(left_s, bodies[contact.other].left_s);
+  return left_s > 0.0 ? left_s : bodies[contact.body].dt_s;
+}
+
+void set_masses(std::span<const MovingBody> bodies, Movable movable, ContactSystem& system) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const MovingBody& moving = bodies[i];
+    const bool is_asleep = moving.body->asleep;
+    const bool is_known_sleeper = is_asleep && moving.contacts_known;
+    const bool takes_part =
+        movable == Movable::kAllButSleeping
+            ? !is_asleep || is_hit(i, system)
+            : is_active(moving) || (movable == Movable::kActiveAndKnownSleepers && is_known_sleeper);
+    system.bodies[i].inverse_mass_per_kg =
+        takes_part ? 1.0 / ((moving.is_carried ? kCarried : 1.0) * moving.mass_kg) : 0.0;
+  }
+  for (std::size_t i = 0; i < system.bystanders.size(); ++i) {
+    const Bystander& bystander = system.bystanders[i];
+    const std::size_t index = bodies.size() + i;
+    const bool takes_part =
+        movable == Movable::kAllButSleeping && (!bystander.body->asleep || is_hit(index, system));
+    system.bodies[index].inverse_mass_per_kg = takes_part ? bystander.inverse_mass_per_kg : 0.0;
+  }
+}
+
+void allow_closing_gaps(std::span<const MovingBody> bodies, double margin_m, ContactSystem& system) {
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    SolverContact& contact = system.contacts[i];
+    contact.leaves_mps = system.is_push[i]
+                             ? bodies[contact.body].push->speed_mps
+                             : -std::max(system.gap_m[i] - margin_m, 0.0) / left_s(bodies, contact);
+  }
+}
+
+void clear_impulses(ContactSystem& system) {
+  for (SolverContact& contact : system.contacts) {
+    contact.impulse_Ns = 0.0;
+    contact.friction_impulse_Ns.setZero();
+  }
+}
+
+void guess_impulses(std::span<const MovingBody> bodies, double scale, ContactSystem& system) {
+  constexpr double kSame_m = 0.01;
+  std::vector<bool> is_used(system.past.size());
+  for (SolverContact& contact : system.contacts) {
+    contact.impulse_Ns = 0.0;
+    contact.friction_impulse_Ns.setZero();
+    if (contact.other != kNoOther && contact.other >= bodies.size()) continue;
+    const Body* body = bodies[contact.body].body;
+    const Body* other = contact.other == kNoOther ? nullptr : bodies[contact.other].body;
+    const Vec3 point_world = centre_world(*body) + contact.contact_offset_m;
+    std::size_t nearest = system.past.size();
+    double nearest_m = kSame_m;
+    for (std::size_t i = 0; i < system.past.size(); ++i) {
+      const PastContact& past = system.past[i];
+      if (is_used[i] || past.body != body || past.other != other) continue;
+      const double apart_m = (past.point_world - point_world).norm();
+      if (apart_m >= nearest_m || past.normal_world.dot(contact.normal) < 0.95) continue;
+      nearest_m = apart_m;
+      nearest = i;
+    }
+    if (nearest == system.past.size()) continue;
+    is_used[nearest] = true;
+    contact.impulse_Ns = scale * system.past[nearest].impulse_Ns;
+    const Vec3& friction_Ns = system.past[nearest].friction_impulse_Ns;
+    contact.friction_impulse_Ns = scale * (friction_Ns - friction_Ns.dot(contact.normal) * contact.normal);
+    if (!(contact.friction > 0.0)) contact.friction_impulse_Ns.setZero();
+  }
+}
+
+void keep_impulses(std::span<const MovingBody> bodies, double scale, ContactSystem& system) {
+  system.past.clear();
+  for (const SolverContact& contact : system.contacts) {
+    if (!(contact.impulse_Ns > 0.0) || (contact.other != kNoOther && contact.other >= bodies.size()))
+      continue;
+    const Body* body = bodies[contact.body].body;
+    system.past.push_back({body, contact.other == kNoOther ? nullptr : bodies[contact.other].body,
+                           centre_world(*body) + contact.contact_offset_m, contact.normal,
+                           scale * contact.impulse_Ns, scale * contact.friction_impulse_Ns});
+  }
+}
+
+}  // namespace roomradar

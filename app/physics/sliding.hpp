@@ -1,0 +1,27 @@
+// sliding.hpp: motion of a body without rotation, by radar queries along its path.
+#pragma once
+#include <Eigen/Core>
+
+#include "app/physics/body.hpp"
+#include "app/physics/collision_queries.hpp"
+#include "app/physics/physics_config.hpp"
+
+namespace roomradar {
+
+/// Cosine of 60 degrees, the max slope of a surface that supports a body.
+inline constexpr double kSupportCosine = 0.5;
+
+/// Returns probe.travel() from the body's pose. A missing normal, or one that does not face the body, is
+/// replaced by -direction. If the result is not usable, stops the body and sets StepStatus::kHeld.
+/// @param direction_world  unit
+Contact query_travel(Body& body, const Eigen::Vector3d& direction_world, double distance_m,
+                     const CollisionQueries& probe, StepReport& report);
+
+/// Moves the body for dt_s under gravity, without rotation. At each contact, it loses the velocity into the
+/// surface (with restitution and friction); between two surfaces it follows their crease, between three it
+/// stops. For bodies that a surface intersects, where contact impulses have no meaning.
+/// @return true if a surface within 60 degrees of level supported it
+bool slide(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,
+           StepReport& report);
+
+}  // namespace roomradar

@@ -1,0 +1,108 @@
+// body_group.hpp: bodies that are advanced together over static surfaces, for tests and benchmarks.
+#pragma once
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <list>
+#include <vector>
+
+#include "app/physics/physics.hpp"
+#include "mapping/types/mesh.hpp"
+#include "radar/exact/cyber_radar.hpp"
+#include "radar/motion/proximity.hpp"
+
+namespace roomradar::test {
+
+class BodyGroup {
+ public:
+  explicit BodyGroup(const std::vector<Mesh>& meshes) : bodies(meshes.size()), trees_(meshes.size()) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      trees_[i].build_by_place(meshes[i]);
+      bodies[i].mass = mass_properties(meshes[i], trees_[i].is_closed());
+    }
+    mass_kg.assign(meshes.size(), 1.0);
+    is_carried.assign(meshes.size(), false);
+  }
+  BodyGroup(BodyGroup&&) = default;
+
+  void put(std::size_t body, const Eigen::Vector3d& position_world) {
+    bodies[body].T_world_object.translation() = position_world;
+  }
+  /// Adds a static surface.
+  void add_surface(const Mesh& mesh) { surfaces_.emplace_back().build_by_place(mesh); }
+  /// Gives each body the mass of its mesh; before, each has 1 kg.
+  void weigh() {
+    for (std::size_t i = 0; i < bodies.size(); ++i) mass_kg[i] = bodies[i].mass.mass_kg;
+  }
+
+  void step(const PhysicsConfig& config) {
+    const std::size_t n = bodies.size(), surfaces = surfaces_.size();
+    std::vector<std::vector<SceneTree>> scenes(n);
+    std::vector<std::vector<SceneBody>> others(n);
+    std::vector<RadarScene> radar_scenes;
+    std::vector<CollisionQueries> probes;
+    std::vector<AdvancedBody> advanced;
+    radar_scenes.reserve(n);
+    probes.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (const TriangleTree& surface : surfaces_)
+        scenes[i].push_back({{&surface, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic});
+      others[i].resize(surfaces);
+      for (std::size_t j = 0; j < n; ++j) {
+        if (j == i) continue;
+        scenes[i].push_back({{&trees_[j], bodies[j].T_world_object}, SurfaceKind::kObject});
+        others[i].push_back({&bodies[j], 1.0});
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      radar_scenes.push_back({scenes[i], {}});
+      probes.push_back(make_collision_queries(radar_, field_, trees_[i], radar_scenes[i]));
+      probes[i].others = others[i];
+      advanced.push_back({.body = &bodies[i],
+                          .probe = &probes[i],
+                          .mass_kg = mass_kg[i],
+                          .is_carried = is_carried[i],
+                          .dt_s = frame_s,
+                          .moved = [&, i, surfaces] {
+                            for (std::size_t j = 0; j < bodies.size(); ++j)
+                              if (j != i)
+                                scenes[j][surfaces + (i < j ? i : i - 1)].instance.T_world_mesh =
+                                    bodies[i].T_world_object;
+                          }});
+    }
+    advance_together(advanced, config, system);
+    for (const AdvancedBody& one : advanced) deepest_m = std::max(deepest_m, one.report.deepest_overlap_m);
+  }
+  void run(double seconds, const PhysicsConfig& config) {
+    for (double t = 0.0; t < seconds - 1e-9; t += frame_s) step(config);
+  }
+  [[nodiscard]] bool all_asleep() const {
+    return std::all_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.asleep; });
+  }
+  [[nodiscard]] Eigen::Vector3d momentum() const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < bodies.size(); ++i) sum += mass_kg[i] * bodies[i].velocity_world_mps;
+    return sum;
+  }
+  [[nodiscard]] Eigen::Vector3d angular_momentum() const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      sum += mass_kg[i] * (inertia_world_m2(bodies[i]) * bodies[i].angular_velocity_world_rad_s +
+                           centre_world(bodies[i]).cross(bodies[i].velocity_world_mps));
+    return sum;
+  }
+
+  std::vector<Body> bodies;
+  std::vector<double> mass_kg;
+  std::vector<bool> is_carried;
+  ContactSystem system;
+  double frame_s = 1.0 / 30.0;
+  double deepest_m = 0.0;  ///< deepest overlap of a body with anything so far
+
+ private:
+  std::vector<TriangleTree> trees_;
+  std::list<TriangleTree> surfaces_;
+  CyberRadar radar_;
+  ProximityQuery field_;
+};
+
+}  // namespace roomradar::test
