@@ -39,7 +39,8 @@ void HeightGrid::append_between(const std::array<Eigen::Vector3f, 4>& corners) {
   const float wide_m = std::max(size.x(), size.y());
   const auto cell_m = static_cast<float>(config_.cell_m);
   if (wide_m <= cell_m || wide_m > kFarthest_m) return;
-  if (size.z() > static_cast<float>(2.0 * config_.flatness_m)) return;
+  // Surface seen past a low edge lies farther apart, and at another height.
+  if (size.z() > static_cast<float>(0.5 * config_.flatness_m)) return;
   const int steps = static_cast<int>(std::ceil(1.5F * wide_m / cell_m));
   for (int j = 0; j <= steps; ++j)
     for (int i = 0; i <= steps; ++i) {
