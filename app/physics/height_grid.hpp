@@ -13,19 +13,19 @@ namespace roomradar {
 
 struct HeightGridConfig {
   double cell_m = 0.02;       ///< cell size, > 0
-  double flatness_m = 0.015;  ///< surfaces within twice this height count as one layer
+  double flatness_m = 0.015;  ///< points up to twice this below a cell's highest are averaged
   double min_range_m = 0.4;   ///< min depth along the camera's axis
   double max_range_m = 4.0;   ///< max depth along the camera's axis
 };
 
 /// Height of the topmost surface in each cell of a horizontal grid around the visible points, padded by
-/// `margin` unseen cells on each side; without cells if nothing is visible. Between neighbouring pixels that
-/// see one level surface, the surface counts as seen.
+/// `margin` unseen cells on each side. The grid is empty if nothing is visible. Gaps of up to 6 cm between
+/// neighbouring sampled pixels are interpolated if their heights differ by at most flatness_m / 2.
 class HeightGrid {
  public:
   static constexpr float kUnseen = -std::numeric_limits<float>::infinity();
 
-  /// @param depth_m         of the camera's size
+  /// @param depth_m         depth image, width_px x height_px of `camera`
   /// @param T_world_camera  world with +z up
   HeightGrid(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
              const HeightGridConfig& config, int margin);

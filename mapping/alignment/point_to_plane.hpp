@@ -10,7 +10,7 @@
 namespace roomradar {
 
 /// Normal equations of weighted least squares: H = J^T w J, g = J^T w r. r are the residuals, J their
-/// Jacobian by the camera's twist, w their weights.
+/// Jacobian with respect to the camera's twist, w their weights.
 struct NormalEquations {
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
@@ -21,8 +21,8 @@ struct NormalEquations {
   void mirror() { H.triangularView<Eigen::StrictlyLower>() = H.transpose(); }
 };
 
-/// Brightness relation to one reference: reference intensity = gain * live intensity + offset. Live: of the
-/// image that is aligned.
+/// Affine brightness model: reference intensity = gain * live intensity + offset. The live image is the one
+/// being aligned.
 struct Exposure {
   float gain = 1.0F;
   float offset = 0.0F;
@@ -45,7 +45,8 @@ struct PointMatches {
 /// Limits and weights of the residuals.
 struct MatchLimits {
   float gate_m;  ///< max point-to-plane distance of a correspondence
-  /// Reciprocal of the residual, in standard deviations, at which the robust kernel's weight is 1/4.
+  /// 1 / scale of the Geman-McClure kernel, the scale in standard deviations. At the scale, the weight is
+  /// 1/4.
   float inverse_soft;
   float inverse_intensity_sigma;  ///< 1 / standard deviation, in grey levels; 0: intensity is not used
 };

@@ -1,5 +1,4 @@
-// pose_hypothesis.hpp: camera pose hypotheses of a search of the map, and the tests that accept or reject
-// them.
+// pose_hypothesis.hpp: relocalisation: camera pose hypotheses, and the tests that accept or reject them.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>
@@ -11,11 +10,11 @@
 
 namespace roomradar {
 
-/// Camera pose tried by a search of the map, with its agreement in appearance and depth.
+/// Candidate pose of a relocalisation, with its agreement in appearance and depth.
 struct PoseHypothesis {
   Tracking tracking;
-  /// Result of uncertainty_m() after alignment and, in directions that depth leaves unconstrained, after
-  /// fitting the pose to the patches.
+  /// uncertainty_m() of the final `tracking`. Where depth left directions unconstrained, the matched patches
+  /// constrain them.
   double uncertainty_m = 0.0;
   PatchAgreement appearance;
   DepthAgreement agreement;
@@ -39,23 +38,23 @@ double uncertainty_m(const Tracking& tracking);
 
 /// Returns true if enough patches match known patches at this pose. If depth constrains all directions, 15
 /// suffice. Where floorboards or tiles repeat, about twenty patches match even at a wrong pose. If depth
-/// leaves a direction unconstrained, 40 patches must therefore match, or 25 if almost nothing contradicts the
-/// pose.
+/// leaves a direction unconstrained, 40 patches must therefore match, or 25 if more than 75 % of the compared
+/// patches match and fit_of() > 0.9. In all cases, more than 35 % of the compared patches must match.
 bool is_verified_by_patches(const PoseHypothesis& hypothesis);
 
-/// Returns true if at least 12 patches were compared, and more than 20 % of them are alike (more than at
-/// wrong poses).
+/// Returns true if at least 12 patches were compared, and more than 20 % of them match. At wrong poses, fewer
+/// do.
 bool is_supported_by_patches(const PatchAgreement& appearance);
 
-/// Returns true if the pose is certain, without regard to other hypotheses. One of two conditions must hold.
-/// Either many patches match known ones, and the depth does not contradict the pose. Or depth alone
-/// constrains the pose, at most 3 % of the pixels see through the model, and the patches do not contradict
-/// the pose.
+/// Returns true if the pose is certain, without regard to other hypotheses. Its uncertainty must be at most
+/// 15 mm, and the model must cover 20 % of the valid depth. One of two further conditions must hold. Either
+/// many patches match known ones, and the depth does not contradict the pose. Or depth alone constrains the
+/// pose, at most 3 % of the pixels see through the model, and the patches do not contradict the pose.
 bool is_certain(const PoseHypothesis& hypothesis);
 
 /// Returns true if another hypothesis, at a different pose, explains the frame about as well as `best`. With
-/// few compared patches, `best` needs a larger lead, since the fraction of alike patches then varies more by
-/// chance.
+/// few compared patches, `best` needs a larger lead, since the fraction of matching patches then varies more
+/// by chance.
 bool is_ambiguous(const PoseHypothesis& best, const std::vector<PoseHypothesis>& hypotheses);
 
 /// Returns true if two poses differ by less than 0.1 m and 0.1 rad.
@@ -64,7 +63,7 @@ inline bool is_same_pose(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b)
   return is_near(a, b, kSame_m, kSame_rad);
 }
 
-/// Result of a search of the map.
+/// Result of a relocalisation.
 enum class SearchEnd {
   kFound,
   kNoCandidate,  ///< neither appearance nor shape gave a pose hypothesis

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 /// Throws Error that states the number of triangles and the limit.
 [[noreturn]] void fail_for_size(const std::filesystem::path& path, std::uint64_t triangles);
 
-/// Returns the extension in lower case, with its point.
+/// Returns the extension in lower case, including the dot.
 std::string lower_extension(const std::filesystem::path& path);
 
 /// Throws Error if the file is missing, empty, larger than 512 MiB, or declares more triangles than

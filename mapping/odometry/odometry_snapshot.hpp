@@ -1,4 +1,5 @@
-// odometry_snapshot.hpp: complete state of an odometry between two frames, as plain data.
+// odometry_snapshot.hpp: complete state of Odometry, taken after one frame and before the next, as plain
+// data.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -50,10 +51,11 @@ struct OdometrySnapshot {
 /// current keyframe.
 /// @param moved  keyframes of kept.graph with new poses, in the same order; the newest keyframes may be
 ///               missing
-/// @return the motion of the current keyframe, in the world
+/// @return the correction T_new_old = T_world_new * T_world_old^-1 of the current keyframe
 Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept);
 
-/// Applies the second thread's result, and returns the motion of the current keyframe, in the world. If the
+/// Applies the background thread's result, and returns the correction of the current keyframe, as
+/// move_keyframes(). If the
 /// newest keyframe was localised in the prior map, adds an anchor for it. The first anchor also moves all
 /// poses into the prior map's world.
 Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);

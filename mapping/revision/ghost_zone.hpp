@@ -10,17 +10,18 @@
 
 namespace roomradar {
 
-/// All cells of 4^3 voxels that contain a ghost or absent voxel (GhostVotes::Verdicts), and the neighbours of
-/// these cells. The zone extends at least four voxels around each such voxel. This is the width of the
-/// truncation band for surfaces measured from up to 2.5 m.
+/// All cells of 4^3 voxels with a removed voxel, and the neighbours of these cells. Removed voxels are ghosts
+/// (a frame saw through them) and absent voxels (of departed objects, without depth measured behind); see
+/// GhostVotes::Verdicts. The zone extends at least four voxels around each such voxel. This is the width of
+/// the truncation band for surfaces measured from up to 2.5 m.
 class GhostZone {
  public:
   GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m);
 
   /// Returns the action for a voxel. Ghosts become free, absent voxels become unknown. Other samples of the
-  /// zone are erased so they can be measured again, except at surface of an earlier scan that no frame
-  /// measures. An occupied voxel without a sample becomes unknown if a ghost or absent voxel, but no
-  /// remaining surface, is within two voxels.
+  /// zone are erased so they can be measured again. Farther than two voxels from removed voxels, samples at
+  /// surface of an earlier scan that no frame measures are kept. An occupied voxel without a sample becomes
+  /// unknown if a ghost or absent voxel, but no remaining surface, is within two voxels.
   [[nodiscard]] SampleAction fate_of(const SurfaceSample& sample) const;
   /// Returns true if the voxel is at most two voxels from a brick that the zone overlaps or touches.
   [[nodiscard]] bool reaches(const VoxelIndex& voxel) const;
@@ -45,8 +46,8 @@ class GhostZone {
   [[nodiscard]] const Marks* marks_of(const VoxelIndex& voxel) const;
 
   double resolution_m_;
-  std::unordered_map<std::uint64_t, Marks> marks_;  // bricks with ghosts, and their neighbours
-  std::vector<VoxelIndex> bricks_;                  // their lowest voxels
+  std::unordered_map<std::uint64_t, Marks> marks_;  // bricks with removed voxels, and their neighbours
+  std::vector<VoxelIndex> bricks_;                  // their minimum-corner voxels
 };
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// triangle_tree.hpp: triangle mesh on the CPU with an 8-wide tree of boxes, for exact queries.
+// triangle_tree.hpp: triangle mesh on the CPU with an 8-wide bounding volume hierarchy (BVH), for exact
+// queries.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

@@ -21,13 +21,14 @@ namespace roomradar {
 /// queries of this size have been run.
 ///
 /// Surfaces that intersect the object have no closest features; use CyberRadar's overlaps for them. One-sided
-/// surfaces (is_one_sided()) count only on their outside and are never reported as intersecting.
+/// surfaces (is_one_sided()) are considered only from their front side and are never reported as
+/// intersecting.
 class ProximityQuery {
  public:
-  /// Finds the vertex-face and edge-edge pairs within reach_m. For up to four normal directions, returns the
-  /// points that support the object best, nearest first. For a closed object, only features outside it count.
+  /// Finds the vertex-face and edge-edge pairs within reach_m. Groups the pairs by normal into up to four
+  /// clusters, nearest cluster first. Of each, returns the nearest pair and the outermost pairs in eight
+  /// directions perpendicular to the normal. For a closed object, only features outside it count.
   /// A tree that intersects the object gives no points.
-  /// @param reach_m   max distance, m
   /// @param left_out  kinds of surfaces to ignore
   /// @param[out] points  the closest features, at most kMaxPoints
   /// @return kinds of the surfaces that intersect the object

@@ -10,7 +10,8 @@
 namespace roomradar {
 
 /// Returns a setting's loss, its mean error relative to the default setting. The loss is the geometric mean
-/// of (error + negligible) / (default's error + negligible) over all figures of kind kError. It is 1 for the
+/// of (error + negligible) / (default's error + negligible) over all metrics of kind kError, where
+/// `negligible` is the smallest relevant difference of the metric. It is 1 for the
 /// default. Returns NaN if no error was measured or the setting is not complete.
 double loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
@@ -32,9 +33,9 @@ inline constexpr double kMostTimeOfAccurate = 3.0;  ///< max time ratio of the p
 /// Max loss of the preset accurate; a smaller gain may be random.
 inline constexpr double kMostLossOfAccurate = 0.99;
 
-/// Computes the Pareto front of time ratio and loss over complete settings with the default load. Presets
-/// come from a second front, over settings with no error above kMostWorstLossOfPreset times the default's;
-/// worse settings serve only budgets that cannot be met otherwise.
+/// Computes the Pareto front of time ratio and loss over complete settings whose load parameters have their
+/// defaults. Presets come from a second front, over settings with worst_loss_of() <= kMostWorstLossOfPreset.
+/// Worse settings are kept only for time budgets that no better setting meets.
 ///   fast      least time with a loss of at most kMostLossOfFast
 ///   balanced  least time with a loss of at most kMostLossOfBalanced
 ///   accurate  least loss within kMostTimeOfAccurate times the default's time; the default itself if that
