@@ -24,6 +24,24 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
+/// Returns the candidate that the word probably means, see did_you_mean(); empty if there is none.
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+  std::vector<std::string> longer;
+  for (const std::string& candidate : candidates)
+    if (word.size() >= 2 && candidate.starts_with(word) && candidate != "--" + std::string(word))
+      longer.push_back(candidate);
+  if (longer.size() == 1) return longer.front();
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -35,11 +53,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
 
 std::string full_name(const CLI::App& app) {
   return app.get_parent() != nullptr ? full_name(*app.get_parent()) + " " + app.get_name() : app.get_name();
-}
-
-std::string or_nearest(const std::string& word, const std::vector<std::string>& candidates) {
-  const std::string nearest = nearest_word(word, candidates);
-  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
 }
 
 /// Returns the first line of an option's help, without its default.
@@ -67,28 +80,16 @@ std::string unknown_option(const CLI::App& command, std::span<const std::string>
     if (!word.starts_with("--")) continue;
     const std::string name = word.substr(0, word.find('='));
     if (command.get_option_no_throw(name) != nullptr) continue;
-    return "there is no option " + name + or_nearest(name, option_names(command));
+    return "there is no option " + name + did_you_mean(name, option_names(command));
   }
   return {};
 }
 
 }  // namespace
 
-std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
-  std::vector<std::string> longer;
-  for (const std::string& candidate : candidates)
-    if (word.size() >= 2 && candidate.starts_with(word) && candidate != "--" + std::string(word))
-      longer.push_back(candidate);
-  if (longer.size() == 1) return longer.front();
-  std::string nearest;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance >= least) continue;
-    least = distance;
-    nearest = candidate;
-  }
-  return nearest;
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+  const std::string nearest = nearest_word(word, candidates);
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
 }
 
 std::string command_list(const CLI::App& app) {
@@ -128,7 +129,7 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
     const std::string fault = at == arguments.size()
                                   ? " needs a command:\n"
                                   : ": there is no command '" + arguments[at] + "'" +
-                                        or_nearest(arguments[at], names) + " The commands are\n";
+                                        did_you_mean(arguments[at], names) + " The commands are\n";
     return name + fault + command_list(*command) + see_help.substr(1);
   }
   std::string fault = unknown_option(*command, std::span(arguments).subspan(at));

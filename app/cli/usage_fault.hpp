@@ -12,12 +12,12 @@ class ParseError;
 
 namespace roomradar {
 
-/// Returns the candidate that a misspelt word probably means. It is the only candidate that begins with
-/// `word`, or else the candidate with the smallest edit distance. The edit distance counts inserted, omitted,
-/// replaced and swapped letters; at most a third of the letters may differ. Returns an empty string if there
-/// is no such candidate. Source: Damerau, A technique for computer detection and correction of spelling
-/// errors, CACM 1964 (distance with adjacent swaps only).
-std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
+/// Returns "; did you mean X?" with the candidate X that a misspelt word probably means. X is the only
+/// candidate that begins with `word`, or else the candidate with the smallest edit distance. The edit
+/// distance counts inserted, omitted, replaced and swapped letters; at most a third of the letters may
+/// differ. Returns an empty string if there is no such candidate. Source: Damerau, A technique for computer
+/// detection and correction of spelling errors, CACM 1964 (distance with adjacent swaps only).
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
 
 /// Returns the message for a command line that could not be parsed. The message contains an unknown command
 /// or option with the nearest known one, or a missing argument with its meaning, or the parser's message. Its

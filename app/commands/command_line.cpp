@@ -61,11 +61,8 @@ std::string help_on(CLI::App& app, const std::vector<std::string>& words) {
     if (command == &app)
       for (const HelpTopic& topic : help_topics()) known.emplace_back(topic.name);
     CLI::App* part = command_named(*command, word);
-    if (part == nullptr) {
-      const std::string nearest = nearest_word(word, known);
-      throw CLI::ValidationError("there is no command or topic '" + word + "'" +
-                                 (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
-    }
+    if (part == nullptr)
+      throw CLI::ValidationError("there is no command or topic '" + word + "'" + did_you_mean(word, known));
     parents += (parents.empty() ? "" : " ") + command->get_name();
     command = part;
   }
@@ -105,8 +102,8 @@ void add_map_commands(CLI::App& app, std::function<int()>& work) {
 
 /// Adds `help [COMMAND | TOPIC]`.
 void add_help_command(CLI::App& app) {
-  CLI::App& help =
-      *app.add_subcommand("help", "explain a command, or a topic: script, models, sources, units, calibrate, files");
+  CLI::App& help = *app.add_subcommand(
+      "help", "explain a command, or a topic: script, models, sources, units, calibrate, files");
   const auto words = std::make_shared<std::vector<std::string>>();
   help.add_option("WORD", *words, "command or topic (default: the list of commands)");
   help.callback([&app, words] {

@@ -31,7 +31,6 @@ namespace {
 constexpr std::array<const char*, 6> kExtensions = {".glb", ".gltf", ".obj", ".ply", ".stl", ".dae"};
 constexpr std::string_view kCopyHead = "roomradar model 1\n";
 constexpr std::uintmax_t kMaxCopyBytes = std::uintmax_t{1} << 30U;
-constexpr std::uint8_t kLastWrap = static_cast<std::uint8_t>(TextureWrap::kClamp);
 
 template <typename Archive, typename Pixel>
 void serialize_image(Archive& archive, Image<Pixel>& image) {
@@ -47,23 +46,15 @@ void serialize_image(Archive& archive, Image<Pixel>& image) {
   }
 }
 
-template <typename Archive>
-void serialize_wrap(Archive& archive, TextureWrap& wrap) {
-  auto number = static_cast<std::uint8_t>(wrap);
-  serialize(archive, number);
-  if constexpr (Archive::kReads) {
-    if (number > kLastWrap) archive.fail("is damaged: no such case");
-    wrap = static_cast<TextureWrap>(number);
-  }
-}
+}  // namespace
 
 template <typename Archive>
 void serialize(Archive& archive, Texture& texture) {
   serialize_image(archive, texture.colour);
   serialize_image(archive, texture.opacity);
   serialize(archive, texture.least_opacity);
-  serialize_wrap(archive, texture.wrap_u);
-  serialize_wrap(archive, texture.wrap_v);
+  serialize(archive, texture.wrap_u, TextureWrap::kClamp);
+  serialize(archive, texture.wrap_v, TextureWrap::kClamp);
 }
 
 template <typename Archive>
@@ -71,14 +62,10 @@ void serialize(Archive& archive, Model& model) {
   serialize(archive, model.mesh);
   serialize_items(archive, model.texture_points);
   serialize_items(archive, model.parts);
-  std::uint64_t textures = model.textures.size();
-  serialize(archive, textures);
-  if constexpr (Archive::kReads) {
-    archive.require(textures, 1);
-    model.textures.resize(textures);
-  }
-  for (Texture& texture : model.textures) serialize(archive, texture);
+  serialize(archive, model.textures);
 }
+
+namespace {
 
 /// Throws Error if the parts of the model do not fit each other.
 void require_consistent(const Model& model, const std::string& where) {

@@ -1,12 +1,8 @@
 // up_axis.cpp: rotations by quarter turns.
 #include "app/models/up_axis.hpp"
 
-#include <array>
-
 namespace roomradar {
 namespace {
-
-constexpr std::array<std::string_view, 6> kWords = {"x", "y", "z", "-x", "-y", "-z"};
 
 /// Returns the vector after the rotation that takes the axis to +z.
 template <typename Vector>
@@ -30,12 +26,12 @@ Vector turned(const Vector& p, UpAxis up) {
 
 }  // namespace
 
-std::string_view to_string(UpAxis up) { return kWords[static_cast<std::size_t>(up)]; }
+std::string_view to_string(UpAxis up) { return kUpAxisNames[static_cast<std::size_t>(up)]; }
 
 std::optional<UpAxis> up_axis_of(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  for (std::size_t i = 0; i < kWords.size(); ++i)
-    if (word == kWords[i]) return static_cast<UpAxis>(i);
+  for (std::size_t i = 0; i < kUpAxisNames.size(); ++i)
+    if (word == kUpAxisNames[i]) return static_cast<UpAxis>(i);
   return std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 // up_axis.hpp: the axis of a model that points up, and the rotation of that axis to +z.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string_view>
 
@@ -10,6 +11,8 @@ namespace roomradar {
 
 enum class UpAxis { kX, kY, kZ, kMinusX, kMinusY, kMinusZ };
 
+/// Names of the axes, by UpAxis.
+inline constexpr std::array<std::string_view, 6> kUpAxisNames = {"x", "y", "z", "-x", "-y", "-z"};
 inline constexpr std::string_view kUpAxisWords = "x, y, z, -x, -y or -z";
 
 /// Returns one of the words "x", "y", "z", "-x", "-y" and "-z".

@@ -63,11 +63,6 @@ DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
   return drawn;
 }
 
-const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
-                          const Eigen::Isometry3d& T_world_camera, double error_px) {
-  return *drawn_object(object, camera, T_world_camera, error_px).instance.mesh;
-}
-
 namespace {
 
 /// Returns the farthest extent of the object from its origin along a direction of its own frame.
@@ -82,6 +77,12 @@ double farthest_m(const VirtualObject& object, const Eigen::Vector3d& direction_
 
 double lowest_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {
   return -farthest_m(object, -R_world_object.row(2));
+}
+
+VirtualObject* find_object(std::span<const std::unique_ptr<VirtualObject>> objects, const std::string& name) {
+  const auto found = std::find_if(objects.begin(), objects.end(),
+                                  [&](const auto& object) { return object->body.name == name; });
+  return found == objects.end() ? nullptr : found->get();
 }
 
 double lowest_m(const VirtualObject& object) { return lowest_m(object, object.body.T_world_object.linear()); }

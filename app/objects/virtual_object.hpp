@@ -56,6 +56,9 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
+/// Returns the object of this name; null if there is none.
+VirtualObject* find_object(std::span<const std::unique_ptr<VirtualObject>> objects, const std::string& name);
+
 /// Return the heights of the object's lowest and highest vertex above its origin in its current orientation,
 /// m.
 double lowest_m(const VirtualObject& object);
@@ -76,8 +79,5 @@ Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix
 /// object's point nearest to the camera. Valid while the object's model exists.
 DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
                          const Eigen::Isometry3d& T_world_camera, double error_px);
-/// Returns the mesh of drawn_object().
-const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
-                          const Eigen::Isometry3d& T_world_camera, double error_px);
 
 }  // namespace roomradar

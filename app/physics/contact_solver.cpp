@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "mapping/types/disjoint_sets.hpp"
 
 namespace roomradar {
 namespace {
@@ -49,25 +50,21 @@ Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const SolverBody
   return own - velocity_at(bodies[contact.other].velocity, contact.other_offset_m);
 }
 
-std::size_t ContactSolver::root_of(std::size_t body) {
-  while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
-  return body;
-}
-
 /// Joins movable bodies that touch, and sets each contact's system. A contact between immovable bodies has
 /// none.
 void ContactSolver::find_systems(std::span<const SolverContact> contacts,
                                  std::span<const SolverBody> bodies) {
-  parent_.resize(bodies.size());
-  std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  DisjointSets<std::size_t> connected(bodies.size());
   for (const SolverContact& contact : contacts)
     if (is_movable(bodies, contact.body) && is_movable(bodies, contact.other))
-      parent_[std::max(root_of(contact.body), root_of(contact.other))] =
-          std::min(root_of(contact.body), root_of(contact.other));
+      connected.join(contact.body, contact.other);
+  system_of_body_.assign(bodies.size(), kNoOther);
+  for (std::size_t body = 0; body < bodies.size(); ++body)
+    if (is_movable(bodies, body)) system_of_body_[body] = connected.find(body);
   system_of_contact_.assign(contacts.size(), kNoOther);
   for (std::size_t i = 0; i < contacts.size(); ++i)
     for (const std::size_t body : {contacts[i].body, contacts[i].other})
-      if (is_movable(bodies, body)) system_of_contact_[i] = root_of(body);
+      if (is_movable(bodies, body)) system_of_contact_[i] = system_of_body_[body];
 }
 
 void ContactSolver::solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling) {
@@ -81,14 +78,14 @@ void ContactSolver::solve(std::span<SolverContact> contacts, std::span<SolverBod
     contacts[i].friction_impulse_Ns.setZero();
   }
   for (std::size_t system = 0; system < bodies.size(); ++system) {
-    if (!is_movable(bodies, system) || root_of(system) != system) continue;
+    if (system_of_body_[system] != system) continue;
     order_.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i)
       if (system_of_contact_[i] == system) order_.push_back(i);
     if (order_.empty()) continue;
     members_.clear();
-    for (std::size_t body = system; body < bodies.size(); ++body)
-      if (is_movable(bodies, body) && root_of(body) == system) members_.push_back(body);
+    for (std::size_t body = 0; body < bodies.size(); ++body)
+      if (system_of_body_[body] == system) members_.push_back(body);
     solve_system(contacts, bodies, rolling);
   }
 }
@@ -124,14 +121,11 @@ void ContactSolver::solve_system(std::span<SolverContact> contacts, std::span<So
       if (guess_Ns != 0.0) apply(contact, bodies, row->direction, row->turns, row->other_turns, guess_Ns);
     }
   }
-  int sweeps = 0;
-  while (sweeps < kMaxSweeps) {
+  for (int sweeps = 0; sweeps < kMaxSweeps; ++sweeps) {
     const double turned_mps = rolling > 0.0 ? resist_rolling(contacts, bodies, rolling) : 0.0;
     const double change_mps = sweep(contacts, bodies, sweeps % 2 == 1);
-    ++sweeps;
-    if (std::max(change_mps, turned_mps) < kSettled_mps) break;
+    if (std::max(change_mps, turned_mps) < kSettled_mps) return;
   }
-  most_sweeps_ = std::max(most_sweeps_, sweeps);
 }
 
 /// Applies rolling resistance; returns the greatest change of a body's angular momentum per kg and m.

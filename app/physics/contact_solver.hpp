@@ -72,9 +72,6 @@ class ContactSolver {
   ///                  centre of mass from the contact's tangent plane, a ball's radius
   void solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling);
 
-  /// Greatest number of sweeps that a system needed since construction.
-  [[nodiscard]] int most_sweeps() const { return most_sweeps_; }
-
  private:
   /// A direction of a contact, and what a unit impulse along it changes.
   struct Row {
@@ -91,12 +88,10 @@ class ContactSolver {
 
   std::vector<Rows> rows_;
   std::vector<Rolling> rolling_;
-  std::vector<std::size_t> parent_;  ///< of each body: another body of its system, or itself
+  std::vector<std::size_t> system_of_body_;  ///< kNoOther: immovable
   std::vector<std::size_t> system_of_contact_;
   std::vector<std::size_t> order_, members_;  ///< contacts and bodies of the system being solved
-  int most_sweeps_ = 0;
 
-  std::size_t root_of(std::size_t body);
   void find_systems(std::span<const SolverContact> contacts, std::span<const SolverBody> bodies);
   void solve_system(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling);
   double sweep(std::span<SolverContact> contacts, std::span<SolverBody> bodies, bool is_backwards);

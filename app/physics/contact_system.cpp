@@ -12,7 +12,6 @@ using Vec3 = Eigen::Vector3d;
 
 constexpr double kTouchingBand = 0.5;  // fraction of the margin by which contacts may exceed it
 constexpr double kCarried = 1e6;       // factor of a carried body's mass: other bodies hardly move the hand
-constexpr SurfaceKindMask kMoving = bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
 
 const Body* body_of(const MovingBody& moving, const ClosestPoint& p) {
   return p.tree < moving.probe->others.size() ? moving.probe->others[p.tree].body : nullptr;
@@ -24,7 +23,7 @@ SurfaceKindMask query_near(MovingBody& moving, double reach_m, bool apart) {
   constexpr SurfaceKindMask kObjects = bit_of(SurfaceKind::kObject);
   const CollisionQueries& probe = *moving.probe;
   const Eigen::Isometry3d& T_world_object = moving.body->T_world_object;
-  const SurfaceKindMask left_out = moving.push ? kMoving : 0;
+  const SurfaceKindMask left_out = moving.push ? kMovingSurfaces : 0;
   if (!apart) return probe.near(T_world_object, reach_m, left_out, moving.near);
   std::vector<ClosestPoint> objects;
   const SurfaceKindMask crossed = probe.near(T_world_object, reach_m, left_out | kObjects, moving.near) |
@@ -44,9 +43,10 @@ void add_limit(MovingBody& moving, double margin_m, double reach_m) {
   if (!is_known) moving.near.push_back(limit);
 }
 
-SolverBody solver_body(const Body& body, const Velocity& velocity, double inverse_mass_per_kg) {
+/// Returns the solver's state of a body; set_masses() sets its mass.
+SolverBody solver_body(const Body& body, const Velocity& velocity) {
   const Eigen::Matrix3d inertia_m2 = inertia_world_m2(body);
-  return {velocity, inverse_mass_per_kg, inertia_m2, inertia_m2.inverse()};
+  return {velocity, 0.0, inertia_m2, inertia_m2.inverse()};
 }
 
 /// Returns the solver index of a body of the scene; adds a bystander for a body that is not moved here.
@@ -56,11 +56,9 @@ std::size_t index_of(std::span<const MovingBody> bodies, const SceneBody& scene_
     if (bodies[i].body == scene_body.body) return i;
   for (std::size_t i = 0; i < system.bystanders.size(); ++i)
     if (system.bystanders[i].body == scene_body.body) return bodies.size() + i;
-  const double inverse_mass_per_kg = scene_body.mass_ratio / mass_kg;
-  system.bystanders.push_back({scene_body.body, inverse_mass_per_kg});
+  system.bystanders.push_back({scene_body.body, scene_body.mass_ratio / mass_kg});
   const Body& body = *scene_body.body;
-  system.bodies.push_back(
-      solver_body(body, {body.velocity_world_mps, body.angular_velocity_world_rad_s}, inverse_mass_per_kg));
+  system.bodies.push_back(solver_body(body, {body.velocity_world_mps, body.angular_velocity_world_rad_s}));
   return system.bodies.size() - 1;
 }
 
@@ -164,9 +162,7 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
   system.is_push.clear();
   system.bodies.clear();
   system.bystanders.clear();
-  for (const MovingBody& moving : bodies)
-    system.bodies.push_back(solver_body(*moving.body, moving.velocity,
-                                        1.0 / ((moving.is_carried ? kCarried : 1.0) * moving.mass_kg)));
+  for (const MovingBody& moving : bodies) system.bodies.push_back(solver_body(*moving.body, moving.velocity));
 
   // Upwards, so that one sweep of the solver carries weight down to the lowest body.
   system.upwards.resize(bodies.size());

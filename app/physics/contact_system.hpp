@@ -22,10 +22,10 @@ struct Push {
   SurfaceKind touched = SurfaceKind::kDynamic;
 };
 
-/// Returns true for dynamic surfaces and their inferred backs.
-constexpr bool is_moving_surface(SurfaceKind kind) {
-  return kind == SurfaceKind::kDynamic || kind == SurfaceKind::kInferredBack;
-}
+/// Dynamic surfaces and their inferred backs.
+inline constexpr SurfaceKindMask kMovingSurfaces =
+    bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
+constexpr bool is_moving_surface(SurfaceKind kind) { return (bit_of(kind) & kMovingSurfaces) != 0; }
 
 /// A body in a substep, and how far it has come.
 struct MovingBody {

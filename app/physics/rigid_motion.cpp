@@ -28,6 +28,11 @@ double speed_of(const Body& body, const Velocity& velocity) {
   return velocity.linear_mps.norm() + velocity.angular_rad_s.norm() * body.mass.radius_m;
 }
 
+void wake(MovingBody& sleeper) {
+  sleeper.body->asleep = false;
+  sleeper.report->woke = true;
+}
+
 /// State of one substep.
 class Substep {
  public:
@@ -105,8 +110,8 @@ bool Substep::note_impacts() {
     const bool was_moved = system_.bodies[i].inverse_mass_per_kg > 0.0;
     if (was_moved) moving.velocity = system_.bodies[i].velocity;
     if (!was_moved || !moving.body->asleep) continue;
-    moving.body->asleep = false;
-    moving.report->woke = woke = true;
+    wake(moving);
+    woke = true;
     moving.left_s = moving.dt_s;
   }
   for (std::size_t i = 0; i < system_.bystanders.size(); ++i) {
@@ -159,8 +164,7 @@ void Substep::wake_unbalanced_sleepers() {
     MovingBody& moving = bodies_[i];
     if (!moving.body->asleep || !(system_.bodies[i].inverse_mass_per_kg > 0.0)) continue;
     if (speed_of(*moving.body, system_.bodies[i].velocity) < kUnbalanced * g * moving.dt_s) continue;
-    moving.body->asleep = false;
-    moving.report->woke = true;  // moves from the next substep on
+    wake(moving);  // moves from the next substep on
   }
 }
 
@@ -278,9 +282,9 @@ void Substep::move(MovingBody& moving, const Velocity& mean, const Velocity& cor
   motion.linear_m_s += correction.linear_mps;
   motion.angular_rad_s += correction.angular_rad_s;
 
-  constexpr SurfaceKindMask kMoving = bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
-  const FreeTime free = moving.probe->free_time(body.T_world_object, motion, moving.left_s,
-                                                kKept * config_.contact_margin_m, moving.push ? kMoving : 0);
+  const FreeTime free =
+      moving.probe->free_time(body.T_world_object, motion, moving.left_s, kKept * config_.contact_margin_m,
+                              moving.push ? kMovingSurfaces : 0);
   const double gone_s = std::clamp(free.free_s, 0.0, moving.left_s);
   moving.limited_by = free.limit;
   if (gone_s > 0.0) {

@@ -197,13 +197,6 @@ void open_outputs(OpenedRun& run) {
   if (failed) throw Error(options.pictures + ": the folder cannot be created: " + failed.message());
 }
 
-/// Returns the model of an object of the session.
-const Model& source_of(const Session& session, const std::string& name) {
-  return (*std::find_if(session.objects().begin(), session.objects().end(),
-                        [&](const auto& object) { return object->body.name == name; }))
-      ->model->source;
-}
-
 /// Wraps the frames so they are recorded, if requested.
 void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
   const RunOptions& options = run.options;
@@ -213,7 +206,9 @@ void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
   // Recorded at the start, where they were loaded: the window's user may use one before its event.
   for (const ScriptEvent& event : run.script.events)
     if (event.action == Action::kAdd)
-      run.recorder->write(run.recorder->with_mesh_kept(event, source_of(*run.session, event.name)), 0);
+      run.recorder->write(
+          run.recorder->with_mesh_kept(event, find_object(run.session->objects(), event.name)->model->source),
+          0);
   frames = run.recorder->recorded(std::move(frames));
 }
 

@@ -67,8 +67,7 @@ std::string reason_of(SupportStatus status, double footprint_radius_m) {
       return text.data();
     case SupportStatus::kBlocked:
       return "something is in the way above or beside every level surface that is large enough, or that "
-             "space "
-             "was not scanned";
+             "space was not scanned";
     case SupportStatus::kInvalidInput:
     case SupportStatus::kFound:
       break;

@@ -50,8 +50,9 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
   return bodies;
 }
 
-ContactCounts advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
-                              ProximityQuery& proximity, ContactSystem& contacts_kept, double& radar_ms) {
+void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
+                     ProximityQuery& proximity, ContactSystem& contacts, ContactCounts& counts,
+                     double& radar_ms) {
   std::vector<RadarScene> scenes;
   std::vector<CollisionQueries> probes;
   std::vector<AdvancedBody> advanced;
@@ -78,21 +79,19 @@ ContactCounts advance_objects(std::span<DueObject> due, const PhysicsConfig& con
                         }});
     longest_s = std::max(longest_s, one.waited_s);
   }
-  ContactCounts counts;
   const int pieces = pieces_of(longest_s, config);
   for (int left = pieces; left > 0; --left) {
     for (std::size_t i = 0; i < due.size(); ++i) {
       advanced[i].dt_s = due[i].waited_s / pieces;
       if (due[i].object->carried_to_world) set_in_hand(*due[i].object, left * advanced[i].dt_s);
     }
-    advance_together(advanced, config, contacts_kept);
+    advance_together(advanced, config, contacts);
     for (const AdvancedBody& one : advanced) {
       counts.contacts += one.report.contacts;
       for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
         counts.by_kind[kind] += one.report.contacts_by_kind[kind];
     }
   }
-  return counts;
 }
 
 void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,

@@ -46,10 +46,12 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
 
 /// Advances the objects together; see advance_together(). A carried object moves towards its target at the
 /// speed that reaches it after waited_s, without gravity, friction and restitution, and stops at obstacles.
-/// @param contacts_kept  kept from frame to frame
-/// @param radar_ms       the duration of the radar's queries is added
-ContactCounts advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
-                              ProximityQuery& proximity, ContactSystem& contacts_kept, double& radar_ms);
+/// @param contacts  buffers, and first guesses of impulses if the next call has the same objects
+/// @param counts    contacts of this call are added
+/// @param radar_ms  the duration of the radar's queries is added
+void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
+                     ProximityQuery& proximity, ContactSystem& contacts, ContactCounts& counts,
+                     double& radar_ms);
 
 /// Removes the dynamic surface's inferred back from `scene` if it engulfs the object (is_engulfed()).
 /// @param radar_ms  duration of the queries is added

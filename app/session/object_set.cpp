@@ -21,16 +21,14 @@ ObjectSet::ObjectSet(GlContext& context, const FrameScene& scene, const SessionR
     : context_(context), scene_(scene), room_(room), config_(config), radar_(config.radar) {}
 
 VirtualObject& ObjectSet::named(const std::string& name) {
-  const auto found = std::find_if(objects_.begin(), objects_.end(),
-                                  [&](const auto& object) { return object->body.name == name; });
-  if (found == objects_.end()) throw Error("script: there is no object named " + name);
-  return **found;
+  VirtualObject* found = find_object(objects_, name);
+  if (found == nullptr) throw Error("script: there is no object named " + name);
+  return *found;
 }
 
 void ObjectSet::require_new(const std::string& name) const {
-  const bool is_there = std::any_of(objects_.begin(), objects_.end(),
-                                    [&](const auto& object) { return object->body.name == name; });
-  if (is_there) throw Error("script: there is an object named " + name + " already");
+  if (find_object(objects_, name) != nullptr)
+    throw Error("script: there is an object named " + name + " already");
 }
 
 void ObjectSet::add(const std::string& name, const Mesh& mesh) { add(name, Model{.mesh = mesh}); }
@@ -186,10 +184,7 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
                         radar_ms);
     due.bodies = bodies_in(due.scene, objects_, *object);
     // One at a time: together, a heap of 50 teapots costs 2.7 times as much.
-    const ContactCounts more =
-        advance_objects({&due, 1}, config_.physics, radar_, proximity_, contacts_kept_, radar_ms);
-    counts.contacts += more.contacts;
-    for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind) counts.by_kind[kind] += more.by_kind[kind];
+    advance_objects({&due, 1}, config_.physics, radar_, proximity_, contact_system_, counts, radar_ms);
     if (!is_still_too_long(*object, due.waited_s)) continue;
     const std::string news = free_or_stuck(*object, way_out_of(*object));
     if (!news.empty()) notices_.push_back({object->body.name, news});

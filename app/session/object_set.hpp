@@ -110,8 +110,8 @@ class ObjectSet {
   std::uint64_t tested_before_ = 0;  ///< static triangles tested before the last set_radar()
   ProximityQuery proximity_;
   std::vector<ObjectNotice> notices_;
-  ContactSystem contacts_kept_;  ///< impulses of the last frame, first guesses of the next
-  CyberRadar exact_radar_;       ///< used for drops, moves out of surfaces, and penetration_m()
+  ContactSystem contact_system_;  ///< buffers of advance_objects()
+  CyberRadar exact_radar_;        ///< used for drops, moves out of surfaces, and penetration_m()
 
   VirtualObject& named(const std::string& name);
   void require_new(const std::string& name) const;

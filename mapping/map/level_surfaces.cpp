@@ -7,7 +7,8 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <numeric>
+
+#include "mapping/types/disjoint_sets.hpp"
 
 namespace roomradar {
 namespace {
@@ -17,27 +18,13 @@ constexpr double kSameHeight_m = 0.03;  // as a table top bends in a scan
 constexpr double kMinFloorShare = 0.1;  // of the largest surface: smaller and lower is a box on a ledge below
 constexpr double kMinFloorArea_m2 = 0.05;  // of depth pixels; each keyframe counts
 
-/// Disjoint sets of vertices.
-class VertexSets {
- public:
-  explicit VertexSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t find(std::uint32_t vertex) {
-    while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
-    return vertex;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[find(a)] = find(b); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 struct LevelTriangle {
   Eigen::Vector3d middle_world;
   double area_m2 = 0.0;
   std::uint32_t vertex = 0;
 };
 
-std::vector<LevelTriangle> level_triangles(const Mesh& mesh, VertexSets& sets) {
+std::vector<LevelTriangle> level_triangles(const Mesh& mesh, DisjointSets<std::uint32_t>& sets) {
   std::vector<LevelTriangle> level;
   for (const Triangle& triangle : mesh.triangles) {
     const Eigen::Vector3d a = mesh.vertices[triangle[0]].cast<double>();
@@ -106,7 +93,7 @@ void add_level_pixels(const MapKeyframe& keyframe, const Eigen::Vector3d& up_wor
 }  // namespace
 
 std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area_m2) {
-  VertexSets sets(mesh_world.vertices.size());
+  DisjointSets<std::uint32_t> sets(static_cast<std::uint32_t>(mesh_world.vertices.size()));
   const std::vector<LevelTriangle> level = level_triangles(mesh_world, sets);
   std::map<std::uint32_t, std::vector<const LevelTriangle*>> parts;
   for (const LevelTriangle& triangle : level) parts[sets.find(triangle.vertex)].push_back(&triangle);

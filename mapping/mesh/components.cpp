@@ -3,8 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <numeric>
 #include <vector>
+
+#include "mapping/types/disjoint_sets.hpp"
 
 namespace roomradar {
 namespace {
@@ -39,21 +40,16 @@ Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles) {
 }
 
 Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2) {
-  std::vector<std::uint32_t> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto piece = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets<std::uint32_t> pieces(static_cast<std::uint32_t>(mesh.vertices.size()));
   for (const Triangle& t : mesh.triangles) {
-    parent[piece(t[1])] = piece(t[0]);
-    parent[piece(t[2])] = piece(t[0]);
+    pieces.join(t[1], t[0]);
+    pieces.join(t[2], t[0]);
   }
   std::vector<float> piece_area_m2(mesh.vertices.size(), 0.0F);
-  for (const Triangle& t : mesh.triangles) piece_area_m2[piece(t[0])] += area_m2(mesh, t);
+  for (const Triangle& t : mesh.triangles) piece_area_m2[pieces.find(t[0])] += area_m2(mesh, t);
   std::vector<Triangle> kept;
   for (const Triangle& t : mesh.triangles)
-    if (piece_area_m2[piece(t[0])] >= min_component_area_m2) kept.push_back(t);
+    if (piece_area_m2[pieces.find(t[0])] >= min_component_area_m2) kept.push_back(t);
   return compacted(mesh, kept);
 }
 

@@ -6,10 +6,10 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "mapping/odometry/relative_pose_residual.hpp"
+#include "mapping/types/disjoint_sets.hpp"
 #include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
@@ -49,11 +49,6 @@ std::optional<Measured> usable(std::size_t a, std::size_t b, std::size_t count,
   const std::optional<Matrix6d> root = square_root(information);
   if (!root) return std::nullopt;
   return Measured{a, b, T_a_b, information, *root, robust};
-}
-
-std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
 }
 
 /// Jacobian of b's pose in a, as a twist at b, with respect to a twist at a: -Ad(T_b_a).
@@ -140,17 +135,16 @@ std::vector<Measured> usable_measurements(std::size_t count, const std::vector<P
 template <typename IsConstant>
 std::vector<int> number_free_poses(std::size_t count, const std::vector<Measured>& measured,
                                    const IsConstant& is_constant) {
-  std::vector<std::size_t> parent(count + 1);
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  DisjointSets<std::size_t> connected(count + 1);
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_constant(i)) parent[root_of(parent, i)] = root_of(parent, count);
+    if (is_constant(i)) connected.join(i, count);
   }
-  for (const Measured& m : measured) parent[root_of(parent, m.a)] = root_of(parent, m.b);
+  for (const Measured& m : measured) connected.join(m.a, m.b);
   std::vector<int> place(count + 1, -1);
   int free_poses = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (is_constant(i)) continue;
-    if (root_of(parent, i) == root_of(parent, count)) place[i] = free_poses++;
+    if (connected.find(i) == connected.find(count)) place[i] = free_poses++;
   }
   return place;
 }

@@ -82,12 +82,11 @@ void read_quality(LineReader& line, ScriptEvent& event) {
   }
 }
 
-constexpr std::array<Word<UpAxis>, 6> kUpAxes = {{{"x", UpAxis::kX},
-                                                  {"y", UpAxis::kY},
-                                                  {"z", UpAxis::kZ},
-                                                  {"-x", UpAxis::kMinusX},
-                                                  {"-y", UpAxis::kMinusY},
-                                                  {"-z", UpAxis::kMinusZ}}};
+constexpr auto kUpAxes = [] {
+  std::array<Word<UpAxis>, kUpAxisNames.size()> words{};
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = {kUpAxisNames[i], static_cast<UpAxis>(i)};
+  return words;
+}();
 
 /// Reads what follows the mesh, in any order.
 void read_add(LineReader& line, ScriptEvent& event) {

@@ -17,12 +17,6 @@ constexpr double kThrownFrom_m = 0.35;    // in front of the camera
 constexpr double kNearest_m = 0.25;       // min distance of carried objects
 constexpr double kFastest_mps = 15.0;
 
-const VirtualObject* find_object(const Session& session, const std::string& name) {
-  const auto found = std::find_if(session.objects().begin(), session.objects().end(),
-                                  [&](const auto& object) { return object->body.name == name; });
-  return found == session.objects().end() ? nullptr : found->get();
-}
-
 ScriptEvent event_of(Action action, const std::string& name) {
   ScriptEvent event;
   event.action = action;
@@ -117,7 +111,7 @@ std::vector<ScriptEvent> Player::events_of(std::span<const UserCommand> commands
         break;
       }
       case UserCommandKind::kChoose:
-        if (find_object(session, command.event.name) != nullptr) chosen_ = command.event.name;
+        if (find_object(session.objects(), command.event.name) != nullptr) chosen_ = command.event.name;
         break;
       case UserCommandKind::kNew:
         add(command, session, events);
@@ -140,7 +134,7 @@ std::vector<ScriptEvent> Player::events_of(std::span<const UserCommand> commands
 }
 
 void Player::choose_if_none(const Session& session) {
-  if (find_object(session, chosen_) != nullptr) return;
+  if (find_object(session.objects(), chosen_) != nullptr) return;
   chosen_ = session.objects().empty() ? "" : session.objects().front()->body.name;
 }
 
@@ -148,7 +142,8 @@ void Player::add(const UserCommand& command, const Session& session, std::vector
   const std::string& mesh = command.event.mesh;
   const std::string stem = object_name(mesh);
   std::string name = stem;
-  for (int number = 2; find_object(session, name) != nullptr; ++number) name = stem + std::to_string(number);
+  for (int number = 2; find_object(session.objects(), name) != nullptr; ++number)
+    name = stem + std::to_string(number);
   ScriptEvent event = event_of(Action::kAdd, name);
   event.mesh = mesh;
   event.size_m = command.event.size_m;
@@ -160,7 +155,7 @@ void Player::add(const UserCommand& command, const Session& session, std::vector
 
 void Player::drop_or_place(const UserCommand& command, const Session& session,
                            std::vector<ScriptEvent>& events) {
-  const VirtualObject* object = find_object(session, chosen_);
+  const VirtualObject* object = find_object(session.objects(), chosen_);
   const Pointed pointed = pointed_at(session, command.pixel);
   // On top of another object if the pixel shows one.
   const auto& hit = pointed.object && pointed.name != chosen_ ? pointed.object : pointed.surface;
@@ -186,7 +181,7 @@ void Player::drop_or_place(const UserCommand& command, const Session& session,
 
 void Player::throw_chosen(const UserCommand& command, const Session& session,
                           std::vector<ScriptEvent>& events) {
-  const VirtualObject* object = find_object(session, chosen_);
+  const VirtualObject* object = find_object(session.objects(), chosen_);
   if (object == nullptr || !session.shown_view()) {
     complaint_ = "there is nothing to throw, or the camera is not located";
     return;
@@ -205,13 +200,13 @@ void Player::grab(const UserCommand& command, const Session& session) {
   grabbed_.reset();
   if (!pointed.object) return;
   chosen_ = pointed.name;
-  const VirtualObject& object = *find_object(session, chosen_);
+  const VirtualObject& object = *find_object(session.objects(), chosen_);
   grabbed_ = {chosen_, pointed.object->distance_m,
               object.body.T_world_object * object.model->middle - pointed.object->point_world, false};
 }
 
 void Player::drag(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
-  const VirtualObject* object = grabbed_ ? find_object(session, grabbed_->name) : nullptr;
+  const VirtualObject* object = grabbed_ ? find_object(session.objects(), grabbed_->name) : nullptr;
   if (object == nullptr || !session.shown_view()) return;
   const Ray ray = ray_through(session.shown_view()->camera, session.shown_view()->T_world_view,
                               command.pixel.x(), command.pixel.y());

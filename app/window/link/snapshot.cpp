@@ -66,11 +66,9 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
 }
 
 void SnapshotMaker::fill_radar(const Session& session, const std::string& chosen, ShownRadar& shown) {
-  const auto found =
-      std::find_if(session.objects().begin(), session.objects().end(),
-                   [&](const auto& object) { return object->in_room && object->body.name == chosen; });
-  if (found == session.objects().end()) return;
-  const VirtualObject& object = **found;
+  const VirtualObject* found = find_object(session.objects(), chosen);
+  if (found == nullptr || !found->in_room) return;
+  const VirtualObject& object = *found;
   const Eigen::Vector3d& velocity = object.body.velocity_world_mps;
   const bool moves = velocity.norm() > kMoves_mps;
   shown.direction_world =

@@ -155,7 +155,7 @@ TEST(ObjectLevels, TheDrawnMeshIsCoarserTheFartherTheObjectAndNeverOffByMoreThan
   std::size_t before = object.model->shape.drawn.triangle_count() + 1;
   for (const double z_m : {0.1, 0.5, 1.0, 2.0, 4.0, 9.0}) {
     object.body.T_world_object.translation() = Eigen::Vector3d(0.1, 0.0, z_m);
-    const GpuMesh& mesh = drawn_mesh(object, camera, Eigen::Isometry3d::Identity(), 0.5);
+    const GpuMesh& mesh = *drawn_object(object, camera, Eigen::Isometry3d::Identity(), 0.5).instance.mesh;
     EXPECT_LE(mesh.triangle_count(), before) << z_m;
     before = mesh.triangle_count();
     for (const DrawnLevel& level : object.model->levels) {
