@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// Inverse depths of a cell's 5 x 5 pixels, 1/m, row by row; only those of dynamic pixels are valid.
+/// Inverse depths of a cell's 5 x 5 pixels, 1/m, row by row. Only those of dynamic pixels are valid.
 using CellValues = std::array<float, 25>;
 
 /// Returns a pixel's index in CellValues and its bit in CellBits.
