@@ -12,8 +12,7 @@
 
 namespace roomradar {
 
-/// Min measured depth, m. Smaller values count as not measured, since no depth camera measures at such short
-/// range.
+/// Min measured depth, m. Smaller values count as not measured. No depth camera measures at such short range.
 inline constexpr float kLeastDepth_m = 0.05F;
 
 inline constexpr float kNearest_m = 0.01F;  // min depth, m, of points that are projected into the image
@@ -81,12 +80,12 @@ class ChildOffsets {
 struct NodeVisibility {
   unsigned nothing = 0;  ///< occluded, out of view, or beyond 2 max_range_m
   unsigned free = 0;     ///< wholly in front of the measured depth
-  /// bit i: the frame sees through sibling i where depth is measured; the rest is out of view or has no depth
+  /// In front of the measured depth where depth is measured. The rest is out of view or has no depth.
   unsigned part_free = 0;
 };
 
 /// Classifies eight siblings by their boxes in the camera frame and by the image rectangles to which the
-/// boxes project. Written as one function, so the eight-wide values stay in registers.
+/// boxes project. One function, so that the eight-wide values stay in registers.
 /// @param half  half the size of each box, m
 template <typename Float8>
 NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,
