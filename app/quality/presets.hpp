@@ -1,4 +1,5 @@
-// presets.hpp: file with measured quality settings: named presets, and a Pareto front from accurate to fast.
+// presets.hpp: file with measured quality settings, that is, named presets and a Pareto front from accurate
+// to fast.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -21,12 +22,12 @@ struct Preset {
   Figures figures;
 };
 
-/// Pareto-optimal quality of a run: no other measured quality is both faster and more accurate.
+/// Pareto-optimal quality of a run. No other measured quality is both faster and more accurate.
 struct FrontStep {
   RunQuality run;
   /// Median time of each FramePart divided by its time at the default quality in the same measurement; > 0.
   std::array<double, kFrameParts> part_ratios{1.0, 1.0, 1.0, 1.0};
-  /// Number of objects in the room during the measurement; needed if move_every_n_frames > 1. 0: unknown.
+  /// Number of objects in the room during the measurement. Needed if move_every_n_frames > 1. 0: unknown.
   int objects = 0;
   Figures figures;
 };

@@ -16,8 +16,9 @@ namespace roomradar {
 
 /// Sums and maxima over the frames of a run.
 struct RunTotals {
-  /// The first four count frames. `degenerate` counts localised frames whose depth does not constrain all six
-  /// degrees of freedom. `departures` counts objects that fell out of the map.
+  /// The first four count frames. `skipped` counts unusable frames. `degenerate` counts localised frames
+  /// whose depth does not constrain all six degrees of freedom. `departures` counts objects that fell out of
+  /// the map.
   std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0,
                places_refused = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};

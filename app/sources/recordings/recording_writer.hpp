@@ -24,7 +24,7 @@ std::string_view to_string(RecordingFormat format);
 ///                 beyond 10 m), colour, gravity to 1/819 g; no poses. Gaps over 30 s become 30 s, since
 ///                 the device's clock wraps after 72 s. 640 x 480 only, the one size that fakenect
 ///                 replays.
-/// Colour is stored without loss. All frames must have the cameras of the first frame, which are written to
+/// Colour is stored without loss. All frames must have the cameras of the first frame. They are written to
 /// camera.json.
 class RecordingWriter {
  public:
