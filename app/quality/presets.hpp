@@ -47,7 +47,7 @@ struct Presets {
 ///      "compose": 1}, "objects": 50, "figures": {}}]}
 ///
 /// Omitted settings have their defaults. Throws Error "FILE: ..." if the file is truncated, has another
-/// version or more than 1 MiB, or contains an unknown key or a value out of range.
+/// version or more than 1 MiB. Also throws for an unknown key or a value out of range.
 Presets read_presets(const std::filesystem::path& path);
 /// Parses the text of a presets file. Error messages contain `where` in place of the file's name.
 Presets presets_of(std::string_view text, const std::string& where);

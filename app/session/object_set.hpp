@@ -52,7 +52,7 @@ class ObjectSet {
   void add(const std::string& name, ObjectParts parts);
   /// Puts an object into the room. An object that would overlap other objects is placed on top of them if no
   /// surface of the room is in the way. If a surface intersects the object, or its centre is in solid unknown
-  /// space, it is placed at the nearest free pose within 10 cm and a notice is created. Throws PlaceRefused
+  /// space, it is placed at the nearest free pose within 10 cm. A notice is then created. Throws PlaceRefused
   /// if a surface intersects the object and no free pose is within 10 cm; the object's pose is then
   /// unchanged.
   void place(const std::string& name, const ObjectState& state);

@@ -3,11 +3,11 @@
 
 namespace roomradar {
 
-/// One "sigma" is the standard deviation of measured minus expected depth. Its variance is the sum of the
-/// variances of sensor noise at this depth and incidence angle, of the model's error, and of the pose error's
-/// effect on a sloped surface. A pixel is strong if measured and expected depth differ by more than
-/// strong_sigmas. It is weak if they differ by more than weak_sigmas. Strong pixels seed a region. Weak
-/// pixels only join a region.
+/// One "sigma" is the standard deviation of measured minus expected depth. Its variance is the sum of three.
+/// These are sensor noise at this depth and incidence angle, the model's error, and the pose error's effect
+/// on a sloped surface. A pixel is strong if measured and expected depth differ by more than strong_sigmas.
+/// It is weak if they differ by more than weak_sigmas. Strong pixels seed a region. Weak pixels only join a
+/// region.
 struct ForegroundConfig {
   float model_sigma_m = 0.003F;    ///< error of the expected depth; typical of a map with 1 cm cells
   float pose_sigma_m = 0.003F;     ///< position error of the pose; affects sloped surfaces

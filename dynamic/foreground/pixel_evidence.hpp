@@ -70,9 +70,9 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
                   const ExpectedBounds& bounds, float misfit_per_m, const std::vector<std::uint8_t>& before,
                   PixelEvidence& evidence, LabelImage& labels);
 
-/// Sets kRevealedCore in blocks whose neighbourhood consists of revealed blocks (farther than the model). Its
-/// radius is more than half the max edge error, rounded up to blocks. A model edge displaced by an error
-/// reveals a strip of background that is only as wide as the error. A removed object is wider.
+/// Sets kRevealedCore in blocks whose neighbourhood consists of revealed blocks (farther than the model). The
+/// neighbourhood's radius is more than half the max edge error, rounded up to blocks. A model edge displaced
+/// by an error reveals a strip of background that is only as wide as the error. A removed object is wider.
 void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m,
                          const ExpectedBounds& bounds, PixelEvidence& evidence);
 

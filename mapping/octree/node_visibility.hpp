@@ -95,8 +95,8 @@ NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& 
   const Float8 low_y = centres.y - half.y(), high_y = centres.y + half.y();
   unsigned nothing = ((far_z <= kNearest_m) | (Float8(2.0F * max_range_m) < near_z)).bits();
 
-  // A box that straddles the camera plane counts as out of view only if it is wholly outside one of the
-  // planes that the camera centre and the image borders span.
+  // A box that straddles the camera plane counts as out of view only if it is wholly outside one of the view
+  // frustum's side planes.
   const unsigned straddles = (near_z <= kNearest_m).bits();
   if (straddles != 0) {
     const auto outside = (far_z * (camera.width - camera.cx) < low_x * camera.fx) |

@@ -5,9 +5,9 @@
 namespace roomradar {
 
 struct GhostConfig {
-  /// A frame sees through a sample (a voxel with a signed distance) if the measured depth exceeds the
-  /// sample's by more than the largest of the four margins below. margin_m (metres) and margin_sigmas
-  /// (standard deviations of depth) cover noise and tracking errors.
+  /// A frame sees through a sample (a voxel with a signed distance) if its depth exceeds the sample's by more
+  /// than the largest of the four margins below. margin_m (metres) and margin_sigmas (standard deviations of
+  /// depth) cover noise and tracking errors.
   float margin_m = 0.03F;
   float margin_sigmas = 4.0F;
   /// Margin per metre of depth. Covers a pose error of 1.7 degrees on a slanted surface, and sensors that are

@@ -16,7 +16,7 @@ struct SurfaceConfig {
   /// higher weight keep their detail. Samples with a lower weight are averaged over more voxels.
   float smoothing = 0.4F;
   float min_component_area_m2 = 4e-3F;  ///< smaller components are dropped (default: about 6 x 6 cm)
-  /// Simplification bound, m: max distance between the simplified and the full surface, in both directions.
+  /// Simplification bound: max two-sided (Hausdorff) distance between the simplified and the full surface, m.
   /// 0: no simplification.
   float max_deviation_m = 2e-3F;
 };

@@ -75,12 +75,12 @@ class CyberRadar {
   /// Computes the first contact. Never throws. Allocates nothing once queries of this size have been run.
   ///
   /// Returns kInvalidInput for an invalid query or scene. A query is invalid if its direction is zero or not
-  /// finite, its distance not finite or <= 0, its margin negative or not finite, or if its object has no
-  /// triangles. A scene is invalid if a pose (also the object's) is not finite or a camera is unusable. It is
-  /// also invalid if a mask's size differs from its depth image's, a stride is below 1, or a jump limit is
-  /// negative or NaN. Sampled mode stops once three conditions hold: it has found a contact, it has run
-  /// kSampledExactTests exact tests, and the lower bounds of all untested surfaces are at least 0. Exact mode
-  /// stops once no untested surface can be nearer.
+  /// finite, or its distance is not finite or <= 0. It is also invalid if its margin is negative or not
+  /// finite, or its object has no triangles. A scene is invalid if a pose (also the object's) is not finite
+  /// or a camera is unusable. It is also invalid if a mask's size differs from its depth image's, a stride is
+  /// below 1, or a jump limit is negative or NaN. Sampled mode stops once three conditions hold. It has found
+  /// a contact, it has run kSampledExactTests exact tests, and the lower bounds of all untested surfaces are
+  /// at least 0. Exact mode stops once no untested surface can be nearer.
   Contact query(const RadarQuery& query, const RadarScene& scene);
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }

@@ -76,9 +76,9 @@ inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t firs
   }
 }
 
-/// Infinite prism that a scene triangle spans along the motion. x_axis, y_axis, z_axis, edge and plane are
-/// used as dot products with a point p of the object. p is in the mesh frame, relative to the tree's centre,
-/// in m. All bounds include float rounding.
+/// Infinite prism of a scene triangle along the motion. x_axis, y_axis, z_axis, edge and plane are used as
+/// dot products with a point p of the object. p is in the mesh frame, relative to the tree's centre, in m.
+/// All bounds include float rounding.
 struct SceneColumn {
   Eigen::Vector3f x_axis, y_axis, z_axis;
   /// Bounds of the scene triangle in the frame of the motion, m. z0 and z1 are infinite unless is_steep.
@@ -117,9 +117,9 @@ struct SceneColumn {
 ///
 /// The gap between the scene triangle's plane and a point is linear in the point, so its minimum and maximum
 /// over a box are exact. If the plane is steep, the z ranges of box and triangle bound the gap as well. All
-/// bounds include float rounding. If the scene triangle is edge-on, the search keeps only boxes
-/// that extend beyond its plane on both sides by touching_m, less rounding. Triangles in other boxes can only
-/// slide along the plane (see classify_pair()).
+/// bounds include float rounding. If the scene triangle is edge-on, the search keeps only boxes that extend
+/// beyond its plane on both sides by touching_m, less rounding. Triangles in other boxes can only slide along
+/// the plane (see classify_pair()).
 ///
 /// Bounds and tests are in one function, so the eight lanes of a node stay in registers.
 ///

@@ -32,8 +32,8 @@ class RecordingWriter {
   /// @param are_calibrated  true if lens and depth errors were removed from the frames; stored in camera.json
   RecordingWriter(std::filesystem::path folder, RecordingFormat format, bool are_calibrated = false);
 
-  /// Appends a frame. Throws Error if a file cannot be written, the cameras change, the stamp is not later
-  /// than the previous frame's, or an image's size differs from its camera's.
+  /// Appends a frame. Throws Error if a file cannot be written or the cameras change. Also throws if the
+  /// stamp is not later than the previous frame's, or an image's size differs from its camera's.
   void write(const Frame& frame);
 
   /// Completes the recording's text files. Throws Error if they cannot be written. No write() may follow. A
