@@ -81,9 +81,9 @@ struct ContactSystem {
 bool is_active(const MovingBody& moving);
 
 /// Finds the contacts within 1.5 contact margins of all active bodies. Adds those of sleeping bodies in the
-/// same connected component, except bodies on dynamic surfaces. Sets `crosses` of active bodies that a
-/// surface intersects. Orders contacts by body height, the lowest first, and active bodies before sleeping
-/// ones.
+/// same connected component. Leaves out sleeping bodies that rest on a dynamic surface or that a surface
+/// intersects. Sets `crosses` of active bodies that a surface intersects. Orders contacts by body height, the
+/// lowest first, and active bodies before sleeping ones.
 /// @param up_world  unit, against gravity; zero without gravity
 void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, const Eigen::Vector3d& up_world,
                    ContactSystem& system);

@@ -24,7 +24,7 @@ struct MapUpdateConfig {
   /// Time without motion after which a change is committed to the map, s. Unset: changes are committed only
   /// after ask().
   std::optional<double> after_s;
-  /// after_s for changes requested by ask(), s. Objects in motion must not pass it.
+  /// after_s for changes requested by ask(), s. Long enough that objects in motion are not committed.
   double asked_after_s = 0.5;
   int views = 12;  ///< number of frames whose depth is fused to measure a change
   /// Frames between the last measured frame and the first frame that uses the changed room.
