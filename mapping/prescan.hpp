@@ -1,4 +1,5 @@
-// prescan.hpp: turns a recording of a room into a map: tracking, fusion, ghost removal, surface extraction.
+// prescan.hpp: turns a recording of a room into a map by tracking, fusion, ghost removal and surface
+// extraction.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -30,7 +31,7 @@ struct PrescanConfig {
   bool remove_ghosts = true;  ///< remove surfaces of objects that moved during the scan
   GhostConfig ghosts;
   SurfaceConfig surface;
-  /// Cap on the process's memory; 0: no cap. The scan stops before it reaches the cap; the map then contains
+  /// Cap on the process's memory; 0: no cap. The scan stops before it reaches the cap. The map then contains
   /// the frames fused so far.
   std::size_t max_memory_bytes = 0;
 };
@@ -60,8 +61,8 @@ class Checkpoints;
 
 /// Optional inputs: checkpoints to resume from, and a map to extend.
 struct PrescanInput {
-  /// Receives the prescan's state at intervals. If a checkpoint exists already, the prescan resumes from it,
-  /// and the source must deliver the same frames again. Null: no checkpoints.
+  /// Receives the prescan's state at intervals. If a checkpoint exists already, the prescan resumes from it.
+  /// The source must then deliver the same frames again. Null: no checkpoints.
   Checkpoints* checkpoints = nullptr;
   /// Map to extend with the source's frames. The map's world frame and resolution are kept.
   std::optional<SavedMap> map;
@@ -72,14 +73,15 @@ struct PrescanInput {
 /// there are ghosts, a fourth time.
 ///
 /// A new map's world has +z up. With recorded poses, the world's origin is the recording's. With tracked
-/// poses, the origin is on the floor below the first camera, or at the height of the first camera if no level
-/// surface is measured. With start.map, the map's world is kept.
+/// poses, the origin is on the floor below the first camera. If no level surface is measured, it is at the
+/// height of the first camera. With start.map, the map's world is kept.
 ///
-/// Stages timed: read, track, optimise, fuse, ghosts, surface, coverage, checkpoint (time for which the work
-/// is blocked), and frame (track plus fuse of one frame, without reading).
+/// Stages timed: read, track, optimise, fuse, ghosts, surface, coverage, checkpoint (time during which the
+/// work is blocked), and frame (track plus fuse of one frame, without reading).
 ///
-/// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface; also
-///         if start.map shows another room, or overlaps the source too little for a reliable registration
+/// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface. Also
+///         throws if start.map shows another room, or overlaps the source too little for a reliable
+///         registration
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress = {}, PrescanInput start = {});
 

@@ -1,4 +1,5 @@
-// prescan_passes.hpp: the stages of a prescan that read the source: tracking, fusion, ghost removal.
+// prescan_passes.hpp: the stages of a prescan that read the source, namely tracking, fusion and ghost
+// removal.
 #pragma once
 #include <cstdint>
 #include <map>

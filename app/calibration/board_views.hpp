@@ -41,8 +41,8 @@ struct BoardViews {
   /// previous frame.
   std::int64_t still = 0;
   /// One entry per frame that was rejected only because its depth does not fit the checkerboard's plane. The
-  /// entry is the median ratio of measured depth to the depth computed from the corners and Board::square_m.
-  /// Similar ratios other than 1 in all frames indicate a wrong square_m.
+  /// entry is the median ratio of measured to expected depth. The expected depth is computed from the corners
+  /// and Board::square_m. Similar ratios other than 1 in all frames indicate a wrong square_m.
   std::vector<double> off_plane_ratios;
 };
 
@@ -51,9 +51,9 @@ struct BoardViews {
 std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colour, const Board& board);
 
 /// Reads the source to its end, or until `most` views are found. A frame becomes a view if the whole
-/// checkerboard is in its colour image, hardly moves, differs in pose from all earlier views, and is measured
-/// by its depth image. Motion is excluded because colour and depth images are not taken at the same instant.
-/// Throws Error if the source has no colour.
+/// checkerboard is in its colour image and measured by its depth image. The checkerboard must hardly move,
+/// and its pose must differ from all earlier views. Motion is excluded because colour and depth images are
+/// not taken at the same instant. Throws Error if the source has no colour.
 /// @param progress  called after each frame with the views found so far
 BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
                             const std::function<void(const BoardViews&)>& progress);
@@ -62,8 +62,8 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
 /// normal of all views.
 std::size_t count_tilted(const BoardViews& views);
 
-/// Returns a short text on the problem with the views found so far and its remedy, or an empty string if
-/// there is none. Problems are: no checkerboard of that size, a checkerboard never held still, squares of
+/// Returns a short text on the problem with the views found so far and its remedy. Returns an empty string if
+/// there is none. Problems are no checkerboard of that size, a checkerboard never held still, squares of
 /// another size, or too few tilted views.
 std::string advice_on(const BoardViews& views, const Board& board);
 

@@ -25,19 +25,19 @@ struct CalibrationSigmas {
 struct CalibrationFit {
   Calibration calibration;
   CalibrationSigmas sigmas;
-  std::vector<std::size_t> held_out;  ///< indices of the held-out views, which the fit does not use
+  std::vector<std::size_t> held_out;  ///< indices of the held-out views, not used by the fit
   std::vector<ViewResidual> before;   ///< residuals with the uncalibrated cameras of the frames, one per view
   std::vector<ViewResidual> after;    ///< residuals with the calibration, one per view
 };
 
-/// Fits all parameters jointly to all views: intrinsics and lens distortion of both cameras, T_colour_depth,
-/// the checkerboard's pose in each view, and the depth correction. Residuals are corner positions, weighted
-/// by a sigma of 0.15 px, and distances of depth from the checkerboard's plane, weighted by the sensor's
-/// noise. The loss is robust (Huber). Nodes of the depth correction without measurements are extrapolated
-/// from their neighbours. Method: Herrera, Kannala, Heikkila, Joint depth and color camera calibration with
-/// distortion correction, PAMI 2012, but with the depth error modelled in disparity. Throws Error if there
-/// are fewer than 12 views or fewer than 6 tilted views, if the fit does not converge, or if a focal length's
-/// sigma exceeds 1 %. Also throws Error if read_calibration() would reject the result.
+/// Fits all parameters jointly to all views. Parameters are intrinsics and lens distortion of both cameras,
+/// T_colour_depth, the checkerboard's pose in each view, and the depth correction. Residuals are the
+/// reprojection errors of corners (sigma 0.15 px) and the distances of depth from the checkerboard's plane
+/// (sigma: the sensor's noise). The loss is robust (Huber). Nodes of the depth correction without
+/// measurements are extrapolated from their neighbours. Method: Herrera, Kannala, Heikkila, Joint depth and
+/// color camera calibration with distortion correction, PAMI 2012, but with the depth error modelled in
+/// disparity. Throws Error if there are fewer than 12 views or fewer than 6 tilted views. Throws Error if the
+/// fit does not converge, a focal length's sigma exceeds 1 %, or read_calibration() would reject the result.
 CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config);
 
 }  // namespace roomradar

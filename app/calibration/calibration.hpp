@@ -19,8 +19,8 @@ struct DepthCorrection {
   std::vector<double> offset_per_m;
 };
 
-/// Position of a pixel in the node grid: column and row of the node above and to the left, and the pixel's
-/// offset from that node in fractions of a cell, 0 to 1.
+/// Position of a pixel in the node grid. Column and row are those of the node above and to the left. The
+/// pixel's offset from that node is in fractions of a cell, 0 to 1.
 struct GridPlace {
   int column = 0, row = 0;
   double right = 0.0, down = 0.0;
@@ -47,9 +47,9 @@ struct Calibration {
 ///  {"format": "roomradar calibration", "version": 1, "depth", "colour", "T_colour_depth": as in camera.json,
 ///   "depth_lens", "colour_lens": {"k1", "k2", "p1", "p2", "k3"},
 ///   "depth_correction": {"inverse_scale", "columns", "rows", "offset_per_m": [columns * rows numbers]}}
-/// Throws Error with the file's name and the field that is missing, has the wrong type or an impossible
-/// value. A lens is impossible if it moves a corner of the image by more than half the corner's distance from
-/// the image centre. An offset is impossible if its magnitude is above 0.2 / m.
+/// Throws Error naming the file and the field if a field is missing, has the wrong type or an invalid value.
+/// A lens is invalid if it moves a corner of the image by more than half the corner's distance from the image
+/// centre. An offset is invalid if its magnitude is above 0.2 / m.
 Calibration read_calibration(const std::filesystem::path& path);
 /// Throws Error "WHERE, depth_lens: ..." if read_calibration() would reject these numbers.
 void require_valid(const Calibration& calibration, const std::string& where);

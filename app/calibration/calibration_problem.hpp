@@ -47,14 +47,15 @@ struct CorrectionGrid {
   int width_px = 0, height_px = 0;
 };
 
-/// Adds the residuals of one view. Residuals are corner positions, weighted by a sigma of 0.15 px, and
-/// distances of depth from the checkerboard's plane, weighted by the sensor's noise. The loss is Huber's.
-/// @param T_colour_board  the checkerboard's pose in this view; must be an element of unknowns.T_colour_board
+/// Adds the residuals of one view. Residuals are the reprojection errors of corners (sigma 0.15 px) and the
+/// distances of depth from the checkerboard's plane (sigma: the sensor's noise). The loss is Huber's.
+/// @param T_colour_board  the checkerboard's pose in this view. Must be an element of unknowns.T_colour_board
 /// `unknowns` must outlive the problem and must not move.
 void add_view(const BoardView& view, const Board& board, const CorrectionGrid& grid,
               PoseBlock& T_colour_board, CalibrationUnknowns& unknowns, ceres::Problem& problem);
 
-/// Adds priors on the depth correction: one pulls each node towards 0, one towards the node's neighbours.
+/// Adds two priors on each node of the depth correction. One pulls it towards 0, the other towards its
+/// neighbours.
 void add_smoothness(const CorrectionGrid& grid, CalibrationUnknowns& unknowns, ceres::Problem& problem);
 
 }  // namespace roomradar

@@ -10,7 +10,7 @@ struct Board {
   double square_m = 0.03;
 };
 
-/// Returns inner corner (column, row) in the checkerboard's frame. The checkerboard is the plane z = 0; x
+/// Returns inner corner (column, row) in the checkerboard's frame. The checkerboard is the plane z = 0. x
 /// points from column to column.
 inline Eigen::Vector3d corner_board(const Board& board, int column, int row) {
   return {column * board.square_m, row * board.square_m, 0.0};

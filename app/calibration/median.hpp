@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// Returns the median; for an even number of values, the upper of the two middle ones. `values` must not be
-/// empty or contain NaN.
+/// Returns the median. For an even number of values, returns the upper of the two middle ones. `values` must
+/// not be empty or contain NaN.
 inline double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

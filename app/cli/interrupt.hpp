@@ -1,4 +1,4 @@
-// interrupt.hpp: handles Ctrl-C: the first one ends the work cleanly, the second one kills the process.
+// interrupt.hpp: handles Ctrl-C. The first one ends the work cleanly, the second one kills the process.
 #pragma once
 #include <memory>
 
@@ -18,7 +18,7 @@ class Interrupt {
   /// Replaces the message that Ctrl-C prints. The default message says that no more frames are read and that
   /// the work is completed with the frames read so far. `sentence` must remain valid and end with a newline.
   static void say(const char* sentence);
-  /// Returns true once if Ctrl-C was pressed; later calls return false.
+  /// Returns true once if Ctrl-C was pressed. Later calls return false.
   static bool take();
   /// Returns true if Ctrl-C was pressed and take() has not been called since.
   static bool is_asked();

@@ -27,14 +27,14 @@ bool gives_calibrated_frames(const std::string& source, const std::filesystem::p
 /// range. With a file of calibration_for(), the source corrects lens and depth errors. Recordings and
 /// simulated frames are read one frame ahead, on a second thread.
 ///
-/// @throws Error with a list of the kinds of source if `source` is none of them. Also if the frames would be
-/// corrected twice, or if source or calibration cannot be opened
+/// @throws Error with a list of the kinds of source if `source` is none of them. Also throws if the frames
+/// would be corrected twice, or if source or calibration cannot be opened
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});
 
-/// Throws Error if the map was scanned from frames without recorded poses, since the map's world frame is
-/// then unrelated to the poses of recordings.
+/// Throws Error if the map was scanned from frames without recorded poses. The map's world frame is then
+/// unrelated to the poses of recordings.
 /// @param map     name of the map in the error message
 /// @param source  name of the source in the error message
 void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source);

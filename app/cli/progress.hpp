@@ -24,11 +24,11 @@ struct ProgressState {
 };
 
 /// Returns a line such as "track [###### ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". The remaining
-/// time appears only if the total is known, the bar only if the total is known and with_bar is true.
+/// time appears only if the total is known. The bar appears only if also with_bar is true.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
-/// Speed of an operation, averaged over about the last 15 s, so that a single slow or fast step hardly
-/// affects the remaining time.
+/// Speed of an operation, averaged over about the last 15 s. A single slow or fast step thus hardly affects
+/// the remaining time.
 class SmoothRate {
  public:
   /// Adds a number of steps that together took `seconds`.
@@ -40,7 +40,7 @@ class SmoothRate {
   double steps_ = 0.0, seconds_ = 0.0;  ///< sums with weights that decay with age
 };
 
-/// Shows a progress line on stderr. Redraws it in place if stderr is a terminal; otherwise prints a line
+/// Shows a progress line on stderr. Redraws it in place if stderr is a terminal. Otherwise prints a line
 /// every few seconds.
 class Progress {
  public:

@@ -1,4 +1,4 @@
-// report.hpp: the JSON file that --report writes: settings, times per stage, memory, results.
+// report.hpp: the JSON file that --report writes, with settings, times per stage, memory and results.
 #pragma once
 #include <Eigen/Core>
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-/// Content of a report. `results` is specific to the command; its keys are merged into the top level of the
+/// Content of a report. `results` is specific to the command. Its keys are merged into the top level of the
 /// JSON object.
 struct Report {
   std::string command;

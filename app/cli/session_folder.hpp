@@ -30,17 +30,17 @@ void require_can_become_session(const std::filesystem::path& folder);
 class SessionRecorder {
  public:
   /// Creates the folder, or uses an empty one. Throws Error if it is not empty or cannot be written.
-  /// @param map  the loaded map; its checksum is recorded, so that a replay can detect a changed map
+  /// @param map  the loaded map. Its checksum is recorded, so that a replay can detect a changed map
   /// @param are_calibrated  true if lens and depth errors were removed from the frames
   SessionRecorder(std::filesystem::path folder, const RunOptions& options, const MapInfo& map,
                   bool are_calibrated);
 
   /// Returns a source that delivers the frames of `source` and records them. The returned source can rewind.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
-  /// Writes the model of a kAdd event into the folder, unless it is the built-in teapot, and returns the
-  /// event with the copy's name. Returns other events unchanged. Call before the object is added to the
-  /// session. Throws Error if the model cannot be written. Callers must then not add the object, so that all
-  /// objects of the run are in the recording.
+  /// Writes the model of a kAdd event into the folder, and returns the event with the copy's name. Does not
+  /// write the built-in teapot. Returns other events unchanged. Call before the object is added to the
+  /// session. Throws Error if the model cannot be written. Callers must then not add the object. All objects
+  /// of the run are thus in the recording.
   /// @param model  the model loaded for the event
   ScriptEvent with_mesh_kept(ScriptEvent event, const Model& model);
   /// Records an event that was returned by with_mesh_kept() and is executed before frame `run_frame`. Throws
@@ -58,18 +58,18 @@ class SessionRecorder {
 /// Returns true if the folder contains a recorded session.
 bool is_session_folder(const std::filesystem::path& folder);
 /// Returns true if lens and depth errors were removed from a session's frames before recording. Throws Error
-/// with the file's name and the problem if session.json is missing or invalid.
+/// naming the file and the fault if session.json is missing or invalid.
 bool is_session_calibrated(const std::filesystem::path& folder);
 /// Returns true if the file is the events file of a recorded session.
 bool is_session_events(const std::filesystem::path& file);
 
 /// Reads the events file of a recorded session. Ignores an incomplete last line. Completes events of sessions
-/// recorded by older versions, so that objects get the same pose as in that run. Throws Error as
-/// read_script() does.
+/// recorded by older versions. Objects thus get the same pose as in that run. Throws Error as read_script()
+/// does.
 Script read_session_events(const std::filesystem::path& file);
 
-/// Returns the options of a replay: the folder as source, its events file as script, the recorded map, and
-/// the recorded settings that affect results. Throws Error with the file's name and the problem, if
+/// Returns the options of a replay. They contain the folder as source, its events file as script, the
+/// recorded map, and the recorded settings that affect results. Throws Error naming the file and the fault if
 /// session.json is missing or invalid.
 RunOptions read_session(const std::filesystem::path& folder);
 

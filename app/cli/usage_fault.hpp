@@ -1,4 +1,4 @@
-// usage_fault.hpp: error messages for a command line, with the word that was probably meant.
+// usage_fault.hpp: error messages for a command line, with the probably intended word.
 #pragma once
 #include <span>
 #include <string>
@@ -14,14 +14,14 @@ namespace roomradar {
 
 /// Returns "; did you mean X?" with the candidate X that a misspelt word probably means. X is the only
 /// candidate that begins with `word`, or else the candidate with the smallest edit distance. The edit
-/// distance counts inserted, omitted, replaced and swapped letters; at most a third of the letters may
+/// distance counts inserted, omitted, replaced and swapped letters. At most a third of the letters may
 /// differ. Returns an empty string if there is no such candidate. Source: Damerau, A technique for computer
 /// detection and correction of spelling errors, CACM 1964 (distance with adjacent swaps only).
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
 
-/// Returns the message for a command line that could not be parsed. The message contains an unknown command
-/// or option with the nearest known one, or a missing argument with its meaning, or the parser's message. Its
-/// last line refers to the help.
+/// Returns the message for a command line that could not be parsed. The message names an unknown command or
+/// option and the nearest known one, or a missing argument and its meaning. Otherwise it contains the
+/// parser's message. Its last line refers to the help.
 /// @param arguments  words of the command line without the program's name
 std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
                         const std::vector<std::string>& arguments);

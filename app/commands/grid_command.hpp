@@ -1,4 +1,4 @@
-// grid_command.hpp: roomradar fallthrough with a source: fall-through test in a recorded room.
+// grid_command.hpp: fall-through test in a recorded room (roomradar fallthrough with a source).
 #pragma once
 #include "app/cli/options/fallthrough_options.hpp"
 #include "mapping/map/map_folder.hpp"

@@ -8,7 +8,7 @@ namespace roomradar {
 
 /// Prints the map's properties.
 int run(const MapInfoOptions& options);
-/// Compares the map's files with their checksums; returns 1 if a file differs.
+/// Compares the map's files with their checksums. Returns 1 if a file differs.
 int run(const MapVerifyOptions& options);
 /// Writes the octree, the mesh or the frontier of unknown space to a file.
 int run(const MapExportOptions& options);

@@ -6,7 +6,7 @@ namespace roomradar {
 
 /// Processes the source's frames, in a window if requested, and writes the requested results. Returns the
 /// exit status: 0, or 1 if the camera was not localised in any frame.
-/// @throws Error if the run cannot begin, has no readable frame or fails; results obtained before the error
+/// @throws Error if the run cannot begin, has no readable frame or fails. Results obtained before the error
 /// are written
 int run(const RunOptions& options);
 

@@ -5,9 +5,9 @@
 namespace roomradar {
 
 /// Measures the settings, prints the chosen presets and writes the requested files. Ctrl-C ends the
-/// measurements; results then cover the measurements made before. Returns the exit status 0.
-/// @throws Error if a scene is not suitable, if nothing was measured, or if a file cannot be written;
-///         measurements made before the error are written
+/// measurements. Results then cover the measurements made before. Returns the exit status 0.
+/// @throws Error if a scene is not suitable, nothing was measured, or a file cannot be written. Measurements
+///         made before the error are written
 int run(const TradeOptions& options);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// unfinished_scan.hpp: decides how a prescan begins: new, resumed, or as extension of a map.
+// unfinished_scan.hpp: decides whether a prescan is new, resumed, or extends a map.
 #pragma once
 #include <memory>
 #include <optional>
@@ -13,11 +13,11 @@ namespace roomradar {
 /// Input of a prescan.
 struct ScanStart {
   std::unique_ptr<Checkpoints> checkpoints;  ///< null: no checkpoints are written
-  /// Frame source, which can rewind. A live source is cached on disk beside the checkpoints, and ends on
+  /// Frame source that can rewind. A live source is cached on disk beside the checkpoints, and ends on
   /// Ctrl-C.
   std::unique_ptr<FrameSource> source;
   bool is_live = false;  ///< true: the source continues until Ctrl-C, unless limited by --frames
-  /// Folder beside the checkpoints in which a live source's frames are cached; empty: not cached.
+  /// Cache folder for a live source's frames, beside the checkpoints. Empty: not cached.
   std::filesystem::path spool;
   std::optional<SavedMap> map;  ///< the map to extend; unset: a new map
   bool is_done = false;         ///< true: nothing to do, since the map already contains the whole recording
@@ -25,7 +25,7 @@ struct ScanStart {
 
 /// Opens the source. Decides whether to begin a new scan, resume a scan or extend a map. The decision depends
 /// on --resume, the existing map, and an interrupted scan in the folder MAP.unfinished.
-/// @throws Error if there is nothing to resume, if the interrupted scan belongs to another command, or if an
+/// @throws Error if there is nothing to resume, the interrupted scan belongs to another command, or an
 /// interrupted live scan would be lost without --resume. Also throws as open_source() does
 ScanStart start_scan(const PrescanOptions& options);
 

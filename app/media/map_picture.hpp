@@ -9,7 +9,7 @@
 namespace roomradar {
 
 /// Renders an orthographic view from obliquely above. Back faces, such as those of the ceiling and the near
-/// walls, are culled. The mesh has its own colours, lightened; appeared surfaces are green, vanished surfaces
+/// walls, are culled. The mesh has its own colours, lightened. Appeared surfaces are green, vanished surfaces
 /// red.
 /// @param width_px  width of the picture; its height follows from the map's extent
 /// @return an empty image for an empty mesh

@@ -12,7 +12,7 @@ struct PlotLine {
   std::vector<std::pair<double, double>> points;  ///< x ascending
 };
 
-/// Returns a plot of lines with a legend. The x axis is logarithmic; y is in percent, from 0 to 100. Points
+/// Returns a plot of lines with a legend. The x axis is logarithmic. y is in percent, from 0 to 100. Points
 /// with x below x_least are drawn at x_least.
 std::string percent_plot(const std::string& title, const std::string& x_name, double x_least, double x_most,
                          const std::vector<PlotLine>& lines);

@@ -9,9 +9,9 @@
 namespace roomradar {
 
 /// The file's extension selects the format: .mp4 (H.264 if an encoder is available, else MPEG-4), .avi
-/// (Motion JPEG) or .mkv (MPEG-4). If width or height is odd, the last column or row is dropped, since
-/// encoders need even sizes. The video is written to a temporary file in the same folder, such as
-/// NAME.partial-PID.avi. close() moves it to its final name, where it replaces an earlier video.
+/// (Motion JPEG) or .mkv (MPEG-4). Encoders need even sizes. If width or height is odd, the last column or
+/// row is dropped. The video is written to a temporary file in the same folder, such as NAME.partial-PID.avi.
+/// close() moves it to its final name, and replaces an earlier video.
 class VideoWriter {
  public:
   /// Throws Error for another extension, a folder that does not exist, or frames_per_s not in 1..240. The
@@ -25,7 +25,7 @@ class VideoWriter {
   /// one's size. Throws Error if the file cannot be created or the disk is full.
   void write(const ColourImage& picture);
 
-  /// Writes a picture as zero, one or more frames, so that the video runs at the speed of the stamps. For
+  /// Writes a picture as zero, one or more frames. The video thus runs at the speed of the stamps. For
   /// example, each picture is written twice if the source has half the video's rate. If the stamp jumps
   /// backwards, or forwards by more than a second, the picture is written as the next frame.
   void write_at(const ColourImage& picture, double stamp_s);

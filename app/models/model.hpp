@@ -37,7 +37,7 @@ struct ModelPart {
   friend bool operator==(const ModelPart&, const ModelPart&) = default;
 };
 
-/// A mesh with textures. Mesh colours are material colours times vertex colours, in sRGB; textures multiply
+/// A mesh with textures. Mesh colours are material colours times vertex colours, in sRGB. Textures multiply
 /// them. Vertices at texture seams are duplicated, one per side.
 struct Model {
   Mesh mesh;

@@ -15,13 +15,13 @@ enum class ModelOrigin {
   kAsInFile,  ///< the origin is that of the file
 };
 
-/// Reads a .glb, .gltf, .obj, .ply, .stl or .dae file in a sandbox: geometry, normals, vertex colours,
+/// Reads a .glb, .gltf, .obj, .ply, .stl or .dae file in a sandbox. Reads geometry, normals, vertex colours,
 /// material colours and base-colour textures. Skinned meshes are read in their rest pose.
 ///
-/// In the result, +z is up and coordinates are in metres. glTF prescribes metres and a .dae file states its
-/// unit; numbers in the other formats are taken as metres. With ModelOrigin::kNear, the origin of a model
-/// that is farther from its origin than its longest side is moved to the model's centre, with a note.
-/// Model::notes names textures that cannot be read.
+/// In the result, +z is up and coordinates are in metres. glTF prescribes metres, and a .dae file states its
+/// unit. Numbers in the other formats are taken as metres. With ModelOrigin::kNear, a model's origin that is
+/// farther away than the longest side is moved to the model's centre. A note is then added. Model::notes
+/// names textures that cannot be read.
 ///
 /// @param up  axis of the file that points up; unset: y for .glb, .gltf and .obj, z for .ply and .stl, and
 ///            the axis that a .dae states

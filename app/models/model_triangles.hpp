@@ -8,7 +8,7 @@
 namespace roomradar {
 
 /// Returns a model of the given triangles, in the given order, and the vertices that they use. Vertices have
-/// positions, normals, colours and texture coordinates; the result has no parts and textures.
+/// positions, normals, colours and texture coordinates. The result has no parts and textures.
 Model triangles_alone(const Model& model, std::span<const std::uint32_t> triangles);
 
 }  // namespace roomradar

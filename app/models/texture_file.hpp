@@ -22,9 +22,9 @@ Texture decode_texture(std::string_view bytes, std::size_t max_pixels);
 /// decode_texture() does.
 Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size_t max_pixels);
 
-/// Returns the path of an image that a model file names. The name is searched relative to the model's folder,
-/// then its last component in the model's folder, since many files contain paths of their author's machine.
-/// Returns an empty path if there is no such file.
+/// Returns the path of an image that a model file names. The name is searched relative to the model's folder.
+/// Then its last component is searched in the model's folder, since many files contain paths of their
+/// author's machine. Returns an empty path if there is no such file.
 std::filesystem::path find_texture(const std::filesystem::path& model, const std::string& name);
 
 /// Reads and decodes an image file.

@@ -1,4 +1,4 @@
-// up_axis.hpp: the axis of a model that points up, and the rotation of that axis to +z.
+// up_axis.hpp: the up axis of a model, and its rotation to +z.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -20,8 +20,8 @@ std::string_view to_string(UpAxis up);
 /// Returns the axis of such a word, or nullopt for any other word.
 std::optional<UpAxis> up_axis_of(std::string_view word);
 
-/// Rotates the mesh so that axis `up` points to +z. Coordinates are exchanged and negated, so the result is
-/// exact.
+/// Rotates the mesh so that axis `up` points to +z. Coordinates are only exchanged and negated. The result is
+/// thus exact.
 void stand_up(Mesh& mesh, UpAxis up);
 
 }  // namespace roomradar

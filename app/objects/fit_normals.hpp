@@ -6,14 +6,14 @@ namespace roomradar {
 
 /// Sets the vertex normals of the coarse mesh by linear least squares. The residuals are the differences
 /// between fine normals, at sample points of the fine surface, and normals interpolated on the coarse
-/// triangles. A sample point corresponds to the nearest coarse triangle whose front faces the same side.
-/// Averages of merged vertex normals would shade the simplified mesh too flat. Vertices of triangles without
-/// correspondences keep their normals.
+/// triangles. The correspondence of a sample point is the nearest coarse triangle that faces the same side.
+/// Averages of merged vertex normals would shade the simplified mesh too flat. Vertices without
+/// correspondences in their triangles keep their normals.
 ///
 /// @param fine       with normals; normals that are not finite are ignored
 /// @param reach_m    max distance (> 0) of a sample point from its corresponding triangle
-/// @param spacing_m  max distance (> 0) between sample points on a fine triangle; a triangle with a longest
-///                   side of at most spacing_m has one
+/// @param spacing_m  max distance (> 0) between sample points on a fine triangle. A triangle whose longest
+///                   side is at most spacing_m has one
 /// @param coarse     with normals; Mesh::origin must equal that of `fine`
 void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse);
 

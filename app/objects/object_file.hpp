@@ -30,10 +30,9 @@ struct SizeCheck {
   std::string option;   ///< command-line text before a size in metres, such as "--object-size "
 };
 
-/// Throws Error if no size was given and the model's longest side is less than 5 mm, more than 5 m or more
-/// than half of room_m. The message ends with an option that the user can paste. The option's size assumes
-/// that the file is in millimetres or centimetres, if that makes the model 2 cm to 2 m long. Otherwise the
-/// size is 0.3 m.
+/// Throws Error for a model without a given size whose longest side is below 5 mm, above 5 m or above half of
+/// room_m. The message ends with an option that the user can paste. Its size assumes that the file is in
+/// millimetres or centimetres if the model is then 2 cm to 2 m long. Otherwise its size is 0.3 m.
 void require_sensible_size(const Model& model, const ObjectSource& source, const SizeCheck& check);
 
 }  // namespace roomradar

@@ -19,16 +19,17 @@ struct LevelOfDetail {
   std::vector<ModelPart> parts{};
 };
 
-/// Computes simplified meshes of down to about 100 triangles, finest first. Returns none for a mesh with
-/// fewer than 1,000 triangles. The max deviation starts at 1/1,024 of the mesh's size and grows by a factor
-/// of 1.4 per level. The levels' normals are fitted to the full mesh's normals (fit_normals.hpp). For a full
-/// mesh without normals, vertex normals are averaged over adjacent faces. A face that deviates from the
-/// averaged normal by more than 25 degrees keeps its own normal, which preserves sharp edges.
+/// Computes simplified meshes, finest first. The last has about 100 triangles, or a deviation of up to 1/8 of
+/// the mesh's size. Returns none for a mesh with fewer than 1,000 triangles. The max deviation starts at
+/// 1/1,024 of the mesh's size and grows by a factor of 1.4 per level. The levels' normals are fitted to the
+/// full mesh's normals (fit_normals.hpp). For a full mesh without normals, vertex normals are averaged over
+/// adjacent faces. A face that deviates from the averaged normal by more than 25 degrees keeps its own
+/// normal. This preserves sharp edges.
 /// @param keeps_seams  true: coincident vertices, as along texture seams, are not merged
 std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh, bool keeps_seams = false);
 
-/// Returns true if a level's deviation is at most error_px pixels; pixel_m is the width that one pixel covers
-/// at the object's distance.
+/// Returns true if a level's deviation is at most error_px pixels. pixel_m is the width of one pixel at the
+/// object's distance, m.
 inline bool is_fine_enough(float deviation_m, double pixel_m, double error_px) {
   return static_cast<double>(deviation_m) <= error_px * pixel_m;
 }

@@ -46,7 +46,7 @@ struct ObjectModel {
   Model source;
   Shape shape;
   std::vector<std::unique_ptr<GpuTexture>> textures;  ///< textures of `source`
-  /// Meshes that DrawnPart entries refer to, of the full mesh and all levels.
+  /// Meshes of all DrawnPart entries, for the full mesh and all levels.
   std::vector<std::unique_ptr<GpuMesh>> part_meshes;
   std::vector<DrawnPart> parts;  ///< parts of the full mesh; empty without textures
   bool is_opaque = true;  ///< false: a texture has transparent areas, through which back faces are visible

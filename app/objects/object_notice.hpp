@@ -4,8 +4,8 @@
 
 namespace roomradar {
 
-/// A sentence about an event that the user did not request, such as that the object was moved out of a
-/// surface, is stuck or cannot be dropped.
+/// A sentence about an event that the user did not request. Examples: an object was moved out of a surface,
+/// is stuck, or cannot be dropped.
 struct ObjectNotice {
   std::string name;  ///< object's name, the start of the sentence; empty: `text` is the whole sentence
   std::string text;  ///< rest of the sentence, without a full stop

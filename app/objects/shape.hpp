@@ -14,7 +14,7 @@ struct Shape {
 
   explicit Shape(GlContext& context) : drawn(context) {}
 
-  /// Replaces both shapes. Throws Error as GpuMesh::upload() does; afterwards both shapes are unusable.
+  /// Replaces both shapes. Throws Error as GpuMesh::upload() does. Both shapes are then unusable.
   void set(const Mesh& mesh, MeshUsage usage);
   /// Replaces both shapes, with a tree that build_by_place() has built from `mesh`.
   void set(const Mesh& mesh, TriangleTree tree);

@@ -14,8 +14,8 @@ struct SurfaceFoot {
   Eigen::Vector3f weights = Eigen::Vector3f::Zero();  ///< barycentric coordinates in the triangle
 };
 
-/// Finds nearest points by walking between triangles that share a vertex. A walk does not cross a seam, along
-/// which vertices are duplicated, and does not reach the far side of a thin sheet. A walk may end in a local
+/// Finds nearest points by walking between triangles that share a vertex. A walk does not cross seams (edges
+/// with duplicated vertices). It does not reach the far side of a thin sheet. A walk may end in a local
 /// minimum of the distance.
 class SurfaceWalk {
  public:

@@ -1,5 +1,5 @@
-// unknown_support.hpp: finds objects that rest on the frontier of unknown space, and viewpoints to scan their
-// supports from.
+// unknown_support.hpp: finds objects that rest on the frontier of unknown space, and viewpoints for scanning
+// their supports.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
@@ -18,17 +18,17 @@ bool rests_on_unknown(const VirtualObject& object);
 /// Returns the world point below the centre of the object's bounding box, at the height of its lowest vertex.
 Eigen::Vector3d support_point_world(const VirtualObject& object);
 
-/// Returns a viewpoint for scanning the surface under the object: 0.6, 1 or 1.5 m from support_point_world(),
-/// with a free line of sight to it. Among free viewpoints, the highest elevation angle (60, 45, 30 or 15
-/// degrees) comes first, then the largest distance, then the azimuth nearest to that of `towards_world`.
-/// Returns nullopt if all lines of sight are blocked.
-/// @param scene  surfaces; only those of the static room and the frontier block lines of sight
+/// Returns a viewpoint for scanning the surface under the object. The viewpoint is 0.6, 1 or 1.5 m from
+/// support_point_world(), with a free line of sight to it. Among free viewpoints, the highest elevation angle
+/// (60, 45, 30 or 15 degrees) is preferred. Ties are broken by the largest distance, then by the azimuth
+/// nearest to that of `towards_world`. Returns nullopt if all lines of sight are blocked.
+/// @param scene  surfaces. Only the static room and the frontier block lines of sight
 std::optional<Eigen::Vector3d> viewpoint_of_support(const VirtualObject& object,
                                                     std::span<const SceneTree> scene,
                                                     const Eigen::Vector3d& towards_world);
 
-/// Returns a sentence about the object without its name: the support point, and the viewpoint to scan it
-/// from.
+/// Returns a sentence, without the object's name, that states the support point and the viewpoint for
+/// scanning it.
 std::string unknown_support_text(const VirtualObject& object, std::span<const SceneTree> scene,
                                  const Eigen::Vector3d& towards_world);
 

@@ -29,8 +29,8 @@ struct VirtualObject {
   /// end_departure() returned it.
   std::optional<Eigen::Isometry3d> T_world_rested;
   int departures = 0;  ///< number of times that it fell out of the map
-  /// True if the object has been awake and at rest for 1 s, a surface intersects it, and no free pose is
-  /// within 10 cm. Reset when the object moves.
+  /// True if a surface intersects the object, no free pose is within 10 cm, and the object has been awake and
+  /// still for 1 s. Reset when the object moves.
   bool stuck = false;
   double still_s = 0.0;  ///< time for which it has been awake and within 2 mm of T_world_still
   /// Pose from which its motion is measured for still_s.
@@ -51,8 +51,8 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
 /// Makes an object of a mesh without textures.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
-/// Makes an object from the result of object_parts(), which is discarded if an existing ObjectModel can be
-/// reused.
+/// Makes an object from the result of object_parts(). The result is discarded if an existing ObjectModel can
+/// be reused.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
@@ -66,17 +66,17 @@ double highest_m(const VirtualObject& object);
 /// Returns the height of the object's lowest vertex above its origin in the given orientation, m.
 double lowest_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
-/// Returns the radius of the sphere circumscribed about the object's bounding box, m.
+/// Returns the radius of the circumscribed sphere of the object's bounding box, m.
 double radius_m(const VirtualObject& object);
-/// Returns the max horizontal distance of the object's vertices from the centre of its bounding box in the
-/// given orientation, m.
+/// Returns the max horizontal distance (m) of the object's vertices from the centre of its bounding box, in
+/// the given orientation.
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 /// Returns the horizontal vector, in world axes, from the object's origin to the centre of its bounding box
 /// in the given orientation, m.
 Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
-/// Returns the coarsest level of detail that deviates by at most error_px pixels from the full mesh, at the
-/// object's point nearest to the camera. Valid while the object's model exists.
+/// Returns the coarsest level of detail that deviates by at most error_px pixels from the full mesh. Pixels
+/// are converted at the object's point nearest to the camera. Valid while the object's model exists.
 DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
                          const Eigen::Isometry3d& T_world_camera, double error_px);
 

@@ -1,4 +1,4 @@
-// body.hpp: rigid body, its centre of mass and inertia in the world, and the report of one physics step.
+// body.hpp: a rigid body's state, and the report of one physics step.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -19,12 +19,13 @@ struct Body {
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();            ///< of the centre of mass
   Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< right-handed
   bool asleep = false;
-  /// Time for which the body has been supported, within PhysicsConfig::sleep_drift_m of sleep_pose_candidate.
+  /// Time for which the body has been supported and within PhysicsConfig::sleep_drift_m of
+  /// sleep_pose_candidate.
   double sleep_timer_s = 0.0;
   Eigen::Isometry3d sleep_pose_candidate = Eigen::Isometry3d::Identity();
   /// Kind of the surface that supported the body when it last moved.
   SurfaceKind rests_on = SurfaceKind::kNothing;
-  /// Another body in contact with this one when this one fell asleep.
+  /// Another body that was in contact with this body when this body fell asleep.
   struct SupportingBody {
     const Body* on;
     /// Pose of `on` when this body fell asleep.
@@ -45,8 +46,8 @@ struct [[nodiscard]] StepReport {
   int contacts = 0;
   std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< `contacts` per surface kind
   int queries = 0;                                    ///< number of CollisionQueries::travel calls
-  /// Overlap of the body with the scene before depenetration, >= 0, measured along the tested direction in
-  /// which it is least.
+  /// Penetration depth of the body into the scene before depenetration, >= 0. It is the least depth along the
+  /// tested directions.
   double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< deepest_overlap_m if the prescanned room causes it, else 0
   bool woke = false;                      ///< this step woke the body
@@ -58,8 +59,8 @@ void note_contact(SurfaceKind touched, StepReport& report);
 /// Restores the orthonormality of T's rotation, which rounding errors degrade.
 void make_orthonormal(Eigen::Isometry3d& T);
 
-/// Returns an upper bound of the distance that any point of the body has moved since the pose T_world_before.
-/// The bound is the translation of the centre of mass plus the rotation angle times MassProperties::radius_m.
+/// Returns an upper bound of the displacement of the body's points since the pose T_world_before. The bound
+/// is the translation of the centre of mass plus the rotation angle times MassProperties::radius_m.
 double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before);
 
 /// Returns the centre of mass in the world.

@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// Returns the first contact of the object at T_world_object when it is translated by up to distance_m along
+/// Returns the first contact of the object as it is translated from T_world_object by up to distance_m along
 /// a unit direction. Implemented by CyberRadar::query(); tests substitute an analytic room.
 using DistanceQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
                                             const Eigen::Vector3d& direction_world, double distance_m)>;
@@ -21,8 +21,8 @@ using DistanceQuery = std::function<Contact(const Eigen::Isometry3d& T_world_obj
 /// The rigid body, if any, to which one triangle tree of the scene belongs.
 struct SceneBody {
   Body* body = nullptr;  ///< null: the tree is a static or dynamic surface, not a body
-  /// Mass of the querying body (AdvancedBody::mass_kg) divided by the mass of this body, for bodies that are
-  /// not advanced in the same call. 0: impulses do not move the body, as while a user carries it.
+  /// Mass of the querying body (AdvancedBody::mass_kg) divided by the mass of this body. Used only for bodies
+  /// that are not advanced in the same call. 0: impulses do not move the body, such as a carried one.
   double mass_ratio = 0.0;
 };
 
@@ -45,7 +45,7 @@ struct CollisionQueries {
 
 /// Returns queries of `object` against `scene`. All arguments passed by reference must outlive the returned
 /// queries.
-/// @param spent_ms  the duration of each query is added; may be null
+/// @param spent_ms  incremented by the duration of each query; may be null
 CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
                                         const RadarScene& scene, double* spent_ms = nullptr);
 

@@ -32,13 +32,13 @@ struct SolverContact {
   Eigen::Vector3d contact_offset_m = Eigen::Vector3d::Zero();  ///< from the body's centre of mass
   Eigen::Vector3d other_offset_m = Eigen::Vector3d::Zero();    ///< from the other body's centre of mass
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();           ///< unit
-  /// Lower bound of the separation speed along the normal after the solve. A negative bound permits approach
-  /// at up to -leaves_mps.
+  /// Lower bound of the separation velocity along the normal after the solve. A negative bound permits
+  /// approach at up to -leaves_mps.
   double leaves_mps = 0.0;
   double friction = 0.0;  ///< Coulomb's coefficient
-  /// In: initial guess; out: normal impulse on the body, >= 0.
+  /// In: warm-start guess. Out: normal impulse on the body, >= 0.
   double impulse_Ns = 0.0;
-  /// In: initial guess; out: friction impulse on the body, tangential.
+  /// In: warm-start guess. Out: tangential friction impulse on the body.
   Eigen::Vector3d friction_impulse_Ns = Eigen::Vector3d::Zero();
 };
 
@@ -56,24 +56,25 @@ double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2);
 /// Returns the kinetic energy of the bodies that impulses move, J.
 double energy(std::span<const SolverBody> bodies);
 
-/// Solves for contact impulses by projected Gauss-Seidel and applies them to the bodies' velocities. All
-/// contacts of bodies that touch each other, directly or through others, are solved as one system. After the
-/// solve, each contact separates at leaves_mps or faster and obeys Coulomb's friction law. The impulses on
-/// the two bodies of a contact are opposite, so momentum is conserved. If leaves_mps <= 0 at all contacts and
-/// all guesses are 0, impulses add no energy.
+/// Solves for contact impulses by projected Gauss-Seidel (sequential impulses) and applies them to the
+/// bodies' velocities. Each connected component of bodies in contact (island) is solved as one system. After
+/// the solve, each contact separates at leaves_mps or faster and obeys Coulomb's friction law. The impulses
+/// on the two bodies of a contact are opposite, so momentum is conserved. If leaves_mps <= 0 at all contacts
+/// and all guesses are 0, impulses add no energy.
 ///
-/// Sweeps alternate between the contacts' order and its reverse, which carries the weight of a stack whose
-/// contacts are ordered by height to its base in one sweep.
-/// Source: Catto, Iterative dynamics with temporal coherence, GDC 2005.
+/// Sweeps alternate between the contacts' order and its reverse. If contacts are ordered by height, one sweep
+/// thus carries the weight of a stack to its base. Source: Catto, Iterative dynamics with temporal coherence,
+/// GDC 2005.
 class ContactSolver {
  public:
-  /// @param contacts  body and other index `bodies`; an `other` out of range stands for a static surface
-  /// @param rolling   rolling resistance of a body: max torque = rolling x normal force x distance of the
-  ///                  centre of mass from the contact's tangent plane, a ball's radius
+  /// @param contacts  `body` and `other` are indices into `bodies`. An `other` out of range means a static
+  ///                  surface
+  /// @param rolling   rolling resistance coefficient. Max torque = rolling x normal force x distance of the
+  ///                  centre of mass from the contact's tangent plane (a ball's radius)
   void solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling);
 
  private:
-  /// A direction of a contact, and what a unit impulse along it changes.
+  /// A direction of a contact, and the velocity changes by a unit impulse along it.
   struct Row {
     Eigen::Vector3d direction, lever, other_lever, turns, other_turns;
     double effective_mass_kg;

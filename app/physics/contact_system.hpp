@@ -1,4 +1,5 @@
-// contact_system.hpp: the contacts of bodies that move together, for the contact solver.
+// contact_system.hpp: finds the contacts of bodies that are advanced together, as input of the contact
+// solver.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -13,8 +14,8 @@
 
 namespace roomradar {
 
-/// A contact at which a dynamic surface pushes the body throughout a step. All other contacts with dynamic
-/// surfaces are ignored in the step, since dynamic surfaces intersect the body until the push ends.
+/// A contact at which a dynamic surface pushes the body throughout a step. Until the push ends, dynamic
+/// surfaces intersect the body. The step therefore ignores all other contacts with them.
 struct Push {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, towards the body
@@ -27,34 +28,34 @@ inline constexpr SurfaceKindMask kMovingSurfaces =
     bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
 constexpr bool is_moving_surface(SurfaceKind kind) { return (bit_of(kind) & kMovingSurfaces) != 0; }
 
-/// A body in a substep, and how far it has come.
+/// A body in a substep, with its progress.
 struct MovingBody {
   Body* body = nullptr;
   const CollisionQueries* probe = nullptr;
   double mass_kg = 1.0;
   bool is_carried = false;  ///< moves without gravity, friction and restitution
   std::optional<Push> push{};
-  StepReport* report = nullptr;  ///< the substep's contacts are added
+  StepReport* report = nullptr;  ///< the substep adds its contacts
   double dt_s = 0.0;             ///< length of the substep
-  /// Called after each change of the body's pose, so that the other bodies' scenes follow. May be null.
+  /// Called after each change of the body's pose, to update the other bodies' scenes. May be null.
   const std::function<void()>* moved = nullptr;
 
-  double left_s = 0.0;  ///< time of the substep that is not simulated so far
-  /// A surface other than the pushing one intersects the body, so it does not move by contacts.
+  double left_s = 0.0;  ///< time of the substep that remains to be simulated
+  /// A surface other than the pushing one intersects the body. The contact solver then does not move it.
   bool crosses = false;
-  Velocity velocity{}, after{};      ///< before and after left_s of gravity, support and friction
+  Velocity velocity{}, after{};      ///< before and after the second solve
   ClosestPoint limited_by{};         ///< feature that ended the body's last motion
-  bool contacts_known = false;       ///< of a sleeping body: its contacts are part of the system
+  bool contacts_known = false;       ///< sleeping bodies: contacts are in the system
   std::vector<ClosestPoint> near{};  ///< closest features at its pose
 };
 
-/// A body that takes part in a substep without being moved: it is in the scene, but advanced at another time.
+/// A body in the scene that is not advanced in this substep.
 struct Bystander {
   Body* body = nullptr;
   double inverse_mass_per_kg = 0.0;
 };
 
-/// The normal impulse and friction of a contact in an earlier solve.
+/// Normal and friction impulse of a contact in an earlier solve.
 struct PastContact {
   const Body* body = nullptr;
   const Body* other = nullptr;  ///< null: static surface
@@ -63,30 +64,31 @@ struct PastContact {
   Eigen::Vector3d friction_impulse_Ns = Eigen::Vector3d::Zero();
 };
 
-/// Contacts of a substep's bodies. Indices of solver bodies: first the substep's bodies, then the bystanders.
+/// Contacts of a substep's bodies. The solver's bodies are first the substep's bodies, then the bystanders.
 struct ContactSystem {
   std::vector<SolverContact> contacts;
-  std::vector<double> gap_m;       ///< of each contact; a push: 0
+  std::vector<double> gap_m;       ///< per contact; 0 for a Push
   std::vector<SurfaceKind> kinds;  ///< of the surface that SolverContact::body touches
   std::vector<bool> is_push;       ///< the contact is a Push
   std::vector<SolverBody> bodies;
   std::vector<Bystander> bystanders;
-  std::vector<PastContact> past;  ///< contacts of the last support solve, for initial guesses
+  std::vector<PastContact> past;  ///< contacts of the last support solve, for warm starts
   ContactSolver solver;
   std::vector<std::size_t> upwards;  ///< scratch: indices of bodies by height
 };
 
-/// Returns true if the substep still has to move the body.
+/// Returns true if the body is awake, has time left in the substep, and no surface intersects it.
 bool is_active(const MovingBody& moving);
 
-/// Finds the contacts of all active bodies within 1.5 contact margins, and of the sleeping bodies that they
-/// touch, directly or through other sleeping bodies. Sets `crosses` of bodies that a surface intersects.
-/// Contacts are ordered from the lowest body upwards.
+/// Finds the contacts within 1.5 contact margins of all active bodies. Adds those of sleeping bodies in the
+/// same connected component. Leaves out sleeping bodies that rest on a dynamic surface or that a surface
+/// intersects. Sets `crosses` of active bodies that a surface intersects. Orders contacts by body height, the
+/// lowest first, and active bodies before sleeping ones.
 /// @param up_world  unit, against gravity; zero without gravity
 void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, const Eigen::Vector3d& up_world,
                    ContactSystem& system);
 
-/// Bodies that a solve moves; all others are immovable in it.
+/// Bodies that a solve moves. All others are immovable in it.
 enum class Movable {
   kAllButSleeping,          ///< and sleeping bodies that something hits faster than 5 cm/s
   kActiveAndKnownSleepers,  ///< active bodies, and sleeping bodies whose contacts are in the system
@@ -95,15 +97,16 @@ enum class Movable {
 /// Sets the inverse masses of the solver bodies. kAllButSleeping needs their velocities.
 void set_masses(std::span<const MovingBody> bodies, Movable movable, ContactSystem& system);
 
-/// Returns the time left for the motion of a contact's bodies, s, > 0.
+/// Returns the longer left_s of a contact's bodies; dt_s if neither has time left. s, > 0.
 double left_s(std::span<const MovingBody> bodies, const SolverContact& contact);
-/// Allows each contact to close its gap, down to the margin, in the time left. Pushes keep their speed.
+/// Sets leaves_mps so that each contact may close its gap, down to the margin, in the time left. A push gets
+/// its own speed.
 void allow_closing_gaps(std::span<const MovingBody> bodies, double margin_m, ContactSystem& system);
 void clear_impulses(ContactSystem& system);
-/// Sets the contacts' impulses to those of the same contacts in system.past, scaled; to 0 where there are
-/// none.
+/// Warm start: sets the contacts' impulses to those of the same contacts in system.past, times `scale`.
+/// Contacts without a match get 0.
 void guess_impulses(std::span<const MovingBody> bodies, double scale, ContactSystem& system);
-/// Stores the contacts' impulses, scaled, in system.past.
+/// Stores the contacts' impulses, times `scale`, in system.past.
 void keep_impulses(std::span<const MovingBody> bodies, double scale, ContactSystem& system);
 
 }  // namespace roomradar

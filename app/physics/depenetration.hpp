@@ -1,4 +1,4 @@
-// depenetration.hpp: directions in which a body leaves dynamic surfaces, and a test for engulfed bodies.
+// depenetration.hpp: depenetration directions from dynamic surfaces, and a test for engulfed bodies.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -14,14 +14,14 @@
 namespace roomradar {
 
 /// Returns true if the inferred backs of dynamic surfaces engulf the body. They do if they overlap the body
-/// along gravity or a depenetration direction, and each such overlap exceeds max_depenetration_mps * dt_s +
-/// wake_overlap_m. Callers then omit the backs from the scene, since resolving such deep overlaps would throw
-/// the body.
+/// along gravity or a depenetration direction, and each such penetration depth exceeds max_depenetration_mps
+/// * dt_s + wake_overlap_m. Callers then omit the backs from the scene. Resolving such deep overlaps would
+/// throw the body.
 bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
                  std::span<const Eigen::Vector3d> depenetration_directions_world);
 
-/// Up to two horizontal unit directions from a body towards dynamic surfaces near it: to their nearest
-/// vertex, and to the mean of all their vertices within reach_m.
+/// Up to two horizontal unit directions from a body towards dynamic surfaces near it. The first points to
+/// their nearest vertex, the second to the mean of their vertices within reach_m.
 struct PushDirections {
   int count = 0;
   std::array<Eigen::Vector3d, 2> direction_world{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};

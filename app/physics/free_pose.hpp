@@ -21,12 +21,12 @@ struct FreePose {
 };
 
 /// Returns the pose after the shortest translation, among 26 directions, that leaves the object free of all
-/// surfaces. The object ends on the front side of the surface that intersected it: an object in a floor ends
-/// above the floor, not below. During the translation, the object may pass through other surfaces.
+/// surfaces. The object ends on the front side of the surface that intersected it. For example, an object in
+/// a floor ends above it, not below. During the translation, the object may pass through other surfaces.
 /// @param gap_m       min distance between object and surfaces after the translation, > 0
-/// @param max_m       max length of the translation, > 0; lengths are sampled in steps of max_m / 20, then
+/// @param max_m       max length of the translation, > 0. Lengths are sampled in steps of max_m / 20, then
 ///                    refined by bisection
-/// @param is_allowed  returns false for poses to reject, such as poses in unknown space; null: accepts all
+/// @param is_allowed  returns false for poses to reject, such as poses in unknown space. Null accepts all
 ///                    poses
 /// @return unset if no such translation is found
 /// Takes 1 to 100 ms: too slow for a call in each frame.

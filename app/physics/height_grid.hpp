@@ -13,7 +13,7 @@ namespace roomradar {
 
 struct HeightGridConfig {
   double cell_m = 0.02;       ///< cell size, > 0
-  double flatness_m = 0.015;  ///< points up to twice this below a cell's highest are averaged
+  double flatness_m = 0.015;  ///< points up to twice this below a cell's highest point are averaged
   double min_range_m = 0.4;   ///< min depth along the camera's axis
   double max_range_m = 4.0;   ///< max depth along the camera's axis
 };
@@ -36,8 +36,8 @@ class HeightGrid {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
   }
   /// Returns a pointer to a cell's height above the camera (m), usually negative; kUnseen if nothing was
-  /// seen. Cells are stored row by row: from a seen cell, cells up to the margin away can be addressed
-  /// relative to it.
+  /// seen. Cells are stored row by row. Relative to a seen cell, cells up to the margin away can be
+  /// addressed.
   [[nodiscard]] const float* top_m(int i, int j) const { return &top_m_[index(i, j)]; }
   /// Returns the world point at the middle of a cell, at a height above the camera.
   [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {

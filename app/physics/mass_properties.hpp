@@ -6,22 +6,23 @@
 
 namespace roomradar {
 
-/// Mass, centre of mass and inertia. Inertia is per kg, since falling, sliding and rolling do not depend on
-/// mass. mass_kg matters only for contacts between bodies.
+/// Mass, centre of mass and inertia. Inertia is per kg of body mass, since falling, sliding and rolling do
+/// not depend on mass. mass_kg matters only for contacts between bodies.
 struct MassProperties {
   Eigen::Vector3d centre_object = Eigen::Vector3d::Zero();  ///< centre of mass in the mesh's frame, m
   /// Inertia about the centre of mass, in the mesh's axes, m^2 (per kg of body mass). Positive definite.
   Eigen::Matrix3d inertia_m2 = 0.0025 * Eigen::Matrix3d::Identity();
   double radius_m = 0.1;  ///< distance from the centre of mass to the farthest vertex
-  /// Mass, > 0. Closed mesh: solid of 1,000 kg/m^3; open mesh: shell of 5 kg/m^2.
+  /// Mass, > 0. A closed mesh is a solid of 1,000 kg/m^3. An open mesh is a shell of 5 kg/m^2.
   double mass_kg = 1.0;
 };
 
-/// Computes the properties of a uniform solid if the mesh is closed (TriangleTree::is_closed()), else of a
-/// thin shell of uniform thickness. A mesh with negligible area is treated as point masses at its vertices.
+/// Computes the properties of a uniform solid if the mesh is closed (TriangleTree::is_closed()). Otherwise
+/// computes those of a thin shell of uniform thickness. A mesh with negligible area is treated as point
+/// masses at its vertices.
 ///
-/// Each principal moment is raised to at least 1/10,000 of the largest, so that a thin rod has inertia about
-/// its own axis. Source: Eberly, Polyhedral mass properties (revisited), 2002.
+/// Each principal moment is raised to at least 1/10,000 of the largest. A thin rod thus has inertia about its
+/// own axis. Source: Eberly, Polyhedral mass properties (revisited), 2002.
 MassProperties mass_properties(const Mesh& mesh, bool is_closed);
 
 }  // namespace roomradar

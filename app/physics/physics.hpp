@@ -23,39 +23,40 @@ struct AdvancedBody {
   double dt_s = 0.0;  ///< time since the body was last advanced, >= 0; 0 changes nothing
   /// Directions towards dynamic surfaces, see depenetration_directions(); may be empty.
   std::span<const Eigen::Vector3d> depenetration_directions_world{};
-  /// Called after each change of the body's pose, so that callers update the scenes of the other bodies.
+  /// Called after each change of the body's pose. Callers update the scenes of the other bodies in it.
   std::function<void()> moved{};
   StepReport report{};  ///< out
 };
 
 /// Advances bodies under gravity, contacts and Coulomb friction, and puts them to sleep or wakes them.
 ///
-/// Each substep first finds the contacts within contact_margin_m (CollisionQueries::near). A first solve
+/// Each substep first finds the contacts within 1.5 contact_margin_m (CollisionQueries::near). A first solve
 /// cancels approach velocity, with restitution for impacts faster than bounce_mps. A second solve adds
-/// gravity, support and friction, without restitution. Both solve the contacts of all bodies that touch each
-/// other as one system, so a body bears the weight of everything on it. Each body then moves with the mean of
-/// its velocities before and after the second solve, until that motion would reach a contact
-/// (CollisionQueries::free_time), bodies in front first. The remaining time of the substep is simulated in
-/// the same way from the new poses. Hence neither translation nor rotation tunnels, at any step size, and no
-/// body enters another. Between contacts, the path is a parabola and angular momentum is conserved.
+/// gravity, support and friction, without restitution. Both solve each connected component of bodies in
+/// contact as one system. A body thus bears the weight of everything on it. Each body then moves with the
+/// mean of its velocities before and after the second solve, until its time of impact
+/// (CollisionQueries::free_time). Bodies at the front of the common motion move first. The remaining time of
+/// the substep is simulated in the same way from the new poses. Hence neither translation nor rotation
+/// tunnels, at any step size. No body enters another. Between contacts, the path is a parabola and angular
+/// momentum is conserved.
 ///
-/// Bodies of AdvancedBody::probe's scene that are not advanced in the call receive opposite impulses. These
-/// change their velocity at once; their pose changes when they are advanced.
+/// Bodies in the scene of AdvancedBody::probe that are not advanced in this call receive the opposite
+/// impulses. Their velocity changes at once, their pose when they are advanced.
 ///
-/// A sleeping body wakes if something hits it faster than 5 cm/s, or if the weight on it would set it in
-/// motion. If it sleeps on a dynamic surface, weight does not wake it.
+/// A sleeping body wakes if another body hits it faster than 5 cm/s. It also wakes if the weight on it would
+/// set it in motion, unless it sleeps on a dynamic surface.
 ///
 /// If a surface overlaps a body before the step, the body is first translated out of the overlap. If a
 /// dynamic surface overlaps it from the side, the contact point is instead pushed at the speed that removes
 /// the overlap in dt_s. The body then slides, rotates or tips. While a surface other than the pushing one
-/// intersects a body, the body moves without rotation, by radar queries along its path.
+/// intersects a body, the body does not rotate. It then moves by radar queries along its path.
 ///
 /// Apart from contacts with moving bodies, a sleeping body is tested only along gravity and
 /// depenetration_directions_world. Overlaps up to wake_overlap_m, such as from sensor noise, do not move it.
 /// A body that fell asleep in contact with another body wakes when that other body moves by more than
 /// wake_moved_m or disappears. A sleeping body with a non-zero velocity wakes. At most max_advance_s is
 /// simulated per call.
-/// @param system  kept from call to call, its impulses are first guesses of the next solve
+/// @param system  pass the same object in each call; its impulses warm-start the next solve
 void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& config, ContactSystem& system);
 
 /// Advances one body by dt_s; see advance_together().

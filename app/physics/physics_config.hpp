@@ -10,22 +10,22 @@ struct PhysicsConfig {
   double restitution = 0.0;
   double bounce_mps = 0.3;  ///< min impact speed for restitution
   double friction = 0.5;    ///< Coulomb's coefficient, >= 0
-  /// Rolling resistance, >= 0: max torque = `rolling` x normal force x distance of the centre of mass from
-  /// the contact's tangent plane (a ball's radius). With 0.02, a ball that rolls at 0.5 m/s stops after 0.9
-  /// m.
+  /// Rolling resistance coefficient, >= 0. Max torque = `rolling` x normal force x distance of the centre of
+  /// mass from the contact's tangent plane (a ball's radius). With 0.02, a ball that rolls at 0.5 m/s stops
+  /// after 0.9 m.
   double rolling = 0.02;
-  /// Gap between resting bodies and surfaces, measured from Contact::lower_m, the radar's lower bound of the
-  /// distance. Without a gap, rounding errors would turn contacts into overlaps.
+  /// Gap between resting bodies and surfaces. It is measured by Contact::lower_m, the radar's lower bound of
+  /// the distance. Without a gap, rounding errors would turn contacts into overlaps.
   double contact_margin_m = 0.001;
   double max_step_s = 1.0 / 60.0;  ///< max substep, exceeded by 5 % at most
-  /// Max time simulated per call of advance(). Time beyond it is not simulated, so objects do not jump after
-  /// a camera stall.
+  /// Max time simulated per call of advance(). Time beyond it is discarded. Objects thus do not jump after a
+  /// camera stall.
   double max_advance_s = 0.5;
   /// Max number of contact events per substep. The time left after the last event is not simulated.
   int max_slides = 16;
-  /// A supported body falls asleep if no point of it moves farther than this within sleep_after_s.
+  /// A supported body falls asleep if all its points move by at most this within sleep_after_s.
   double sleep_drift_m = 0.012;
-  /// Time to sleep for a balanced body. An unbalanced body needs four times as long.
+  /// Time at rest before a balanced body falls asleep. An unbalanced body needs four times as long.
   double sleep_after_s = 0.3;
   /// A sleeping body wakes if the gap to its support grows beyond this. Sensor noise is a few mm.
   double wake_gap_m = 0.012;

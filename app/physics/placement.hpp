@@ -56,11 +56,11 @@ struct [[nodiscard]] Support {
 };
 
 /// Returns the surface point nearest to near_world, or to the image centre, on which an object can stand.
-/// Around the point, footprint and margin must be measured, level and flat, and is_free() must return true.
-/// Calls is_free() for at most 48 candidates. Skips candidates nearer to a rejected one than 6 cm or 3/4 of
-/// the footprint's radius, whichever is larger.
+/// Footprint and margin around the point must be measured, level and flat. is_free() must return true. Calls
+/// is_free() for at most 48 candidates. Skips candidates within 6 cm or 3/4 of the footprint's radius,
+/// whichever is larger, of a rejected one.
 ///
-/// @param depth_m         live depth, or depth rendered from the map; must have the size of `camera`
+/// @param depth_m         live depth, or depth rendered from the map. Must have the size of `camera`
 /// @param T_world_camera  world with +z up
 /// Takes about 10 ms: too slow for a call in each frame.
 Support find_support(const DepthImage& depth_m, const Intrinsics& camera,

@@ -1,4 +1,4 @@
-// rigid_motion.hpp: one substep of the motion of rigid bodies that touch each other.
+// rigid_motion.hpp: one substep of rigid bodies in contact with each other.
 #pragma once
 #include <Eigen/Core>
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace roomradar {
 
-/// Simulates one substep of advance_together(): each active body by its dt_s, until a surface intersects it
-/// (MovingBody::crosses). Sleeping bodies that the weight or the impact of others would move wake up.
+/// Simulates one substep of advance_together(). Advances each awake body by its dt_s, or until a surface
+/// intersects it (MovingBody::crosses). Wakes sleeping bodies that the weight or impact of others would move.
 /// @param results  out: one per body, in order
 void simulate_substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system,
                       std::vector<SubstepResult>& results);

@@ -11,15 +11,15 @@ namespace roomradar {
 /// Cosine of 60 degrees, the max slope of a surface that supports a body.
 inline constexpr double kSupportCosine = 0.5;
 
-/// Returns probe.travel() from the body's pose. A missing normal, or one that does not face the body, is
-/// replaced by -direction. If the result is not usable, stops the body and sets StepStatus::kHeld.
+/// Returns probe.travel() from the body's pose. Replaces a normal that is missing or does not face the body
+/// by -direction_world. If the result is not usable, stops the body and sets StepStatus::kHeld.
 /// @param direction_world  unit
 Contact query_travel(Body& body, const Eigen::Vector3d& direction_world, double distance_m,
                      const CollisionQueries& probe, StepReport& report);
 
-/// Moves the body for dt_s under gravity, without rotation. At each contact, it loses the velocity into the
-/// surface (with restitution and friction); between two surfaces it follows their crease, between three it
-/// stops. For bodies that a surface intersects, where contact impulses have no meaning.
+/// Moves the body for dt_s under gravity, without rotation. Used for bodies that a surface intersects, where
+/// contact impulses have no meaning. At each contact, the body loses its velocity into the surface, with
+/// restitution and friction. It moves along the crease of two surfaces, and stops between three.
 /// @return true if a surface within 60 degrees of level supported it
 bool slide(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,
            StepReport& report);

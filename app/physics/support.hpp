@@ -1,4 +1,4 @@
-// support.hpp: which surfaces support a body in a substep.
+// support.hpp: finds the surfaces that support a body in a substep.
 #pragma once
 #include <Eigen/Core>
 #include <span>
@@ -12,17 +12,17 @@ namespace roomradar {
 
 struct [[nodiscard]] SubstepResult {
   bool is_held_up = false;   ///< a surface within 60 degrees of level, or all contacts together, support it
-  bool is_balanced = false;  ///< supported, and would stay at rest if all bodies were at rest
+  bool is_balanced = false;  ///< supported, and would stay at rest if all bodies stopped
   /// Kind of the supporting surface with the greatest normal impulse.
   SurfaceKind rests_on = SurfaceKind::kNothing;
   std::vector<const Body*> touches{};  ///< other bodies in contact
 };
 
 /// Sets is_held_up, rests_on and touches of each active body from the impulses of the support solve. A body
-/// is held up by surfaces within 60 degrees of level, or if all contacts together bear its weight, as those
-/// of a keystone.
-/// @param up_world  unit, against gravity; zero without gravity: nothing is held up
-/// @param results   one per body, in order; other fields are kept
+/// is held up by surfaces within 60 degrees of level. A body is also held up if all contacts together bear at
+/// least 90 % of its weight, as at a keystone.
+/// @param up_world  unit, against gravity. Zero without gravity; then nothing is held up
+/// @param results   one per body, in order. Other fields are unchanged
 void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& config,
                   const Eigen::Vector3d& up_world, const ContactSystem& system,
                   std::vector<SubstepResult>& results);

@@ -25,7 +25,7 @@ struct BudgetConfig {
   double down_to = 0.95;
   double back_below = 0.8;         ///< an upgrade requires a predicted time below this fraction of the budget
   int patience_frames = 15;        ///< number of consecutive frames that must permit an upgrade
-  int most_patience_frames = 480;  ///< max of patience_frames, which doubles after each premature upgrade
+  int most_patience_frames = 480;  ///< max of patience_frames, doubled by each premature upgrade
   int regret_frames = 60;          ///< an upgrade is premature if it is undone within this many frames
   double attack = 0.7;             ///< filter gain for parts slower than predicted
   double decay = 0.2;              ///< filter gain for parts faster than predicted
@@ -47,7 +47,7 @@ struct BudgetState {
   /// Number of consecutive frames in which a more accurate step would have met the budget.
   int calm_frames = 0;
   int patience_frames = 0;
-  /// Number of switches to a faster step within a frame; decays by 10 % per frame.
+  /// Number of switches to a faster step within a frame. Decays by 10 % per frame.
   double strain = 0.0;
   std::int64_t frame = 0;
   std::int64_t went_back_at = -1'000'000;  ///< frame of the last upgrade
@@ -69,16 +69,16 @@ BudgetState start_budget(std::vector<BudgetStep> front, const BudgetConfig& conf
 double nominal_ms(FramePart part, const FrameLoad& load);
 
 /// Chooses the step for `part` and all later parts of the frame, and sets state.step. Call before the part
-/// begins. Within a frame, the step only becomes faster. The next frame begins with state.settled, which
-/// becomes faster too if many frames switch to faster steps.
+/// begins. Within a frame, the step only becomes faster. The next frame begins with state.settled. If many
+/// frames switch to faster steps, state.settled becomes faster, too.
 /// @param elapsed_ms  time since the frame began
 /// @return index of the new step; unset if the step did not change
 std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config, FramePart part,
                                   const FrameLoad& load, double elapsed_ms);
 
 /// Updates the estimates from the measured times of a frame's parts. A part with a time far below its
-/// prediction counts as skipped and is ignored. If it is skipped in more than 17 consecutive frames, its
-/// entry of `scales` decays to 1.
+/// prediction counts as skipped and is ignored. The entry of `scales` of a part skipped in more than 17
+/// consecutive frames decays to 1.
 void learn(BudgetState& state, const BudgetConfig& config, const std::array<double, kFrameParts>& parts_ms);
 
 /// Returns the predicted 95th percentile of the time of a whole frame with this load at a step, ms.

@@ -1,4 +1,5 @@
-// presets.hpp: file with measured quality settings: named presets, and a Pareto front from accurate to fast.
+// presets.hpp: file with measured quality settings, that is, named presets and a Pareto front from accurate
+// to fast.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -21,12 +22,12 @@ struct Preset {
   Figures figures;
 };
 
-/// Pareto-optimal quality of a run: no other measured quality is both faster and more accurate.
+/// Pareto-optimal quality of a run. No other measured quality is both faster and more accurate.
 struct FrontStep {
   RunQuality run;
   /// Median time of each FramePart divided by its time at the default quality in the same measurement; > 0.
   std::array<double, kFrameParts> part_ratios{1.0, 1.0, 1.0, 1.0};
-  /// Number of objects in the room during the measurement; needed if move_every_n_frames > 1. 0: unknown.
+  /// Number of objects in the room during the measurement. Needed if move_every_n_frames > 1. 0: unknown.
   int objects = 0;
   Figures figures;
 };
@@ -46,7 +47,7 @@ struct Presets {
 ///      "compose": 1}, "objects": 50, "figures": {}}]}
 ///
 /// Omitted settings have their defaults. Throws Error "FILE: ..." if the file is truncated, has another
-/// version or more than 1 MiB, or contains an unknown key or a value out of range.
+/// version or more than 1 MiB. Also throws for an unknown key or a value out of range.
 Presets read_presets(const std::filesystem::path& path);
 /// Parses the text of a presets file. Error messages contain `where` in place of the file's name.
 Presets presets_of(std::string_view text, const std::string& where);

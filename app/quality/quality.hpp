@@ -1,4 +1,4 @@
-// quality.hpp: quality settings, which trade accuracy for time, of scans and of runs.
+// quality.hpp: quality settings of scans and runs. They trade accuracy for time.
 #pragma once
 #include <string>
 #include <string_view>

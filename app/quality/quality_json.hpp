@@ -1,4 +1,4 @@
-// quality_json.hpp: converts quality settings to and from JSON; input is validated.
+// quality_json.hpp: converts quality settings to JSON, and validated JSON to quality settings.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,7 +11,7 @@ namespace roomradar {
 nlohmann::ordered_json to_json(const ScanQuality& quality);
 nlohmann::ordered_json to_json(const RunQuality& quality);
 
-/// Parse quality settings. Missing fields have their defaults; former names of fields are accepted. Throw
+/// Parse quality settings. Missing fields have their defaults. Former names of fields are accepted. Throw
 /// Error "WHERE: ..." if `json` is not an object, a name is unknown, or a value has the wrong type or is out
 /// of range.
 ScanQuality scan_quality_of(const nlohmann::ordered_json& json, const std::string& where);

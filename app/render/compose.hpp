@@ -13,7 +13,7 @@ namespace roomradar {
 
 struct ComposeConfig {
   OcclusionConfig occlusion;
-  /// Darkness of shadows, 0 to 1. 0: no shadows; 1: a point from which objects occlude the whole sky is
+  /// Darkness of shadows, 0 to 1. 0: no shadows. 1: points from which objects occlude the whole sky are
   /// black.
   float shadow_strength = 0.75F;
 };
@@ -37,11 +37,11 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 /// Copies the background and darkens it by the objects' shadows. Does not draw the objects. The run time is
 /// that of one copy, plus a time proportional to the area of the shadows' rectangles.
 ///
-/// @param background       colour image of the camera, or result of shade_depth(); must have the size of
+/// @param background       colour image of the camera, or result of shade_depth(). Must have the size of
 ///                         `camera`
 /// @param camera           colour camera
 /// @param T_world_camera   camera pose
-/// @param real_depth_m     depth of real surfaces in `camera`, with its size; pixels with depth 0 get no
+/// @param real_depth_m     depth of real surfaces in `camera`, with its size. Pixels with depth 0 get no
 ///                         shadow
 /// @param casters          objects that cast a shadow
 /// @param strength         see ComposeConfig::shadow_strength
@@ -54,7 +54,7 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
 /// Blends the objects over an image that already contains their shadows.
 ///
 /// @param layer         objects rendered by ObjectDrawer with the camera of `picture`
-/// @param real_depth_m  depth of real surfaces, with the size of `picture`; pixels with depth 0 occlude
+/// @param real_depth_m  depth of real surfaces, with the size of `picture`. Pixels with depth 0 occlude
 ///                      nothing
 /// @param[out] occlusion    occlusion of the objects; its buffers are reused
 /// @param[in,out] picture   image that contains the shadows

@@ -16,9 +16,9 @@ struct SurfacePoints {
   Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();
 };
 
-/// Samples about 8,000 points, each of which represents the same area, deterministically. A triangle smaller
-/// than that area gets a point with a probability proportional to the triangle's area. Ignores invalid
-/// triangles. Returns no points for a mesh without valid triangles.
+/// Samples about 8,000 points deterministically. Each point represents the same area. A triangle smaller than
+/// that area gets a point with a probability proportional to the triangle's area. Ignores invalid triangles.
+/// Returns no points for a mesh without valid triangles.
 SurfacePoints spread_points(const Mesh& mesh);
 
 /// Lookup table of the ambient occlusion by an object's underside, for one orientation of the object. The
@@ -46,20 +46,18 @@ struct ContactShadow {
   std::vector<float> covered;
 };
 
-/// Computes the lookup table. The object's underside is divided into patches. For a horizontal surface point
-/// at distance H below a patch and at horizontal distance r from it, the differential form factor is dF = H^2
-/// dA / (pi (r^2 + H^2)^2), where dA is the patch's area. The occlusion is the sum of the form factors of all
-/// patches. Source: Cohen, Wallace, Radiosity and Realistic Image Synthesis 1993, section 4. An object
-/// without points gives an empty table. Reuses the shadow's memory. Takes a few milliseconds.
-/// @param cells_across  number of cells along the longer side of the object's bounding box; run time grows
-///                      with its fourth power. With 16, the cells of a 25 cm teapot are 1.5 cm wide, fine
-///                      enough for a soft shadow.
+/// Computes the lookup table. The object's underside is divided into patches of area dA. A horizontal surface
+/// point is at distance H below a patch and at horizontal distance r from it. Their form factor is dF = H^2
+/// dA / (pi (r^2 + H^2)^2). The occlusion is the sum of the form factors of all patches. Source: Cohen,
+/// Wallace, Radiosity and Realistic Image Synthesis 1993, section 4. An object without points gives an empty
+/// table. Reuses the shadow's memory. Takes a few milliseconds.
+/// @param cells_across  number of cells along the longer side of the object's bounding box. Run time grows
+///                      with its fourth power. With 16, the cells of a 25 cm teapot are 1.5 cm wide.
 void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_world_object,
                          ContactShadow& shadow, int cells_across = 16);
 
-/// Returns the world position of the table's origin for an object at this pose. If the object has rotated
-/// slightly since the table was made, the table is aligned with the centre of the object's bounding box, not
-/// with the object's origin.
+/// Returns the world position of the table's origin for an object at this pose. After small rotations of the
+/// object, the table is aligned with the centre of the object's bounding box, not with its origin.
 Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3d& T_world_object);
 
 /// Returns the occluded fraction of the sky at a real surface point. Returns 0 for points more than 4 cm

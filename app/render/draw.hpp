@@ -17,7 +17,7 @@ struct DrawnPart {
   const GpuTexture* texture = nullptr;  ///< multiplies the vertex colours; null: vertex colours only
 };
 
-/// A virtual object to render. Meshes without normals are shaded flat; meshes without vertex colours are
+/// A virtual object to render. Meshes without normals are shaded flat. Meshes without vertex colours are
 /// drawn in `colour`.
 struct DrawnObject {
   MeshInstance instance;
@@ -35,7 +35,7 @@ struct Lighting {
   Eigen::Vector3d to_key_light_world{0.35, -0.25, 0.9};
   /// Factor on all light; 1 for a lit room.
   float exposure = 1.0F;
-  /// Strength of the specular highlight; 0: like clay, 1: like glazed ceramics.
+  /// Strength of the specular highlight. 0 looks like clay, 1 like glazed ceramics.
   float gloss = 0.35F;
 };
 
@@ -49,8 +49,8 @@ class ObjectDrawer {
 
   /// Starts rendering the objects into `layer`. Sets layer.rect to the smallest rectangle that contains the
   /// objects, empty if none is in view. Sets layer.samples to 2, or to 1 if the rectangle has more than
-  /// 80,000 pixels. The GPU renders in parallel to the CPU; finish() then sets colour and depth. The near
-  /// plane is at 0.05 m; there is no far plane. The depth resolution is 6e-8 of the depth. Objects with a
+  /// 80,000 pixels. The GPU renders in parallel to the CPU. finish() then sets colour and depth. The near
+  /// plane is at 0.05 m. There is no far plane. The depth resolution is 6e-8 of the depth. Objects with a
   /// null mesh are skipped. Reuses the layer's memory.
   void begin(std::span<const DrawnObject> objects, const Intrinsics& camera,
              const Eigen::Isometry3d& T_world_camera, const Lighting& lighting, ObjectLayer& layer);

@@ -6,8 +6,8 @@
 namespace roomradar {
 
 /// Rendered objects in a rectangle of the camera's image. Each pixel (x, y) of rect has samples x samples
-/// sub-pixels. In `colour` and `depth_m`, they are the pixels ((x - rect.x) * samples + i, (y - rect.y) *
-/// samples + j) with 0 <= i, j < samples.
+/// sub-pixels. In `colour` and `depth_m`, sub-pixel (i, j) with 0 <= i, j < samples is at ((x - rect.x) *
+/// samples + i, (y - rect.y) * samples + j).
 struct ObjectLayer {
   /// Rectangle in the camera's image; width 0 if no object is in view.
   PixelRect rect;

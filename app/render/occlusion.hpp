@@ -14,7 +14,7 @@ struct OcclusionConfig {
   float tolerance_m = 0.006F;
   /// Increase of the tolerance with the square of the distance, as for the sensor's noise, m per m^2.
   float tolerance_per_m2 = 0.003F;
-  /// Range of depth differences over which occlusion increases from 0 to 1, which avoids hard lines at
+  /// Range of depth differences over which occlusion increases from 0 to 1. A range avoids hard lines at
   /// contacts.
   float softness_m = 0.004F;
   /// Max distance between an occluder's edge in the depth image and its edge in the colour image, px. 0: only
@@ -59,12 +59,12 @@ struct Occlusion {
 int occlusion_margin_px(const OcclusionConfig& config);
 
 /// Computes how much real surfaces occlude the objects. The depth image determines which surface is in front,
-/// but its edges are ragged and displaced by some pixels. The colour image has sharp edges, but does not
-/// determine which side of an edge is in front. Each pixel within edge_reach_px of an occluder's edge is
+/// but its edges are ragged and displaced by some pixels. The colour image has sharp edges, but does not tell
+/// which side of an edge is in front. Each pixel within edge_reach_px of an occluder's depth edge is
 /// therefore assigned to the side whose colours it matches. The colours of each side outside this band are
 /// modelled by a Gaussian. The prior is the fraction of the neighbourhood that is occluded according to
-/// depth. If both sides have similar colours, or the object intersects a surface, the edge of the depth image
-/// is kept. Finally, `hidden` is averaged over 3 x 3 pixels.
+/// depth. The depth edge is kept if both sides have similar colours, or if the object intersects a surface.
+/// Finally, `hidden` is averaged over 3 x 3 pixels.
 ///
 /// @param background    colour image of the camera, with the objects' shadows
 /// @param real_depth_m  depth of real surfaces in the same camera, with the size of `background`; pixels with

@@ -1,5 +1,4 @@
-// lost_spans.hpp: records the frames in which the camera was not localised, and creates messages for the
-// user.
+// lost_spans.hpp: records the frames in which the camera was not localised, with messages for the user.
 #pragma once
 #include <cstdint>
 #include <string>

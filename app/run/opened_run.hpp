@@ -36,7 +36,7 @@ struct OpenedRun {
   std::optional<Interrupt> interrupt;
   /// Frame source. Ends at the source's end or on Ctrl-C.
   std::unique_ptr<FrameSource> source;
-  /// The part of `source` that executes camera commands such as hold and rewind; owned by `source`.
+  /// The part of `source` that executes camera commands such as hold and rewind. Owned by `source`.
   PlaybackSource* playback = nullptr;
   /// Set with --budget-ms.
   std::unique_ptr<RunBudget> budget;

@@ -16,8 +16,8 @@ namespace roomradar {
 /// Returns the quality settings that a run may use, each called a step. The first step is `most`. If `most`
 /// is in the presets' Pareto front, the steps after it in the front follow. Otherwise the front's steps that
 /// are faster than the default quality follow. Settings in `fixed` are the same in all steps. Adjacent steps
-/// that are equal as a result are merged. If adjacent steps have equal settings for a part of the frame, they
-/// get equal time ratios for it.
+/// that are thereby equal are merged. Adjacent steps with equal settings for a part of the frame get equal
+/// time ratios for it.
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed);
 
 /// Returns the time of a monotonic clock, ms.
@@ -26,7 +26,7 @@ double steady_ms();
 /// Chooses the quality for each part of each frame so that frames stay within the budget.
 class RunBudget {
  public:
-  /// @param front  quality settings, from accurate to fast; not empty; the first is used at the start
+  /// @param front  quality settings, from accurate to fast. Not empty. The first is used at the start
   /// @param budget_ms    time limit per frame
   /// @param has_picture  false: the run never renders images
   /// @param now_ms       returns the current time, ms
@@ -39,16 +39,16 @@ class RunBudget {
   /// Call after each frame. Returns the frame's quality changes, in order, as script events without a frame
   /// number.
   std::vector<ScriptEvent> end_frame();
-  /// Returns a message for the user if the step has changed since the last message. Returns an empty string
-  /// otherwise, and within 1 s after a message.
+  /// Returns a message for the user if the step has changed since the last message. Otherwise, and within 1 s
+  /// after a message, returns an empty string.
   std::string news();
   /// Sets the radar's mode and resolution in all steps. Call after the user has changed them.
   void keep(const RadarConfig& radar);
   /// Returns the settings in which the current step differs from the run's first step, such as "depth_stride
   /// 2, shadows off".
   [[nodiscard]] std::string given_up() const;
-  /// Returns the report's entry: the budget, the number of frames that exceeded the budget, the number of
-  /// quality changes, and the number of frames that began with each step.
+  /// Returns the report's entry. It contains the budget, the number of frames above it, the number of quality
+  /// changes, and the number of frames that began with each step.
   [[nodiscard]] nlohmann::json report() const;
 
  private:

@@ -16,13 +16,14 @@ namespace roomradar {
 
 /// Sums and maxima over the frames of a run.
 struct RunTotals {
-  /// Frames: read; skipped as unusable; localised; localised with depth that does not constrain all six
-  /// degrees of freedom. Then: contacts, objects that fell out of the map, and placements refused.
+  /// The first four count frames. `skipped` counts unusable frames. `degenerate` counts localised frames
+  /// whose depth does not constrain all six degrees of freedom. `departures` counts objects that fell out of
+  /// the map.
   std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0,
                places_refused = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
-  /// Sums over localised frames: dynamic fraction of the pixels with depth, and numbers of dynamic, inferred
-  /// and drawn static triangles.
+  /// Sums over localised frames. dynamic_fraction is relative to the pixels with depth. static_triangles
+  /// counts drawn triangles.
   double dynamic_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;
   double deepest_penetration_m = 0.0;

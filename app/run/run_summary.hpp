@@ -6,11 +6,11 @@ namespace roomradar {
 class Session;
 struct OpenedRun;
 
-/// Prints to stdout: frames per second, time per frame, the slowest stage, the number of localised frames,
-/// each object and the surface that supports it, and the files written. With --verbose, also prints RunUse.
+/// Prints to stdout the frames per second, time per frame, slowest stage and number of localised frames.
+/// Prints each object with its supporting surface, and the files written. With --verbose, also prints RunUse.
 void print_summary(const OpenedRun& run);
 
-/// Prints for each object of the session its position and the surface that supports it, or why it is not in
+/// Prints each object of the session with its position and supporting surface, or the reason why it is not in
 /// the room.
 void print_objects(const Session& session);
 

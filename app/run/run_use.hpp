@@ -1,4 +1,5 @@
-// run_use.hpp: statistics over a run: fractions of the room's mesh and of the depth images that frames used.
+// run_use.hpp: statistics of a run on the fractions of the room's mesh and of the depth images that frames
+// used.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -36,17 +37,17 @@ class Shares {
 
 /// Sums and distributions over the localised frames of a run.
 struct RunUse {
-  /// Numbers of localised frames, of frames in which an earlier rendering of the room was reused, and of
-  /// frames without meshed pixels.
+  /// Numbers of localised frames. frames_kept: an earlier rendering of the room was reused. frames_still: no
+  /// pixels were meshed.
   std::size_t frames = 0, frames_kept = 0, frames_still = 0;
   /// Number of frames in which the dynamic mesh had full-resolution cells near some object.
   std::size_t frames_fine_near = 0;
   /// Number of the room's triangles in the last frame.
   std::size_t room_triangles = 0;
-  /// Distributions over the frames. Fractions of the room's triangles: drawn, and tested by the radar.
-  /// Fraction of the pixels with depth: meshed.
+  /// Distributions over the frames. `drawn` and `asked` are fractions of the room's triangles (asked: tested
+  /// by the radar). `meshed` is a fraction of the pixels with depth.
   Shares drawn, asked, meshed;
-  /// Sums over the frames: room triangles drawn, room triangles tested by the radar, pixels meshed, and
+  /// Sums over the frames. room_asked counts room triangles tested by the radar. mesh_triangles counts
   /// triangles of the dynamic mesh.
   double room_drawn = 0.0, room_asked = 0.0, meshed_px = 0.0, mesh_triangles = 0.0;
   /// Sums over the frames of the dynamic mesh's cells by kind: flat, cut by outlines, and full resolution.
@@ -63,8 +64,8 @@ nlohmann::json to_json(const RunUse& use);
 /// Prints the statistics to stdout, in two lines.
 void print_use(const RunUse& use);
 
-/// Returns the reasons for a frame's counts in words, for --frames-csv: whether the camera moved, the dynamic
-/// fraction of the depth pixels, and the objects near which the mesh has full resolution.
+/// Returns the reasons for a frame's counts in words, for --frames-csv. They are the camera's motion, the
+/// dynamic fraction of the depth pixels, and the objects near which the mesh has full resolution.
 std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<VirtualObject>> objects);
 
 /// Writes a CSV file with one line per localised frame.

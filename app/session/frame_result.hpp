@@ -33,7 +33,7 @@ struct FrameResult {
   std::size_t inferred_triangles = 0;  ///< triangles of the inferred backs of dynamic surfaces
   int contacts = 0;
   std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< contacts per kind of surface touched
-  /// Max overlap, >= 0; set only if config.measure_penetration.
+  /// Max penetration depth along gravity, >= 0. Set only if config.measure_penetration.
   double deepest_penetration_m = 0.0;
   std::vector<Departure> departures;  ///< objects that fell out of the map
   std::vector<ObjectNotice> notices;  ///< notices since the previous frame

@@ -13,16 +13,16 @@ namespace roomradar {
 /// Counts of one localised frame.
 struct FrameUse {
   std::size_t room_triangles = 0;  ///< number of triangles of the static mesh
-  /// Views of the static mesh rendered for localisation and expected depth. 0: the camera was stationary, so
-  /// an earlier rendering was reused.
+  /// Views of the static mesh rendered for localisation and expected depth. 0: an earlier rendering was
+  /// reused because the camera was stationary.
   std::size_t views_drawn = 0;
   std::size_t room_drawn = 0;  ///< mean number of static triangles drawn per view; the others were culled
-  /// Static triangles that CyberRadar tested one by one, summed over all queries.
+  /// Exact triangle tests of CyberRadar with static triangles, summed over all queries.
   std::size_t room_asked = 0;
   std::size_t valid_px = 0;  ///< pixels with live depth
-  /// Pixels meshed. With SurfacePolicy::kMap: the dynamic pixels; otherwise: all valid pixels.
+  /// Pixels meshed. SurfacePolicy::kMap: the dynamic pixels. Other policies: all valid pixels.
   std::size_t meshed_px = 0;
-  /// True if dynamic pixels were detected, with SurfacePolicy::kMap only.
+  /// True if dynamic pixels were detected. Only SurfacePolicy::kMap detects them.
   bool knows_moved = true;
   std::size_t mesh_triangles = 0;
   CellCounts cells;  ///< cells of 4 x 4 pixels of the dynamic mesh; all 0 unless SurfacePolicy::kMap

@@ -1,4 +1,5 @@
-// map_updater.hpp: adds lasting changes of the room, such as a moved chair, to a session's copy of the map.
+// map_updater.hpp: fuses lasting changes of the room, such as a moved chair, into a session's copy of the
+// map.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -20,16 +21,16 @@
 namespace roomradar {
 
 struct MapUpdateConfig {
-  /// A change is committed once it has been observed without motion for this long. Unset: changes are
-  /// committed only after ask().
+  /// Time without motion after which a change is committed to the map, s. Unset: changes are committed only
+  /// after ask().
   std::optional<double> after_s;
-  /// after_s for changes requested by ask(); long enough to exclude objects in motion.
+  /// after_s for changes requested by ask(), s. Long enough that objects in motion are not committed.
   double asked_after_s = 0.5;
   int views = 12;  ///< number of frames whose depth is fused to measure a change
   /// Frames between the last measured frame and the first frame that uses the changed room.
   int apply_after_frames = 15;
-  /// true: the frame in which the changed room is due waits for the worker thread, so results are
-  /// reproducible. false: frames do not wait, and the changed room may take effect later.
+  /// true: the frame in which the changed room is due waits for the worker thread. Results are then
+  /// reproducible. false: frames do not wait. The changed room may then take effect later.
   bool wait = true;
   ChangeTrackerConfig tracker;
   SurfaceConfig surface;
@@ -37,7 +38,7 @@ struct MapUpdateConfig {
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const MapUpdateConfig& config);
 
-/// A change that was committed to the room.
+/// A change that was fused into the room.
 struct CommittedChange {
   LastingKind kind = LastingKind::kCame;
   double stamp_s = 0.0;           ///< timestamp of the first frame that used the changed room
@@ -56,9 +57,9 @@ struct ChangedRoom {
 
 /// Watches the dynamic foreground of a session's frames for lasting changes. A change that has not moved for
 /// after_s is measured from the depth of `views` further frames. A worker thread then fuses these frames into
-/// the octree and extracts the surface near the change again. Until the worker is done, frames use the old
-/// room. Changes that become due in the same frame are handled together; later ones wait. Not thread safe:
-/// make all calls from one thread.
+/// the octree and re-extracts the surface near the change. Until the worker is done, frames use the old room.
+/// Changes that become due in the same frame are committed together. Later changes wait until that commit is
+/// done. Not thread safe: make all calls from one thread.
 class MapUpdater {
  public:
   /// @param octree  the room's octree; the worker thread modifies it in place during a commit
@@ -69,11 +70,11 @@ class MapUpdater {
   MapUpdater(const MapUpdater&) = delete;
   MapUpdater& operator=(const MapUpdater&) = delete;
 
-  /// Requests a commit of changes in view: objects that were added and stand still, or that were removed. The
-  /// request expires after 1 s of frame time.
+  /// Requests a commit of the changes in view. Changes are added objects that stand still and removed
+  /// objects. The request expires after 1 s of frame time.
   void ask() { asked_until_s_ = kNow; }
 
-  /// From now on, each commit also extracts the frontier of unknown space again.
+  /// From now on, each commit also re-extracts the frontier of unknown space.
   void keep_up_unknown() { keeps_up_unknown_ = true; }
 
   /// Call before each frame. Returns true if a commit takes effect in this frame; callers must then use the
@@ -88,8 +89,8 @@ class MapUpdater {
   /// Returns the changes committed so far, in order of time.
   [[nodiscard]] const std::vector<CommittedChange>& committed_changes() const { return committed_; }
   /// Waits for a running commit and applies it. The octree may be read afterwards. Rethrows an exception of
-  /// the worker thread. After such an exception, each call of finish() throws Error, because the octree is
-  /// partly modified.
+  /// the worker thread. Each later call of finish() then throws Error, because the octree is only partly
+  /// updated.
   void finish();
 
  private:
@@ -106,7 +107,8 @@ class MapUpdater {
     /// The first view_count entries are valid; the others are reusable buffers.
     std::vector<RegionView> views;
     int view_count = 0;
-    /// While measuring: frames until it is abandoned. While committing: frames until the changed room is due.
+    /// During measurement: frames until it is abandoned. During a commit: frames until the changed room is
+    /// due.
     int frames_left = 0;
   };
 

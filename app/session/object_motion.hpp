@@ -1,4 +1,4 @@
-// object_motion.hpp: motion of one object: by physics, carried by a user, or rotated by a user.
+// object_motion.hpp: moves objects by physics, or as a user carries or rotates them.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -34,27 +34,27 @@ struct DueObject {
   VirtualObject* object = nullptr;
   double waited_s = 0.0;  ///< time since the object was last advanced; may exceed config.max_advance_s
   PushDirections push{};
-  std::vector<SceneTree> scene{};   ///< everything but the object; other objects come last
+  std::vector<SceneTree> scene{};   ///< surfaces, then the other objects
   std::vector<SceneBody> bodies{};  ///< body of each tree of the scene; null for surfaces
 };
 
-/// Returns the body of each tree of the object's scene, in which the other objects come last; null for
-/// surfaces.
+/// Returns the body of each tree of the object's scene. Entries of surfaces are null. The other objects must
+/// be the last trees of the scene.
 std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
                                  std::span<const std::unique_ptr<VirtualObject>> objects,
                                  const VirtualObject& object);
 
-/// Advances the objects together; see advance_together(). A carried object moves towards its target at the
-/// speed that reaches it after waited_s, without gravity, friction and restitution, and stops at obstacles.
+/// Advances the objects together; see advance_together(). A carried object moves at the velocity that reaches
+/// its target after waited_s. Gravity, friction and restitution do not act on it. It stops at obstacles.
 /// @param contacts  buffers, and first guesses of impulses if the next call has the same objects
-/// @param counts    contacts of this call are added
-/// @param radar_ms  the duration of the radar's queries is added
+/// @param counts    incremented by the contacts of this call
+/// @param radar_ms  incremented by the duration of the radar's queries, ms
 void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
                      ProximityQuery& proximity, ContactSystem& contacts, ContactCounts& counts,
                      double& radar_ms);
 
 /// Removes the dynamic surface's inferred back from `scene` if it engulfs the object (is_engulfed()).
-/// @param radar_ms  duration of the queries is added
+/// @param radar_ms  incremented by the duration of the queries, ms
 void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
                          const PhysicsConfig& config, CyberRadar& radar, ProximityQuery& proximity,
                          std::vector<SceneTree>& scene, double& radar_ms);

@@ -14,10 +14,10 @@
 
 namespace roomradar {
 
-/// Moves an object that overlaps other objects upwards until it stands on them. Leaves it unmoved if a
+/// Raises an object that overlaps other objects until it stands on them. Leaves its pose unchanged if a
 /// surface of the room would be in the way.
 /// @param room      all surfaces that the object can touch, except other objects
-/// @param margin_m  gap to the objects below after the move, m; smaller overlaps are ignored
+/// @param margin_m  gap to the objects below after the move, m. Smaller overlaps are ignored
 void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
                        std::span<const SceneTree> room, double margin_m, CyberRadar& radar,
                        ProximityQuery& proximity);
@@ -37,24 +37,25 @@ struct WayOut {
   ProximityQuery& proximity;
 };
 
-/// Moves an object to the nearest free pose within 10 cm if a surface other than an object intersects it, or
-/// if its centre is in solid unknown space. Throws PlaceRefused if a surface intersects it and no free pose
-/// is within 10 cm. The error message names the nearest free position found within 1 m.
-/// @return notice text without the object's name; empty if the object was moved by less than 5 mm
+/// Moves an object to the nearest free pose within 10 cm. Does nothing unless a surface intersects the object
+/// or its centre is in solid unknown space. Other objects do not count as surfaces. Throws PlaceRefused if a
+/// surface intersects the object and no free pose is within 10 cm. The error message names the nearest free
+/// position found within 1 m.
+/// @return notice text without the object's name. Empty if the object was moved by less than 5 mm
 std::string leave_surfaces(VirtualObject& object, const WayOut& way);
 
 /// Adds waited_s to VirtualObject::still_s, the time for which the object has been awake and has moved by at
 /// most 2 mm. Returns true when still_s reaches 1 s, and resets still_s to 0.
 bool is_still_too_long(VirtualObject& object, double waited_s);
 
-/// Moves the object to the nearest free pose within 10 cm if a surface other than a dynamic one intersects
-/// it. Sets VirtualObject::stuck if there is no such pose.
-/// @return notice text without the object's name; empty if no surface intersects it or if it was stuck
+/// Moves the object to the nearest free pose within 10 cm if a surface intersects it. Dynamic surfaces do not
+/// count. Sets VirtualObject::stuck if there is no such pose.
+/// @return notice text without the object's name. Empty if no surface intersects the object or it was stuck
 /// already
 std::string free_or_stuck(VirtualObject& object, const WayOut& way);
 
-/// Returns how far a surface of the scene overlaps the object along a direction, m, >= 0. A surface that only
-/// passes through a concavity of the object, such as a cup's handle, does not count.
+/// Returns the penetration depth of the scene's surfaces into the object along a direction, m, >= 0. A
+/// surface that only passes through a concavity of the object, such as a cup's handle, does not count.
 double penetration_m(const VirtualObject& object, std::span<const SceneTree> scene,
                      const Eigen::Vector3d& direction_world, CyberRadar& radar, ProximityQuery& proximity);
 

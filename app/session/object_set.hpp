@@ -51,9 +51,10 @@ class ObjectSet {
   /// Adds an object from the result of object_parts(), which can be computed on another thread.
   void add(const std::string& name, ObjectParts parts);
   /// Puts an object into the room. An object that would overlap other objects is placed on top of them if no
-  /// surface of the room is in the way. An object that a surface intersects, or whose centre is in solid
-  /// unknown space, is placed at the nearest free pose within 10 cm, with a notice. Throws PlaceRefused if a
-  /// surface intersects the object and no free pose is within 10 cm; the object's pose is then unchanged.
+  /// surface of the room is in the way. If a surface intersects the object, or its centre is in solid unknown
+  /// space, it is placed at the nearest free pose within 10 cm. A notice is then created. Throws PlaceRefused
+  /// if a surface intersects the object and no free pose is within 10 cm; the object's pose is then
+  /// unchanged.
   void place(const std::string& name, const ObjectState& state);
   /// Drops an object. With drop.position_world, places it above that position as place() does. Without it,
   /// the drop waits for release_waiting(), and require_small_enough() may throw Error.
@@ -66,7 +67,7 @@ class ObjectSet {
   void remove(const std::string& name);
 
   /// Searches surfaces in view for the waiting drops. If none is found, a drop near a point is cancelled with
-  /// a notice, and other drops are tried again after at least 10 frames.
+  /// a notice. Other drops are retried after at least 10 frames.
   /// @param expected, foreground  of this frame
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                        const ExpectedView& expected, const FrameForeground& foreground,
@@ -79,7 +80,7 @@ class ObjectSet {
   std::vector<Departure> end_departures();
   /// Returns the notices created since the last call.
   std::vector<ObjectNotice> take_notices() { return std::exchange(notices_, {}); }
-  /// Returns the max overlap of an object with the room or another object, measured along gravity, m, >= 0.
+  /// Returns the max penetration depth of an object into the room or another object along gravity, m, >= 0.
   double penetration_m();
 
   /// Returns the frame's surfaces and all objects in the room except `object`, which may be null.

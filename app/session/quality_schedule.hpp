@@ -1,4 +1,4 @@
-// quality_schedule.hpp: scheduled changes of the quality settings, one per part of a frame.
+// quality_schedule.hpp: scheduled changes of the quality settings, at most one per part of a frame.
 #pragma once
 #include <array>
 #include <optional>

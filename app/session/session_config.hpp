@@ -21,7 +21,7 @@ struct SessionConfig {
   PhysicsConfig physics;
   ComposeConfig picture;
   std::optional<MapUpdateConfig> map_updates;  ///< unset: the room does not change during the session
-  /// The settings from here to picture_every_n_frames trade accuracy for time; users set them with
+  /// The settings from here to picture_every_n_frames trade accuracy for time. Users set them with
   /// RunQuality.
   int depth_stride = 1;         ///< 1, 2 or 4: factor by which depth images are reduced (reduce_depth)
   int tracking_px = 160;        ///< max width of the images used for localisation
@@ -34,10 +34,10 @@ struct SessionConfig {
   int picture_every_n_frames = 1;
   bool make_picture = true;  ///< false: pictures are not drawn; objects are simulated as usual
   /// Called before each part of a frame, and with kDone after the last part. A returned quality takes effect
-  /// at once, for the part that begins; with kDone, the returned quality is ignored. Null: not called.
+  /// at once, for the part that begins. With kDone, the returned quality is ignored. Null: not called.
   std::function<std::optional<RunQuality>(FramePart, const FrameLoad&)> watch;
-  /// true: after each frame, Cyber Radar in its exact mode measures the max overlap of objects with the room
-  /// and each other, along gravity.
+  /// true: after each frame, Cyber Radar in its exact mode measures the max penetration depth of objects into
+  /// the room and each other, along gravity.
   bool measure_penetration = false;
 };
 

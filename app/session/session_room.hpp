@@ -1,4 +1,4 @@
-// session_room.hpp: the static room of a session: its surface, and the frontier of unknown space.
+// session_room.hpp: the static room of a session, with its surface and the frontier of unknown space.
 #pragma once
 #include <memory>
 

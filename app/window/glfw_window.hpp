@@ -1,4 +1,4 @@
-// glfw_window.hpp: desktop window with an OpenGL context; stores key presses and files dropped on the window.
+// glfw_window.hpp: desktop window with an OpenGL context. Stores key presses and files dropped on the window.
 #pragma once
 #include <string>
 #include <utility>

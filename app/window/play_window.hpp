@@ -17,7 +17,7 @@ namespace roomradar {
 /// @param meshes     objects that can be added, in addition to the built-in teapot
 /// @param budget_ms  the run's time limit per frame; unset: none
 /// @param ui_scale   scale of text and panes; unset: that of the monitor
-/// @return the value that `work` returns; exceptions of `work` are rethrown
+/// @return the value that `work` returns. Exceptions of `work` are rethrown
 /// @throws Error with advice if the program was built without a window, or if there is no display with OpenGL
 /// 3.3
 int run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,

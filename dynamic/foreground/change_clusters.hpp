@@ -1,5 +1,5 @@
-// change_clusters.hpp: groups points of changed surfaces into objects, which are connected components of grid
-// cells.
+// change_clusters.hpp: groups points of changed surfaces into objects. An object is a connected component of
+// grid cells.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -13,8 +13,8 @@
 namespace roomradar {
 
 enum class LastingKind : std::uint8_t {
-  kCame,  ///< object that is new: the static model has no surface at its position
-  kWent,  ///< object that was removed: the sensor sees through its surface in the model
+  kCame,  ///< new object, where the static model has no surface
+  kWent,  ///< removed object: the sensor sees through its surface in the model
 };
 /// Returns the kind's name in reports.
 std::string_view to_string(LastingKind kind);
@@ -28,7 +28,7 @@ struct LastingChange {
   [[nodiscard]] Eigen::AlignedBox3d box_world() const;
 };
 
-/// A point on a surface that came or went, and how long it was observed.
+/// A point on a surface that came or went, with its observation times.
 struct ChangePoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the tracker's origin, world axes
   float steady_s = 0.0F;                               ///< total time in frames that confirmed the point
@@ -67,16 +67,15 @@ struct ChangeClusters {
 /// Reserves memory for max_points points, so later calls do not allocate.
 void reserve(std::size_t max_points, ChangeClusters& clusters);
 
-/// Fills `cells` and `cell_of` from the points of one kind, and connects cells that touch, even at a corner
-/// only.
+/// Fills `cells` and `cell_of` from the points of one kind, and connects cells in the 26-neighbourhood.
 /// @param seconds  min steady_s of a point that makes its cell steady
 /// @param link_m   edge of the cells
 void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, float seconds, float link_m,
                      ChangeClusters& clusters);
 
-/// Appends the objects that have enough cells, and large enough fractions of steady cells, core cells (for
-/// kWent only) and seen points; see ChangeTrackerConfig. Call after sort_into_cells() with the same points
-/// and kind.
+/// Appends the objects that reach the thresholds of ChangeTrackerConfig. The thresholds are a number of
+/// cells, and fractions of steady cells, core cells (kWent only) and seen points. Call after
+/// sort_into_cells() with the same points and kind.
 void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Eigen::Vector3d& origin_world,
                  const ChangeTrackerConfig& config, ChangeClusters& clusters,
                  std::vector<LastingChange>& changes);

@@ -1,4 +1,4 @@
-// change_tracker.hpp: detects lasting changes: objects that came to stay, and objects removed for good.
+// change_tracker.hpp: detects lasting changes, that is, added objects that stay and removed objects.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -17,20 +17,20 @@ namespace roomradar {
 /// image. A frame confirms a point on a dynamic surface if it measures the surface at the point. A frame
 /// confirms a point on a removed surface if it sees through the point. Only confirming frames add to the
 /// point's steady_s. A frame that shows the opposite contradicts the point. The point is dropped once its
-/// contradiction score exceeds 7 (ChangePoint::contradiction). Hidden points and points out of view do not
-/// change, so the result does not depend on the camera's motion. Allocates nothing after the first frame
-/// except the changes it returns. Not thread safe.
+/// contradiction score exceeds 7 (ChangePoint::contradiction). Hidden points and points out of view keep
+/// their score and times. Hence the result does not depend on the camera's motion. Allocates nothing after
+/// the first frame except the changes it returns. Not thread safe.
 class ChangeTracker {
  public:
   explicit ChangeTracker(const ChangeTrackerConfig& config = {});
 
   /// Processes one frame. Images must have the camera's size. `labels` must be the result of
-  /// mark_foreground() for this depth and expected depth. stamp_s is the frame's time; a gap between two
+  /// mark_foreground() for this depth and expected depth. stamp_s is the frame's time. A gap between two
   /// frames counts as at most 0.5 s.
   void update(const DepthImage& depth_m, const DepthImage& expected_depth_m, const LabelImage& labels,
               const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, double stamp_s);
 
-  /// Returns the objects that were confirmed for at least this many seconds and are seen now. Later calls
+  /// Returns the objects that were confirmed for at least this many seconds and are in view now. Later calls
   /// return an object again until it is forgotten, moves, or agrees with the expected depth.
   [[nodiscard]] std::vector<LastingChange> settled(double seconds);
 

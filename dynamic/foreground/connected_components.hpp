@@ -32,8 +32,8 @@ struct RegionBits {
   std::uint8_t weak = 0, strong = 0, ambiguous = 0, before = 0, core = 0;
 };
 
-/// Result of find_components(). runs[i].region is an index into `regions`. `regions` has one entry per run;
-/// entries to which no run refers are meaningless.
+/// Result of find_components(). runs[i].region is an index into `regions`. `regions` has one entry per run.
+/// Entries to which no run refers are meaningless.
 struct ConnectedComponents {
   std::vector<PixelRun> runs;
   std::vector<ConnectedComponent> regions;
@@ -41,7 +41,7 @@ struct ConnectedComponents {
 
 /// Finds the connected regions of pixels with the weak or the strong bit. Neighbours are connected if both
 /// have the strong bit, or if they are on one surface. Two pixels are on one surface if their depths differ
-/// by at most the noise plus the depth change of a plane seen at 80 degrees from its normal.
+/// by at most a bound. The bound is the noise plus the depth change of a plane at 80 degrees incidence.
 /// @param evidence  bits of each pixel of depth_m
 ///
 /// Allocates only if the image is larger than those of earlier calls.

@@ -1,4 +1,4 @@
-// expected_bounds.hpp: bounds, per block of pixels, of the static model's depth under pose and map errors.
+// expected_bounds.hpp: bounds of the static model's depth under pose and map errors, per block of pixels.
 #pragma once
 #include <cmath>
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace roomradar {
 
-/// Bounds of the expected depth (the static model's depth), with one value per block of 4 x 4 pixels, and
-/// scratch buffers. Depths are in metres along the optical axis.
+/// Bounds of the expected depth (the static model's depth), and scratch buffers. Each vector has one value
+/// per block of 4 x 4 pixels. Depths are in metres along the optical axis.
 struct ExpectedBounds {
   BlockGrid grid;
   std::vector<float> nearest_m, farthest_m;  ///< of the block's expected depths; kNoDepth_m, 0: none
@@ -20,9 +20,9 @@ struct ExpectedBounds {
   std::vector<float> sigma_m;
   /// Range of the expected depths within `reach` of the block. Pose and map errors could shift the edges of
   /// these surfaces into the block. The nearest depth is kNoDepth_m if no surface within reach is nearer than
-  /// the continuation of the block's own surface. The farthest depth is 0 if none is farther. In these cases,
-  /// only the pixel's own expected depth counts. The farthest depth is kNoDepth_m if a hole of the model
-  /// (pixels without expected depth) is within reach.
+  /// the continuation of the block's own surface. The farthest depth is 0 if none is farther. For these two
+  /// values, only the pixel's own expected depth counts. The farthest depth is kNoDepth_m if a hole of the
+  /// model (pixels without expected depth) is within reach.
   std::vector<float> nearest_in_reach_m, farthest_in_reach_m;
   std::vector<float> nearest_around_hole_m;  ///< nearest within hole_reach_px; kNoDepth_m: none
   std::vector<int> reach;                    ///< max shift of an edge, in blocks to each side

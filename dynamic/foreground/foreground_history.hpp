@@ -1,5 +1,5 @@
-// foreground_history.hpp: history of the foreground: blocks of pixels in which the previous frame differed
-// from the static model.
+// foreground_history.hpp: stores the blocks of pixels in which the previous frame differed from the static
+// model.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace roomradar {
 
-/// Bits of a block of 4 x 4 pixels: an accepted dynamic or revealed region (nearer or farther than the static
-/// model) covers part of the block.
+/// Bits of a block of 4 x 4 pixels. Set if an accepted dynamic or revealed region (nearer or farther than the
+/// static model) covers part of the block.
 inline constexpr std::uint8_t kBlockMoved = 1, kBlockRevealed = 2;
 /// Bits for regions so small that they are accepted only if they persist for a second frame.
 inline constexpr std::uint8_t kBlockMaybeMoved = 4, kBlockMaybeRevealed = 8;
@@ -27,8 +27,8 @@ struct ForegroundHistory {
   std::vector<std::uint8_t> along_rows;  ///< scratch
 };
 
-/// Warps the history into this frame: back-projects each block's centre with its measured depth, projects the
-/// point into the previous frame, and copies the bits of the block to which it projects.
+/// Warps the history into this frame. Back-projects each block's centre with its measured depth, and projects
+/// the point into the previous frame. Copies the bits of the block to which it projects.
 /// @param before  bits per block, resized and set; 0 for blocks without depth or history
 void warp_history(const ForegroundHistory& memory, const DepthImage& depth_m, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, std::vector<std::uint8_t>& before);

@@ -1,4 +1,4 @@
-// pixel_evidence.hpp: evidence, per pixel, that the measured depth differs from the static model.
+// pixel_evidence.hpp: evidence per pixel that the measured depth differs from the static model.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,15 +14,15 @@ namespace roomradar {
 enum class PixelLabel : std::uint8_t {
   kNotKnown,  ///< no measured or expected depth, or a region too small or too new to decide
   kStatic,    ///< agrees with the static model within noise and pose error
-  kMoved,     ///< nearer than the static model: an object came in front of it
-  kRevealed,  ///< farther than the static model: an object was removed
+  kMoved,     ///< nearer than the static model, as for an object in front of it
+  kRevealed,  ///< farther than the static model, as after an object's removal
 };
 using LabelImage = Image<PixelLabel>;
 
-/// Evidence bits of one pixel. Weak: the depth differs from the model by more than RowBounds::weak_m. Strong:
-/// it differs by more than RowBounds::strong_m. Ambiguous: the difference is strong, but could be explained
-/// by a model edge that is displaced within its error. Before: the previous frame had a region of that kind
-/// at this position.
+/// Evidence bits of one pixel. A weak pixel's depth differs from the model by more than RowBounds::weak_m. A
+/// strong pixel's depth differs by more than RowBounds::strong_m. An ambiguous pixel's difference is strong,
+/// but a model edge displaced within its error could explain it. The before bits are set where the previous
+/// frame had a region of that kind.
 inline constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kAmbiguousMoved = 4, kWeakRevealed = 8,
                               kStrongRevealed = 16, kAmbiguousRevealed = 32, kMovedBefore = 64,
                               kRevealedBefore = 128;
@@ -70,14 +70,14 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
                   const ExpectedBounds& bounds, float misfit_per_m, const std::vector<std::uint8_t>& before,
                   PixelEvidence& evidence, LabelImage& labels);
 
-/// Sets kRevealedCore in blocks that are surrounded by revealed blocks (farther than the model) over a
-/// distance of more than half the max edge error, rounded up to blocks. If a model edge is displaced by an
-/// error, the revealed strip of background is only as wide as the error. A removed object is wider.
+/// Sets kRevealedCore in blocks whose neighbourhood consists of revealed blocks (farther than the model). The
+/// neighbourhood's radius is more than half the max edge error, rounded up to blocks. A model edge displaced
+/// by an error reveals a strip of background that is only as wide as the error. A removed object is wider.
 void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m,
                          const ExpectedBounds& bounds, PixelEvidence& evidence);
 
-/// Clears the weak bit of a pixel if no pixel with strong evidence of that kind (moved or revealed) is within
-/// reach_px, rounded up to blocks.
+/// Clears the weak bit of a pixel without strong evidence of that kind (moved or revealed) within reach_px,
+/// rounded up to blocks.
 void drop_far_weak(const DepthImage& depth_m, int reach_px, const BlockGrid& grid, PixelEvidence& evidence);
 
 }  // namespace roomradar

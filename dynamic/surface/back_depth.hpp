@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// Limits on the assumed back. For the four numbers, see DynamicSurfaceConfig.
+/// Limits on the assumed back. The four numbers are fields of DynamicSurfaceConfig.
 struct BackRules {
   DepthDiscontinuity jump;  ///< test between neighbouring lattice points
   float least_thickness_m, most_thickness_m, least_roundness, clearance_m;
@@ -25,28 +25,28 @@ struct BackLattice {
   std::vector<std::uint8_t> joined;  // bit k: one surface with the neighbour in direction k
   std::vector<float> rim_px;         // distance to the object's outline in the image; very large: none
   std::vector<std::size_t> rim_at;   // lattice point from which rim_px is measured
-  std::vector<float> width_px;       // half width: greatest rim_px on paths of ascending rim_px
+  std::vector<float> width_px;       // half width: max rim_px on paths of ascending rim_px
   std::vector<std::uint32_t> part;   // connected component, an index into parts; 0: none
   std::vector<std::size_t> stack;    // scratch
-  /// Sums, over the points of a component, for the least-squares fit of its roundness. bulge_by_round sums
-  /// the products of the front's bulge and a round object's bulge, and round2 the squares of a round object's
-  /// bulge, m2.
+  /// Sums over a component's points for the least-squares fit of its roundness, m2. bulge_by_round sums the
+  /// products of the front's bulge and a round object's bulge. round2 sums the squares of a round object's
+  /// bulge.
   struct Part {
     double bulge_by_round = 0.0, round2 = 0.0;
   };
   std::vector<Part> parts;
 };
 
-/// Computes an assumed back that bulges away from the camera as the visible front bulges towards it, as for a
-/// ball or a finger. A round object of half width r bulges by sqrt(d (2 r - d)) at a distance d inside its
-/// outline. Roundness is the ratio of the front's bulge to that of a round object (1: round, 0: flat). It is
-/// fitted per connected component and limited to least_roundness..1. The thickness is least_thickness_m plus
-/// twice the round object's bulge times the roundness, at most most_thickness_m. The back stays clearance_m
-/// in front of the static model, but always behind the front. Where a nearer surface or the image's edge cuts
-/// the object off, the object has no outline, and the thickness does not decrease towards the cut.
+/// Computes an assumed back. The back mirrors the bulge of the visible front, as for a ball or a finger. A
+/// round object of half width r bulges by sqrt(d (2 r - d)) at a distance d inside its outline. Roundness is
+/// the ratio of the front's bulge to that of a round object (1: round, 0: flat). It is fitted per connected
+/// component and limited to least_roundness..1. The thickness is least_thickness_m plus twice the round
+/// object's bulge times the roundness, at most most_thickness_m. The back stays clearance_m in front of the
+/// static model, but always behind the front. The cut by a nearer surface or the image's edge is not an
+/// outline. The thickness does not decrease towards the cut.
 ///
 /// @param depth_m           measured depth of all pixels, dynamic or not
-/// @param expected_depth_m  depth of the static model; 0: unknown, so it does not limit the back
+/// @param expected_depth_m  depth of the static model; 0 is unknown and does not limit the back
 void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
                const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
                BackLattice& back);

@@ -8,14 +8,14 @@
 
 namespace roomradar {
 
-/// Inverse depths of a cell's 5 x 5 pixels, 1/m, row by row; only those of dynamic pixels are valid.
+/// Inverse depths of a cell's 5 x 5 pixels, 1/m, row by row. Only those of dynamic pixels are valid.
 using CellValues = std::array<float, 25>;
 
 /// Returns a pixel's index in CellValues and its bit in CellBits.
 constexpr int place(CellPixel p) { return 5 * p.y + p.x; }
 
-/// Discontinuities between adjacent dynamic pixels. Bit k of `right` is set if there is one between pixel k
-/// and its right neighbour, and bit k of `down` if there is one between pixel k and the pixel below.
+/// Discontinuities between adjacent dynamic pixels. Bit k of `right` stands for pixel k and its right
+/// neighbour, bit k of `down` for pixel k and the pixel below.
 struct CellJumps {
   CellBits right = 0, down = 0;
   [[nodiscard]] bool any() const { return (right | down) != 0; }

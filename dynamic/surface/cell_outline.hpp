@@ -1,5 +1,5 @@
-// cell_outline.hpp: convex polygon for the part of a cell of 4 x 4 pixels that a surface covers at its
-// outline.
+// cell_outline.hpp: convex polygon for the part of a cell of 4 x 4 pixels that a surface with an outline in
+// the cell covers.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,8 +17,8 @@ struct CellPixel {
   std::int8_t x, y;
 };
 /// The ring of the 16 pixels on a cell's sides, counter-clockwise as seen by the camera (x right, y down). It
-/// begins at the top left and runs down the left side (indices 0 to 4), along the bottom, up the right side
-/// and back along the top.
+/// begins at the top left and runs down the left side (indices 0 to 4). Then it runs along the bottom, up the
+/// right side and back along the top.
 constexpr std::array<CellPixel, 16> kRing{{{0, 0},
                                            {0, 1},
                                            {0, 2},
@@ -42,9 +42,9 @@ struct RingArc {
 };
 
 /// Returns true if a convex polygon can represent the pixels of one surface in a cell. The pixels on the ring
-/// must be consecutive, and are returned in `arc`. The line between the ends of the arc bounds the polygon;
-/// pixels of the surface beyond the line, and empty pixels inside it, must be within about one pixel of the
-/// line. If all pixels of the ring are set, the polygon is the whole cell, including empty pixels inside.
+/// must be consecutive, and are returned in `arc`. The line between the ends of the arc bounds the polygon.
+/// Surface pixels outside the polygon and empty pixels inside it must be within about one pixel of the line.
+/// If all pixels of the ring are set, the polygon is the whole cell, including empty pixels inside.
 bool find_outline(CellBits pixels, RingArc& arc);
 
 /// Triangles of a polygon. The numbers are indices into the polygon's list of corners.

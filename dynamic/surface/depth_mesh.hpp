@@ -28,26 +28,25 @@ struct DepthMeshScratch {
   std::vector<float> filled_m;                           // image with its gaps filled, for skirts
 };
 
-/// Meshes the dynamic pixels. Each measured pixel of the mask that is on the stride grid becomes a vertex,
-/// and triangles connect neighbours on one surface. No triangle spans a depth discontinuity or the mask's
-/// edge.
+/// Meshes the dynamic pixels. Each measured pixel of the mask that is on the stride grid becomes a vertex.
+/// Triangles connect neighbours on one surface. No triangle spans a depth discontinuity or the mask's edge.
 ///
 /// @param depth_m         height x width, metres along the optical axis, 0 = no measurement
 /// @param dynamic_mask      same size; not 0: dynamic
 /// @param T_world_camera  pose of the depth camera
-/// @param mesh            overwritten, allocations kept; origin at the camera's position, world axes,
-///                        unit normals, counter-clockwise towards the camera, no colours; empty if no
-///                        pixel is dynamic
+/// @param mesh            overwritten, allocations kept. Origin at the camera's position, world axes, unit
+///                        normals, counter-clockwise towards the camera, no colours. Empty if no pixel is
+///                        dynamic
 void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
                  DepthMeshScratch& scratch, Mesh& mesh);
 
 /// Meshes the whole frame, as a system without a map would. kHoles and kMap leave depth discontinuities open.
-/// kSkirt connects both sides of each discontinuity, and of each unmeasured gap within a row, by polygons.
-/// kBorder adds these polygons, too. It also extends each row's first and last depth over the unmeasured
-/// pixels at the row's ends, and moves vertices on the image's border by border_push_m outwards in the image
-/// plane and by border_push_m nearer, so objects that leave the view do not fall. Parameters as for
-/// mesh_masked(). Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
+/// kSkirt connects both sides of each discontinuity by polygons. It also does so for each unmeasured gap
+/// within a row. kBorder does the same as kSkirt. It also extends each row's first and last depth over the
+/// unmeasured pixels at the row's ends. It moves vertices on the image's border by border_push_m outwards in
+/// the image plane and by border_push_m nearer. Objects that leave the view then do not fall. Parameters as
+/// for mesh_masked(). Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
 void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);
 

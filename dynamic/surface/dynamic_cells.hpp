@@ -15,7 +15,7 @@ namespace roomradar {
 
 enum class CellKind : std::uint8_t {
   kEmpty,
-  kFlat,  ///< all pixels dynamic and all four lattice points flat: may join larger triangles
+  kFlat,  ///< all pixels dynamic, all four lattice points flat; may join larger triangles
   kCut,   ///< meshed as one polygon for each of up to four surfaces
   kFull,  ///< meshed with a vertex at every pixel
 };
@@ -44,7 +44,7 @@ struct DynamicCells {
   std::vector<std::uint8_t> must_be_vertex;    ///< one per lattice point; 1 at all corners of cut and full
                                                ///< cells
   CellCounts counts;
-  /// Number of full cells per region. A cell that several balls reach is counted for the first of them.
+  /// Number of full cells per region. A cell within several balls is counted for the first of them.
   std::vector<std::uint32_t> fine_of_region;
   std::vector<PixelTriangle> triangles;       ///< triangles of cut and full cells, square by square
   std::vector<std::uint8_t> has_flat;         ///< one per square; 1: contains flat cells

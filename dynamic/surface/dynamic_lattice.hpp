@@ -19,7 +19,7 @@ constexpr int kSquareCells = 8;
 struct DynamicLattice {
   int columns = 0, rows = 0;  ///< number of points: a multiple of kSquareCells plus one
   /// Inverse depth, 1/m; 0 where the pixel is not dynamic. Averaged over pairs of pixels on opposite sides of
-  /// the point, which leaves planes unchanged.
+  /// the point. Planes are unchanged.
   std::vector<float> inverse_depth;
   std::vector<float> sigma;  ///< noise of one pixel at this depth and angle, 1/m
   /// 1 if the 5 x 5 pixels around the point are all dynamic and, within noise, on a plane.
@@ -36,9 +36,9 @@ struct DynamicLattice {
 /// @param tangent2  squared tangent of the angle between view ray and surface normal
 float inverse_depth_sigma(float inverse_depth, float tangent2);
 
-/// Returns a dynamic pixel's inverse depth (1/m), averaged with those pairs of opposite pixels in the
-/// surrounding 5 x 5 pixels whose mean is within 3 sigmas of the pixel. Outlines do not move, and bends
-/// change by less than 3 sigmas.
+/// Returns a dynamic pixel's smoothed inverse depth, 1/m. It is averaged with pairs of opposite pixels among
+/// the surrounding 5 x 5 pixels. A pair is used if its mean is within 3 sigmas of the pixel. Outlines do not
+/// move, and bends change by less than 3 sigmas.
 float smoothed_inverse_depth(const DynamicPixels& pixels, int x, int y);
 
 /// Computes the lattice of a frame.

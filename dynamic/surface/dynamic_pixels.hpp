@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Dynamic pixels of one frame. Depths are stored as inverse depths, since a plane's inverse depth is linear
+/// Dynamic pixels of one frame. Depths are stored as inverse depths because a plane's inverse depth is linear
 /// over the image.
 struct DynamicPixels {
   PixelBits measured;  ///< pixels in the mask that have depth
@@ -16,7 +16,7 @@ struct DynamicPixels {
   PixelBits smooth;
   PixelBits thin;  ///< lines and specks that are too thin for `smooth`
   /// Inverse depth per pixel, 1/m. For a pixel in `smooth` but not in `measured`, the mean of the measured
-  /// neighbours. For a pixel in neither, meaningless.
+  /// neighbours. Meaningless for a pixel in neither.
   std::vector<float> inverse_depth;
 };
 

@@ -51,14 +51,13 @@ struct DynamicSurfaceScratch {
 ///   1. Selects the mask's pixels with depth, and smooths their outline by a 3 x 3 majority filter. Lines and
 ///      specks that the filter removes become slabs one pixel wide.
 ///   2. Makes a lattice of every fourth pixel. At flat points, inverse depth is averaged over 5 x 5 pixels,
-///      then with flat neighbours. At bends and outlines, and at vertices off the lattice, inverse depth is
-///      averaged with those pairs of opposite pixels that, within noise, are on a line with the point.
+///      then with flat neighbours. At bends, outlines and vertices off the lattice, inverse depth is averaged
+///      with pairs of opposite pixels whose mean agrees with the point within noise.
 ///   3. Classifies cells of 4 x 4 pixels as flat, cut or full. In cut cells, straight lines follow outlines
 ///      and discontinuities to about a pixel. In full cells, every pixel is a vertex. Cells in `regions` are
-///      full, and so are cells whose outlines straight lines do not follow well enough.
+///      full. Cells whose outlines straight lines approximate too coarsely are full, too.
 ///   4. Meshes flat cells as an RTIN (rtin.hpp): right triangles with legs of up to 32 pixels, bisected until
-///      every lattice point is within deviation_sigmas of its triangle. Adjacent triangles share whole edges,
-///      so there are no cracks.
+///      every lattice point is within deviation_sigmas of its triangle. The mesh has no cracks.
 ///   5. Makes the back, which has the front's outline but is farther away (make_back()). Walls connect the
 ///      back to the front.
 ///

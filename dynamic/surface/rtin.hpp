@@ -9,7 +9,7 @@ namespace roomradar {
 
 /// RTIN over a grid of points. Each square of 8 x 8 cells is two right triangles. Triangles are bisected at
 /// the middle of their hypotenuse, down to half a cell. The two triangles that share a hypotenuse are
-/// bisected together, and every bisection includes the coarser bisections above it, so there are no
+/// bisected together. Every bisection includes the coarser bisections above it. Hence there are no
 /// T-junctions. Source: Evans, Kirkpatrick, Townsend, Right-triangulated irregular networks, Algorithmica
 /// 2001.
 struct Rtin {
@@ -31,7 +31,7 @@ struct Rtin {
 /// @param values      one per point, valid at the corners of wanted cells
 /// @param tolerances  one per point: max difference between the value and the triangle at this point
 /// @param needed      input and output, one per point. Must be 1 at all corners of unwanted cells beside a
-///                    wanted cell, else 0. Entries of 1 stay 1; those of marked points become 1.
+///                    wanted cell, else 0. Marked points become 1. Entries of 1 stay 1
 void find_needed(const Rtin& grid, std::span<const float> values, std::span<const float> tolerances,
                  std::span<std::uint8_t> needed);
 

@@ -1,4 +1,4 @@
-// align.hpp: estimates a camera pose by aligning a depth image, and its intensity, with views of known pose.
+// align.hpp: estimates a camera pose by aligning an image's depth and intensity with views of known pose.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -12,10 +12,10 @@ namespace roomradar {
 enum class TrackStatus {
   kTracked,       ///< all six degrees of freedom are constrained by the measurements
   kTooFewPoints,  ///< too few correspondences; the returned pose is the initial guess
-  /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. The unconstrained ones
-  /// keep the initial guess's values; the others are aligned.
+  /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. They keep the initial
+  /// guess's values. The others are aligned.
   kDegenerate,
-  /// The image disagrees with the references at the aligned pose; the returned pose is the guess.
+  /// The image disagrees with the references at the aligned pose. The returned pose is the guess.
   kDiverged,
 };
 std::string_view to_string(TrackStatus status);
@@ -30,9 +30,9 @@ struct [[nodiscard]] Tracking {
   double overlap = 0.0;
   /// Number of unconstrained degrees of freedom, 0..6.
   int unconstrained_dofs = 0;
-  /// Inverse covariance of the error of T_world_camera, as a twist (translation m, rotation rad) in the
-  /// camera frame: T_true = T_world_camera * exp(twist). It is scaled down, since the errors of neighbouring
-  /// pixels are correlated.
+  /// Inverse covariance of the error of T_world_camera. The error is a twist (translation m, rotation rad) in
+  /// the camera frame: T_true = T_world_camera * exp(twist). The matrix is scaled down, since the errors of
+  /// neighbouring pixels are correlated.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   explicit operator bool() const { return status == TrackStatus::kTracked; }
 };
@@ -49,16 +49,16 @@ struct AlignConfig {
   /// Max point-to-plane distance of a correspondence at the coarsest level, m. The limit is halved at each
   /// finer level, but never below 0.03 m.
   float gate_m = 0.10F;
-  /// Residual at which the robust kernel's weight is 1/4 at the finest level, in standard deviations.
+  /// Residual with weight 1/4 in the robust kernel at the finest level, in standard deviations.
   float robust_sigma = 2.5F;
   /// Standard deviation of intensity residuals, in grey levels of 0..255. 0: intensity is not used.
   float intensity_sigma = 8.0F;
   int min_points = 150;  ///< min number of correspondences at the finest level
   float min_inlier_fraction = 0.3F;
-  /// Min mean squared cosine between the normals and a direction for depth to constrain that direction. At
-  /// smaller values, noise of the normals alone would make a direction look constrained.
+  /// Min mean squared cosine between the normals and a direction that depth constrains. At smaller values,
+  /// noise of the normals alone would make a direction look constrained.
   float min_constraint = 0.001F;
-  /// Max standard deviation of the pose along a direction, m; above it, the direction counts as
+  /// Max standard deviation of the pose along a constrained direction, m. Above it, the direction counts as
   /// unconstrained.
   float max_uncertainty_m = 0.01F;
   /// Max correction of the guess, for the translation in m and for the rotation in rad. Larger corrections
@@ -74,7 +74,7 @@ struct PosedReference {
 
 /// Estimates T_world_camera by point-to-plane ICP with projective association. Adds intensity residuals, with
 /// one gain and one offset per reference. Minimises by Gauss-Newton, from coarse to fine. Residuals are
-/// weighted by their standard deviations and by a robust kernel, so moving objects have little effect. Each
+/// weighted by their standard deviations and by a robust kernel. Moving objects thus have little effect. Each
 /// reference contributes in proportion to its number of correspondences.
 ///
 /// If the guess is not finite, returns kDiverged with the identity as pose. Source: Chen and Medioni 1992
@@ -88,13 +88,13 @@ Tracking align(const SourcePoints& live, const TargetView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 
 /// Returns the motion for a twist (translation m, rotation vector rad). Translation and rotation are
-/// converted separately, which equals the exponential map to first order.
+/// converted separately. This equals the exponential map to first order.
 Eigen::Isometry3d retract(const Eigen::Matrix<double, 6, 1>& twist);
 /// Returns the twist of a motion: the inverse of retract().
 Eigen::Matrix<double, 6, 1> local(const Eigen::Isometry3d& T);
 
-/// Predicts the motion from this frame to the next. Returns T_last_now if `tracking` is kTracked, else half
-/// of T_last_now, so the velocity of unobserved degrees of freedom decays.
+/// Predicts the motion from this frame to the next. Returns T_last_now if `tracking` is kTracked. Otherwise
+/// returns half of T_last_now, so that the velocity of unobserved degrees of freedom decays.
 Eigen::Isometry3d expected_motion(const Tracking& tracking, const Eigen::Isometry3d& T_last_now);
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// keyframe.hpp: keyframes in compact form. Later frames are aligned with keyframes, and their depth is
-// averaged into them.
+// keyframe.hpp: keyframes in compact form. Later frames are aligned with keyframes. The frames' depth is
+// averaged into the keyframes.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -15,15 +15,15 @@ struct CachedKeyframe {
   SourcePoints live;
 };
 
-/// Members of a CachedKeyframe to prepare; the other member stays empty.
+/// Members of a CachedKeyframe to prepare. The other member stays empty.
 enum class PreparedParts { kAll, kLive, kReference };
 
 std::shared_ptr<const CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
                                                        PreparedParts parts = PreparedParts::kAll);
 
 /// Caches at most `capacity` keyframes and evicts the least recently used. A returned entry stays valid after
-/// its eviction, as long as the caller keeps the pointer. Copies of a cache share their present entries, but
-/// are otherwise independent. Not thread safe.
+/// its eviction while the caller keeps the pointer. Copies of a cache share their present entries and are
+/// otherwise independent. Not thread safe.
 class KeyframeCache {
  public:
   explicit KeyframeCache(std::size_t capacity, PreparedParts parts = PreparedParts::kAll)

@@ -37,8 +37,8 @@ struct PointMatches {
   /// difference between two measurements.
   std::size_t inliers = 0;
   double squares = 0.0;  ///< sum of the inliers' squared distances, m^2
-  /// Weighted sums over the correspondences with two known intensities: n sums the weights, live and
-  /// reference the intensities, and live_live and reference_reference their squares.
+  /// Weighted sums over the correspondences with two known intensities. n sums the weights. live and
+  /// reference sum the intensities, live_live and reference_reference their squares.
   double n = 0.0, live = 0.0, reference = 0.0, live_live = 0.0, reference_reference = 0.0;
 };
 
@@ -51,10 +51,10 @@ struct MatchLimits {
   float inverse_intensity_sigma;  ///< 1 / standard deviation, in grey levels; 0: intensity is not used
 };
 
-/// Projects the points into the reference to find correspondences, and sums their residuals: distance to the
-/// reference's plane and, if exposure.known, difference of intensity. Residuals are linearised in the
-/// camera's twist, which is given in the camera frame.
-/// @param[in,out] pass  sums to which the residuals are added; of H, only the upper triangle is filled
+/// Projects the points into the reference to find correspondences, and sums their residuals. Residuals are
+/// the distance to the reference's plane and, if exposure.known, the difference of intensity. They are
+/// linearised in the camera's twist in the camera frame.
+/// @param[in,out] pass sums to which the residuals are added. Only the upper triangle of H is filled
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
                   PointMatches& pass);

@@ -17,11 +17,11 @@ namespace roomradar {
 inline constexpr double kSeenWell_m = 0.003;
 
 /// Draws orthographic projections of the surface from above and from two sides. Back faces are left out, so
-/// walls and ceiling do not hide the room. The view is rotated about the vertical so most walls run along the
-/// picture's axes; arrows show the world's axes. Surface that is not well observed is orange. Border cells of
-/// holes are violet (unknown space) or blue (end of the scan). The first 12 holes are numbered from 1, in the
-/// order of `holes`, and a line shows the camera's path. The picture includes scale and legend, and has about
-/// 1600 x 1000 pixels. For an empty surface, the picture says that there is none.
+/// walls and ceiling do not hide the room. The view is rotated about the vertical so that most walls run
+/// along the picture's axes. Arrows show the world's axes. Surface that is not well observed is orange.
+/// Border cells of holes are violet (unknown space) or blue (end of the scan). The first 12 holes are
+/// numbered from 1, in the order of `holes`. A line shows the camera's path. The picture includes scale and
+/// legend, and has about 1600 x 1000 pixels. For an empty surface, the picture says that there is none.
 ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                           std::span<const Hole> holes, std::span<const TimedPose> trajectory);
 

@@ -9,13 +9,13 @@ namespace roomradar {
 
 struct FrontierConfig {
   double cell_m = 0.08;       ///< edge of the search grid's cells; at least the map's resolution
-  double min_area_m2 = 0.06;  ///< smaller holes are ignored: they result from noise and edges
+  double min_area_m2 = 0.06;  ///< smaller holes are ignored as noise
   double max_size_m = 1.5;    ///< max distance of a hole's cells from its first cell
-  /// A border cell is inside the scan if, of the rays from the cell into the unknown, at least this fraction
-  /// end at a surface.
+  /// Min fraction of the rays from a border cell into the unknown that end at a surface. At or above it, the
+  /// cell is inside the scan.
   double min_enclosed = 0.5;
-  /// A border cell with a smaller fraction is inside, too, if its connected component is small: at most
-  /// max_open_part times the area of the scan's bounding box, seen along the component's mean normal.
+  /// Border cells below min_enclosed are inside, too, if their connected component is small. Its area is then
+  /// at most max_open_part times that of the scan's bounding box, seen along the component's mean normal.
   double max_open_part = 0.08;
 };
 
@@ -36,8 +36,8 @@ struct Frontier {
 
 /// Copies the octree into a grid of cells, with larger cells if there would be more than 16 million. A cell
 /// is occupied if any of its voxels is occupied, else free if at least half of its volume is free. Border
-/// cells are unknown cells that share a face with a free cell; adjacent border cells form one hole. Each
-/// face's area is projected along the border's normal, so the area of a slanted border is not that of its
+/// cells are unknown cells that share a face with a free cell. Adjacent border cells form one hole. Each
+/// face's area is projected along the border's normal. The area of a slanted border is thus not that of its
 /// staircase. Returns no holes for an empty map. Throws Error if the config is invalid.
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config = {});
 

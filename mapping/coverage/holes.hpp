@@ -11,9 +11,9 @@ namespace roomradar {
 class StaticMap;
 struct Frontier;
 
-/// Returns the frontier's holes, and the holes of the surface: border loops that are surrounded by surface
-/// and whose extent is at least min_border_size_m. Leaves out loops whose centre is within three cell widths
-/// of a frontier hole's cell. Sorts by kind, then largest area first.
+/// Returns the frontier's holes and the surface's holes. The latter are border loops of at least
+/// min_border_size_m that surface surrounds. Leaves out loops whose centre is within three cell widths of a
+/// frontier hole's cell. Sorts by kind, then largest area first.
 std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                              double min_border_size_m = 0.12);
 

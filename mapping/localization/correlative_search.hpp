@@ -10,20 +10,20 @@
 
 namespace roomradar {
 
-/// Grid of cubes that stores, per cube, how near the closest surface is.
+/// Grid of cubes that stores the nearness of the closest surface per cube.
 struct ShapeGrid {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();  ///< lower corner of the first cube, in the world, m
   double cell_m = 0.0;
   std::array<int, 3> size{};  ///< number of cubes along x, y and z
-  /// Nearness by cube, x fastest, then y, then z: kOnSurface in a cube with a surface, and linearly less with
-  /// the distance from it, down to 0.
+  /// Nearness by cube, x fastest, then y, then z. It is kOnSurface in a cube with a surface, and decreases
+  /// linearly to 0 with the distance from it.
   std::vector<std::uint8_t> nearness;
   static constexpr int kOnSurface = 255;
   static constexpr int kReach_cells = 3;  ///< distance from a surface, in cubes, at which nearness is 0
 };
 
 /// Surfaces in the downsampled depth images of all keyframes of a database, for search_by_shape(). The coarse
-/// grid is for the search over the whole room, the fine grid for refining poses.
+/// grid is for searching the whole room, the fine grid for refining poses.
 struct ShapeIndex {
   ShapeGrid coarse, fine;
   [[nodiscard]] bool empty() const { return coarse.nearness.empty(); }
@@ -38,11 +38,11 @@ struct ShapeCandidate {
 };
 
 /// Returns at most `most` distinct poses with the highest mean nearness of the depth image's points to known
-/// surfaces, best first. Searches all positions in the room and all headings on the coarse grid; tilt and
+/// surfaces, best first. Searches all positions in the room and all headings on the coarse grid. Tilt and
 /// roll come from gravity. Deterministic. Returns an empty vector if almost no depth is valid or down_camera
 /// is not a unit vector. Source: Olson, Real-Time Correlative Scan Matching, ICRA 2009.
 ///
-/// @param down_camera  unit direction of gravity in the camera's frame; in the world's frame it is -z
+/// @param down_camera  unit direction of gravity in the camera's frame (-z in the world)
 std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Intrinsics& camera,
                                             const Eigen::Vector3d& down_camera, const ShapeIndex& known,
                                             std::size_t most);

@@ -13,7 +13,8 @@
 
 namespace roomradar {
 
-/// One keyframe of the database: image features, surface patches, and a downsampled depth image ("preview").
+/// One keyframe of the database, with image features, surface patches and a downsampled depth image
+/// ("preview").
 struct MapKeyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the depth camera

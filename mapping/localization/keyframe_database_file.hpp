@@ -9,8 +9,8 @@ namespace roomradar {
 /// Writes the database to `path`, with a checksum. Throws Error if the file cannot be written.
 void write_keyframe_database(const KeyframeDatabase& keyframe_database, const std::filesystem::path& path);
 
-/// Reads a file written by write_keyframe_database(). Throws Error (naming the file and the problem) if the
-/// file is missing, truncated, altered, or of another version. Sizes are checked before memory is allocated.
+/// Reads a file written by write_keyframe_database(). Throws Error naming the file and the fault if the file
+/// is missing, truncated, altered, or of another version. Sizes are checked before memory is allocated.
 KeyframeDatabase read_keyframe_database(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -40,18 +40,18 @@ struct Locator {
   /// Resolution of the expected view. Rendered depth needs no smoothing.
   ViewConfig expected_view{.finest_width_px = 160, .noisy = false};
   AlignConfig align;
-  /// Alignment settings with a higher min_constraint, with which bumps of the mesh do not count as
-  /// constraining a direction. Used for poses that depth alone must constrain, and for a second alignment if
-  /// the first loses more than a third of the matching patches.
+  /// Alignment settings with a higher min_constraint. Bumps of the mesh then do not count as constraining a
+  /// direction. Used for poses that depth alone must constrain. Also used for a second alignment if the first
+  /// loses more than a third of the matching patches.
   AlignConfig strict_align{.min_constraint = 0.01F};
   RelocaliseConfig relocalise;
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< pose of the previous frame; unset while lost
   /// Predicted motion from the previous frame to the next.
   Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
   int unverified_frames = 0;  ///< number of consecutive frames whose depth contradicts the tracked pose
-  /// Number of frames whose depth must contradict the pose before the map is searched again.
+  /// Number of further frames whose depth must contradict the pose before the next search of the map.
   int recheck_cooldown_frames = 0;
-  /// Last pose before tracking was lost; locate() tries to resume there in the first 30 lost frames.
+  /// Last pose before tracking was lost. locate() tries to resume there in the first 30 lost frames.
   std::optional<Eigen::Isometry3d> T_world_lost;
   int lost_frames = 0;
 
@@ -75,9 +75,9 @@ struct Locator {
 /// recalibrates distorts its depth for a moment. If alignment mistakes the distortion for motion, locate()
 /// returns the previous frame's pose with kDegenerate.
 ///
-/// @param dynamic_mask  empty, or of the depth image's size; a pixel that is not 0 showed a moving object in
-///                      the previous frame and is ignored
-/// @return a usable pose if the status is kTracked or kDegenerate; with any other status, the camera is lost,
+/// @param dynamic_mask  empty, or of the depth image's size. Non-zero pixels showed a moving object in the
+///                      previous frame and are ignored
+/// @return a usable pose if the status is kTracked or kDegenerate. With any other status, the camera is lost,
 ///         and the next call searches the map
 Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                 const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth);

@@ -30,16 +30,16 @@ PatchIndex build_patch_index(const KeyframeDatabase& keyframe_database);
 
 struct PoseCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  /// Number of the frame's patches that coincide, at this pose, with known patches of similar appearance.
+  /// Number of the frame's patches that at this pose coincide with known patches of similar appearance.
   int agreeing = 0;
   /// Pairs of centres of the coinciding patches; see PatchAgreement::alike.
   std::vector<PointPair> pairs;
 };
 
 /// Returns at most `most` distinct poses that at least `min_agreeing` patches of the frame support, best
-/// first. Each pair of similar patches (one of the frame, one known) votes for the approximate pose that the
-/// pair implies. RANSAC over triples of patch centres then refines each pose, using the pairs that agree with
-/// the pose. Deterministic.
+/// first. Each pair of similar patches (one of the frame, one known) votes for the approximate pose that it
+/// implies. RANSAC over triples of patch centres then refines each pose from its supporting pairs.
+/// Deterministic.
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing);
 

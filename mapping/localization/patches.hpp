@@ -21,8 +21,8 @@ inline int distance_bits(const Descriptor& a, const Descriptor& b) {
          std::popcount(p[3] ^ q[3]);
 }
 
-/// Square surface patch: position, orientation, and appearance in a frontal view, to which the image is
-/// rectified with depth. A single patch matched between two views gives their full relative pose.
+/// Square surface patch: position, orientation and appearance in a frontal view. The image is rectified to
+/// this view with depth. A single patch matched between two views gives their full relative pose.
 struct SurfacePatch {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();    ///< centre, m
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit, towards the camera
@@ -34,7 +34,7 @@ struct SurfacePatch {
 
 inline constexpr int kPatchSizes = 4;
 /// Returns the edge length of patches of this size, m. Patches have four fixed edge lengths, measured on the
-/// surface, so cameras at different distances extract the same patches.
+/// surface. Cameras at different distances thus extract the same patches.
 inline float patch_width_m(int size) { return 0.06F * static_cast<float>(1 << size); }
 
 /// Returns at most `most` patches at a frame's strongest image corners, in the depth camera's frame. Returns

@@ -9,17 +9,17 @@
 
 namespace roomradar {
 
-/// Returns the indices, in `keyframe_database`, of the keyframes with the most feature matches to `place`: at
-/// most `count` keyframes, best first, each with at least `min_matches` matches. Compares only the first
-/// `strongest` features of each keyframe.
+/// Returns the indices in `keyframe_database` of the keyframes with the most feature matches to `place`, best
+/// first. Returns at most `count` keyframes, each with at least `min_matches` matches. Compares only the
+/// first `strongest` features of each keyframe.
 std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const MapKeyframe> keyframe_database,
                                     std::size_t count, int min_matches, std::size_t strongest = 300);
 
 /// Relative pose of two keyframes a and b, from their matched features.
 struct KeyframeMatch {
   int inliers = 0;
-  /// Rigid motion that maps the features' surface points from b to a; it fits `inliers` of the matches. Valid
-  /// only if inliers > 0.
+  /// Rigid motion that maps the features' surface points from b to a, with `inliers` inliers. Valid only if
+  /// inliers > 0.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
 };
 
@@ -33,9 +33,9 @@ struct PointPair {
 /// over all inliers. Deterministic: the random seed is fixed.
 KeyframeMatch motion_of(const std::vector<PointPair>& pairs, int samples);
 
-/// Matches all features of two keyframes (nearest descriptor, ratio test), and computes the motion on which
-/// most of their points agree within the depth noise; see motion_of(). Source: Fischler and Bolles 1981
-/// (RANSAC); Umeyama 1991 (rigid motion); Lowe 2004 (ratio test).
+/// Matches all features of two keyframes by nearest descriptor and ratio test. Computes the motion with the
+/// most inliers within the depth noise; see motion_of(). Source: Fischler and Bolles 1981 (RANSAC); Umeyama
+/// 1991 (rigid motion); Lowe 2004 (ratio test).
 KeyframeMatch match_keyframes(const MapKeyframe& a, const MapKeyframe& b);
 
 }  // namespace roomradar

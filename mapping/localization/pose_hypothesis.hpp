@@ -1,4 +1,4 @@
-// pose_hypothesis.hpp: relocalisation: camera pose hypotheses, and the tests that accept or reject them.
+// pose_hypothesis.hpp: camera pose hypotheses of a relocalisation, and the tests that accept or reject them.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>
@@ -23,8 +23,8 @@ struct PoseHypothesis {
 bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
              double reach_rad);
 
-/// Returns the depth agreement, at most 1, over the pixels where the model has a surface: the fraction that
-/// agrees, minus twice the fraction that sees through the model's surface.
+/// Returns the depth agreement, at most 1, over the pixels where the model has a surface. It is the fraction
+/// that agrees minus twice the fraction that sees through the model's surface.
 inline double fit_of(const DepthAgreement& agreement) {
   return agreement.alike_part() - 2.0 * agreement.farther_part();
 }

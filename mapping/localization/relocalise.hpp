@@ -25,7 +25,7 @@ struct [[nodiscard]] Relocalisation {
   std::int64_t keyframe = -1;
   int feature_inliers = 0;  ///< number of matched features that agree with the pose; 0 if found by depth
                             ///< alone
-  /// Fraction of pixels whose depths agree within the noise, among the pixels that are measured both in the
+  /// Fraction of pixels whose depths agree within the noise. Counts only pixels that are measured both in the
   /// frame and in the keyframe's downsampled depth image.
   double depth_agreement = 0.0;
   explicit operator bool() const { return status == RelocalisationStatus::kFound; }

@@ -26,14 +26,14 @@ struct Change {
 
 struct DiffConfig {
   /// A surface voxel is clear if the other map is free around the voxel, up to the larger of clearance_m and
-  /// clearance_voxels. An object needs enough clear surface. The rest of its surface, down to what supports
-  /// the object, only has to be in the other map's free space.
+  /// clearance_voxels. An object needs enough clear surface. The rest of its surface, down to its support,
+  /// only has to be in the other map's free space.
   double clearance_m = 0.045;
   double clearance_voxels = 3.0;
   double min_area_m2 = 3.6e-3;  ///< min clear surface of an object: 6 x 6 cm
   double min_size_m = 0.05;     ///< min extent of an object's clear surface
-  /// Max error of T_a_b, m. If the other map has the object's shape, shifted by at most this distance, the
-  /// object counts as unmoved.
+  /// Max error of T_a_b, m. An object counts as unmoved if the other map has its shape, shifted by at most
+  /// this.
   double max_pose_error_m = 0.06;
   double min_same_shape = 0.7;  ///< min fraction of the shifted surface that must coincide
 };
@@ -42,7 +42,8 @@ void require_valid(const DiffConfig& config);
 
 /// Returns the changes, largest first. Regions that are unknown in one of the maps count as unchanged.
 /// Surface at which one map's scan ends counts as unchanged, too. Objects smaller than the clearance are not
-/// detected, nor are objects that moved, or stand out from a plane, by less than max_pose_error_m.
+/// detected. Objects that moved by less than max_pose_error_m, or stand out from a plane by less, are not
+/// detected either.
 /// @param T_a_b  maps points from b's world to a's world
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const DiffConfig& config = {});

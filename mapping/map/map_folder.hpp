@@ -34,11 +34,11 @@ struct SavedMap {
 /// info.settings has one, else the default. Throws Error if the stored value is invalid.
 SurfaceConfig surface_config_of(const MapInfo& info);
 
-/// Writes the map to a folder beside `folder` (folder.partial-PID), syncs it, and renames it to `folder` in
-/// one step. Extracts the border of unknown space from map.octree and map.mesh, and writes it to unknown.bin.
-/// Afterwards `folder` is the complete new map or, after an Error, unchanged. Creates parent folders. Throws
-/// Error if `folder` exists and is not a map, the map has no surface or too many triangles, or the disk
-/// fails.
+/// Writes the map to a folder beside `folder` (folder.partial-PID) and syncs it. Then renames it to `folder`
+/// atomically. Extracts the border of unknown space from map.octree and map.mesh, and writes it to
+/// unknown.bin. Afterwards `folder` is the complete new map or, after an Error, unchanged. Creates parent
+/// folders. Throws Error if `folder` exists and is not a map, the map has no surface or too many triangles,
+/// or the disk fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);
 
 /// Reads a map after verifying the checksum of every file. Throws Error naming the file and the fault.
@@ -53,9 +53,9 @@ Mesh load_map_mesh(const std::filesystem::path& folder);
 /// Returns one sentence per fault, naming the file; empty for an intact map. Never throws for a damaged map.
 std::vector<std::string> verify_map(const std::filesystem::path& folder);
 
-/// Exports one part of a saved map, chosen by extension: the octree for .ot and .bt, the mesh for .ply .obj
-/// .stl .glb. Throws Error if the extension is none of these, the map is damaged, or `path` is in a map's
-/// folder.
+/// Exports one part of a saved map, chosen by extension. Exports the octree as .ot or .bt, the mesh as .ply,
+/// .obj, .stl or .glb. Throws Error if the extension is none of these, the map is damaged, or `path` is in a
+/// map's folder.
 void export_map(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -40,13 +40,13 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
-  /// Size and checksum by file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt, and, if
-  /// present, coverage.png and unknown.bin.
+  /// Size and checksum by file name. The files are octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt
+  /// and, if present, coverage.png and unknown.bin.
   std::map<std::string, MapFile> files;
 };
 
-/// Returns true if info.T_world_recorded is known: the map was scanned with recorded poses, or the recording
-/// had poses.
+/// Returns true if info.T_world_recorded is known. It is if the map was scanned with recorded poses, or the
+/// recording had poses.
 bool knows_recorded_world(const MapInfo& info);
 
 /// Returns the output of `roomradar map info`.

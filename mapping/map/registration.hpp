@@ -17,7 +17,7 @@ struct RegistrationConfig {
   int min_inliers = 20;      ///< min number of features that agree on the relative pose of two keyframes
   int min_agreeing = 3;      ///< min number of keyframes of b that agree on T_a_b
   double min_overlap = 0.1;  ///< min fraction of b's surface that is in space known to a
-  /// Min fraction that is on a's surface, not in a's free space, among b's surface in space known to a. The
+  /// Min fraction of b's surface in space known to a that is on a's surface, not in a's free space. The
   /// default tolerates moved objects, but rejects another room with the same picture on its wall.
   double min_agreement = 0.75;
   std::size_t points = 12'000;  ///< number of points of b's surface that are tested
@@ -40,8 +40,8 @@ struct [[nodiscard]] Registration {
   double residual_m = 0.0;  ///< median distance to a's surface, over b's points on it, m
   explicit operator bool() const { return status == RegistrationStatus::kRegistered; }
 };
-/// Returns the end of a sentence for the user, which states the result or the reason for failure, with the
-/// numbers of agreeing keyframes, overlap and agreement.
+/// Returns the end of a sentence for the user with the result or the reason for failure. Includes the number
+/// of agreeing keyframes, overlap and agreement.
 std::string describe(const Registration& registration);
 
 /// Computes T_a_b. Each keyframe of b that matches a keyframe of a votes for a transform. The transform on

@@ -4,12 +4,12 @@
 
 namespace roomradar {
 
-/// Returns a mesh of only the given triangles, whose vertex indices refer to `mesh`, and of the vertices they
-/// use, in order of first use.
+/// Returns a mesh of the given triangles and the vertices they use, in order of first use. Their vertex
+/// indices refer to `mesh`.
 Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles);
 
-/// Drops unused vertices, and connected components (by shared vertices) with an area below
-/// min_component_area_m2.
+/// Drops connected components (by shared vertices) with an area below min_component_area_m2, and unused
+/// vertices.
 Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2);
 
 }  // namespace roomradar

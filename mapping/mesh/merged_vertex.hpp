@@ -1,4 +1,4 @@
-// merged_vertex.hpp: accumulated data of the vertices that edge collapses merge, and linked lists of indices.
+// merged_vertex.hpp: accumulated data of merged vertices in edge collapses, and linked lists of indices.
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
@@ -37,7 +37,7 @@ struct MergedVertex {
   }
 };
 
-/// Linked lists of indices; an index is in at most one list.
+/// Linked lists of indices. An index is in at most one list.
 struct IndexLists {
   IndexLists(std::size_t lists, std::size_t indices) : first(lists, kNoIndex), next(indices, kNoIndex) {}
   void push_front(std::uint32_t list, std::uint32_t index) {

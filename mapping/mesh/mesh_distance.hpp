@@ -17,11 +17,11 @@ class MeshDistanceQuery {
 
   /// Returns the distance (m) from a point, given relative to the mesh's origin, to the nearest surface.
   /// Returns infinity if the distance exceeds reach_m. The search stops at the first distance that is at most
-  /// enough_m, so with enough_m > 0 the result need not be the smallest distance.
+  /// enough_m. With enough_m > 0, the result thus need not be the smallest distance.
   [[nodiscard]] float distance_m(const Eigen::Vector3f& p, float enough_m = 0.0F) const;
 
   /// Returns the nearest triangle within reach_m whose normal is less than 90 degrees from `facing` (any
-  /// length), so the far side of a thin sheet is skipped. Returns nullopt if there is none.
+  /// length). The far side of a thin sheet is thus skipped. Returns nullopt if there is none.
   [[nodiscard]] std::optional<std::uint32_t> nearest_facing(const Eigen::Vector3f& p,
                                                             const Eigen::Vector3f& facing) const;
 
@@ -59,8 +59,8 @@ struct FarPoint {
 };
 
 /// Measures the distance to `other` (same origin) at all used vertices of `mesh`, and on a lattice over its
-/// triangles with at most spacing_m between points. Returns the greatest distance that is at most limit_m.
-/// Points farther away are appended to beyond_limit.
+/// triangles with at most spacing_m between points. Returns the largest distance that is at most limit_m.
+/// Appends points farther away to beyond_limit.
 float greatest_distance_m(const Mesh& mesh, const MeshDistanceQuery& other, float spacing_m, float limit_m,
                           std::vector<FarPoint>& beyond_limit);
 

@@ -8,16 +8,16 @@
 namespace roomradar {
 
 /// Reads all triangles of a file, with normals and colours if every vertex has them. Vertices are read as
-/// metres in the file's own axes, unscaled. Only .glb is converted, as its standard requires: from y up to z
-/// up, and from linear colours to sRGB. Node transforms of a .glb are applied. Degenerate triangles (two
-/// equal vertices, or no area) are dropped. The mesh's origin is zero. Throws Error (naming the file, the
-/// problem and a remedy) if the file is missing, has an unknown extension, is not a mesh, has no triangles,
-/// has non-finite vertices, or has more than kMaxMeshTriangles triangles.
+/// metres in the file's own axes, unscaled. Only .glb is converted, from y up to z up and from linear colours
+/// to sRGB, as its standard requires. Node transforms of a .glb are applied. Degenerate triangles (two equal
+/// vertices, or no area) are dropped. The mesh's origin is zero. Throws Error if the file is missing, has an
+/// unknown extension or is not a mesh. Also throws if it has no triangles, non-finite vertices, or more than
+/// kMaxMeshTriangles triangles. The message names the file, the fault and a remedy.
 Mesh read_mesh(const std::filesystem::path& path);
 
-/// Writes the mesh in the format that the extension names. The mesh's origin is added to the vertices, which
+/// Writes the mesh in the format that the extension names. The mesh's origin is added to the vertices. They
 /// are written as floats; a vertex 300 m from zero is accurate to 0.03 mm. .glb, .ply and .obj keep colours
-/// and normals; .stl has no colours. A .glb is rotated to y up. Throws Error if the extension is unknown, the
+/// and normals. .stl has no colours. A .glb is rotated to y up. Throws Error if the extension is unknown, the
 /// mesh is empty or inconsistent, or writing fails.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 

@@ -11,9 +11,8 @@ namespace roomradar {
 /// A simplified mesh and its measured distance from the original.
 struct SimplifiedMesh {
   Mesh mesh;
-  /// Greatest measured distance between the surfaces, in both directions, m. It is measured at all vertices
-  /// and at points spacing_m apart, and never exceeds the bound. Between the points, the distance may be
-  /// slightly larger.
+  /// Two-sided (Hausdorff) distance between the surfaces, m. It is measured at all vertices and at points
+  /// spacing_m apart, and never exceeds the bound. Between the points, the distance may be slightly larger.
   float deviation_m = 0.0F;
   /// Per vertex: index of a vertex of the original that was merged into it.
   std::vector<std::uint32_t> full_vertex{};
@@ -22,17 +21,17 @@ struct SimplifiedMesh {
 inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size fits the CPU cache
 
 /// Collapses edges in order of quadric error, and moves each new vertex to the least-squares intersection of
-/// the planes around it. Flat areas become few large triangles; curved areas keep small ones.
+/// the planes around it. Flat areas become few large triangles. Curved areas keep small ones.
 ///
 /// Bound: during collapses, every vertex of `mesh` stays within max_deviation_m (> 0) of the triangles that
-/// replace those around the vertex. Afterwards the distance between both surfaces is measured at points
-/// spacing_m apart. Where the distance exceeds the bound, the tolerances of nearby vertices are lowered and
-/// the block is simplified again. A block that fails in all rounds is left unchanged.
+/// replace its adjacent ones. Afterwards the distance between both surfaces is measured at points spacing_m
+/// apart. Where the distance exceeds the bound, the tolerances of nearby vertices are lowered and the block
+/// is simplified again. A block that fails in all rounds is left unchanged.
 ///
 /// Two threads process meshes above block_triangles (>= 1) in blocks of at most that many. Vertices on seams
-/// between blocks stay fixed, so no cracks appear. Small blocks fit the cache and are repeated independently
-/// of each other; large blocks have fewer seam vertices. Components, holes and handles are preserved, and an
-/// edge shared by two triangles stays shared by two. Colours and normals are averaged over merged vertices.
+/// between blocks stay fixed, so no cracks appear. Small blocks fit the cache, and rounds are repeated per
+/// block. Large blocks have fewer seam vertices. Components, holes and handles are preserved, and an edge
+/// shared by two triangles stays shared by two. Colours and normals are averaged over merged vertices.
 /// Collapses that would create triangles less than 0.1 mm high are rejected. Source: Garland and Heckbert,
 /// Surface Simplification Using Quadric Error Metrics, SIGGRAPH 1997; bound: Klein, Liebich, Strasser, Mesh
 /// reduction with error control, IEEE Visualization 1996.

@@ -1,4 +1,4 @@
-// quadric.hpp: quadric error metric: weighted sum of squared distances from a point to a set of planes.
+// quadric.hpp: quadric error metric, a weighted sum of squared distances from a point to a set of planes.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/LU>

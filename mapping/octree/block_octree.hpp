@@ -1,7 +1,7 @@
 // block_octree.hpp: octree into which depth frames are fused. Private to StaticMap. Keys, depth, log-odds and
 // pruning are OctoMap's, and static_map_file.cpp writes the octree in OctoMap's file formats. Eight siblings
-// share one block of one cache line, where OctoMap makes nine separate allocations. This matters because a
-// frame changes about 50,000 groups of eight voxels, and memory access dominates its time.
+// share one block of one cache line, where OctoMap makes nine separate allocations. A frame changes about
+// 50,000 groups of eight voxels, and memory access dominates its time.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -22,7 +22,7 @@ inline constexpr int kKeyOrigin = 32768;    // key of the voxel whose lower corn
 /// 1, since OctoMap treats a probability of one half as occupied.
 using LogOdds = std::int16_t;
 
-/// State of a node: unknown, a cube (a node of uniform log-odds without children), or a block of eight
+/// State of a node. It is unknown, a cube (a node of uniform log-odds without children), or a block of eight
 /// children.
 class Slot {
  public:
@@ -37,8 +37,8 @@ class Slot {
   [[nodiscard]] bool is_block() const { return bits_ != 0 && !is_cube(); }
   /// Returns the log-odds of a cube; 0 if unknown.
   [[nodiscard]] LogOdds log_odds() const { return static_cast<LogOdds>(static_cast<std::uint16_t>(bits_)); }
-  /// Returns the block's number: in the pool of inner blocks for a node above depth 15, and in the pool of
-  /// leaf blocks for a node at depth 15.
+  /// Returns the block's number. It is in the pool of inner blocks for a node above depth 15, and in the pool
+  /// of leaf blocks for a node at depth 15.
   [[nodiscard]] std::uint32_t number() const { return bits_; }
   friend bool operator==(const Slot&, const Slot&) = default;
 
@@ -143,7 +143,7 @@ class BlockOctree {
 
   /// Prunes `node`, whose children are `block`, and returns the node's new state. If all eight children are
   /// equal, the node's block is freed and the node becomes a cube or unknown. Otherwise, a node that is a
-  /// block keeps it (`block` must be that block), and any other node gets a new block with a copy of `block`.
+  /// block keeps it (`block` must be that block). Any other node gets a new block with a copy of `block`.
   Slot prune(Slot node, const InnerBlock& block) {
     if (alike(block)) {
       if (node.is_block()) inner_.give_back(node.number());

@@ -10,8 +10,8 @@
 
 namespace roomradar {
 
-/// Pool of blocks. Blocks never move, so references stay valid while other blocks are allocated. Number 0 is
-/// reserved and means "none".
+/// Pool of blocks. Blocks never move. References thus stay valid while other blocks are allocated. Number 0
+/// is reserved and means "none".
 template <typename Block>
 class BlockPool {
  public:

@@ -13,15 +13,15 @@
 
 namespace roomradar {
 
-/// Returns the half-width of the truncation band, m: the distance in front of and behind a surface measured
-/// at depth_m within which signed distances are fused.
+/// Returns the half-width of the truncation band at depth_m, m. Signed distances are fused within this
+/// distance in front of and behind a measured surface.
 float half_layer_m(float depth_m, double resolution_m, const FusionConfig& config);
 
 /// Bounds of the depth, along the optical axis, over all pixels of a rectangle. Space nearer than `front` is
 /// free along every pixel's ray. Space nearer than `nearest` is free along the rays of all pixels with depth.
 /// Space farther than -`behind` is occluded or unmeasured along every ray. A surface is possible only between
-/// `front` and -`behind`. The unit is 1 / DepthPyramid::steps_per_m, and values are rounded conservatively.
-/// `behind` is stored negated, so each bound of a rectangle is the minimum of that bound over its pixels.
+/// `front` and -`behind`. The unit is 1 / DepthPyramid::steps_per_m, rounded conservatively. `behind` is
+/// stored negated. Each bound of a rectangle is thus the minimum of that bound over its pixels.
 struct DepthBounds {
   std::int16_t front = 0;
   std::int16_t nearest = 0;
@@ -30,8 +30,8 @@ struct DepthBounds {
 };
 
 /// Pyramid of DepthBounds. Level i has cells of 2^i x 2^i pixels, i = 1..levels. All levels are stacked in
-/// one array, so computing a cell's index is cheap. Unused array elements hold the largest value, so they do
-/// not affect a minimum.
+/// one array, so a cell's index is cheap to compute. Unused array elements hold the largest value and do not
+/// affect a minimum.
 struct DepthPyramid {
   float steps_per_m = 0.0F;
   int width_px = 0, height_px = 0;
@@ -48,15 +48,15 @@ struct DepthPyramid {
   [[nodiscard]] int cells_down(int level) const { return ((height_px - 1) >> level) + 1; }
 };
 
-/// Builds the pyramid, reusing its memory. Pixels without depth prove no space free or occluded. Gaps (pixels
-/// without depth) smaller than 4 x 4 pixels (2 x 2 for query rectangles up to six pixels wide) take the
-/// bounds of the pixels around them, so single dropouts do not leave the space in front of a wall unknown. A
-/// pixel whose depth exceeds max_range_m makes space free up to max_range_m.
+/// Builds the pyramid, reusing its memory. Pixels without depth prove no space free or occluded. Small gaps
+/// (pixels without depth) take the bounds of the pixels around them. Single dropouts thus do not leave the
+/// space in front of a wall unknown. Small gaps are below 4 x 4 pixels, or 2 x 2 for query rectangles up to
+/// six pixels wide. A pixel whose depth exceeds max_range_m makes space free up to max_range_m.
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid);
 
 /// Rectangle of up to 4 x 4 cells of one level, as offsets into the pyramid's array. bounds_within() always
-/// reads eight pairs of neighbouring cells, some of them twice, since a branch would cost more.
+/// reads eight pairs of neighbouring cells, some of them twice. A branch would cost more.
 struct CellRect {
   int at = 0;      ///< index of the first cell in the array
   int column = 0;  ///< offset from the first pair of columns to the last pair; 0 if there is one pair

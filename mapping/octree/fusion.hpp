@@ -19,9 +19,9 @@ enum class Arithmetic { kFastest, kPortable };
 /// image is unchanged. All other nodes are split down to leaves. A leaf that contains a ray endpoint is a
 /// hit. A leaf whose centre is in front of the depth of the pixel to which it projects is a miss. Hits and
 /// misses add to the log-odds. Signed distance, weight and colour are averaged into leaves within the
-/// truncation band. Source: log-odds and clamping: Hornung et al., OctoMap, Autonomous Robots 2013, equations
-/// (2) and (4); projective signed distance: Curless and Levoy, SIGGRAPH 1996, equations (3) and (4), with
-/// 1/sigma^2 as weight.
+/// truncation band. Sources: Hornung et al., OctoMap, Autonomous Robots 2013, equations (2) and (4) (log-odds
+/// and clamping); Curless and Levoy, SIGGRAPH 1996, equations (3) and (4), with 1/sigma^2 as weight
+/// (projective TSDF).
 void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                 const FusionConfig& config, FusionScratch& scratch,
                 Arithmetic arithmetic = Arithmetic::kFastest);

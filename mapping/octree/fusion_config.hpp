@@ -5,16 +5,16 @@ namespace roomradar {
 
 struct FusionConfig {
   /// Max depth that is fused as a surface, m. At larger depths the noise is too high (standard deviation 4 cm
-  /// or more); rays to larger depths only mark the space up to max_range_m as free.
+  /// or more). Rays to larger depths only mark the space up to max_range_m as free.
   float max_range_m = 5.0F;
-  /// Half-width of the truncation band, in voxels; the larger of truncation_voxels and truncation_sigmas
-  /// applies. A wider band blurs the surface if poses disagree; a narrower band leaves gaps in it.
+  /// Half-width of the truncation band, in voxels. The larger of truncation_voxels and truncation_sigmas
+  /// applies. A wider band blurs the surface if poses disagree. A narrower band leaves gaps in it.
   float truncation_voxels = 2.0F;
   float truncation_sigmas = 2.5F;  ///< half-width of the truncation band, in standard deviations of depth
-  float max_weight = 64.0F;        ///< max weight of a sample; the limit lets samples adapt to changes
+  float max_weight = 64.0F;        ///< max weight of a sample, so that samples adapt to changes
   /// Weight of a frame that clearly sees through a sample, relative to a frame that measures the sample. The
-  /// default is above 1, since no frame sees through a static surface, and many frames may have measured an
-  /// object before it was taken away.
+  /// default is above 1. No frame sees through a static surface, but many frames may have measured an object
+  /// before its removal.
   float seen_through_gain = 8.0F;
   /// Log-odds added to a voxel that contains a ray endpoint. OctoMap's default, p = 0.7.
   float hit_log_odds = 0.847298F;

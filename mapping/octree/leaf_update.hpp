@@ -79,8 +79,8 @@ class LeafUpdate {
 
   /// Updates the eight voxels of `node`, and returns the node's new state.
   /// @param hit  bit i: a ray ends in voxel i
-  /// @param refresh_colour  true: also updates colours of voxels to whose weight this frame contributes less
-  ///                        than kSettledPart
+  /// @param refresh_colour  true: also updates colours of voxels for which this frame's part of the weight is
+  ///                        below kSettledPart
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
@@ -96,17 +96,17 @@ class LeafUpdate {
     return tree_.prune(node, block);
   }
 
-  /// Adds a miss to all voxels of a block through which a frame of this weight sees. `clear` means that the
-  /// frame also sees through the space around the block. If `clear`, each sample's distance is averaged with
-  /// the truncation distance. The sample is erased once its voxel has the minimum log-odds and its distance
-  /// exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free space around
-  /// them.
+  /// Adds a miss to all voxels of a block. A frame of this weight must see through all of them. `clear` means
+  /// that the frame also sees through the space around the block. If `clear`, each sample's distance is
+  /// averaged with the truncation distance. The sample is erased once its voxel has the minimum log-odds and
+  /// its distance exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free
+  /// space around them.
   ///
-  /// Without `clear`, most samples are kept: beside edges and on obliquely seen surfaces, seeing through a
-  /// voxel is caused by noise more often than by a change. The exceptions are samples behind a surface, since
-  /// frames see through such samples only if the surface has gone. Each frame that sees through such a sample
-  /// subtracts kCancelled times the frame's weight from the sample's weight. Otherwise an object that was too
-  /// close to a wall for `clear` would leave its back side in the map after it moved away.
+  /// Without `clear`, most samples are kept. Beside edges and on obliquely seen surfaces, seeing through a
+  /// voxel is caused by noise more often than by a change. The exceptions are samples behind a surface.
+  /// Frames see through such samples only if the surface has gone. Each such frame subtracts kCancelled times
+  /// its weight from the sample's weight. Otherwise an object too close to a wall for `clear` would leave its
+  /// back side in the map after it moved away.
   Slot mark_free(Slot node, float weight, bool clear) {
     LeafBlock& block = tree_.leaves(node);
     add_log_odds(block, 0, 0xFFU);
@@ -122,15 +122,15 @@ class LeafUpdate {
   // vertices are interpolated from these samples only.
   static constexpr float kColourVoxels = 1.5F;
   // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
-  // refresh. On a refresh, the measurement is weighted with this fraction, since smaller changes would be
-  // lost in rounding to 8 bits.
+  // refresh. On a refresh, the measurement is weighted with this fraction. Smaller changes would be lost in
+  // rounding to 8 bits.
   static constexpr float kSettledPart = 1.0F / 8.0F;
 
   // Min distance, in voxels, at which a sample counts as behind a surface. Frames see past samples nearer to
   // the surface too often, because of noise and pose errors.
   static constexpr float kBehind_voxels = 0.5F;
-  // A frame that sees through a sample subtracts this many times its own weight from the sample's weight.
-  // Above 1, since the first such frames only make the voxel free, and since an object that was present in
+  // A frame that sees through a sample subtracts this many times its own weight from the sample's weight. It
+  // is above 1, since the first such frames only make the voxel free. Also, an object that was present in
   // half of the frames should disappear.
   static constexpr float kCancelled = 2.0F;
 

@@ -12,8 +12,7 @@
 
 namespace roomradar {
 
-/// Min measured depth, m. Smaller values count as not measured, since no depth camera measures at such short
-/// range.
+/// Min measured depth, m. Smaller values count as not measured. No depth camera measures at such short range.
 inline constexpr float kLeastDepth_m = 0.05F;
 
 inline constexpr float kNearest_m = 0.01F;  // min depth, m, of points that are projected into the image
@@ -81,12 +80,12 @@ class ChildOffsets {
 struct NodeVisibility {
   unsigned nothing = 0;  ///< occluded, out of view, or beyond 2 max_range_m
   unsigned free = 0;     ///< wholly in front of the measured depth
-  /// bit i: the frame sees through sibling i where depth is measured; the rest is out of view or has no depth
+  /// In front of the measured depth where depth is measured. The rest is out of view or has no depth.
   unsigned part_free = 0;
 };
 
 /// Classifies eight siblings by their boxes in the camera frame and by the image rectangles to which the
-/// boxes project. Written as one function, so the eight-wide values stay in registers.
+/// boxes project. One function, so that the eight-wide values stay in registers.
 /// @param half  half the size of each box, m
 template <typename Float8>
 NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,
@@ -96,8 +95,8 @@ NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& 
   const Float8 low_y = centres.y - half.y(), high_y = centres.y + half.y();
   unsigned nothing = ((far_z <= kNearest_m) | (Float8(2.0F * max_range_m) < near_z)).bits();
 
-  // A box that straddles the camera plane counts as out of view only if it is wholly outside one of the
-  // planes that the camera centre and the image borders span.
+  // A box that straddles the camera plane counts as out of view only if it is wholly outside one of the view
+  // frustum's side planes.
   const unsigned straddles = (near_z <= kNearest_m).bits();
   if (straddles != 0) {
     const auto outside = (far_z * (camera.width - camera.cx) < low_x * camera.fx) |

@@ -1,6 +1,6 @@
 // simd8f.hpp: vector of eight floats, one per sibling voxel, in an AVX2 and a portable version. Both versions
-// give bit-identical results, since neither fuses multiply and add; files that use them must be compiled with
-// -ffp-contract=off. Maps are therefore bit-identical on every machine.
+// give bit-identical results, since neither fuses multiply and add. Maps are therefore bit-identical on every
+// machine. Files that use them must be compiled with -ffp-contract=off.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -42,7 +42,7 @@ struct PortableFloat8 {
     return out;
   }
   void store(std::array<float, 8>& to) const { to = v; }
-  /// Stores the values rounded towards zero; values must be within the range of int.
+  /// Stores the values rounded towards zero. Values must be within the range of int.
   void store_truncated(std::array<int, 8>& to) const {
     for (unsigned i = 0; i < 8; ++i) to[i] = static_cast<int>(v[i]);
   }

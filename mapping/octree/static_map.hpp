@@ -20,8 +20,8 @@ enum class Occupancy { kUnknown, kFree, kOccupied };
 enum class FuseStatus {
   kFused,
   kNothingMeasured,  ///< no pixel has depth; map unchanged
-  /// Invalid camera, or a depth image that differs in size from its camera or exceeds 4,096 pixels per side;
-  /// map unchanged.
+  /// Invalid camera, or a depth image that differs in size from its camera or exceeds 4,096 pixels per side.
+  /// Map unchanged.
   kInvalidFrame,
   kInvalidPose,  ///< pose not finite or not rigid; map unchanged
   kOutOfBounds,  ///< a ray ends outside the octree (see reach_m()); map unchanged
@@ -69,7 +69,7 @@ struct MapCounts {
 };
 
 /// Octree of the static room. With resolution r, it covers +-32768 r around the world's origin (+-327 m at 1
-/// cm). Concurrent const calls are thread safe; calls that change the map need exclusive access.
+/// cm). Concurrent const calls are thread safe. Calls that change the map need exclusive access.
 class StaticMap {
  public:
   /// Creates an empty map. Throws Error if resolution_m is not within 0.001..1 m or the config is invalid.
@@ -106,9 +106,9 @@ class StaticMap {
   /// weight is not finite, or the weight is not > 0.
   void add_evidence(const SurfaceSample& sample);
 
-  /// Calls `decide` for each voxel that has a signed distance or is occupied (weight 0 if it has no signed
-  /// distance), in Morton order, and applies the returned action. Pruned nodes are not visited, since they
-  /// have no samples.
+  /// Calls `decide` in Morton order for each voxel that has a signed distance or is occupied, and applies the
+  /// returned action. The weight is 0 without a signed distance. Pruned nodes have no samples and are not
+  /// visited.
   void revise_samples(const std::function<SampleAction(const SurfaceSample&)>& decide);
   /// Revises only voxels whose centre is in the box.
   void revise_samples(const Eigen::AlignedBox3d& box_world,

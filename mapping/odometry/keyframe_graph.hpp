@@ -23,7 +23,8 @@ struct KeyframeGraphConfig {
   double max_gap_rad = 0.05;
   /// Max assumed drift between two keyframes: drift_m plus drift_part times the length of the path between
   /// them in m. The sum limits the translation in m and the rotation in rad. An edge that would change the
-  /// relative pose by more is rejected as a false match between different parts of the room that look alike.
+  /// relative pose by more is rejected as perceptual aliasing (a false match between similar parts of the
+  /// room).
   double drift_m = 0.15;
   double drift_part = 0.05;
   std::size_t cached_keyframes = 8;  ///< capacity of the keyframe cache; 4 MB per keyframe
@@ -78,10 +79,9 @@ void close_loops(KeyframeGraph& graph, const ConnectConfig& config);
 void solve(KeyframeGraph& graph);
 
 /// Computes the final poses of all keyframes in two steps, to reduce the effect of the sensor's depth
-/// distortion. Distortion is constant in the camera frame, so it does not average out over many points as
-/// noise does. Distortion cancels between similar views. Between different views, it biases the relative
-/// pose, mostly by a rotation about the observed surface. Alignment wrongly reports this rotation as well
-/// constrained.
+/// distortion. Distortion is constant in the camera frame. Unlike noise, it does not average out over many
+/// points. It cancels between similar views. Between different views, it biases the relative pose, mostly by
+/// a rotation about the observed surface. Alignment wrongly reports this rotation as well constrained.
 ///
 /// The first step therefore computes the positions. It weights constraints by the similarity of their views
 /// (view_distance()), and uses their information matrices only to exclude unconstrained directions. The

@@ -15,7 +15,7 @@ struct KeyframeJobConfig {
   RelocaliseConfig relocalise;
 };
 
-/// Input of run(). Owns its data, except for the two keyframe databases; these must not change while run()
+/// Input of run(). Owns its data, except for the two keyframe databases. These must not change while run()
 /// executes.
 struct KeyframeJob {
   Frame frame;          ///< frame of the newest keyframe

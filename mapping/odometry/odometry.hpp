@@ -25,8 +25,8 @@ class Odometry {
   ~Odometry();
 
   /// Sets the keyframe database of an earlier map; call before the first frame. Each new keyframe is
-  /// localised in the earlier map if possible. Once a keyframe was localised, all poses, including those of
-  /// earlier frames, are in the earlier map's world. The earlier map's own poses stay constant.
+  /// localised in the earlier map if possible. Once a keyframe was localised, all poses are in the earlier
+  /// map's world. This includes poses of earlier frames. The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
   /// Returns true if poses are in the world of the map given to set_prior_map().
   [[nodiscard]] bool is_located() const;
@@ -49,8 +49,8 @@ class Odometry {
 
   [[nodiscard]] OdometryCounts counts() const;
 
-  /// Waits until the second thread is idle. Call before snapshot() or a fork of the process. Changes no pose:
-  /// the thread's result is applied later, at the frame where it is due.
+  /// Waits until the second thread is idle. Call before snapshot() or a fork of the process. Changes no pose.
+  /// The thread's result is applied later, at the frame where it is due.
   void finish_jobs();
   /// Returns a copy of the complete state, to which the second thread's result has been applied. Views are
   /// shared, not copied. Call only after finish_jobs().

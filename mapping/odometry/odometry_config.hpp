@@ -17,19 +17,19 @@ struct OdometryConfig {
   /// the calibration of the colour camera is inexact and walls are glossy.
   AlignConfig align = {.intensity_sigma = 16.0F, .max_correction_m = 0.25F};
   /// Settings for aligning keyframes with each other. Keyframes are farther apart than consecutive frames, so
-  /// the distortion of depth matters; a wide robust kernel averages the distortion out. robust_sigma and the
+  /// the distortion of depth matters. A wide robust kernel averages the distortion out. robust_sigma and the
   /// intensity_sigma of both AlignConfigs were chosen on the kitchen recording. Each changes the absolute
   /// trajectory error and the relative pose error over 30 frames by at most 0.3 mm.
   AlignConfig align_keyframes = {.robust_sigma = 4.0F, .intensity_sigma = 8.0F, .max_correction_m = 0.25F};
   KeyframeGraphConfig graph;
   KeyframeDatabaseConfig place;
   RelocaliseConfig relocalise;
-  /// A frame becomes a keyframe if every existing keyframe is farther away than keyframe_distance_m or
-  /// rotated by more than keyframe_angle_deg.
+  /// A frame becomes a keyframe if each existing keyframe is farther away than keyframe_distance_m or rotated
+  /// by more than keyframe_angle_deg.
   double keyframe_distance_m = 0.10;
   double keyframe_angle_deg = 8.0;
-  /// Min overlap with the current keyframe. At a smaller overlap, another keyframe becomes the current one,
-  /// or a new keyframe is added.
+  /// Min overlap with the current keyframe. Below it, another keyframe becomes the current one, or a keyframe
+  /// is added.
   double keyframe_overlap = 0.7;
   int references = 2;  ///< max number of keyframes that a frame is aligned with
   /// Number of frames averaged into a keyframe's depth before its points and normals are recomputed.
@@ -55,7 +55,7 @@ struct OdometryCounts {
   std::int64_t relocalised = 0;  ///< number of recoveries from a loss by place recognition
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;  ///< see KeyframeGraph
-  /// Number of pairs that should overlap but could not be connected; see join().
+  /// Number of loop candidates that could not be connected; see join().
   std::int64_t loops_rejected = 0;
   std::int64_t anchored = 0;  ///< number of keyframes localised in the prior map
 };

@@ -15,7 +15,7 @@
 
 namespace roomradar {
 
-/// Frame with a pose relative to a keyframe, so the frame moves with the keyframe.
+/// Frame with a pose relative to a keyframe. The frame moves with the keyframe.
 struct KeptFrame {
   std::int64_t frame_index = 0;
   double stamp_s = 0.0;
@@ -40,7 +40,7 @@ struct OdometrySnapshot {
   Eigen::Isometry3d T_world_last = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< predicted motion to the next frame
   double path_length_m = 0.0;  ///< length of the camera's path; see Keyframe::path_length_m
-  /// Intensity image of the last frame before the camera became stationary; empty if that frame's pose is not
+  /// Intensity image of the last frame before the camera became stationary. Empty if that frame's pose is not
   /// trusted.
   Image<float> last_moved_grey;
   Tracking last_moved;   ///< tracking result of the frame of last_moved_grey
@@ -54,10 +54,9 @@ struct OdometrySnapshot {
 /// @return the correction T_new_old = T_world_new * T_world_old^-1 of the current keyframe
 Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept);
 
-/// Applies the background thread's result, and returns the correction of the current keyframe, as
-/// move_keyframes(). If the
-/// newest keyframe was localised in the prior map, adds an anchor for it. The first anchor also moves all
-/// poses into the prior map's world.
+/// Applies the background thread's result. Returns the correction of the current keyframe, as
+/// move_keyframes() does. If the newest keyframe was localised in the prior map, adds an anchor for it. The
+/// first anchor also moves all poses into the prior map's world.
 Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);
 
 /// Adds a frame whose pose is stored relative to the current keyframe.

@@ -32,7 +32,7 @@ struct PoseAnchor {
 
 enum class PoseGraphStatus {
   kSolved,
-  /// Solved; unconstrained poses and directions stay near their initial values.
+  /// Solved. Unconstrained poses and directions stay near their initial values.
   kUnderdetermined,
   kNothingToSolve,  ///< no valid measurement involves a pose that may move; poses unchanged
   kNotFinite,       ///< a pose is not finite; poses unchanged
@@ -60,13 +60,14 @@ struct PoseGraphResult {
 /// Returns a sentence that states the status and the counts of poses and directions.
 std::string describe(const PoseGraphResult& result);
 
-/// Moves the poses T_world_camera to minimise the residuals of constraints and anchors. Poses that no chain
-/// of measurements connects to a constant pose or an anchor do not change. Connected poses do not change in
-/// unconstrained directions. The result counts such poses (untied) and directions (free_directions). Does not
-/// throw.
+/// Optimises the poses T_world_camera to minimise the residuals of constraints and anchors. Poses that no
+/// chain of measurements connects to a constant pose or an anchor do not change. Connected poses do not
+/// change in unconstrained directions. The result counts such poses (untied) and directions
+/// (free_directions). Does not throw.
 ///
-/// Leaves out measurements between two constant poses, and invalid measurements: index out of range, a number
-/// that is not finite, or information that is not positive semidefinite. Their residual_sigma is -1.
+/// Leaves out measurements between two constant poses, and invalid measurements. A measurement is invalid if
+/// an index is out of range, a number is not finite, or the information is not positive semidefinite. Their
+/// residual_sigma is -1.
 /// @param constant  by pose: true if the pose is constant; if empty, only the first pose is constant
 PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_camera,
                                     const std::vector<PoseConstraint>& constraints,

@@ -8,8 +8,8 @@ namespace roomradar {
 /// Ceres functor over the poses of cameras a and b. Each pose is a translation (m) and a unit quaternion (x,
 /// y, z, w). With E = T_a_b(measured)^-1 * T_world_a^-1 * T_world_b:
 ///   residual = S * (translation of E, 2 * vector part of the quaternion of E)
-/// The quaternion's sign is chosen so that w is positive. S^T S is the information of the measurement, so the
-/// residual is in standard deviations and has no unit. Neither pose is constant in the functor. Source:
+/// The quaternion's sign is chosen so that w is positive. S^T S is the information of the measurement. The
+/// residual is thus in standard deviations, without a unit. Neither pose is constant in the functor. Source:
 /// Ceres' pose_graph_3d example; Grisetti et al., A Tutorial on Graph-Based SLAM, 2010.
 struct RelativePoseResidual {
   Eigen::Isometry3d T_b_a_measured;

@@ -35,15 +35,17 @@ struct GivenUp {
 /// frames with trusted poses.
 class UpEstimator {
  public:
-  /// Adds the frame's gravity, if measured, and normals of its depth image, sampled on a grid of 20 columns.
+  /// Adds the frame's gravity, if measured. Adds normals of its depth image, sampled on a grid of 20 columns.
   /// Both are rotated into the world.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Returns the up direction from the first usable source: (1) mean gravity, if at least half of the frames
-  /// have gravity; (2) the most frequent normal within 60 degrees of the cameras' mean -y axis, if at least 5
-  /// % of all normals are within 5 degrees of this normal; (3) the mean -y axis, with kNone. The limit of 60
-  /// degrees allows for a hand-held camera that looks down at a table, and assumes that cameras are rarely
-  /// upside down.
+  /// Returns the up direction from the first usable source:
+  /// (1) mean gravity, if at least half of the frames have gravity,
+  /// (2) the most frequent normal within 60 degrees of the cameras' mean -y axis, if at least 5 % of all
+  /// normals are within 5 degrees of it,
+  /// (3) the mean -y axis, with kNone.
+  /// The limit of 60 degrees allows for a hand-held camera that looks down at a table. It assumes that
+  /// cameras are rarely upside down.
   [[nodiscard]] UpDirection estimate() const;
   /// Returns the direction that the user stated, with kGiven.
   [[nodiscard]] UpDirection take(const GivenUp& given) const;
@@ -67,7 +69,7 @@ class UpEstimator {
   /// Returns the cameras' mean -y axis.
   [[nodiscard]] Eigen::Vector3d camera_up() const;
   /// Stores the normal if it is a keep_every_-th one. When the buffer is full, drops every second stored
-  /// normal and doubles keep_every_, so early and late frames have equal weight.
+  /// normal and doubles keep_every_. Early and late frames thus have equal weight.
   void keep(const Eigen::Vector3f& normal_world);
 
   std::vector<Eigen::Vector3f> normals_world_;

@@ -1,4 +1,4 @@
-// depth_windows.hpp: sparse table that gives the minimum depth in any square window of a depth image by four
+// depth_windows.hpp: sparse table for the minimum depth in any square window of a depth image by four
 // lookups.
 #pragma once
 #include <cstdint>
@@ -10,9 +10,9 @@ namespace roomradar {
 
 inline constexpr int kMaxWindowRadius_px = 31;
 
-/// Sparse table. nearest_m[k] stores, at each pixel, the minimum depth of the 2^k x 2^k pixels whose upper
-/// left corner is this pixel; infinity if none of them has depth. Four such squares cover any window whose
-/// side is at least 2^k and less than 2^(k+1).
+/// Sparse table. At each pixel, nearest_m[k] stores the minimum depth of the 2^k x 2^k square whose upper
+/// left corner is this pixel. It is infinity if the square has no depth. Four such squares cover any window
+/// whose side is at least 2^k and less than 2^(k+1).
 struct DepthWindows {
   std::vector<DepthImage> nearest_m;
   Image<std::int32_t> measured;  ///< integral image: number of pixels with depth above and to the left

@@ -1,13 +1,13 @@
-// ghost_config.hpp: thresholds at which a surface of the map counts as a ghost: the surface of an object that
-// moved away during the scan.
+// ghost_config.hpp: thresholds at which a surface of the map counts as a ghost (surface of an object that
+// moved away during the scan).
 #pragma once
 
 namespace roomradar {
 
 struct GhostConfig {
-  /// A frame sees through a sample (a voxel with a signed distance) if the measured depth exceeds the
-  /// sample's by more than the largest of the four margins below. margin_m (metres) and margin_sigmas
-  /// (standard deviations of depth) cover noise and tracking errors.
+  /// A frame sees through a sample (a voxel with a signed distance) if its depth exceeds the sample's by more
+  /// than the largest of the four margins below. margin_m (metres) and margin_sigmas (standard deviations of
+  /// depth) cover noise and tracking errors.
   float margin_m = 0.03F;
   float margin_sigmas = 4.0F;
   /// Margin per metre of depth. Covers a pose error of 1.7 degrees on a slanted surface, and sensors that are
@@ -16,18 +16,18 @@ struct GhostConfig {
   /// Margin in voxels: samples are up to one voxel in front of or behind the measured surface.
   float margin_voxels = 1.5F;
   /// Radius of a window around the sample's pixel, in m at the sample's depth. A frame sees through the
-  /// sample only if all measured pixels of the window do. With a single pixel, rays that pass the edge of a
-  /// static object would count as well, since poses have small errors.
+  /// sample only if all measured pixels of the window do. With a single pixel, small pose errors would make
+  /// rays past the edge of a static object count as well.
   float window_radius_m = 0.03F;
   /// Min fraction of the window's pixels that must have depth. The centre pixel must always have depth.
   float min_measured_share = 0.5F;
   int min_through = 3;  ///< min number of frames that must see through a ghost's sample
-  /// Min fraction of frames that see through a ghost's sample, among all frames that measure the sample or
-  /// see through it.
+  /// Min fraction of frames that see through a ghost's sample, relative to all frames that measure it or see
+  /// through it.
   float min_through_share = 0.1F;
-  /// Edge of a square, m. A connected group of samples that frames see through is a ghost if it has at least
-  /// as many samples as the square would have, at two samples per voxel of area. Smaller groups are tracking
-  /// errors at the edges of static objects.
+  /// Min size of a ghost, as the edge of a square, m. A connected component of samples that frames see
+  /// through is a ghost only if it has at least as many samples as the square. The square has two samples per
+  /// voxel of area. Smaller components are tracking errors at the edges of static objects.
   float min_extent_m = 0.15F;
   int max_looks = 170;  ///< max number of frames used, evenly spaced over the recording
 };

@@ -32,8 +32,8 @@ struct GhostRevision {
 /// Called after each processed frame.
 using GhostProgress = std::function<void(const std::string& note)>;
 
-/// Reads the source again and removes departed objects from the map. Surface through which frames see becomes
-/// free. Departed surface behind which no depth is measured becomes unknown. Signed distances around both are
+/// Reads the source again and removes departed objects from the map. Surface that frames see through becomes
+/// free. Departed surface without measured depth behind it becomes unknown. Signed distances around both are
 /// erased. Stages timed: read, ghosts (per frame).
 ///
 /// @throws Error if the source cannot be rewound or the config is invalid
@@ -41,9 +41,9 @@ GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fus
                             StaticMap& map, StageTimes& times, const GhostProgress& progress = {});
 
 /// Fuses the surroundings of the removed voxels again, starting with frame revision.next. Leaves out pixels
-/// that measured the departed objects, since their measurements had shifted the surface behind them. Between
-/// frames, e.g. when `progress` is called, `map` and `revision` are the complete state needed to resume.
-/// Reads no frame if no voxel was removed.
+/// that measured the departed objects. Their measurements had shifted the surface behind the objects. Between
+/// frames, e.g. in calls of `progress`, `map` and `revision` are the complete state for resuming. Reads no
+/// frame if no voxel was removed.
 ///
 /// @throws Error if the source cannot be rewound
 void refuse_surroundings(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,

@@ -1,4 +1,4 @@
-// ghost_zone.hpp: the space around removed voxels, in which samples are erased and measured again.
+// ghost_zone.hpp: the space around removed voxels in which samples are erased and measured again.
 #pragma once
 #include <Eigen/Geometry>
 #include <bitset>
@@ -11,25 +11,27 @@
 namespace roomradar {
 
 /// All cells of 4^3 voxels with a removed voxel, and the neighbours of these cells. Removed voxels are ghosts
-/// (a frame saw through them) and absent voxels (of departed objects, without depth measured behind); see
-/// GhostVotes::Verdicts. The zone extends at least four voxels around each such voxel. This is the width of
-/// the truncation band for surfaces measured from up to 2.5 m.
+/// (a frame saw through them) and absent voxels (parts of departed objects without measured depth behind
+/// them); see GhostVotes::Verdicts. The zone extends at least four voxels around each removed voxel. This is
+/// the width of the truncation band for surfaces measured from up to 2.5 m.
 class GhostZone {
  public:
   GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m);
 
   /// Returns the action for a voxel. Ghosts become free, absent voxels become unknown. Other samples of the
-  /// zone are erased so they can be measured again. Farther than two voxels from removed voxels, samples at
-  /// surface of an earlier scan that no frame measures are kept. An occupied voxel without a sample becomes
-  /// unknown if a ghost or absent voxel, but no remaining surface, is within two voxels.
+  /// zone are erased so they can be measured again. Exception: samples at surface of an earlier scan that no
+  /// frame measures are kept if they are farther than two voxels from removed voxels. An occupied voxel
+  /// without a sample becomes unknown if a ghost or absent voxel, but no remaining surface, is within two
+  /// voxels.
   [[nodiscard]] SampleAction fate_of(const SurfaceSample& sample) const;
   /// Returns true if the voxel is at most two voxels from a brick that the zone overlaps or touches.
   [[nodiscard]] bool reaches(const VoxelIndex& voxel) const;
   /// Returns true if any part of the zone may be in the camera's image.
   [[nodiscard]] bool in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const;
 
-  /// Sets the depth of a pixel to 0 unless its ray ends within two voxels of remaining surface near the zone,
-  /// and not within two voxels of a removed voxel. The remaining pixels measure the zone's erased samples.
+  /// Keeps pixels whose ray ends within two voxels of remaining surface near the zone, but not within two
+  /// voxels of a removed voxel. Sets the depth of all other pixels to 0. The kept pixels measure the zone's
+  /// erased samples.
   void mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m) const;
 
  private:

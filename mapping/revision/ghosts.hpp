@@ -12,30 +12,29 @@
 
 namespace roomradar {
 
-/// Counts, for each surface voxel of the map, the frames that measure the voxel and the frames that see
-/// through it. A hand that rested on a table for half of the recording is measured in as many frames as the
+/// For each surface voxel of the map, counts the frames that measure it and the frames that see through it.
+/// Example: a hand that rests on a table for half of the recording is measured in as many frames as the
 /// table. Only the frames that see the table through the hand distinguish the hand from static surface.
 /// Frames without depth at the voxel count as AbsenceVotes.
 class GhostVotes {
  public:
-  /// Copies the map's surface voxels: those with a sample that are occupied or whose signed distance is at
+  /// Copies the map's surface voxels. These have a sample and are occupied or have a signed distance of at
   /// most one voxel. Throws Error if the config is invalid.
   explicit GhostVotes(const StaticMap& map, const GhostConfig& config = {});
 
-  /// Adds one frame's votes; the frame must have been fused at this pose.
+  /// Adds one frame's votes. The frame must have been fused at this pose.
   void look(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Classification of the surface voxels. A departed object is a large enough connected group of voxels with
-  /// enough evidence, plus voxels with weaker evidence that are connected to the group. Around groups of at
-  /// least 0.5 x 0.5 m, which are too large to be tracking errors, even weaker evidence suffices within 10
-  /// cm.
+  /// Classification of the surface voxels. A departed object is a large enough connected component of voxels
+  /// with enough evidence, plus connected voxels with weaker evidence. Components of at least 0.5 x 0.5 m are
+  /// too large to be tracking errors. Within 10 cm of them, even weaker evidence suffices.
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects through which frames see
     std::vector<VoxelIndex> absent;  ///< voxels of departed objects without measured depth behind
     std::vector<VoxelIndex> still;   ///< other occupied surface that a frame observed
     std::vector<VoxelIndex> unseen;  ///< surface of an earlier scan, which no frame measured or saw through
   };
-  /// Classifies all voxels; each list is in Morton order.
+  /// Classifies all voxels. Each list is in Morton order.
   [[nodiscard]] Verdicts verdicts() const;
 
  private:

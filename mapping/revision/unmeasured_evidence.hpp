@@ -1,5 +1,5 @@
-// unmeasured_evidence.hpp: finds surface of departed objects in the map where no depth is measured behind the
-// objects, such as in front of glass or of walls beyond the sensor's range.
+// unmeasured_evidence.hpp: finds surface of departed objects without measured depth behind them, such as in
+// front of glass or of walls beyond the sensor's range.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace roomradar {
 
 /// Evidence from frames that do not measure a voxel's surface. Missing depth alone does not prove that the
 /// surface is gone, since dark and glossy surfaces give no depth at grazing angles. Colour distinguishes the
-/// two. Seen from the same camera position a moment later, the pixels of a dark or glossy surface keep their
-/// colour; the pixels of a departed object do not.
+/// two. A moment later, from the same camera position, the pixels of a dark or glossy surface still have
+/// their colour. Those of a departed object do not.
 struct AbsenceVotes {
   enum class State : std::uint8_t { kUnknown, kMeasured, kGone };
 
@@ -42,7 +42,7 @@ class AbsenceVoter {
   void measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const;
   /// Adds the vote of a frame that has no depth in pixel (x, y), to which the voxel projects.
   /// @param measured_share  fraction of pixels with depth, within about 3 cm of the voxel
-  /// @param beside_nearer   true if one of these pixels is nearer than the voxel, so its surface may shadow
+  /// @param beside_nearer   true if one of these pixels is nearer than the voxel. Its surface may then shadow
   ///                        the projector's light
   /// @param has_colour      true if the voxel's colour is tracked
   void unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera, float measured_share,
@@ -63,15 +63,14 @@ struct VotedVoxel {
   std::uint32_t position = 0;
 };
 
-/// Returns true if a voxel that `seen` frames measured is gone in enough frames (at least 3, and at least
-/// twice as many as measured it) to be in the core of a departed object.
+/// Returns true if a voxel may be in the core of a departed object. It must be gone in at least 3 frames, and
+/// in at least twice as many frames as measured it (`seen`).
 bool may_be_absent(const AbsenceVotes& votes, int seen);
-/// Returns true if the voxel's evidence suffices to remove it together with a connected core voxel of a
-/// departed object.
+/// Returns true if the voxel's evidence suffices to remove it together with a connected core voxel.
 bool may_go_along(const AbsenceVotes& votes, int seen);
 
-/// Returns the candidates that are in connected groups of at least min_group_voxels and whose group changed
-/// colour between measured and gone. `votes` is indexed by VotedVoxel::position.
+/// Returns the candidates in connected components of at least min_group_voxels that changed colour between
+/// measured and gone. `votes` is indexed by VotedVoxel::position.
 std::vector<VotedVoxel> find_absent(std::span<const VotedVoxel> candidates,
                                     std::span<const AbsenceVotes> votes, double min_group_voxels);
 

@@ -23,7 +23,7 @@ class AtomicFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
 
-  /// Waits until all files are on disk, then makes the folder `target` in one step and removes the old
+  /// Waits until all files are on disk. Then renames the folder to `target` atomically and removes the old
   /// `target`. Throws Error, with `target` unchanged, if the disk or the file system fails.
   void commit();
 
@@ -32,9 +32,9 @@ class AtomicFolder {
   std::filesystem::path partial_;
 };
 
-/// Returns the old version of `target` (target.before-PID) if a process was killed during commit() and left
-/// no `target`. This can happen on a file system that cannot exchange two names, where commit() needs two
-/// renames. Returns an empty path if `target` exists or there is no old version.
+/// Returns the old version of `target` (target.before-PID) if a process killed during commit() left no
+/// `target`. This can happen if the file system cannot exchange two names. commit() then needs two renames.
+/// Returns an empty path if `target` exists or there is no old version.
 std::filesystem::path interrupted_replacement_of(const std::filesystem::path& target);
 
 /// Returns an identifier that changes when the folder is replaced by another of the same name. Empty if there
@@ -44,9 +44,9 @@ std::string folder_version(const std::filesystem::path& folder);
 /// Throws an Error that says that the folder is replaced faster than it can be read.
 [[noreturn]] void fail_replaced_too_often(const std::filesystem::path& folder);
 
-/// Calls read() until the folder was not replaced during the call, and returns that call's result. The result
-/// is thus from a single version of a folder that another process may replace. Makes at most 100 attempts.
-/// Rethrows an exception of read() only if the folder was not replaced during that call.
+/// Calls read() until the folder is not replaced during the call, and returns that call's result. The result
+/// is thus from a single version of the folder, even if another process replaces it. Makes at most 100
+/// attempts. Rethrows an exception of read() only if the folder was not replaced during that call.
 template <typename Read>
 auto read_consistent(const std::filesystem::path& folder, const Read& read) {
   constexpr int kAttempts = 100;

@@ -20,25 +20,25 @@ struct Checkpoint {
 };
 
 /// Callback that writes a state's files into the empty folder `into`. `previous` is the preceding
-/// checkpoint's folder, or an empty path; carry_over() can link unchanged files from there. The callback runs
-/// in a child process, so its changes to memory are lost.
+/// checkpoint's folder, or an empty path. carry_over() can link unchanged files from there. The callback runs
+/// in a child process. Its changes to memory are lost.
 using WriteCheckpointFiles =
     std::function<void(const std::filesystem::path& into, const std::filesystem::path& previous)>;
 
 /// Writes checkpoint `number` under a temporary name, syncs it, and renames it. Then removes all but the last
-/// two checkpoints. If the disk fails, throws Error or std::filesystem::filesystem_error; the caller must
+/// two checkpoints. If the disk fails, throws Error or std::filesystem::filesystem_error. The caller must
 /// then call discard_unfinished().
 /// @param last_number    number of the last complete checkpoint; 0: none
-/// @param on_disk_until  time; files in the folder that were last written before it count as synced
+/// @param on_disk_until  time. Files in the folder that were last written before it count as synced
 void write_checkpoint(const std::filesystem::path& folder, std::int64_t number, std::int64_t last_number,
                       const std::string& stage, const WriteCheckpointFiles& write_files,
                       std::filesystem::file_time_type on_disk_until);
-/// Removes the partial files of an interrupted write_checkpoint(); ignores errors.
+/// Removes the partial files of an interrupted write_checkpoint(). Ignores errors.
 void discard_unfinished(const std::filesystem::path& folder);
 
 /// Verifies all files of a checkpoint. Throws Error naming the first file that is missing or altered.
 Checkpoint read_checkpoint(const std::filesystem::path& folder, std::int64_t number);
-/// Removes a checkpoint; ignores errors.
+/// Removes a checkpoint. Ignores errors.
 void remove_checkpoint(const std::filesystem::path& folder, std::int64_t number);
 /// Returns the numbers of the folder's checkpoints, newest first.
 std::vector<std::int64_t> checkpoint_numbers(const std::filesystem::path& folder);

@@ -1,4 +1,4 @@
-// checkpoints.hpp: checkpoints on disk, from which long work can resume after an interruption.
+// checkpoints.hpp: checkpoints on disk for resuming long work after an interruption.
 #pragma once
 #include <sys/types.h>
 
@@ -17,16 +17,16 @@
 namespace roomradar {
 
 /// Folder of one unfinished piece of work. It contains `work.json` (identity of the work), `lock`, and the
-/// last two checkpoints. Each checkpoint is a folder that appears atomically, after all files written earlier
-/// in the work's folder (such as a live scan's frames) are on disk. A forked child writes the checkpoint from
-/// a snapshot of the state while the work continues; the child dies with its parent. The work's folder is
-/// created with the first checkpoint. Only one process at a time can own it.
+/// last two checkpoints. Each checkpoint is a folder that appears atomically. All files written earlier in
+/// the work's folder (such as a live scan's frames) are then on disk. A forked child writes the checkpoint
+/// from a snapshot of the state while the work continues. The child dies with its parent. The work's folder
+/// is created with the first checkpoint. Only one process at a time can own it.
 class Checkpoints {
  public:
   using WriteFiles = WriteCheckpointFiles;
 
   /// @param folder    where checkpoints are stored
-  /// @param identity  name-value pairs (source, settings); only work with equal pairs can resume
+  /// @param identity  name-value pairs (source, settings). Only work with equal pairs can resume
   /// @param every_s   min time between two checkpoints, s
   Checkpoints(std::filesystem::path folder, std::map<std::string, std::string> identity, double every_s);
   /// Waits for a checkpoint that is being written. Keeps the folder, unless remove() was called or it
@@ -49,7 +49,7 @@ class Checkpoints {
   /// Waits for the last checkpoint to complete, and returns true if a third of `every_s` has passed since it
   /// began. Call at the end of a stage.
   bool is_due_at_end();
-  /// Starts a child process that writes a checkpoint; returns after a few milliseconds. If the child fails
+  /// Starts a child process that writes a checkpoint. Returns after a few milliseconds. If the child fails
   /// (disk full), the previous checkpoint stays and failures() increases. Only the first failure is reported,
   /// through the callback of tell_failure().
   void write(const std::string& stage, const WriteFiles& write_files);
@@ -57,7 +57,7 @@ class Checkpoints {
   [[nodiscard]] bool has_any();
   /// Removes the folder of completed work.
   void remove();
-  /// Deletes the checkpoints, so the work restarts from its beginning. Other files in the folder stay.
+  /// Deletes the checkpoints. The work then restarts from its beginning. Other files in the folder stay.
   void forget();
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
@@ -66,8 +66,7 @@ class Checkpoints {
   /// Returns one sentence per damaged checkpoint that resume() skipped.
   [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
   [[nodiscard]] std::int64_t failures() const { return failures_; }
-  /// Sets a callback that is called when a checkpoint cannot be written for the first time. There is none by
-  /// default.
+  /// Sets a callback for the first failure to write a checkpoint. There is none by default.
   void tell_failure(std::function<void(const std::string& sentence)> tell) { tell_ = std::move(tell); }
 
  private:

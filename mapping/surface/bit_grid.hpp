@@ -1,5 +1,5 @@
-// bit_grid.hpp: a 3D grid of bits, with set operations and morphological operations on 64 voxels of a row at
-// a time.
+// bit_grid.hpp: a 3D grid of bits with set operations and morphological operations on 64 voxels of a row at a
+// time.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -36,8 +36,8 @@ class BitGrid {
   [[nodiscard]] BitGrid shifted(int axis, int step) const;
 
   /// Dilates by one step along the axes, restricted to the voxels set in `where`. A voxel set in
-  /// blocked[axis] blocks the step between that voxel and the next voxel along the axis, in both directions.
-  /// All grids must have the same size.
+  /// blocked[axis] blocks the steps between it and the next voxel along the axis in both directions. All
+  /// grids must have the same size.
   void spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
   /// Repeats spread() until nothing changes.
   void flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
@@ -91,7 +91,7 @@ class BitGrid {
   std::vector<std::uint64_t> words_;
 };
 
-/// Returns the morphological opening by a cube: keeps the voxels that are in a cube of edge x edge x edge set
+/// Returns the morphological opening by a cube. Keeps the voxels that are in a cube of edge x edge x edge set
 /// voxels, and removes thinner structures. With lattice > 1, considers only cubes whose lowest voxel's
 /// coordinates are multiples of `lattice`. edge and lattice must be >= 1.
 BitGrid opened(const BitGrid& bits, int edge, int lattice = 1);

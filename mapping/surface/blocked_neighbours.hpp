@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// Returns one bit grid per axis: a cell is set if the segment from its centre to the centre of the next cell
+/// Returns one bit grid per axis. A cell is set if the segment from its centre to the centre of the next cell
 /// along that axis intersects the surface. Triangles include their edges. Triangles with a non-finite vertex
 /// are ignored.
 std::array<BitGrid, 3> blocked_neighbours(const Mesh& surface_world, const CellGrid& grid);

@@ -8,12 +8,12 @@ namespace roomradar {
 /// Extracts the surface by dual marching cubes. A cell is a cube whose eight corners are neighbouring
 /// samples. Each cell gets one vertex per surface sheet, at the mean of the sheet's zero crossings on the
 /// cell's edges. Each crossed edge whose four cells have vertices gets a quad (two triangles). A cell with an
-/// unknown corner has no vertex, so unobserved areas stay open. Extrapolated samples count as known corners,
-/// but an edge with an extrapolated end gets no quad, and a crossing on such an edge has little weight in a
-/// vertex. Vertices are in the world (mesh.origin + vertex). Triangles and normals (gradient of the trilinear
+/// unknown corner has no vertex, so unobserved areas stay open. Extrapolated samples count as known corners.
+/// An edge with an extrapolated end gets no quad. A crossing on such an edge has little weight in a vertex.
+/// Vertices are in the world (mesh.origin + vertex). Triangles and normals (gradient of the trilinear
 /// distance) face the free side. Colours come from the samples, or are grey if the samples have none.
 ///
-/// Edges of the mesh are manifold: each has two triangles, or one where the samples end. The crossings on a
+/// Edges of the mesh are manifold. Each has two triangles, or one where the samples end. The crossings on a
 /// cell's faces determine the cell's sheets. An ambiguous face (equal signs on each diagonal) separates its
 /// two inside corners. If all four crossings of an ambiguous face then belong to one sheet in both adjacent
 /// cells, the face separates its outside corners instead. Source: Gibson, Constrained Elastic Surface Nets,

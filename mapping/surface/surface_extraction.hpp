@@ -10,13 +10,13 @@ namespace roomradar {
 
 struct SurfaceConfig {
   /// Min weight of a sample; samples with less weight count as unknown. The default is the weight of one
-  /// frame at 2.9 m or about ten frames at 5 m, which corresponds to a standard deviation of 13 mm.
+  /// frame at 2.9 m or about ten frames at 5 m. It corresponds to a standard deviation of 13 mm.
   float min_weight = 0.02F;
   /// Strength of smoothing, as a sample weight (1: one measurement from 1 m); 0: no smoothing. Samples with a
-  /// higher weight keep their detail; samples with a lower weight are averaged over more voxels.
+  /// higher weight keep their detail. Samples with a lower weight are averaged over more voxels.
   float smoothing = 0.4F;
   float min_component_area_m2 = 4e-3F;  ///< smaller components are dropped (default: about 6 x 6 cm)
-  /// Simplification bound, m: max distance between the simplified and the full surface, in both directions.
+  /// Simplification bound: max two-sided (Hausdorff) distance between the simplified and the full surface, m.
   /// 0: no simplification.
   float max_deviation_m = 2e-3F;
 };
@@ -28,19 +28,18 @@ struct SurfaceStats {
   float deviation_m = 0.0F;  ///< measured in both directions; not above max_deviation_m
 };
 
-/// Extracts the zero level set of the map's signed distances. Distances are smoothed where they are poorly
-/// measured, small components are dropped, and the mesh is simplified within max_deviation_m: large triangles
-/// on flat areas, small ones on curved areas. The mesh is crack-free: every edge has two triangles, or one
-/// along a border of the observed surface, so holes stay open. Vertices are in the world (mesh.origin +
-/// vertex), normals point to the free side, and colours come from the samples. An empty map gives an empty
-/// mesh. Throws Error if a setting is not finite and >= 0. Methods: see dual_marching_cubes.hpp,
-/// tsdf_smoothing.hpp and mesh_simplify.hpp.
+/// Extracts the zero level set of the map's signed distances. Poorly measured distances are smoothed, and
+/// small components are dropped. The mesh is simplified within max_deviation_m. The mesh is crack-free. Every
+/// edge has two triangles, or one along a border of the observed surface. Holes stay open. Vertices are in
+/// the world (mesh.origin + vertex). Normals point to the free side. Colours come from the samples. An empty
+/// map gives an empty mesh. Throws Error if a setting is not finite and >= 0. Methods: see
+/// dual_marching_cubes.hpp, tsdf_smoothing.hpp and mesh_simplify.hpp.
 /// @param facts  receives the statistics; may be null
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceStats* facts = nullptr);
 
-/// Extracts the surface in a box: all triangles with a vertex in the box grown by one voxel. The result can
-/// therefore extend two voxels beyond the box. Samples farther than 12 voxels from the box are ignored, since
-/// they would move the result by less than 0.1 mm. The area of a component is measured without them, too.
+/// Extracts all triangles with a vertex in the box grown by one voxel. The result can therefore extend two
+/// voxels beyond the box. Samples farther than 12 voxels from the box are ignored. They would move the result
+/// by less than 0.1 mm. The area of a component is measured without them, too.
 Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
                      const SurfaceConfig& config = {});
 

@@ -4,9 +4,9 @@
 
 namespace roomradar {
 
-/// Extrapolates, in two rounds, a distance to each unknown voxel that shares a face with a known voxel, and
-/// marks the sample as extrapolated. The distance is the mean of the linear extrapolations from those of the
-/// six directions in which the next two voxels are known. If there is no such direction, the distance is the
+/// Extrapolates a distance to each unknown voxel that shares a face with a known voxel, in two rounds. Marks
+/// the samples as extrapolated. The distance is the mean of linear extrapolations along the axes. Of the six
+/// directions, those with two known next voxels are used. If there is no such direction, the distance is the
 /// mean of the known face neighbours. Adds no bricks. Afterwards all eight corners of every cell around a
 /// measured zero crossing are known, so the surface extends as far as the measurements.
 void extrapolate_neighbours(TsdfBricks& bricks);

@@ -12,17 +12,17 @@ namespace roomradar {
 struct UnknownSurfaceConfig {
   /// Edge of a cube, voxels, 1 to 16. Unknown space counts only where the cube fits into it. Objects can pass
   /// through thinner unknown space (gaps between rays, slivers beside depth edges, single voxels). The search
-  /// for reachable unknown space starts in free space into which the cube fits.
+  /// for reachable unknown space starts in free space that holds the cube.
   int least_voxels = 3;
-  /// Edge, voxels, 1 to 6, of the wholly unknown cubes whose faces form the surface. The surface is less than
-  /// one cube edge behind the border of the unknown space that counts.
+  /// Edge, voxels, 1 to 6, of the unknown cubes whose faces form the surface. The surface is less than one
+  /// cube edge behind the border of the unknown space that counts.
   int cube_voxels = 2;
   /// Number of voxels by which the surface continues past the border of observed surfaces, and through
-  /// occupied voxels for which the static mesh has no surface. 1 to 16, and at least 3 * (cube_voxels - 1),
-  /// which is the max number of steps from the border to the nearest cube.
+  /// occupied voxels without surface in the static mesh. 1 to 16, and at least 3 * (cube_voxels - 1), the max
+  /// number of steps from the border to the nearest cube.
   int rim_voxels = 4;
   /// Min number of voxels, 0 to 10^9, of a connected component of unknown space that has no occupied voxel
-  /// within cube_voxels steps. Smaller such components do not count: rays passed them on all sides, and only
+  /// within cube_voxels steps. Smaller such components do not count. Rays passed them on all sides, and only
   /// depth was missing, as in front of a dark object.
   int pocket_voxels = 1000;
 };
@@ -39,13 +39,13 @@ struct UnknownSurface {
   std::size_t memory_bytes = 0;  ///< approximate temporary memory of the extraction, without the mesh
 };
 
-/// Extracts the border of the unknown space that counts (see UnknownSurfaceConfig), as far as the border can
-/// be reached from free space without crossing `surface_world`, the map's own surface. Space outside the
-/// known bounds of the map is unknown, too.
+/// Extracts the border of the unknown space that counts (see UnknownSurfaceConfig). Only the border that can
+/// be reached from free space without crossing `surface_world`, the map's own surface, is extracted. Space
+/// outside the known bounds of the map is unknown, too.
 ///
 /// The resulting surface is inside unknown space, never in free space. Along each axis, it is less than
 /// cube_voxels voxels behind the border of unknown space. A straight path from the free space in which the
-/// search started into unknown cubes crosses this surface or the static surface; the two overlap at the
+/// search started into unknown cubes crosses this surface or the static surface. The two overlap at the
 /// border of observed surfaces. Only an object thinner than a voxel may slip through an equally small hole of
 /// the static surface. Cube faces are merged into rectangles as large as possible. The result is empty for a
 /// map without free space. Takes about 0.4 s for 50 million voxels. Throws Error if the config is invalid.

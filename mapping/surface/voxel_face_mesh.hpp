@@ -20,10 +20,10 @@ struct VoxelFaces {
   int step = 1;
 };
 
-/// Meshes the faces by greedy meshing: merges the faces of a plane into rectangles, each of which is extended
-/// first in length, then in width. Triangles face in the direction of `step`. The mesh has no normals and no
-/// colours. T-junctions between rectangles leave no gaps: the corner of one rectangle is exactly on the side
-/// of the other, since both share two coordinates.
+/// Meshes the faces by greedy meshing. Merges the faces of a plane into rectangles, extended first in length,
+/// then in width. Triangles face in the direction of `step`. The mesh has no normals and no colours.
+/// T-junctions between rectangles leave no gaps. The corner of one rectangle is exactly on the side of the
+/// other, since both share two coordinates.
 Mesh mesh_of(const std::vector<VoxelFaces>& faces, const CellGrid& grid);
 
 }  // namespace roomradar

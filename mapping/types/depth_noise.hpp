@@ -14,9 +14,9 @@ inline float depth_sigma_m(float depth_m) {
   return 0.0012F + 0.0019F * beyond_m * beyond_m;
 }
 
-/// Returns depth_sigma_m(depth_m) plus the term for the angle between viewing ray and surface normal, which
-/// matters beyond 60 degrees: sigma(z, theta) = sigma(z) + 0.0001 / sqrt(z) * theta^2 / (pi/2 - theta)^2. The
-/// angle is clamped to 85 degrees, and z in the added term to at least 0.1 m.
+/// Returns depth_sigma_m(depth_m) plus the term for the angle theta between viewing ray and surface normal.
+/// sigma(z, theta) = sigma(z) + 0.0001 / sqrt(z) * theta^2 / (pi/2 - theta)^2. The term matters beyond 60
+/// degrees. theta is clamped to 85 degrees, and z in the added term to at least 0.1 m.
 inline float depth_sigma_m(float depth_m, float incidence_rad) {
   const float theta = std::clamp(incidence_rad, 0.0F, 1.4835F);
   const float from_grazing = 1.5707963F - theta;

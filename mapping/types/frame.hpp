@@ -27,7 +27,7 @@ struct Frame {
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame
 };
 
-/// Copies index, times, cameras, pose and gravity; the images of `to` stay.
+/// Copies index, times, cameras, pose and gravity. The images of `to` stay.
 inline void copy_all_but_images(const Frame& from, Frame& to) {
   to.index = from.index;
   to.stamp_s = from.stamp_s;

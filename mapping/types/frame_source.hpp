@@ -10,7 +10,7 @@ namespace roomradar {
 
 enum class ReadStatus {
   kFrame,    ///< `frame` was filled
-  kSkipped,  ///< one bad frame was skipped; `fault` names it and the reason; call next() again
+  kSkipped,  ///< one bad frame was skipped, see `fault`; call next() again
   kEnd,      ///< no more frames; `frame` is unchanged
 };
 
@@ -29,15 +29,15 @@ class FrameSource {
   virtual ~FrameSource() = default;
 
   /// Fills `frame`, reusing its allocations. Returns kSkipped for a single unreadable frame. Throws Error if
-  /// the source cannot continue: device gone, disk error, or ten unreadable frames in a row.
+  /// the source cannot continue (device gone, disk error, or ten unreadable frames in a row).
   virtual ReadResult next(Frame& frame) = 0;
 
   /// Goes back to the first frame and returns true. Returns false if the source cannot rewind (a live
   /// device).
   virtual bool rewind() = 0;
 
-  /// Jumps to frame `index` (0 .. frame_count() - 1), which next() then delivers, without reading the frames
-  /// between. Returns false and changes nothing if this source only reads sequentially.
+  /// Seeks to frame `index` (0 .. frame_count() - 1), without reading the frames between. next() then
+  /// delivers this frame. Returns false and changes nothing if this source only reads sequentially.
   virtual bool seek(std::int64_t /*index*/) { return false; }
 
   /// Returns the total number of frames, unreadable ones included; nullopt if unknown in advance.

@@ -22,7 +22,7 @@ struct Image {
   Image() = default;
   Image(int width_px, int height_px, Pixel fill = Pixel{}) { resize(width_px, height_px, fill); }
 
-  /// Resizes the image and sets every pixel; keeps the allocation if it is large enough.
+  /// Resizes the image and sets every pixel. Keeps the allocation if it is large enough.
   void resize(int width_px, int height_px, Pixel fill = Pixel{}) {
     assert(width_px >= 0 && height_px >= 0);
     width = width_px;
@@ -40,8 +40,8 @@ struct Image {
   const Pixel* row(int y) const { return pixels.data() + index(0, y); }
 };
 
-/// Depth along the optical axis, m; 0: no measurement. Always finite and >= 0: frame sources guarantee these
-/// limits, and all other code relies on them.
+/// Depth along the optical axis, m; 0: no measurement. Always finite and >= 0. Frame sources guarantee these
+/// limits. All other code relies on them.
 using DepthImage = Image<float>;
 using ColourImage = Image<Rgb>;
 /// Mask with one byte per pixel, 0 or 255.

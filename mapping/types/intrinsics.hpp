@@ -41,8 +41,8 @@ inline Intrinsics scaled(const Intrinsics& camera, double factor) {
 }
 
 /// Throws Error naming `where`, the field and the rule if the camera is invalid. A valid camera has sizes in
-/// 1..16384, focal lengths finite and > 0, and a principal point that is finite and within one image size of
-/// the image.
+/// 1..16384 and finite focal lengths > 0. Its principal point is finite and within one image size of the
+/// image.
 void require_valid(const Intrinsics& camera, const char* where);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// linear_algebra.hpp: solvers for small dense problems, which wrap Eigen's so that these are compiled only
+// linear_algebra.hpp: wrappers of Eigen's solvers for small dense problems, which are thus compiled only
 // once.
 //
 // Eigen's decompositions take seconds to compile in every source that instantiates them.
@@ -19,27 +19,27 @@ struct SymmetricEigen {
   Eigen::Matrix<double, N, N> vectors;
 };
 
-/// Returns the eigendecomposition of a symmetric matrix, of which only the lower triangle is read. Matrices
-/// that are not finite do not converge.
+/// Returns the eigendecomposition of a symmetric matrix. Reads only its lower triangle. Matrices that are not
+/// finite do not converge.
 SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A);
 SymmetricEigen<6> symmetric_eigen(const Matrix6d& A);
 
-/// Returns the x that solves A x = b, for A symmetric and positive or negative semidefinite (LDLT with
-/// pivoting). The result is not finite if A or b is not.
+/// Returns the x that solves A x = b by LDLT with pivoting. A must be symmetric and positive or negative
+/// semidefinite. The result is not finite if A or b is not.
 Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
 Vector6d solve_symmetric(const Matrix6d& A, const Vector6d& b);
 
 /// Returns the inverse, by LU decomposition. The result is not finite if A is singular.
 Matrix6d inverse(const Matrix6d& A);
 
-/// Returns the orthogonal matrix nearest to A in the least-squares sense: U V' of A's singular value
+/// Returns the orthogonal matrix nearest to A in the least-squares sense, U V' of A's singular value
 /// decomposition. Its determinant is -1 if A's is negative.
 Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& A);
 
-/// Returns the shortest rotation from one direction to another; neither may be zero.
+/// Returns the smallest rotation from one direction to another. Neither may be zero.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-/// Returns the T_b_a that minimises the sum of |T_b_a a_i - b_i|^2, without scale; points are in columns.
+/// Returns the T_b_a that minimises the sum of |T_b_a a_i - b_i|^2, without scale. Points are in columns.
 /// Source: Umeyama, Least-squares estimation of transformation parameters, PAMI 1991.
 Eigen::Isometry3d fit_rigid(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b);
 

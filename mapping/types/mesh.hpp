@@ -1,5 +1,4 @@
-// mesh.hpp: triangle meshes. Vertices are floats relative to a local origin, so they stay precise far from
-// zero.
+// mesh.hpp: triangle meshes. Vertices are floats relative to a local origin, and thus precise far from zero.
 #pragma once
 #include <Eigen/Core>
 #include <array>

@@ -1,5 +1,5 @@
-// serialize.hpp: binary serialization. For each type, one function serialize() lists the fields for both
-// writing and reading.
+// serialize.hpp: binary serialization. One function serialize() per type lists the fields for writing and
+// reading.
 #pragma once
 #include <Eigen/Geometry>
 #include <bit>

@@ -14,11 +14,11 @@ struct TimedPose {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Writes one line per pose, `stamp tx ty tz qx qy qz qw` (s, m, unit quaternion), in order, with enough
-/// digits to restore values within 1e-9. Throws Error if the file cannot be written.
+/// Writes one line per pose in order, `stamp tx ty tz qx qy qz qw` (s, m, unit quaternion). Reading restores
+/// values within 1e-9. Throws Error if the file cannot be written.
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory);
 
-/// Reads a file written by write_trajectory(); lines starting with # are comments. frame_index counts the
+/// Reads a file written by write_trajectory(). Lines starting with # are comments. frame_index counts the
 /// poses, from 0. Throws Error naming file and line if a line does not have 8 finite numbers or its
 /// quaternion is not a unit quaternion.
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& path);
@@ -30,20 +30,21 @@ struct TrajectoryError {
   Eigen::Isometry3d T_reference_estimate = Eigen::Isometry3d::Identity();
 };
 
-/// Computes the absolute trajectory error: the distances between positions matched by frame index, after the
-/// best rigid alignment (scale 1). TrajectoryError::poses is 0 if fewer than 3 positions match. Source: Horn
-/// 1987; Sturm et al., IROS 2012.
+/// Computes the absolute trajectory error (ATE), the distances between positions matched by frame index after
+/// the best rigid alignment (scale 1). TrajectoryError::poses is 0 if fewer than 3 positions match. Source:
+/// Horn 1987; Sturm et al., IROS 2012.
 TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
                                           const std::vector<TimedPose>& reference);
 
 /// Returns the T_reference_estimate that best aligns poses matched by frame index. Each pose contributes the
-/// camera's position and the points 1 m along its axes, since positions alone would not constrain the
-/// rotation if the camera hardly moved or moved along a line. Returns nullopt if no pose matches.
+/// camera's position and the points 1 m along its axes. Positions alone would not constrain the rotation of a
+/// camera that hardly moves or moves along a line. Returns nullopt if no pose matches.
 std::optional<Eigen::Isometry3d> pose_alignment(const std::vector<TimedPose>& estimate,
                                                 const std::vector<TimedPose>& reference);
 
-/// Returns the distance between the last positions of both trajectories, m, after aligning their first poses;
-/// 0 if a trajectory is empty. Both first poses must belong to one frame, and both last poses to one frame.
+/// Returns the distance between the last positions of both trajectories, m, after aligning their first poses.
+/// Returns 0 if a trajectory is empty. Both first poses must belong to one frame, and both last poses to one
+/// frame.
 double end_gap_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference);
 
 }  // namespace roomradar

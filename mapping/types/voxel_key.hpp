@@ -1,4 +1,4 @@
-// voxel_key.hpp: integer grid cells: floor division, hash keys, and the 27-cell neighbourhood.
+// voxel_key.hpp: floor division, hash keys and the 27-cell neighbourhood of integer grid cells.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -19,7 +19,7 @@ inline std::uint64_t voxel_key(const Eigen::Vector3i& cell) {
 
 inline constexpr int kCellsRound = 27;
 inline constexpr int kOwnCell = 13;
-/// Returns the offset from a cell to its i-th neighbour, 0 <= i < 27; for i = kOwnCell, the offset is zero.
+/// Returns the offset from a cell to its i-th neighbour, 0 <= i < 27. For i = kOwnCell, the offset is zero.
 inline Eigen::Vector3i neighbour_offset(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
 
 }  // namespace roomradar

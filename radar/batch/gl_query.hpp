@@ -11,9 +11,9 @@ namespace roomradar {
 enum class GlMinimum {
   /// The GPU if there is one, else the CPU.
   kAuto,
-  /// The renderer, by compute shader; a few bytes per query are read back.
+  /// The renderer, by compute shader. A few bytes per query are read back.
   kOnRenderer,
-  /// The CPU; all pixels are read back.
+  /// The CPU. All pixels are read back.
   kReadBack,
 };
 
@@ -43,12 +43,11 @@ struct GlQuery {
   Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();
   /// Max distance to search, > 0, at most 10 km.
   double distance_m = 0.0;
-  /// Index of the object itself in the scene; the query skips this mesh. kNotInScene if it is not in the
-  /// scene.
+  /// Index of the object's own mesh in the scene, which the query skips. kNotInScene if there is none.
   std::size_t own_index = kNotInScene;
 };
 
-/// Returns false if GlRadar rejects the query whatever the scene is.
+/// Returns false if GlRadar rejects the query for any scene.
 bool is_usable(const GlQuery& query);
 
 }  // namespace roomradar

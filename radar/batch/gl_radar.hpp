@@ -1,5 +1,5 @@
-// gl_radar.hpp: Cyber Radar with OpenGL: distance an object can move before contact, from two orthographic
-// depth passes.
+// gl_radar.hpp: Cyber Radar with OpenGL: distance to contact along a line, from two orthographic depth
+// passes.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -22,8 +22,8 @@
 
 namespace roomradar {
 
-/// An object that moves along a line first touches the scene in the pixel where the gap between the object's
-/// front and the scene ahead of it is least.
+/// Computes the distance to contact of an object that moves along a line. Contact is in the pixel with the
+/// least gap between the object's front and the scene ahead of it.
 ///
 ///     rear plane                                                  far plane
 ///        |<------------------------ d ------------------------------->|
@@ -36,32 +36,29 @@ namespace roomradar {
 /// and scene in each pixel; the least L is the distance to contact. L is defined only in pixels that both the
 /// object and the scene cover. In each pixel, R shows the first scene surface that is not behind the object's
 /// front. A surface behind the front is ignored in a pixel if it
-///   - is back-facing, since the object moves away from it (for example the table that a plate is
-///     lifted from), or
-///   - is farther behind the front than overlap_tolerance_m or than the object's length along u, or
+///   - is back-facing, since the object moves away from it (for example the table below a lifted plate), or
+///   - is farther behind the front than overlap_tolerance_m or the object's length along u, or
 ///   - is not certainly inside the front slab (the solid between the object's front and its next surface
 ///     behind the front), since it may be in a concavity such as the hole of a handle.
 ///
-/// contact_distance_m is sampled, so it can be wrong in three ways. A spike or sheet thinner than a pixel may
-/// be missed. A surface in a concavity is compared with the object's front only. On sloped surfaces,
+/// contact_distance_m is sampled and has three kinds of error. A spike or sheet thinner than a pixel may be
+/// missed. A surface in a concavity is compared with the object's front only. On sloped surfaces,
 /// contact_distance_m is too large by about half a pixel's diagonal times the sum of the two surfaces'
 /// slopes.
 ///
 /// lower_m and upper_m are guaranteed bounds. Both come from the same two passes. Each pixel also stores
-/// depth bounds of two sets of surfaces: those that may touch the pixel's square, and those that certainly
-/// cross its sample line (the line along u through its sample position). lower_m is 0 if, in one of the
-/// object's pixels, a scene surface is neither certainly ahead of the object nor certainly behind it.
-/// Examples are a wall that the object passes at less than a pixel's distance, and a peg in a hole. Such a
-/// query is repeated with the exact test on the CPU if possible (GlRadarConfig::exact_fallback); then lower_m
-/// = upper_m.
+/// depth bounds of two sets of surfaces. One set may touch the pixel's square. The other certainly crosses
+/// its sample line (the line along u through its sample position). lower_m is 0 if, in one of the object's
+/// pixels, a scene surface is neither certainly ahead of the object nor certainly behind it. Examples are a
+/// wall that the object passes at less than a pixel's distance, and a peg in a hole. Such a query is repeated
+/// with the exact test on the CPU if possible (GlRadarConfig::exact_fallback). Then lower_m = upper_m.
 ///
 /// One-sided surfaces (is_one_sided(), for example the frontier of observed space) block GlRadar's objects
 /// from both sides. Use CyberRadar if they must block from their outside only.
 ///
 /// Overlaps and concavities are recognised only if the object's mesh is closed and its triangles are
-/// counter-clockwise seen from outside. Masks are cached; their key is the object's mesh and the direction in
-/// the object's frame. R, M and L are the Range, Mask and LookAt Distance Scopes of the Cyber Radar paper.
-/// Not thread safe.
+/// counter-clockwise seen from outside. Masks are cached by the object's mesh and the direction in its frame.
+/// R, M and L are the Range, Mask and LookAt Distance Scopes of the Cyber Radar paper. Not thread safe.
 class GlRadar {
  public:
   /// @throws Error if config is invalid or the renderer lacks a required feature
@@ -69,23 +66,22 @@ class GlRadar {
   GlRadar(const GlRadar&) = delete;
   GlRadar& operator=(const GlRadar&) = delete;
 
-  /// Computes how far `object` can move along a line until it touches the scene. Never throws. Allocates
-  /// nothing once queries of this size have been run.
+  /// Computes the distance to contact of `object`. Never throws. Allocates nothing once queries of this size
+  /// have been run.
   ///
   /// @param object           the moving object; must not be in `scene`
   /// @param direction_world  direction of motion; any length except 0
   /// @param distance_m       max distance to search, > 0, at most 10 km
   /// @param scene            surfaces that can be touched; instances with a null or empty mesh are skipped
   /// @return see Contact. A gap L within 10 um + 1e-6 d of zero counts as touching: the result is kContact
-  ///         with distance 0. If several pixels are equally near (a face that lands flat), the point is the
-  ///         one nearest to the centre of their bounding box.
+  ///         with distance 0. If several pixels are equally near (a face that lands flat), the contact point
+  ///         is in the pixel nearest to the centre of their bounding box.
   Contact query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
                 std::span<const SceneMesh> scene);
 
   /// Runs many queries at once. The queries are drawn into shared textures, and their results are read back
   /// together.
-  /// @param scene     surfaces that can be touched, including the queried objects: each object can touch the
-  ///                  others
+  /// @param scene     surfaces that can be touched, including the queried objects, which can touch each other
   /// @param[out] contacts  one per query; must have the size of `queries`
   void query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
                  std::span<Contact> contacts);

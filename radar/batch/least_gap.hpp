@@ -28,12 +28,12 @@ inline constexpr float kNothingMet = 1e38F;
 inline constexpr float kClearValue = 3e38F;
 
 /// Computes the minimum over each query's tile (a region of the scene texture), for many queries at once.
-/// Owns its shader programs and buffers; the buffers grow to the largest call. Not thread safe.
+/// Owns its shader programs and buffers. The buffers grow to the largest call. Not thread safe.
 class LeastGap {
  public:
-  /// @param on_renderer  true: a compute shader takes the minimum. false: the tiles are read back and the CPU
-  ///                     takes the minimum; reading back costs nothing if the renderer runs on this CPU. Both
-  ///                     ways give the same results.
+  /// @param on_renderer  true: a compute shader computes the minimum. false: the tiles are read back, and the
+  ///                     CPU computes it. Reading back costs nothing if the renderer runs on this CPU. The
+  ///                     results are the same.
   LeastGap(GlContext& context, bool on_renderer);
   ~LeastGap();
   LeastGap(const LeastGap&) = delete;

@@ -8,8 +8,8 @@
 namespace roomradar {
 
 /// Bounding rectangle of an object seen along a direction u, given in the frame of the object's mesh. Valid
-/// while the object's orientation relative to u is unchanged. Defines the outline coordinates: x and y are
-/// perpendicular to u, in pixels from the rectangle's corner, and z is along u, in metres from the object's
+/// while the object's orientation relative to u is unchanged. Defines the outline coordinates. x and y are
+/// perpendicular to u, in pixels from the rectangle's corner. z is along u, in metres from the object's
 /// foremost point. The object extends from z = -length_m to z = 0.
 struct RadarOutline {
   /// Rotation from the mesh's frame to the outline's. Its rows are the right-handed axes x, y and u.
@@ -23,8 +23,8 @@ struct RadarOutline {
   int height_px = 0;
 };
 
-/// Fits square pixels to the object's outline: resolution_px along the longer side, at least 1 along the
-/// shorter. The mesh must have at least one triangle, and u_mesh must have length 1.
+/// Fits a grid of square pixels to the object's outline. The longer side has resolution_px pixels, the
+/// shorter at least 1. The mesh must have at least one triangle. u_mesh must have length 1.
 RadarOutline fit_outline(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh, int resolution_px);
 
 /// Returns the affine 3 x 4 matrix from the object's local points (relative to its mesh's origin) to outline
@@ -39,11 +39,11 @@ Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, cons
 /// Returns the box that contains the object and the volume it sweeps, in the world.
 RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m);
 
-/// Returns the max error, perpendicular to u and in pixels, by which rounding on the renderer displaces the
-/// object's vertices. The formula is that of kTileVertexShader.
+/// Returns the max displacement of the object's vertices by rounding on the renderer, perpendicular to u, in
+/// pixels. The formula is that of kTileVertexShader.
 double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline);
 
-/// Returns the greatest |L| of a gap L that counts as touching: 10 um + 1e-6 (length_m + distance_m), m.
+/// Returns the max |L| of a gap L that counts as touching, m. It is 10 um + 1e-6 (length_m + distance_m).
 double touching_m(const RadarOutline& outline, double distance_m);
 
 }  // namespace roomradar

@@ -16,7 +16,7 @@ class TileAtlas {
   TileAtlas(const TileAtlas&) = delete;
   TileAtlas& operator=(const TileAtlas&) = delete;
 
-  /// Resizes to columns x rows tiles of tile_px x tile_px pixels; the earlier contents are lost. If the
+  /// Resizes to columns x rows tiles of tile_px x tile_px pixels. The earlier contents are lost. If the
   /// renderer has no memory, returns false and leaves the atlas without tiles.
   [[nodiscard]] bool resize(int columns, int rows, int tile_px);
   [[nodiscard]] std::size_t tile_count() const {

@@ -13,8 +13,8 @@
 namespace roomradar {
 
 /// A contiguous range of a scene mesh's triangles whose boxes intersect a query's volume. Every triangle in a
-/// range has a key, unique within the query: triangle first_triangle + k of the mesh has the key first_key +
-/// k.
+/// range has a key that is unique within the query. Triangle first_triangle + k of the mesh has the key
+/// first_key + k.
 struct SceneRun {
   /// Index of the mesh in the scene.
   std::size_t scene_index = 0;

@@ -23,7 +23,7 @@ struct TileQuery {
   std::int32_t query = 0;
   /// Key of the draw's first triangle (see SceneRun). Triangle k of the draw has the key first_key + k.
   std::uint32_t first_key = 0;
-  /// far_m: greatest z to draw. touching_m: gap that counts as touching. tolerance_m: see
+  /// far_m: max z to draw. touching_m: gap that counts as touching. tolerance_m: see
   /// GlRadarConfig::overlap_tolerance_m. length_m: the object's length along the motion.
   float far_m = 0.0F, touching_m = 0.0F, tolerance_m = 0.0F, length_m = 0.0F;
   /// Twice vertex_error_px(), the max rounding error of the object's vertices perpendicular to the motion.
@@ -55,7 +55,7 @@ class TileDraws {
   TileDraws(const TileDraws&) = delete;
   TileDraws& operator=(const TileDraws&) = delete;
 
-  /// Sorts the draws by mesh, so each mesh takes one GL call, and uploads them.
+  /// Sorts the draws by mesh and uploads them. Each mesh then takes one GL call.
   void upload(std::span<TileDraw> draws);
   /// Draws the triangles with the current program. Vertex attributes are those of kTileVertexShader.
   void draw() const;

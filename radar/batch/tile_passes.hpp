@@ -1,4 +1,4 @@
-// tile_passes.hpp: the two depth passes of GlRadar. The first draws objects into mask tiles; the second
+// tile_passes.hpp: the two depth passes of GlRadar. The first draws objects into mask tiles. The second
 // compares the scene with the masks and draws the gaps into scene tiles.
 #pragma once
 #include <array>

@@ -1,4 +1,4 @@
-// tile_shaders.hpp: GLSL that draws triangles into tiles (regions of a texture), with guaranteed bounds of
+// tile_shaders.hpp: GLSL that draws triangles into tiles (regions of a texture) with guaranteed bounds of
 // coverage and depth.
 #pragma once
 
@@ -6,9 +6,9 @@ namespace roomradar {
 
 // For every triangle, the geometry shader emits the rectangle of its tile's pixels that the triangle may
 // touch. The fragment shader computes coverage and depth of each pixel from the triangle's three vertices.
-// The results do not depend on how a driver snaps vertices or interpolates depth, so all renderers agree
+// The results do not depend on the driver's vertex snapping or depth interpolation. All renderers thus agree
 // within the guaranteed bounds. The bounds include all float errors, from the product of matrix and vertex
-// on. GL_MIN blending combines the fragments of a pixel, so the passes need no depth buffer and no drawing
+// on. GL_MIN blending combines the fragments of a pixel. The passes thus need no depth buffer and no drawing
 // order.
 //
 // A tile's coordinates are its query's outline coordinates (RadarOutline): x and y in pixels, z in metres

@@ -50,22 +50,22 @@ struct TriangleSetup {
   alignas(32) Lane<float> area;
   // Rectangle of pixels that a triangle may cover.
   alignas(32) Lane<int> first_x, first_y, columns, rows;
-  /// Inverse depth, 1/m: its value at pixel (first_x, first_y), its slopes per pixel in x and y, and its
-  /// range over the three vertices.
+  /// Inverse depth, 1/m: value at pixel (first_x, first_y), slopes per pixel in x and y, and range over the
+  /// three vertices.
   alignas(32) Lane<float> q_first, q_per_x, q_per_y, least_q, most_q;
-  // Edges, which give the span of pixels that a triangle covers in row y. The span begins at the maximum over
-  // the three edges of left_slope * (y - v) + left, and ends at the minimum of right_slope * (y - v) + right.
-  // v is the row coordinate of one of the edge's vertices. `left` and `right` are the edge's x at row v
-  // rather than at row 0, since a nearly horizontal edge has a huge slope.
+  // Edges. They define the span of pixels that a triangle covers in row y. The span begins at the maximum of
+  // left_slope * (y - v) + left over the three edges. It ends at the minimum of right_slope * (y - v) +
+  // right. v is the row coordinate of one of the edge's vertices. `left` and `right` are the edge's x at row
+  // v, not at row 0, since a nearly horizontal edge has a huge slope.
   alignas(32) std::array<Lane<float>, 3> left, left_slope, right, right_slope;
 };
 
-/// Draws triangles. If cull_back_faces is true, draws only those that are counter-clockwise as seen by the
-/// camera.
+/// Draws triangles. If cull_back_faces is true, draws only triangles that are counter-clockwise as seen by
+/// the camera.
 ///
 /// Inverse depth is linear over a triangle, sampled at pixel centres and clamped to the range of the
 /// triangle's vertices. Triangles are enlarged by 1/1024 pixel, so neighbours leave no gap. Coordinates must
-/// be finite; the enlargement works only for coordinates within 16,000 pixels. Vertices must be in front of
+/// be finite. The enlargement works only for coordinates within 16,000 pixels. Vertices must be in front of
 /// the camera.
 void draw_triangles(const ProjectedVertices& vertices, std::span<const PieceTriangle> triangles,
                     bool cull_back_faces, TriangleSetup& setup, DepthCanvas& canvas);

@@ -44,9 +44,9 @@ class DepthPass {
 
   /// Renders the nearest surface of all instances, sampled at pixel centres. There is no far plane.
   ///
-  /// The depth differs from that of the pixel's exact ray by two errors: 1/256 pixel times the surface's
-  /// slope, since OpenGL snaps vertices (the CPU enlarges triangles by less), and about 1e-7 of the depth. On
-  /// the CPU, a triangle that reaches near_m has an inverse-depth error of 4e-6 / m, which is 0.3 mm at 8 m.
+  /// The depth has two errors. One is 1/256 pixel times the surface's slope, since OpenGL snaps vertices (the
+  /// CPU enlarges triangles by less). The other is about 1e-7 of the depth. On the CPU, a triangle that
+  /// reaches near_m has an inverse-depth error of 4e-6 / m, which is 0.3 mm at 8 m.
   ///
   /// @param scene           meshes with their poses; instances with a null mesh are skipped
   /// @param camera          intrinsics of the image; if invalid (require_valid), depth_m becomes empty
@@ -57,7 +57,7 @@ class DepthPass {
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 
-  /// Renders only a rectangle of the image; pixels of `depth_m` outside it are unchanged. If depth_m does not
+  /// Renders only a rectangle of the image. Pixels of `depth_m` outside it are unchanged. If depth_m does not
   /// have the camera's size, it is first resized and set to 0. Chunks of meshes (contiguous ranges of
   /// triangles) outside the rectangle are not drawn.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,

@@ -19,10 +19,10 @@
 
 namespace roomradar {
 
-/// Renders the images of DepthPass without OpenGL. Several times as fast as software OpenGL, whose cost per
-/// triangle is too high for depth images. Two threads divide the meshes' pieces (RasterPiece) between them.
-/// Each thread draws on its own canvas, and the nearest surface of both canvases is kept, so the result does
-/// not depend on which thread drew a piece. Not thread safe.
+/// Renders the images of DepthPass without OpenGL, several times as fast as software OpenGL. Two threads
+/// divide the meshes' pieces (RasterPiece) between them. Each thread draws on its own canvas, and the nearest
+/// surface of both canvases is kept. The result thus does not depend on the assignment of pieces to threads.
+/// Not thread safe.
 class DepthRaster {
  public:
   /// Renders a rectangle of an image. Parameters are those of DepthPass::render() and DepthPassConfig. `rect`

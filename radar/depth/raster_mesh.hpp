@@ -36,8 +36,8 @@ struct RasterMesh {
   std::vector<std::uint32_t> places;
 };
 
-/// Cuts triangles into pieces. All triangles must be valid, and neighbours must be close together in the
-/// order of triangles. Allocates nothing once `out` has held this many triangles.
+/// Cuts triangles into pieces. All triangles must be valid and sorted spatially. Allocates nothing once `out`
+/// has held this many triangles.
 void cut_into_pieces(std::span<const Eigen::Vector3f> vertices, std::span<const Triangle> triangles,
                      RasterMesh& out);
 

@@ -11,11 +11,11 @@
 namespace roomradar {
 
 /// Intersection of two triangles (object and scene) projected along the motion, restricted to the equally
-/// near points: those whose gap is at most a tolerance larger than the pair's distance to contact. In the
-/// frame of the motion, z is the direction of motion.
+/// near points. The gap at these points is at most a tolerance larger than the pair's distance to contact. In
+/// the frame of the motion, z is the direction of motion.
 struct PatchPiece {
   double contact_distance_m = 0.0;
-  // Vertices of the intersection, as points on the scene's triangle, in the frame of the motion, m. Only the
+  // Vertices of the intersection: points on the scene's triangle in the frame of the motion, m. Only the
   // first `count` are set.
   std::array<Eigen::Vector3d, 18> corners;
   std::size_t count = 0;
@@ -40,16 +40,15 @@ struct PlaceSum {
 };
 
 /// Collects the equally near pieces while the search for the least distance continues. Stores up to kCapacity
-/// pieces. When the store is full, its pieces are replaced by their sums, so the centroid still includes
-/// them.
+/// pieces. When the store is full, its pieces are replaced by their sums. The centroid still includes them.
 class ContactPatch {
  public:
   static constexpr std::size_t kCapacity = 512;
-  /// Max number of equally near pieces; later pieces are dropped. Limits the exact tests to a few
+  /// Max number of equally near pieces. Later pieces are dropped. Limits the exact tests to a few
   /// milliseconds.
   static constexpr std::size_t kMaxPieces = 4096;
   void clear();
-  /// Returns true if kMaxPieces pieces have been collected, so no further piece is accepted.
+  /// Returns true if kMaxPieces pieces have been collected. No further piece is then accepted.
   [[nodiscard]] bool is_full() const { return summed_count_ + pieces_.size() >= kMaxPieces; }
   /// Adds the intersection of one pair of triangles.
   /// @param gap  vertices of the intersection, with the gap at each
@@ -60,8 +59,8 @@ class ContactPatch {
   void add(const TriangleGap& gap, double contact_distance_m, double equally_m, const FrameTriangle& scene,
            SurfaceKind kind, double best_m);
   /// Returns x and y of the centroid of the pieces that are at most equally_m farther than best_m. Pieces are
-  /// weighted by area; if none has area, by length; if none has length, all are weighted equally. Requires at
-  /// least one piece.
+  /// weighted by area. If none has area, they are weighted by length. If none has length, weights are equal.
+  /// Requires at least one piece.
   [[nodiscard]] Eigen::Vector2d middle(double best_m, double equally_m);
   /// Among the stored pieces at most equally_m farther than best_m, returns the point whose x and y are
   /// nearest to `place`. Requires at least one such piece.

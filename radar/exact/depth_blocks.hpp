@@ -20,8 +20,8 @@ struct DepthView {
   const SceneDepth* scene = nullptr;
   Eigen::Matrix3d R_frame_camera;
   Eigen::Vector3d t_frame_camera;
-  /// Map from pixels to points in the frame: a pixel (u, v) measured at `depth` is at depth * rays * (u, v,
-  /// 1) + shift.
+  /// Back-projection into the frame. A pixel (u, v) measured at `depth` is at depth * rays * (u, v, 1) +
+  /// shift.
   Eigen::Matrix3f rays;
   Eigen::Vector3f shift;
   /// Error bound of a point computed in float: slack_m + slack_per_m * depth.
@@ -33,8 +33,8 @@ struct DepthView {
 };
 
 /// Finds the rectangle of vertices whose cells can intersect `volume` (in the frame of the motion). The
-/// rectangle is the volume's bounding rectangle in the image, since a cell's triangles lie in the pyramid
-/// that the cell spans with the camera.
+/// rectangle is the volume's bounding rectangle in the image. It suffices, since a cell's triangles lie in
+/// the pyramid between cell and camera centre.
 /// @return false if there is no such cell
 bool place_depth(const SceneDepth& scene, const Eigen::Matrix3d& R_frame_world,
                  const Eigen::Vector3d& origin_world, const Eigen::AlignedBox3d& volume, DepthView& view);

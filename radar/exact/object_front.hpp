@@ -1,4 +1,4 @@
-// object_front.hpp: M, the height map of a moving object's leading surface, kept between queries.
+// object_front.hpp: keeps M, the height map of a moving object's leading surface, between queries.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -20,8 +20,8 @@ class ObjectFront {
   /// Sets the object's orientation and computes bounds(); build() must follow.
   void turn(const TurnedTree& object);
   /// Builds a coarse M for a new direction. If the direction repeats, builds a finer M once the queries with
-  /// this direction have cost more than half of what the finer M would cost to build. M's resolution affects
-  /// the speed of an exact query, not its result.
+  /// this direction have cost more than half of a finer M's building cost. M's resolution affects the speed
+  /// of an exact query, not its result.
   void build(const TurnedTree& object, const SceneInFrame& scene, const RadarConfig& config);
   /// Adds the cost of a query, in units of ColumnScratch::work.
   void add_work(std::uint64_t work) { work_ += work; }

@@ -7,17 +7,17 @@
 
 namespace roomradar {
 
-/// Image that holds, per pixel, an upper bound of the object's height over the pixel's area; with a max
-/// pyramid. Height is the coordinate along the motion, which is z in the frame of the motion.
+/// Image with an upper bound of the object's height over each pixel's area, and its max pyramid. Height is
+/// the coordinate along the motion (z in the frame of the motion).
 ///
-/// The map is conservative: every triangle is entered into all pixels that it may touch, rounding included. A
-/// tree node no larger than a pixel is entered as a box, so the cost grows with the number of pixels rather
-/// than of triangles. Detail smaller than a pixel therefore counts with its greatest height. A node is
-/// skipped only if all its pixels already have at least the node's height.
+/// The map is conservative. Every triangle is entered into all pixels that it may touch, rounding included. A
+/// tree node no larger than a pixel is entered as a box. The cost thus grows with the number of pixels, not
+/// of triangles. Detail smaller than a pixel counts with its greatest height. A node is skipped only if all
+/// its pixels already have at least the node's height.
 class ObjectHeightMap {
  public:
-  /// Sets the object's orientation and computes bounds(), from which callers can choose a resolution. A call
-  /// of build() must follow. Has no effect if tree, rotation and margin are unchanged.
+  /// Sets the object's orientation and computes bounds(). Callers can choose a resolution from bounds(). A
+  /// call of build() must follow. Has no effect if tree, rotation and margin are unchanged.
   void turn(const TurnedTree& object);
   /// Builds the map. Has no effect if neither the object's orientation nor the resolution changed.
   /// @param resolution_px  number of pixels along the longer side of the object's outline
@@ -30,9 +30,9 @@ class ObjectHeightMap {
   /// intersects it.
   [[nodiscard]] float max_under(float x0_m, float x1_m, float y0_m, float y1_m) const;
 
-  /// Returns a lower bound of the gap to a scene triangle: the minimum of the plane's height minus M over all
-  /// pixels that the triangle touches. Returns infinity if the triangle touches no pixel. This bound is
-  /// tighter than one computed from the triangle's box.
+  /// Returns a lower bound of the gap to a scene triangle. The bound is the minimum of the plane's height
+  /// minus M over all pixels that the triangle touches. It is infinite if the triangle touches no pixel. It
+  /// is tighter than a bound from the triangle's box.
   [[nodiscard]] float least_gap_under(const FrameTriangle& scene) const;
 
   /// Returns the bounds of the whole object in the frame of the motion, margin included, m.

@@ -1,4 +1,4 @@
-// overlap_depth.hpp: computes how far an object has to move back until it no longer overlaps the scene.
+// overlap_depth.hpp: computes the penetration depth of an object along its direction of motion.
 #pragma once
 #include <vector>
 
@@ -29,28 +29,27 @@ struct OverlappedTriangle {
 struct Overlap {
   /// Distance that the object has to move against the direction of motion; 0 if there is no overlap.
   double depth_m = 0.0;
-  /// False if the search was cut short; depth_m is then a lower bound.
+  /// False if the search was cut short. depth_m is then a lower bound.
   bool is_all = true;
-  /// Point on the scene where object and scene lose contact last as the object moves back, in the frame of
-  /// the motion, m.
+  /// Last point of contact on the scene as the object moves back, in the frame of the motion, m.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   /// Unit normal of the scene's triangle at `point`, oriented by its winding.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   SurfaceKind kind = SurfaceKind::kNothing;
 };
 
-/// Cost after which the search is cut short, in units of ColumnScratch::work; a few milliseconds. Without a
-/// limit, an object that is sunk in the ground and moves along the ground would be searched to where the
-/// ground ends.
+/// Cost after which the search is cut short, in units of ColumnScratch::work (a few milliseconds). Without a
+/// limit, the search for an object sunk in the ground that moves along the ground would extend to the
+/// ground's end.
 inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 
 /// Computes how far the object has to move back until it no longer overlaps the scene. A pair of triangles
-/// intersects while the distance moved is between the pair's least gap and its greatest. Between such
-/// intervals, a scene triangle is inside a closed object if the line through it along the motion has more
-/// exits from the solid than entries ahead of the triangle. Overlapping intervals are joined; the depth is
+/// intersects while the distance moved is between the pair's min and max gap. Between such intervals, a scene
+/// triangle can be inside a closed object. It is inside if the line through it along the motion has more
+/// exits from the solid than entries ahead of the triangle. Overlapping intervals are joined. The depth is
 /// the distance from 0 back to the lower end of the joined interval that contains 0. Back-facing scene
 /// triangles are ignored.
-/// @param known  a triangle known to overlap the object, reported if the search is cut short before it finds
+/// @param known  a triangle known to overlap the object. Reported if the search is cut short before it finds
 ///               one
 Overlap overlap_depth(const TurnedTree& object, const ObjectHeightMap& front, SceneInFrame& scene,
                       const OverlappedTriangle& known, OverlapScratch& scratch);

@@ -16,7 +16,7 @@ struct RadarVolume {
   Eigen::Vector3d origin_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d x_world = Eigen::Vector3d::UnitX();
   Eigen::Vector3d y_world = Eigen::Vector3d::UnitY();
-  /// Unit direction of motion; x_world cross y_world = u_world.
+  /// Unit direction of motion, x_world cross y_world.
   Eigen::Vector3d u_world = Eigen::Vector3d::UnitZ();
   /// Side of a pixel.
   double pixel_m = 0.0;
@@ -43,7 +43,7 @@ struct RadarPictures {
 };
 
 /// Computes the images of a CyberRadar query. Samples each pixel slightly off its centre, as GlRadar does.
-/// Depths differ from GlRadar's in three ways: by its renderer's rounding, in overlaps (L is never negative
+/// Depths differ from GlRadar's by its renderer's rounding. They also differ in overlaps (L is never negative
 /// in these images) and at one-sided surfaces (GlRadar treats them as two-sided). R shows the first surface
 /// that is not behind the object's leading surface. All depths are computed in double. CyberRadar itself does
 /// not use the images.

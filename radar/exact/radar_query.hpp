@@ -9,7 +9,7 @@
 namespace roomradar {
 
 enum class RadarMode {
-  /// Runs few exact tests. Fast; lower_m and upper_m may differ by the depth range within a pixel.
+  /// Runs few exact tests. Fast. lower_m and upper_m may differ by the depth range within a pixel.
   kSampled,
   /// Runs exact tests until lower_m = upper_m = contact_distance_m.
   kExact
@@ -21,10 +21,10 @@ constexpr std::string_view to_string(RadarMode mode) {
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
   /// Number of pixels along the longer side of the object's height map M, 1 to 4096. Determines
-  /// Contact::pixel_m and, in sampled mode, how far lower_m and upper_m may differ. Sampled mode uses this
-  /// resolution only once the direction in the object's frame has repeated often enough to pay for building
+  /// Contact::pixel_m and, in sampled mode, the difference of lower_m and upper_m. Sampled mode uses this
+  /// resolution only once enough queries with the same direction in the object's frame have paid for building
   /// the map. Until then, M has at most 40 pixels per side, or 64 for an object of fewer than 500 triangles.
-  /// Exact mode chooses M's resolution by speed; its result does not depend on M's resolution.
+  /// Exact mode chooses M's resolution by speed. Its result does not depend on M's resolution.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };
@@ -41,15 +41,15 @@ struct RadarQuery {
   double distance_m = 0.0;
   /// Inflates the object by this distance on all sides, m, >= 0. lower_m then holds for every motion that
   /// deviates from the straight one by at most margin_m (due to rotation or noise). If margin_m > 0, only
-  /// lower_m is meaningful: upper_m is infinite, overlap and touching give lower_m = 0, and back-facing
-  /// surfaces count as contacts too.
+  /// lower_m is meaningful. upper_m is infinite. Overlap and touching give lower_m = 0. Back-facing surfaces
+  /// count as contacts, too.
   double margin_m = 0.0;
   /// Index of the object's own tree in the scene, which is skipped; kNotInScene if there is none.
   std::size_t own_tree = kNotInScene;
   static constexpr std::size_t kNotInScene = static_cast<std::size_t>(-1);
 };
 
-/// Returns false if CyberRadar::query() rejects the query whatever the scene is.
+/// Returns false if CyberRadar::query() rejects the query for any scene.
 bool is_valid(const RadarQuery& query);
 
 /// Returns the distance below which surfaces count as touching this object, m: 1 um plus the float resolution

@@ -14,7 +14,7 @@ namespace roomradar {
 
 /// One query of CyberRadar in the frame of its motion, and the results of its exact tests so far. The frame
 /// has its origin at the object's centre and its z axis along the direction of motion. Relative to the
-/// object, the frame depends only on the direction, so the object's height map M can be reused while the
+/// object, the frame depends only on the direction. The object's height map M can thus be reused while the
 /// direction in the object's frame is unchanged.
 struct RadarSearch {
   const RadarQuery& query;
@@ -27,7 +27,7 @@ struct RadarSearch {
 
   /// Least distance to contact found by an exact test, m.
   double best_m = kInfinity<double>;
-  /// True if an exact test found an overlap; the search for contacts then ends.
+  /// True if an exact test found an overlap. The search for contacts then ends.
   bool overlaps = false;
   /// The scene triangle that the object overlaps; set if `overlaps`.
   OverlappedTriangle overlapped;

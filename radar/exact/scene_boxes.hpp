@@ -20,12 +20,12 @@ class SceneBoxes {
   /// are not finite.
   void build(std::span<const SceneTree> scene);
 
-  /// Empties the hierarchy. For a scene that is not a span of SceneTree, build the hierarchy by clear(), then
-  /// add() for each mesh with a surface, then finish().
+  /// Empties the hierarchy. For a scene that is not a span of SceneTree, call clear(), then add() for each
+  /// mesh with a surface, then finish().
   void clear();
   /// Adds a mesh.
-  /// @param index        index of the mesh in the scene, which visit() passes to its callback; must increase
-  ///                     from call to call
+  /// @param index        index of the mesh in the scene, for the callback of visit(). Must increase from call
+  ///                     to call
   /// @param bounds_mesh  bounding box in the mesh's frame, m
   void add(std::size_t index, const Eigen::AlignedBox3d& bounds_mesh, const Eigen::Isometry3d& T_world_mesh);
   /// Builds the hierarchy over the meshes added since clear().

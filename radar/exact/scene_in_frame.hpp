@@ -11,8 +11,7 @@
 
 namespace roomradar {
 
-/// A part of the scene, which SceneInFrame::expand() can subdivide, and a lower bound of its distance to
-/// contact.
+/// A part of the scene, and a lower bound of its distance to contact. SceneInFrame::expand() subdivides it.
 struct SceneItem {
   enum class Kind : std::uint32_t {
     /// Node of a triangle tree.

@@ -7,13 +7,13 @@
 
 namespace roomradar {
 
-/// A binary heap of scene items; the item with the least SceneItem::low_m is popped first. Keeps its memory
+/// A binary heap of scene items. The item with the least SceneItem::low_m is popped first. Keeps its memory
 /// when cleared.
 class SceneQueue {
  public:
   void clear() { items_.clear(); }
   [[nodiscard]] bool empty() const { return items_.empty(); }
-  /// Returns the items, so callers can append many at once; arrange() must follow.
+  /// Returns the items, for appending many at once. A call of arrange() must follow.
   [[nodiscard]] std::vector<SceneItem>& items() { return items_; }
   /// Restores the heap order.
   void arrange() { std::make_heap(items_.begin(), items_.end(), is_farther); }

@@ -11,8 +11,8 @@ namespace roomradar {
 /// Finds the boxes that satisfy a predicate without testing every box. Building is not thread safe.
 class BoxTree {
  public:
-  /// Builds the hierarchy in O(n); allocates nothing if an earlier build had at least as many boxes. Groups
-  /// consecutive boxes, so visits skip more if consecutive boxes are close together.
+  /// Builds the hierarchy in O(n) over groups of consecutive boxes. Visits skip more if consecutive boxes are
+  /// close together. Allocates nothing if an earlier build had at least as many boxes.
   void build(std::span<const Eigen::AlignedBox3d> boxes);
 
   [[nodiscard]] std::size_t size() const { return levels_.empty() ? 0 : levels_.front().count; }

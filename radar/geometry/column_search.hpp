@@ -12,7 +12,7 @@
 namespace roomradar {
 
 /// Triangle tree of the object, rotated into the frame of the motion. The frame's origin is the tree's
-/// centre; its z axis is the direction of motion. Unit: m.
+/// centre. Its z axis is the direction of motion. Unit: m.
 struct TurnedTree {
   const TriangleTree* tree = nullptr;
   Eigen::Matrix3d R_frame_mesh = Eigen::Matrix3d::Identity();
@@ -61,13 +61,13 @@ struct PendingNode {
 /// Scratch memory for searches, and a counter of their cost.
 struct ColumnScratch {
   std::vector<PendingNode> pending;
-  /// Number of nodes visited plus number of triangles passed to `leaf`; each takes about 0.1 us. Accumulates
+  /// Number of nodes visited plus number of triangles passed to `leaf`. Each takes about 0.1 us. Accumulates
   /// over searches.
   std::uint64_t work = 0;
 };
 
-/// Sorts the nodes from index `first` on by descending low_m, so the node with the smallest gap is popped
-/// next. Uses insertion sort, since there are at most eight nodes (the children of one node).
+/// Sorts the nodes from index `first` on by descending low_m. The node with the smallest gap is thus popped
+/// next. Uses insertion sort for the at most eight children of one node.
 inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t first) {
   for (std::size_t i = first + 1; i < pending.size(); ++i) {
     for (std::size_t j = i; j > first && pending[j].low_m > pending[j - 1].low_m; --j) {
@@ -76,9 +76,9 @@ inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t firs
   }
 }
 
-/// Infinite prism that a scene triangle spans along the motion. x_axis, y_axis, z_axis, edge and plane are
-/// used as dot products with a point p of the object. p is in the mesh frame, relative to the tree's centre,
-/// in m. All bounds include float rounding.
+/// Infinite prism of a scene triangle along the motion. x_axis, y_axis, z_axis, edge and plane are used as
+/// dot products with a point p of the object. p is in the mesh frame, relative to the tree's centre, in m.
+/// All bounds include float rounding.
 struct SceneColumn {
   Eigen::Vector3f x_axis, y_axis, z_axis;
   /// Bounds of the scene triangle in the frame of the motion, m. z0 and z1 are infinite unless is_steep.
@@ -87,14 +87,14 @@ struct SceneColumn {
   /// edge_reach are beyond this edge and so outside the projected triangle.
   Eigen::Vector3f edge;
   float edge_reach;
-  /// Height of the triangle's plane above a point p, along the motion: offset + plane . p, +- plane_slack. If
-  /// is_edge_on, offset + plane . p is instead the signed distance of p from the plane. A box whose distance
-  /// from the plane exceeds -beside counts as not crossing the plane.
+  /// Height of the triangle's plane above a point p along the motion: offset + plane . p, within +-
+  /// plane_slack. If is_edge_on, offset + plane . p is the signed distance of p from the plane instead. A box
+  /// whose distance from the plane exceeds -beside counts as not crossing the plane.
   Eigen::Vector3f plane = Eigen::Vector3f::Zero();
   float offset = 0.0F, plane_slack = std::numeric_limits<float>::infinity();
   float beside = -std::numeric_limits<float>::infinity();
   bool is_edge_on = false;
-  /// True if the plane is nearly parallel to the motion; then the triangle's z range bounds the gap as well.
+  /// True if the plane is nearly parallel to the motion. Then the triangle's z range bounds the gap as well.
   bool is_steep = true;
 
   SceneColumn(const TurnedTree& object, const FrameTriangle& scene);
@@ -117,18 +117,18 @@ struct SceneColumn {
 ///
 /// The gap between the scene triangle's plane and a point is linear in the point, so its minimum and maximum
 /// over a box are exact. If the plane is steep, the z ranges of box and triangle bound the gap as well. All
-/// bounds include float rounding. If the scene triangle is edge-on, the search keeps only boxes
-/// that extend beyond its plane on both sides by touching_m, less rounding. Triangles in other boxes can only
-/// slide along the plane (see classify_pair()).
+/// bounds include float rounding. If the scene triangle is edge-on, the search keeps only boxes that extend
+/// beyond its plane on both sides by touching_m, less rounding. Triangles in other boxes can only slide along
+/// the plane (see classify_pair()).
 ///
 /// Bounds and tests are in one function, so the eight lanes of a node stay in registers.
 ///
-/// @param limit_m   callable without arguments that returns a gap; the search skips boxes and triangles whose
-///                  min gap is not below that gap
+/// @param limit_m   callable without arguments that returns a gap. The search skips boxes and triangles whose
+///                  min gap is not below it
 /// @param floor_m   the search skips boxes whose max gap is less than floor_m
 /// @param leaf      callable that takes the index of an object triangle
-/// @return true if the search skipped a box because its max gap is less than floor_m, i.e. the scene triangle
-///         is behind the box
+/// @return true if the search skipped a box because its max gap is less than floor_m (the scene triangle is
+///         behind the box)
 template <typename Limit, typename Leaf>
 bool search_column(const TurnedTree& object, const FrameTriangle& scene, const Limit& limit_m, double floor_m,
                    ColumnScratch& scratch, const Leaf& leaf) {

@@ -14,7 +14,7 @@ enum class ContactStatus {
   kNoAnswer,      ///< the renderer failed (out of memory, context lost); nothing is known
   kNoTarget,      ///< no contact within the queried distance
   kContact,       ///< contact after contact_distance_m >= 0
-  /// The object already overlaps a surface that faces against the motion; contact_distance_m < 0.
+  /// The object already overlaps a surface that faces against the motion. contact_distance_m < 0.
   kOverlap,
 };
 
@@ -30,8 +30,8 @@ enum class SurfaceKind {
 constexpr std::size_t kSurfaceKinds = 6;
 
 /// Returns true for the kinds of surfaces that are assumed, not observed. One-sided surfaces block motion
-/// from their outside only. An object that is already behind a one-sided surface, e.g. when the surface
-/// appears, can therefore leave.
+/// from their outside only. If a one-sided surface appears in front of an object, the object can therefore
+/// leave.
 constexpr bool is_one_sided(SurfaceKind touched) {
   return touched == SurfaceKind::kUnknownFrontier || touched == SurfaceKind::kInferredBack;
 }
@@ -57,13 +57,13 @@ constexpr std::string_view to_string(SurfaceKind touched) {
 
 struct [[nodiscard]] Contact {
   ContactStatus status = ContactStatus::kInvalidInput;  // unset: failed
-  /// Distance along the direction to contact, m; valid for kContact and kOverlap only. For kOverlap it is
-  /// negative: the object must move back by -contact_distance_m along the direction to clear the surfaces
-  /// that face against the motion.
+  /// Distance to contact along the direction, m. Valid for kContact and kOverlap only. Negative for kOverlap.
+  /// Moved back by -contact_distance_m along the direction, the object clears the surfaces that face against
+  /// the motion.
   double contact_distance_m = 0.0;
-  /// Lower bound of the true distance to contact, m. For kNoTarget: distance that is certainly free, at most
-  /// the queried distance. For kOverlap: contact_distance_m, or -infinity if the overlap is too deep to be
-  /// measured (see CyberRadar).
+  /// Lower bound of the true distance to contact, m. kNoTarget: distance that is certainly free, at most the
+  /// queried distance. kOverlap: contact_distance_m, or -infinity if the overlap is too deep to be measured
+  /// (see CyberRadar).
   double lower_m = 0.0;
   /// Upper bound of the true distance to contact, m. Infinite for kNoTarget; contact_distance_m for kOverlap.
   double upper_m = std::numeric_limits<double>::infinity();

@@ -12,8 +12,8 @@ namespace roomradar {
 /// Returns, per triangle, true if the triangle and all its neighbours belong to one flat face (see
 /// TriangleTree).
 /// @param edges   result of half_edges_of() for these triangles
-/// @param flat_m  flatness tolerance, m: a triangle joins a face if its vertices are at most flat_m from the
-///                plane fitted to the face so far; vertices of the complete face are at most 2 flat_m from
+/// @param flat_m  flatness tolerance, m. A triangle joins a face if its vertices are at most flat_m from the
+///                plane fitted to the face so far. Vertices of the complete face are at most 2 flat_m from
 ///                its plane
 std::vector<bool> find_within_flat_faces(const std::vector<Triangle>& triangles,
                                          const std::vector<Eigen::Vector3f>& vertices,

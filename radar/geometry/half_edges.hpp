@@ -1,4 +1,4 @@
-// half_edges.hpp: half-edges of a triangle mesh, and a test whether a mesh is closed.
+// half_edges.hpp: half-edges of a triangle mesh, and a test for closed meshes.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -15,8 +15,8 @@ struct HalfEdge {
   int sense;           ///< +1 or -1: direction of the side along the undirected edge
 };
 
-/// Returns one number per vertex, equal for all vertices at the same position. Vertices that are not finite
-/// get 0.
+/// Returns one number per vertex. Vertices at the same position get the same number. Vertices that are not
+/// finite get 0.
 std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& vertices);
 
 /// Returns the half-edges of all triangles, sorted by edge. Omits half-edges whose two vertices have the same

@@ -1,18 +1,17 @@
-// inflated_distance.hpp: distance that a triangle can move along z until it is within a margin of another
-// triangle.
+// inflated_distance.hpp: distance along z until a triangle is within a margin of another triangle.
 #pragma once
 #include "radar/geometry/triangle_gap.hpp"
 
 namespace roomradar {
 
-/// Returns the least distance >= 0 that `object` can move along z until it is within margin_m of `scene`: 0
-/// if `object` is within the margin now, infinity if it never comes within the margin. Once the result
-/// exceeds limit_m, the search stops and returns a lower bound. The result never exceeds the true distance.
-/// It is less than the true distance only if 20 steps do not converge, because the object grazes the margin.
+/// Returns the least distance >= 0 that `object` can move along z until it is within margin_m of `scene`.
+/// Returns 0 if `object` is within the margin now, and infinity if it never is. Once the result exceeds
+/// limit_m, the search stops and returns a lower bound. The result never exceeds the true distance. It is
+/// less than the true distance only if the object grazes the margin and 20 steps do not converge.
 ///
 /// The distance between two convex sets is a convex function of the distance moved. A plane perpendicular to
 /// the shortest segment between the sets separates them. Each Newton step moves the object until its distance
-/// from this plane through the scene's nearest point is the margin, so no step passes the true solution.
+/// from this plane through the scene's nearest point is the margin. Hence no step passes the true solution.
 double inflated_distance(const FrameTriangle& object, const FrameTriangle& scene, double margin_m,
                          double limit_m);
 
@@ -21,8 +20,8 @@ struct ShortestWay {
   Eigen::Vector3d way = Eigen::Vector3d::Zero();   ///< vector from the start to the segment's end on the
                                                    ///< scene's triangle, m
 };
-/// Returns the shortest segment from the object's triangle, after it moved by contact_distance_m along z, to
-/// the scene's triangle. Invalid if the triangles intersect.
+/// Returns the shortest segment from the object's triangle, moved by contact_distance_m along z, to the
+/// scene's triangle. Invalid if the triangles intersect.
 ShortestWay shortest_way(const FrameTriangle& object, const FrameTriangle& scene, double contact_distance_m);
 
 }  // namespace roomradar

@@ -1,5 +1,4 @@
-// radar_scene.hpp: the scene that an object can touch, given as triangle trees with poses and as depth
-// images.
+// radar_scene.hpp: a scene of triangle trees with poses and of depth images.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -52,9 +51,9 @@ class SceneBoxes;
 struct RadarScene {
   std::span<const SceneTree> trees;
   std::span<const SceneDepth> depths;
-  /// Optional hierarchy of the bounding boxes of `trees` at their present poses, so a query visits only the
-  /// trees near its volume. Null: a query visits all trees. Building the hierarchy saves time from a few tens
-  /// of trees on, if many queries share it.
+  /// Optional hierarchy of the bounding boxes of `trees` at their present poses. A query then visits only the
+  /// trees near its volume. Null: a query visits all trees. The hierarchy saves time from a few tens of trees
+  /// on, if many queries share it.
   const SceneBoxes* boxes = nullptr;
 };
 

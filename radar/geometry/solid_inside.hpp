@@ -14,7 +14,7 @@ struct Layer {
   int way_out;
 };
 
-/// Finds the crossings of the object's surface with the line that runs through a point along the motion: all
+/// Finds the crossings of the object's surface with the line through a point along the motion. Finds all
 /// crossings ahead of the point, and those up to limit_m behind it.
 /// @return false if the line passes so close to an edge that rounding decides which triangles it crosses
 bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m, ColumnScratch& scratch,
@@ -25,9 +25,9 @@ bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double li
 /// rule holds even if components of the mesh overlap each other.
 bool is_within(const std::vector<Layer>& layers, double contact_distance_m);
 
-/// Returns true if a scene triangle is inside the object's solid, more than touching_m deep. The triangle
-/// must not intersect the object's surface, since only one of its points is tested. Returns false if the
-/// object is not closed.
+/// Returns true if a scene triangle is inside the object's solid, more than touching_m deep. Only one point
+/// of the triangle is tested, so it must not intersect the object's surface. Returns false if the object is
+/// not closed.
 bool is_inside(const TurnedTree& object, const FrameTriangle& scene, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 

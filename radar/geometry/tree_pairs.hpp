@@ -38,7 +38,7 @@ inline bool is_usable(const TreeInstance& instance) {
   return instance.tree != nullptr && !instance.tree->empty() && instance.T_world_mesh.matrix().allFinite();
 }
 
-/// Returns true if the bounding spheres of the two trees are farther apart than `than_m`; then the trees are,
+/// Returns true if the bounding spheres of the two trees are farther apart than `than_m`. The trees then are,
 /// too.
 inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other, double than_m) {
   constexpr double kRounding = 1.0 + 1e-5;  // covers the rounding of half_size() to float
@@ -52,7 +52,7 @@ inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other
   return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
 }
 
-/// Cache of one leaf's triangles, so consecutive calls with the same leaf compute them once.
+/// Cache of one leaf's triangles. Consecutive calls with the same leaf compute them once.
 class LeafTriangles {
  public:
   /// Returns the leaf's triangles; valid until the next call.
@@ -74,8 +74,8 @@ class LeafTriangles {
   std::uint32_t first_ = 0, count_ = 0;
 };
 
-/// An object's tree and one of the scene's trees, in a common frame: the scene mesh's axes, with the centre
-/// of the scene's tree as origin.
+/// An object's tree and one of the scene's trees, in a common frame. The frame has the scene mesh's axes, and
+/// its origin is the centre of the scene's tree.
 class TreePair {
  public:
   const TriangleTree& object;
@@ -138,9 +138,9 @@ inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
 }
 
 /// Calls leaf(object box, scene box) for pairs of leaves. Skips a pair if key(object box, scene box) is
-/// infinite for it or for a pair of boxes that encloses it, or if both its boxes lie within flat faces (see
-/// TriangleTree). Stops when leaf() returns -infinity. With PairOrder::kLeastFirst, also stops once all
-/// pending keys are at least the value that leaf() returned last.
+/// infinite for it or for an enclosing pair of boxes. Also skips a pair if both its boxes lie within flat
+/// faces (see TriangleTree). Stops when leaf() returns -infinity. With PairOrder::kLeastFirst, also stops
+/// once all pending keys are at least the value that leaf() returned last.
 template <PairOrder order, typename Key, typename Leaf>
 void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
   constexpr float kNone = std::numeric_limits<float>::infinity();

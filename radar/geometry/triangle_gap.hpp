@@ -1,5 +1,4 @@
-// triangle_gap.hpp: gap between a triangle that moves along z and another triangle, and the kind of contact
-// between them.
+// triangle_gap.hpp: gap and kind of contact between a triangle that moves along z and another triangle.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -17,13 +16,13 @@ struct FrameTriangle {
 /// Computes the normal from the vertices.
 void set_normal(FrameTriangle& triangle);
 
-/// Greatest |normal.z()| of a triangle that counts as edge-on.
+/// Max |normal.z()| of a triangle that counts as edge-on.
 inline constexpr double kEdgeOn = 1e-9;
 
 /// Gap between two triangles: height of the scene's triangle above the object's, along z, m. The gap is
 /// linear over the intersection of the two projected triangles. Its minimum low_m and maximum high_m are
-/// therefore at vertices of the intersection. `places` holds these: vertices of one triangle inside the
-/// other, and crossings of the triangles' edges.
+/// therefore at vertices of the intersection. `places` holds these vertices. They are vertices of one
+/// triangle inside the other, and crossings of the triangles' edges.
 struct TriangleGap {
   struct Place {
     double x, y, scene_z, gap;
@@ -35,9 +34,9 @@ struct TriangleGap {
 };
 
 /// Computes the gap of two triangles.
-/// @return false if their projections have no point in common. A vertex whose distance from the other
-///         triangle's outline is within rounding error counts as on the outline, so no contact is missed at
-///         an edge that two triangles share.
+/// @return false if their projections have no point in common. A vertex within rounding error of the other
+///         triangle's outline counts as on the outline. Hence no contact is missed at a shared edge of two
+///         triangles.
 bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleGap& gap);
 
 /// Returns a cheap lower bound of the gap. It is computed from the triangles' z ranges, and from the heights
@@ -56,13 +55,13 @@ enum class PairContact {
 ///
 /// If low_m > touching_m, contact is ahead. If high_m < -touching_m, the scene triangle is behind the object
 /// triangle. Otherwise the triangles touch or intersect now. They touch if they overlap by less than
-/// touching_m along the normal of one of them; that triangle's plane then lies between them. Touching is a
+/// touching_m along the normal of one of them. That triangle's plane then lies between them. Touching is a
 /// contact if the scene triangle is ahead of this plane. It is no contact if the scene triangle is behind
 /// this plane or the plane is parallel to the motion.
 ///
 /// If the scene triangle is edge-on and the object triangle reaches through its plane by less than
-/// touching_m, the object slides along the plane: no contact at any distance. A back-facing scene triangle
-/// (normal.z() > 0) is a surface that the object leaves: touching it now is kNone, and intersecting it now is
+/// touching_m, the object slides along the plane. Sliding is no contact at any distance. The object leaves a
+/// back-facing scene triangle (normal.z() > 0). Touching it now is kNone, and intersecting it now is
 /// kLeaving. Ahead of the object, a back-facing triangle is a contact like any other.
 PairContact classify_pair(const FrameTriangle& object, const FrameTriangle& scene, const TriangleGap& gap,
                           double touching_m);

@@ -28,8 +28,8 @@ struct alignas(32) TreeNode {
 
 /// A rigid mesh (a virtual object, a saved room) or a mesh of a single frame. Vertices are float, relative to
 /// the mesh's own double-precision origin, so precision does not degrade far from zero. Triangles with an
-/// index past the last vertex, or with a vertex that is not finite, are dropped and counted; degenerate and
-/// duplicate triangles are kept. Uses no OpenGL. Concurrent reading is safe; building is not.
+/// index past the last vertex, or with a vertex that is not finite, are dropped and counted. Degenerate and
+/// duplicate triangles are kept. Uses no OpenGL. Concurrent reading is safe, building is not.
 ///
 /// A triangle of a closed mesh is within a flat face if all its neighbours are in the same plane, within
 /// float precision (twice rounding_m()). None of its edges is then an edge of the solid. Where two solids
@@ -40,9 +40,9 @@ class TriangleTree {
   /// Builds the tree with the surface area heuristic, for meshes that persist. O(n log n). Determines whether
   /// the mesh is closed, and which triangles are within flat faces.
   void build_by_place(const Mesh& mesh);
-  /// Builds the tree over ranges of consecutive triangles, for meshes of a single frame: rows of a depth
-  /// image are already spatially ordered. O(n); allocates nothing if an earlier mesh was at least as large.
-  /// is_closed() is then false, and no triangle counts as within a flat face.
+  /// Builds the tree over ranges of consecutive triangles. For meshes of a single frame, since rows of a
+  /// depth image are already spatially ordered. O(n). Allocates nothing if an earlier mesh was at least as
+  /// large. is_closed() is then false, and no triangle counts as within a flat face.
   void build_in_order(const Mesh& mesh);
 
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
@@ -57,9 +57,9 @@ class TriangleTree {
   /// Returns a number that is unique per build, across all trees, for use as a cache key; 0 before the first
   /// build.
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
-  /// Returns true if the mesh is closed and its triangles are counter-clockwise seen from outside, so points
-  /// can be inside the mesh. In a closed mesh, triangles use every edge equally often in both directions
-  /// (vertices at the same position count as one), and every connected component has a positive volume.
+  /// Returns true if the mesh is closed and its triangles are counter-clockwise seen from outside. In a
+  /// closed mesh, triangles use every edge equally often in both directions. Vertices at the same position
+  /// count as one. Every connected component has a positive volume.
   [[nodiscard]] bool is_closed() const { return is_closed_; }
 
   /// Returns the nodes of the tree, root first; empty if there are no triangles.

@@ -19,9 +19,9 @@ enum class RendererChoice {
 RendererChoice renderer_choice_from_environment();
 
 /// Owns an off-screen EGL display connection and an OpenGL core context of version 4.5 or later (reversed
-/// depth needs glClipControl). The context is current on the thread that made it, and any code on that thread
-/// may call GL. It has no default framebuffer, so everything is drawn into framebuffer objects. The
-/// constructor sets the clip-space convention (depth 0 to 1, lower left origin); code that changes it must
+/// depth needs glClipControl). The context is current on the thread that made it. Any code on that thread may
+/// call GL. It has no default framebuffer, so everything is drawn into framebuffer objects. The constructor
+/// sets the clip-space convention (depth 0 to 1, lower left origin). Code that changes the convention must
 /// restore it. Not thread safe. Must outlive all objects made with it (GpuMesh, DepthPass, GlRadar).
 class GlContext {
  public:
@@ -54,9 +54,9 @@ class GlContext {
 /// Discards pending GL errors, so require_drawn() reports only later ones.
 void forget_gl_errors();
 
-/// Throws Error if a GL error has occurred since forget_gl_errors(), the context is lost (the GPU was reset
-/// or suspended), or no context is current on this thread. If it throws, data read from the renderer is
-/// invalid.
+/// Throws Error if a GL error has occurred since forget_gl_errors(). Also throws if the context is lost (the
+/// GPU was reset or suspended) or no context is current on this thread. If it throws, data read from the
+/// renderer are invalid.
 /// @param what  name of the failed task, which begins the message
 void require_drawn(const char* what);
 

@@ -24,7 +24,7 @@ enum class MeshUsage {
 };
 
 /// Owns vertex and index buffers. Vertices are relative to the mesh's origin, which is stored in double.
-/// Callers compose matrices in double, so a mesh a thousand kilometres from the world's origin keeps its
+/// Callers compose matrices in double. A mesh a thousand kilometres from the world's origin thus keeps its
 /// precision. Not thread safe.
 class GpuMesh {
  public:
@@ -39,13 +39,13 @@ class GpuMesh {
   /// A triangle is invalid if an index is past the last vertex or one of its vertices is not finite. kStatic
   /// rejects a mesh with an invalid triangle, and keeps the previous mesh. kStreamed drops and counts invalid
   /// triangles. kStreamed allocates nothing once a mesh of this size has been uploaded.
-  /// @throws Error if the mesh is rejected (kStatic), the number of normals or colours is neither 0 nor the
-  ///         number of vertices, the origin is not finite, or there are more than 2^31 / 3 triangles. Also
-  ///         throws if the renderer is lost or has no memory; the mesh is then empty.
+  /// @throws Error if the mesh is rejected (kStatic), its origin is not finite, or it has more than 2^31 / 3
+  ///         triangles. Throws if the number of normals or colours is neither 0 nor the number of vertices.
+  ///         Also throws if the renderer is lost or has no memory. The mesh is then empty.
   void upload(const Mesh& mesh, MeshUsage usage);
 
   /// Replaces the mesh; the tree's triangles and vertices serve as the CPU copy.
-  /// @param tree  built from this mesh (by build_in_order() for kStreamed); must not be destroyed or rebuilt
+  /// @param tree  built from this mesh (by build_in_order() for kStreamed). Must not be destroyed or rebuilt
   ///              before the next upload
   void upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree);
   /// Adds texture coordinates, one per vertex, to a mesh uploaded as kStatic: vertex attribute 3 (vec2).
@@ -55,9 +55,9 @@ class GpuMesh {
   [[nodiscard]] const TriangleTree* tree() const { return tree_; }
 
   /// Draws the chunks that may be inside the clip volume (-w..w, -w..w, 0..w) with the current program. The
-  /// current GL state decides on face culling. Vertex attributes: 0 is the position (vec3, local); 1 the
-  /// normal (vec3, local; 0 0 1 if the mesh has none); 2 the colour (vec3, 0 to 1; 0.8 grey if the mesh has
-  /// none).
+  /// current GL state decides on face culling. Vertex attribute 0 is the position (vec3, local). Attribute 1
+  /// is the normal (vec3, local), or 0 0 1 if the mesh has none. Attribute 2 is the colour (vec3, 0 to 1), or
+  /// 0.8 grey if the mesh has none.
   ///
   /// @param clip_from_local  maps local points (relative to origin()) to clip space, see clip_from_local()
   /// @return number of triangles passed to the renderer

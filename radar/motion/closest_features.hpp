@@ -1,5 +1,5 @@
-// closest_features.hpp: closest features of two triangles, and selection of the contact points that support
-// an object best.
+// closest_features.hpp: closest features of two triangles, and reduction of contact points to a few per
+// normal.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -23,10 +23,10 @@ Face face_of(const FrameTriangle& triangle);
 /// Returns true if an edge of one triangle passes through the other triangle.
 bool cross(const Face& a, const Face& b);
 
-/// Returns true if a unit direction is at most 60 degrees from the triangle's normal. At an edge between two
-/// faces whose normals are up to 120 degrees apart, every direction between the normals is outside of at
-/// least one face. The limit is below 90 degrees, so rounding errors do not admit directions parallel to the
-/// face.
+/// Returns true if a unit direction is at most 60 degrees from the triangle's normal. Suppose that the
+/// normals of two faces at an edge are up to 120 degrees apart. Every direction between the normals is then
+/// outside of at least one face. The limit is below 90 degrees so that rounding errors do not admit
+/// directions parallel to the face.
 inline bool is_outside(const Eigen::Vector3d& direction, const FrameTriangle& t) {
   return direction.dot(t.normal) > 0.5 - 1e-9;
 }
@@ -66,8 +66,8 @@ struct FeatureCollector {
   bool look(const FrameTriangle& object, const FrameTriangle& scene) const;
 
  private:
-  /// Appends a point unless it is farther than reach_m, its normal is zero, or it is on the inside of a
-  /// one-sided surface.
+  /// Appends a point. Omits points farther than reach_m, with a zero normal, or on the inside of a one-sided
+  /// surface.
   void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m, const Face& s) const;
   /// Returns the scene triangle's normal, negated if an object vertex is below the scene triangle's plane. If
   /// the vertex touches the plane, the other vertices of the object's triangle decide the sign.
@@ -75,8 +75,8 @@ struct FeatureCollector {
   /// @param heights  range of the heights of all vertices of the object's triangle
   [[nodiscard]] Eigen::Vector3d off_scene(double height_m, const Face& o, const Face& s,
                                           const Range& heights) const;
-  /// Returns the object triangle's normal with the sign that makes it point from a scene vertex towards the
-  /// object. Returns zero if the vertex touches the plane and its side cannot be decided.
+  /// Returns the object triangle's normal, negated if necessary so that it points from a scene vertex towards
+  /// the object. Returns zero if the vertex touches the plane and its side cannot be decided.
   /// @param height_m  height of the scene vertex above the object triangle's plane
   /// @param heights  range of the heights of all vertices of the scene's triangle
   [[nodiscard]] Eigen::Vector3d off_object(double height_m, const Eigen::Vector3d& corner, const Face& o,
@@ -86,11 +86,11 @@ struct FeatureCollector {
   void look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const;
 };
 
-/// Selects the contact points that support an object best. Groups the points by normal into up to four
-/// groups. In each group, keeps the point with the smallest gap, and the outermost point in each of eight
-/// directions perpendicular to the normal. A point with a 1 mm larger gap must be 2 cm farther out to be
-/// preferred.
-/// @param all   candidates; the function removes points from this vector
+/// Contact reduction: selects the points that support an object best. Groups the points by normal into up to
+/// four groups. In each group, keeps the point with the smallest gap. Also keeps the outermost point in each
+/// of eight directions perpendicular to the normal. A point with a 1 mm larger gap must be 2 cm farther out
+/// to be preferred.
+/// @param all   candidates. The function removes points from this vector
 /// @param[out] kept  the selected points, at most kMaxClosestPoints
 void keep_the_outermost(std::vector<ClosestPoint>& all, std::vector<ClosestPoint>& kept);
 

@@ -1,4 +1,4 @@
-// free_time.hpp: contact-free duration of a rigid motion, computed with separating planes.
+// free_time.hpp: contact-free duration of a rigid motion, by conservative advancement with separating planes.
 #pragma once
 #include <vector>
 
@@ -12,8 +12,8 @@ namespace roomradar {
 
 /// Result of free_time().
 struct FreeTime {
-  /// Duration, beginning now, during which every pair of triangles keeps its minimum distance (see
-  /// free_time()), s.
+  /// Duration from now on during which every pair of triangles keeps its minimum distance (see free_time()),
+  /// s.
   double free_s = 0.0;
   /// Present closest features of the pair that limits free_s. Its kind is kNothing if the whole duration is
   /// free.
@@ -21,11 +21,12 @@ struct FreeTime {
 };
 
 /// Returns a lower bound of the duration for which a rigid motion stays free of contact. Ignores surfaces
-/// that intersect the object now. Each pair of triangles is separated by a plane: that of one triangle, or
-/// one perpendicular to the segment between their nearest points. No vertex approaches the plane faster than
-/// its present speed plus the most that rotation can add. A pair's minimum distance is keep_m, or half its
-/// present distance if that is less than 2 * keep_m. Sources: Mirtich, PhD thesis, Berkeley 1996, section
-/// 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
+/// that intersect the object now. Each pair of triangles is separated by a plane. It is the plane of one
+/// triangle, or perpendicular to the segment between their nearest points. The approach speed of a vertex to
+/// the plane is at most its present speed plus a bound of the change by rotation. A pair's minimum distance
+/// is keep_m, or half its present distance if the present distance is less than 2 * keep_m. Sources: Mirtich,
+/// PhD thesis, Berkeley 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA
+/// 2009.
 ///
 /// @param keep_m    minimum distance to keep, m
 /// @param left_out  kinds of surfaces to ignore

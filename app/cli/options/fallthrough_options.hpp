@@ -23,7 +23,7 @@ struct FallthroughOptions {
   std::string reference;
   /// Origin of the frame's pose in the map: estimated or recorded.
   PoseOrigin poses = PoseOrigin::kTracked;
-  /// Range of frames, of which only the first is used; unset: frame 0.
+  /// Range of frames. Only its first frame is used. Unset: frame 0.
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().
   std::string calibration;

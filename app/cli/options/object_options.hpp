@@ -17,7 +17,7 @@ namespace roomradar {
 struct ObjectOption {
   std::string text{};  ///< text as given, such as "chair.glb,size=0.9,up=y,at=0.4,-0.1,0.75"
   ObjectSource source{};
-  /// Point above which the object is dropped; unset: the object is dropped above a surface in view.
+  /// Point above which the object is dropped. Unset: the object is dropped above a surface in view.
   std::optional<Eigen::Vector3d> at_world{};
 };
 

@@ -1,5 +1,5 @@
-// option_checks.hpp: checks of option values that CLI11 lacks: ranges without "nan", named values, decimal
-// integers.
+// option_checks.hpp: checks of option values that CLI11 lacks (ranges without "nan", named values, decimal
+// integers).
 #pragma once
 #include <CLI/CLI.hpp>
 #include <map>
@@ -11,8 +11,8 @@ namespace roomradar {
 /// @param unit  unit in the plural, for the error message
 CLI::Validator within(double low, double high, const std::string& unit);
 
-/// Adds checks that reject numbers that CLI11 would misread: 010 as 8, and the seed -1 as 2^64 - 1. The
-/// checks apply to all options of type "N" of the program and its commands. Call after all options were
+/// Adds checks that reject numbers that CLI11 would misread. It reads 010 as 8, and the seed -1 as 2^64 - 1.
+/// The checks apply to all options of type "N" of the program and its commands. Call after all options were
 /// added.
 void refuse_other_bases(CLI::App& app);
 

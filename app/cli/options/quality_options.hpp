@@ -22,7 +22,7 @@ void add_run_quality_options(CLI::App& command, FieldWords& fixed);
 /// @param[out] presets  the presets file
 void add_preset_options(CLI::App& command, std::string& preset, std::string& presets);
 
-/// Sets `quality` to that of the preset, if a name is given, then sets the fields in `fixed`. Throws Error if
+/// Sets `quality` to that of the preset if a name is given. Then sets the fields in `fixed`. Throws Error if
 /// the presets file cannot be read or has no such preset.
 /// @param preset   name of the preset; empty: none
 /// @param presets  presets file; empty: see presets_file()

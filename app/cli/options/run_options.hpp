@@ -50,8 +50,8 @@ struct RunOptions {
   std::string presets;
   /// Time limit per frame; unset: none.
   std::optional<double> budget_ms;
-  /// Time for which a change of the room must be observed before it is committed to the map; unset: only
-  /// script events commit changes.
+  /// Time without motion after which a change of the room is committed to the map. Unset: only script events
+  /// commit changes.
   std::optional<double> commit_after_s;
   /// Behaviour after the source's last frame.
   AtEnd at_end = AtEnd::kEnd;

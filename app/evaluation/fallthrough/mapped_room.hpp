@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// Name and seed of a simulated room. The rooms `table`, `shelf` and `wall` have seed 1; each `random` room
+/// Name and seed of a simulated room. The rooms `table`, `shelf` and `wall` have seed 1. Each `random` room
 /// has its own seed.
 struct RoomChoice {
   std::string name;
@@ -26,7 +26,7 @@ struct RoomScan {
   double resolution_m = 0.01;
   int every = 3;       ///< every n-th of the prescan's 720 frames is fused
   int width_px = 640;  ///< width of the 4:3 depth images
-  std::string maps;    ///< folder in which maps are stored and from which they are reused; empty: none
+  std::string maps;    ///< folder in which maps are stored for reuse; empty: none
 };
 
 /// A room and its map.
@@ -52,8 +52,8 @@ struct MappedRoom {
   MappedRoom(GlContext& context, ScannedRoom room);
 };
 
-/// Room of a run's scenario, and the scenario's number in that room. Rooms take turns. Since the number in
-/// the room determines occluder, motion and shape, each room gets all combinations.
+/// Room of a run's scenario, and the scenario's number in that room. Rooms take turns. The number in the room
+/// determines occluder, motion and shape. Each room thus gets all combinations.
 struct ScenarioTurn {
   std::size_t room = 0;     ///< index of the room
   std::int64_t number = 0;  ///< number of the scenario in that room

@@ -1,4 +1,4 @@
-// page.hpp: writes the HTML file of a fall-through test: table, plots and pictures of failures.
+// page.hpp: writes the HTML file of a fall-through test, with table, plots and pictures of failures.
 #pragma once
 #include <filesystem>
 #include <string>

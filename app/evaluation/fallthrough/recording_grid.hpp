@@ -45,8 +45,8 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
                     const Eigen::Isometry3d& T_world_camera, const Mesh& reference_world,
                     const GridConfig& config);
 
-/// Counts over a grid's cells with has_truth: cells, balls that passed through, and false stops, with the
-/// thresholds of judge().
+/// Counts of cells, balls that passed through, and false stops over a grid's cells with has_truth. The
+/// thresholds are those of judge().
 struct GridTotals {
   int cells = 0, passed = 0, false_stops = 0;
   std::array<int, 6> rested_on{};  ///< number of balls, indexed by SurfaceKind

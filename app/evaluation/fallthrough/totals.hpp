@@ -45,7 +45,7 @@ double percentile(std::vector<double> values, double part);
 std::string millimetres(double metres);
 
 std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int scenarios);
-/// Return the values of the report's keys `policies` and `failures`; failures are all trials with an outcome
+/// Return the values of the report's keys `policies` and `failures`. Failures are all trials with an outcome
 /// other than kStoppedRight.
 nlohmann::json to_json(const std::array<PolicyTotals, kPolicyCount>& totals);
 nlohmann::json failures_of(const std::vector<ScenarioRow>& rows);

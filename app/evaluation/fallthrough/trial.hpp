@@ -13,8 +13,8 @@
 
 namespace roomradar {
 
-/// Frames of a scenario, rendered on first use. If the occluder does not move, all frames are the first
-/// rendered one.
+/// Frames of a scenario, rendered on first use. If the occluder does not move, all frames are copies of the
+/// first rendered one.
 class ScenarioFrames {
  public:
   ScenarioFrames(const Scenario& scenario, const Room& room) : scenario_(scenario), room_(room) {}
@@ -26,7 +26,7 @@ class ScenarioFrames {
   std::map<int, Frame> frames_;
 };
 
-/// A scenario with the triangle tree of its object and with its rendered frames.
+/// A scenario, the triangle tree of its object, and its rendered frames.
 struct PreparedScenario {
   Scenario scenario;
   TriangleTree object;
@@ -61,8 +61,7 @@ struct TrialSurfaces {
 };
 
 /// Sets the scene's surfaces to those of one frame of the scenario, with the camera at T_world_believed.
-/// Frame 0 is processed twice, so that previous labels exist for the foreground detection. Returns the run
-/// time, ms.
+/// Frame 0 is processed twice. The foreground detection thus has previous labels. Returns the run time, ms.
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
                   std::span<const FineRegion> about_objects, FrameScene& scene);
 

@@ -1,4 +1,5 @@
-// trial_pictures.hpp: pictures of a trial: the camera's view, and a section along the object's path.
+// trial_pictures.hpp: pictures of a trial. They show the camera's view, and a section along the object's
+// path.
 #pragma once
 #include <memory>
 #include <span>
@@ -18,8 +19,8 @@ class SideView {
 
   /// Draws the sections of room and occluder at a frame's time.
   [[nodiscard]] ColourImage room_at(int frame) const;
-  /// Adds the lines in which surfaces intersect the plane: static black, dynamic blue, inferred back violet,
-  /// frontier of unknown space red.
+  /// Adds the lines in which surfaces intersect the plane. Static surfaces are black, dynamic ones blue,
+  /// inferred backs violet, and the frontier of unknown space red.
   void add_surfaces(std::span<const SceneTree> surfaces, ColourImage& picture) const;
   /// Adds the section of the object after travelling travelled_m, with opacity `part`.
   void add_object(double travelled_m, Rgb colour, double part, ColourImage& picture) const;

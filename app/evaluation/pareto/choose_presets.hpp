@@ -10,9 +10,9 @@
 namespace roomradar {
 
 /// Returns a setting's loss, its mean error relative to the default setting. The loss is the geometric mean
-/// of (error + negligible) / (default's error + negligible) over all metrics of kind kError, where
-/// `negligible` is the smallest relevant difference of the metric. It is 1 for the
-/// default. Returns NaN if no error was measured or the setting is not complete.
+/// of (error + negligible) / (default's error + negligible) over all metrics of kind kError. `negligible` is
+/// the smallest relevant difference of the metric. The loss of the default is 1. Returns NaN if no error was
+/// measured or the setting is not complete.
 double loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
 /// Returns the largest of the ratios that loss_of() averages.
@@ -30,7 +30,7 @@ inline constexpr double kMostWorstLossOfPreset = 3.0;
 /// Max losses of the presets fast and balanced.
 inline constexpr double kMostLossOfFast = 1.5, kMostLossOfBalanced = 1.1;
 inline constexpr double kMostTimeOfAccurate = 3.0;  ///< max time ratio of the preset accurate
-/// Max loss of the preset accurate; a smaller gain may be random.
+/// Max loss of the preset accurate. A smaller gain may be random.
 inline constexpr double kMostLossOfAccurate = 0.99;
 
 /// Computes the Pareto front of time ratio and loss over complete settings whose load parameters have their

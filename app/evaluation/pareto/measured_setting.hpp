@@ -1,5 +1,5 @@
-// measured_setting.hpp: work that trades time for accuracy, such as a prescan or a run: parameters, measured
-// quantities (figures) and scenes.
+// measured_setting.hpp: work that trades time for accuracy, such as a prescan or a run, with its parameters,
+// measured quantities (figures) and scenes.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -12,7 +12,7 @@
 namespace roomradar {
 
 enum class FigureKind {
-  kTime,    ///< a time; noisy, so summarised by the median of all measurements
+  kTime,    ///< a time, summarised by the median because it is noisy
   kMemory,  ///< memory use; summarised as kTime
   kError,   ///< an error; Pareto fronts minimise times and errors
   kFact,    ///< a quantity without preference, such as a number of triangles
@@ -25,7 +25,7 @@ struct FigureName {
   std::string title;
   double shown = 1.0;  ///< factor from the measured unit to the page's unit
   FigureKind kind = FigureKind::kFact;
-  double negligible = 0.0;  ///< for kError, > 0: smaller differences of errors are neglected
+  double negligible = 0.0;  ///< for kError, > 0; smaller differences of errors are neglected
 };
 
 /// One value per entry of MeasuredWork::figures; kNotMeasured if there is none.

@@ -12,8 +12,8 @@ struct Parameter {
   std::string name;                ///< name of the field and of the CSV column
   std::vector<std::string> words;  ///< fastest first
   std::size_t defaults = 0;        ///< index of the default in `words`
-  /// True: the parameter sets the amount of work (load), not its quality. It is changed only alone, and
-  /// changed values are never on a front.
+  /// True: the parameter sets the amount of work (load), not its quality. It is never changed together with
+  /// other parameters. Settings with changed values are never on a front.
   bool is_load = false;
 };
 

@@ -21,7 +21,7 @@ struct ParetoPlot {
 };
 
 /// Returns the plot. Both axes are logarithmic, but y is linear if any dot has y = 0. Dots that are not
-/// finite are omitted. The front is drawn as a staircase: dots above and to the right of it are dominated.
+/// finite are omitted. The front is drawn as a staircase. Dots above and to the right of it are dominated.
 /// Colours are the page's CSS variables --ink --grid --dot --front --mark --paper.
 std::string pareto_plot(const ParetoPlot& plot);
 

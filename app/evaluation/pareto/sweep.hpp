@@ -1,4 +1,4 @@
-// sweep.hpp: measures settings in random order, each between two measurements of the default.
+// sweep.hpp: measures settings in random order. Each is measured between two measurements of the default.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -31,19 +31,18 @@ struct SweepPlan {
 
 struct SweptRows {
   std::vector<SweepRow> rows;
-  std::string fault;  ///< reason of an early end; empty if the sweep is complete or was stopped by is_stopped
+  std::string fault;  ///< reason of an early end; empty if complete or stopped by is_stopped
 };
 
 struct SweepWatch {
   std::function<void(const SweepRow& row)> on_row;  ///< called after each measurement; may be empty
-  /// Called before each measurement; true ends the sweep; may be empty.
+  /// Called before each measurement. True ends the sweep. May be empty.
   std::function<bool()> is_stopped;
 };
 
 /// Measures all settings in each scene and repetition, each time in a new random order that begins with the
-/// default. The default is also measured between any two settings, and each setting is compared with the
-/// default measured before and after it. A temporary slowdown of the machine thus affects all three
-/// measurements.
+/// default. The default is also measured between any two settings. Each setting is compared with the default
+/// measured before and after it. A temporary slowdown of the machine thus affects all three measurements.
 ///
 /// If a setting fails, its row contains the fault, and the sweep continues. The sweep ends early if
 /// is_stopped returns true, the default fails, a scene cannot be opened, or on_row throws Error. Then only

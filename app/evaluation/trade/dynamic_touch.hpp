@@ -1,5 +1,5 @@
-// dynamic_touch.hpp: measures the errors of contacts between balls and visible dynamic objects, relative to
-// exact solids.
+// dynamic_touch.hpp: measures contact errors between balls and visible dynamic objects, relative to exact
+// solids.
 #pragma once
 #include <cstddef>
 #include <limits>

@@ -24,14 +24,14 @@ struct JudgedPicture {
   std::vector<JudgedObject> objects;
 };
 
-/// Sums over all pictures of colour differences from the true pictures; a pixel's difference is the mean over
-/// channels, 0 to 1. Means are computed from the sums over all pictures, so a picture with a mostly hidden
-/// object has little weight.
+/// Sums of colour differences from the true pictures over all pictures. A pixel's difference is the mean over
+/// channels, 0 to 1. Means are computed from these sums. A picture with a mostly hidden object thus has
+/// little weight.
 struct PictureErrors {
   double difference = 0.0;        ///< sum over all pixels
   std::size_t object_pixels = 0;  ///< number of pixels that objects change in the true pictures
   double edge_difference = 0.0;   ///< sum over the edge pixels
-  /// Number of edge pixels: within kEdgeBand_px of an occlusion edge in the true picture.
+  /// Number of edge pixels. These are within kEdgeBand_px of an occlusion edge in the true picture.
   std::size_t edge_pixels = 0;
 
   PictureErrors& operator+=(const PictureErrors& other);

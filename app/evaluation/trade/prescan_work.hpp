@@ -1,5 +1,5 @@
-// prescan_work.hpp: MeasuredWork for the prescan: scans of simulated rooms and of recordings, compared with
-// ground truth.
+// prescan_work.hpp: MeasuredWork for the prescan. Scans simulated rooms and recordings, and compares the
+// result with ground truth.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,8 +16,8 @@ std::vector<Parameter> scan_parameters();
 ScanQuality scan_quality_of(const Setting& setting);
 
 /// Returns the work. Its scenes are the rooms, then the recordings. In rooms, the mesh is compared with the
-/// exact solids; in recordings, it is compared with every seventh frame, which is held out. The tracked
-/// trajectory is compared with the poses of the room or recording.
+/// exact solids. In recordings, it is compared with every seventh frame, held out for this purpose. The
+/// tracked trajectory is compared with the poses of the room or recording.
 /// @param rooms  specs as after `sim:`, such as "table" or "random?seed=3"
 /// @param recordings  folders of recordings with poses
 MeasuredWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,

@@ -1,5 +1,5 @@
-// run_facts.hpp: measurements of a session on a scene's frames, and of objects dropped onto the scene's
-// hidden surfaces.
+// run_facts.hpp: measures a session on a scene's frames, and objects dropped onto the scene's hidden
+// surfaces.
 #pragma once
 #include <limits>
 #include <string>
@@ -18,11 +18,11 @@ struct RunSetting {
   int objects = 1;
 };
 
-/// Measurements of a session, without the first 10 frames, in which caches and drivers warm up.
+/// Measurements of a session. The first 10 frames, in which caches and drivers warm up, are left out.
 struct RunFacts {
   std::string renderer;
   StageTimes times;
-  /// Mean over frames; the median would be misleading if work alternates between frames.
+  /// Mean over frames. The median would be misleading if work alternates between frames.
   double frame_ms = 0.0;
   double cpu_ms = 0.0;     ///< mean CPU time of all threads per frame
   double moved_ms = 0.0;   ///< mean physics time over frames that advance objects; NaN: no such frame
@@ -35,8 +35,8 @@ struct RunFacts {
   std::vector<JudgedPicture> pictures;  ///< one per RunScene::true_views
 };
 
-/// Runs a session with objects of mesh `object`. Each object is dropped every 25 frames, staggered among the
-/// objects, at the scene's drop positions or above a surface in view.
+/// Runs a session with objects of mesh `object`. Each object is dropped every 25 frames, at the scene's drop
+/// positions or above a surface in view. Drops are staggered among the objects.
 RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mesh& object);
 
 /// Results of the scene's scenarios and touches; NaN if it has none.

@@ -1,4 +1,4 @@
-// run_scene.hpp: scene of a run: a mapped room or recording, with frames and ground truth.
+// run_scene.hpp: scene of a run, that is, a mapped room or recording with frames and ground truth.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -37,8 +37,8 @@ struct RunScene {
 
 /// @param spec  room as after `sim:`, such as "table" or "random?seed=3"
 std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const TradeScale& scale);
-/// Maps the first frames of the recording, and uses the rest, at most half of the recording, for the run.
-/// Throws Error as frames_of_recording() does.
+/// Maps the first frames of the recording. Uses the rest, at most half of the recording, for the run. Throws
+/// Error as frames_of_recording() does.
 std::unique_ptr<RunScene> run_scene_of_recording(const std::string& folder, const TradeScale& scale);
 
 }  // namespace roomradar

@@ -12,11 +12,11 @@ namespace roomradar {
 /// Returns `text` as a CSV field (RFC 4180), quoted if it contains a comma, a quote or a line break.
 std::string csv_field(const std::string& text);
 
-/// CSV file with one header for all works; fields that do not apply to a work are empty.
+/// CSV file with one header for all works. Fields that do not apply to a work are empty.
 class TradeCsv {
  public:
-  /// Writes nothing if `path` is empty. An existing file, which may contain hours of measurements, is
-  /// overwritten only when the first line is written.
+  /// Writes nothing if `path` is empty. An existing file may contain hours of measurements. It is overwritten
+  /// only when the first line is written.
   TradeCsv(const std::filesystem::path& path, const std::vector<MeasuredWork>& works);
 
   /// Writes and flushes one measurement. Throws Error if the file cannot be written.

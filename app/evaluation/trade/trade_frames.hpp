@@ -13,8 +13,8 @@ namespace roomradar {
 inline constexpr std::size_t kFewestTradeFrames = 30;
 
 /// Returns the readable frames among the first `count` frames of a recording. Throws Error if the recording
-/// cannot be read, if fewer than kFewestTradeFrames frames are readable, or if a frame has no pose, which
-/// serves as ground truth.
+/// cannot be read, fewer than kFewestTradeFrames frames are readable, or a frame has no pose. The poses serve
+/// as ground truth.
 std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t count);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// trade_page.hpp: writes a sweep's HTML file: plots of fronts, tables of presets, and explanations.
+// trade_page.hpp: writes a sweep's HTML file, with plots of fronts, tables of presets, and explanations.
 #pragma once
 #include <filesystem>
 #include <string>

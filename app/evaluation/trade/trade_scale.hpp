@@ -6,14 +6,14 @@ namespace roomradar {
 struct TradeScale {
   int scan_px = 640;  ///< width of the simulated 4:3 depth images of scans
   int scan_frames = 75;
-  double scan_rate_hz = 15.0;  ///< half a Kinect's rate: fewer frames for the same camera path
+  double scan_rate_hz = 15.0;  ///< half a Kinect's rate, for fewer frames on the same camera path
   int map_frames = 240;        ///< number of frames of the prescan from which a run's map is made
   int run_px = 640;            ///< width of the images of that prescan and of the run
   int run_frames = 120;
   int scenarios = 24;  ///< number of drops and pushes onto hidden surfaces
 };
 
-/// Scale for functional tests, not for choosing presets: a sweep with small images takes a few minutes.
+/// Scale for functional tests, not for choosing presets. A sweep with small images takes a few minutes.
 inline constexpr TradeScale kQuickScale{.scan_px = 320,
                                         .scan_frames = 30,
                                         .scan_rate_hz = 15.0,

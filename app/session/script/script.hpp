@@ -1,5 +1,4 @@
-// script.hpp: reads the events file of `roomradar run --script FILE`: timed actions on virtual objects and
-// the session.
+// script.hpp: reads the events file of `roomradar run --script FILE`, a list of timed actions.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -17,8 +16,8 @@ struct Script {
   std::vector<ScriptEvent> events;
 };
 
-/// Treatment of a last line without a line end. kWhole: the line is read as an event. kMayBeCut: the line is
-/// ignored, since its writing may have been interrupted.
+/// Treatment of a last line without a line end. kWhole reads the line as an event. kMayBeCut ignores the
+/// line, since its writing may have been interrupted.
 enum class LastLine { kWhole, kMayBeCut };
 
 /// Reads an events file. One event per line, words separated by blanks, # begins a comment:

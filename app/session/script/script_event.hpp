@@ -1,4 +1,4 @@
-// script_event.hpp: one event of a run: an action on a virtual object or on the session, and its time.
+// script_event.hpp: one event of a run: its time, and its action on a virtual object or the session.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -38,7 +38,8 @@ enum class CameraPlay {
   kRewind,  ///< the source's first frame
   kLoop,    ///< after the source's last frame, continue with its first frame
   kStay,    ///< after the source's last frame, repeat that frame
-  /// The source's next frame, timed 1/30 s after the previous one; a device's clock continues during a pause.
+  /// The source's next frame. Its time is set to 1/30 s after the previous frame's, since a device's clock
+  /// continues during a pause.
   kResume,
 };
 
@@ -47,7 +48,7 @@ inline constexpr double kMaxTurn_deg = 3600.0;  ///< max angle of one kTurn, per
 /// One line of a script (script.hpp). Positions are those of the object's origin, in the world (m, +z up).
 struct ScriptEvent {
   int line = 0;  ///< line number in the file, from 1; 0: not from a file
-  /// The event is due before this frame of the run, from 0; alternative to time_s.
+  /// The event is due before the frame of the run with this index, from 0. Alternative to time_s.
   std::optional<std::int64_t> frame;
   /// The event is due before the first frame at or after this time of the run.
   std::optional<double> time_s;
@@ -57,7 +58,8 @@ struct ScriptEvent {
   std::string mesh;
   std::optional<double> size_m;  ///< kAdd: length of the longest side after scaling; unset: not scaled
   std::optional<UpAxis> up;      ///< kAdd: axis of the file that points up; unset: the format's default
-  /// kAdd: kAsInFile only when replaying sessions recorded before ModelOrigin::kNear was introduced.
+  /// kAdd: origin of the model. kAsInFile is only for replaying sessions recorded before kNear was
+  /// introduced.
   ModelOrigin origin = ModelOrigin::kNear;
   /// kPlace, kDrop, kThrow, kCarry: position. kDrop without a position: above a level surface in view.
   std::optional<Eigen::Vector3d> position_world;

@@ -16,8 +16,8 @@ std::string object_name(const std::string& mesh);
 
 /// Executes an event: adds, moves or removes an object, or changes a policy. Call it before the frame in
 /// which the event is due. Ignores kCamera and kQuit, which callers handle. Throws Error, and changes
-/// nothing, for an unknown object, a name that is taken, an unreadable mesh, a size refused by
-/// require_sensible_size() or incompatible policies.
+/// nothing, for an unknown object, a taken name, an unreadable mesh or incompatible policies. Also throws for
+/// a size refused by require_sensible_size().
 void apply(Session& session, const ScriptEvent& event);
 
 }  // namespace roomradar

@@ -20,7 +20,7 @@ enum class Pattern {
   kTiles,
   /// Carpet with a woven border and ornaments.
   kCarpet,
-  /// Poster: shapes on a plain background; the seed determines the shapes.
+  /// Poster: shapes on a plain background. The seed determines the shapes.
   kPoster,
   /// Landscape: sky, hills and meadow.
   kLandscape,
@@ -43,12 +43,12 @@ struct Material {
   Rgb first{200, 200, 200};
   Rgb second{120, 120, 120};
   std::uint32_t seed = 0;
-  /// Reflected fraction of the projector's infrared light; low for dark or glossy surfaces.
+  /// Reflected fraction of the projector's infrared light. Low for dark or glossy surfaces.
   float infrared = 0.6F;
 };
 
 /// Returns the colour of point (u_m, v_m) of a face of the given size, as gamma-encoded red, green and blue,
-/// 0 to 1. (0, 0) is the face's centre; v points up on vertical faces.
+/// 0 to 1. (0, 0) is the face's centre. v points up on vertical faces.
 std::array<float, 3> pattern_colour(const Material& material, float u_m, float v_m, float width_m,
                                     float height_m);
 

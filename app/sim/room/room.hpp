@@ -1,5 +1,5 @@
-// room.hpp: a simulated furnished room: solids, materials, lamps, and endpoints for the paths of camera and
-// moving objects.
+// room.hpp: a simulated furnished room, with solids, materials, lamps, and endpoints for the paths of camera
+// and moving objects.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Lamp {
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
   /// Irradiance at 1 m, in relative units.
   float power = 1.0F;
-  /// Radius of the light source, which determines the softness of shadows.
+  /// Radius of the light source. It determines the softness of shadows.
   double radius_m = 0.2;
 };
 
@@ -57,9 +57,9 @@ struct Room {
 
 /// Returns the names of the fixed furnished rooms that make_room() accepts.
 const std::vector<std::string>& room_names();
-/// Another name that make_room() accepts: a room with furniture drawn at random from the seed.
+/// Another name for make_room(): a room with furniture drawn at random from the seed.
 inline constexpr std::string_view kRandomRoom = "random";
-/// Another name that make_room() accepts: a room with a checkerboard on a stand, for camera calibration.
+/// Another name for make_room(): a room with a checkerboard on a stand, for camera calibration.
 inline constexpr std::string_view kBoardRoom = "board";
 /// Throws Error listing the known names if `name` is none of them.
 void require_room(std::string_view name);
@@ -77,8 +77,8 @@ Solid crate_in(const Room& room);
 Material crate_material();
 
 /// Returns the signed distance (m) from a point to the nearest surface, negative inside a solid. The distance
-/// is exact outside. Inside, its magnitude is the depth in the single solid that contains the point deepest,
-/// a lower bound of the depth in the union of touching solids.
+/// is exact outside. Inside, its magnitude is the max of the depths in the single solids. This is a lower
+/// bound of the depth in the union of touching solids.
 double signed_distance_m(const Room& room, const Eigen::Vector3d& p_world);
 
 /// Returns the exact first intersection at which a ray enters a solid from outside. RayHit::range_m is in

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// Makes a living room: book shelves, sofa and coffee table.
+/// Makes a living room with book shelves, sofa and coffee table.
 Room make_shelf_room();
 
 }  // namespace roomradar

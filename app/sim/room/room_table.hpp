@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// Makes a dining room: table with four chairs and objects on it, cupboard, window, pictures.
+/// Makes a dining room with table, four chairs, objects on the table, cupboard, window and pictures.
 Room make_table_room();
 
 }  // namespace roomradar

@@ -9,14 +9,14 @@
 namespace roomradar {
 
 /// Textures with mip levels, and lighting on a coarse grid, for each face that is visible inside the room.
-/// Lighting includes the lamps' shadows, computed by ray casting, and ambient occlusion, computed from
-/// distances to the room's surface.
+/// Lighting includes the lamps' shadows (by ray casting) and ambient occlusion (from distances to the room's
+/// surface).
 class SurfaceAppearance {
  public:
   /// Prepares the room's solids.
-  /// @param texel_m  size of the finest texture detail; should be at least a pixel's width on the surface
+  /// @param texel_m  size of the finest texture detail. Should be at least a pixel's width on the surface
   SurfaceAppearance(const Room& room, double texel_m);
-  /// Prepares solids that move through the room. Only textures are precomputed; lighting is computed per
+  /// Prepares solids that move through the room. Only textures are precomputed. Lighting is computed per
   /// pixel.
   SurfaceAppearance(const Room& room, std::span<const Solid> solids, std::span<const Material> materials,
                     double texel_m);
@@ -40,10 +40,10 @@ class SurfaceAppearance {
   struct Face {
     float width_m = 0.0F, height_m = 0.0F;
     float texel_m = 0.0F;
-    /// Mip levels, each half as wide and high as the previous one; empty if the face is hidden.
+    /// Mip levels, each half as wide and high as the previous one. Empty if the face is hidden.
     std::vector<Level> levels;
     int light_columns = 0, light_rows = 0;
-    /// Brightness factors at the nodes of a grid over the face, row by row; empty for moving solids.
+    /// Brightness factors at the nodes of a grid over the face, row by row. Empty for moving solids.
     std::vector<float> light;
   };
   /// Faces of a solid: +x, -x, +y, -y, +z, -z, and a cylinder's side.

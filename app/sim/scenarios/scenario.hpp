@@ -1,5 +1,5 @@
-// scenario.hpp: a test case in which an object moves in a straight line towards a surface that an occluder
-// hides from the camera.
+// scenario.hpp: a test case: an object moves in a straight line towards a surface hidden from the camera by
+// an occluder.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -30,7 +30,7 @@ std::string_view to_string(Occluder occluder);
 /// Number of prescan frames of a room: one round of the camera.
 inline constexpr std::int64_t kScenarioPrescanFrames = 720;
 
-/// A room with its prescan path. All scenarios of a room share it, so one map per room suffices.
+/// A room with its prescan path. All scenarios of a room share the path. One map per room thus suffices.
 struct ScenarioRoom {
   Room room;
   /// Options of the SimulatedSource that produces the prescan frames, without moving objects.
@@ -55,8 +55,8 @@ struct Scenario {
   Eigen::Vector3d occluder_velocity_world = Eigen::Vector3d::Zero();
   /// True camera pose while the object moves.
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  /// Camera pose as tracking would estimate it: the true pose plus random errors with standard deviations of
-  /// 1.5 mm and 0.1 degrees.
+  /// Simulated estimate of the camera pose. It is the true pose plus random errors with standard deviations
+  /// of 1.5 mm and 0.1 degrees.
   Eigen::Isometry3d T_world_believed = Eigen::Isometry3d::Identity();
   Intrinsics depth_camera = kKinectDepthCamera;
 

@@ -1,4 +1,4 @@
-// scenario_hiding.hpp: tests if the prescan observed room surfaces, and places occluders that hide them.
+// scenario_hiding.hpp: tests whether the prescan observed room surfaces, and places occluders that hide them.
 #pragma once
 #include <optional>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// Occluders hide all surfaces that could stop the object within the true travel plus this distance.
+/// Occluders hide all surfaces that could stop the object up to this distance beyond the true contact.
 inline constexpr double kBeyond_m = 0.05;
 
 /// A surface point and its unit normal.
@@ -28,7 +28,7 @@ std::optional<Patch> draw_patch(const ScenarioRoom& from, CounterRandom& random)
 bool was_seen(const ScenarioRoom& from, const Patch& patch);
 
 /// Returns true if the object enters no unknown space between its start and the true contact. The swept space
-/// is tested at several hundred sample points; at least three prescan views must have observed each of them.
+/// is tested at several hundred sample points. At least three prescan views must have observed each of them.
 bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario);
 
 /// Returns the room's surface points that could stop the object within limit_m. They are found by casting

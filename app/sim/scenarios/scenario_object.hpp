@@ -1,5 +1,5 @@
-// scenario_object.hpp: objects to drop and push, from a needle to a table. They consist of solids, so their
-// distance to contact can be computed exactly.
+// scenario_object.hpp: objects to drop and push, from a needle to a table. They consist of solids. Their
+// distance to contact can thus be computed exactly.
 #pragma once
 #include <string_view>
 #include <vector>
@@ -44,8 +44,8 @@ struct ScenarioObject {
 /// Makes an object of this shape with random size and proportions.
 ScenarioObject draw_object(ObjectShape shape, CounterRandom& random);
 
-/// Returns a mesh of all parts. Each part's surface is closed, and at most kMeshDeviation_m inside the true
-/// surface of the part.
+/// Returns a mesh of all parts. Each part's surface is closed. It is at most kMeshDeviation_m inside the
+/// part's true surface.
 Mesh object_mesh(const ScenarioObject& object);
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// scenarios.hpp: makes and judges test cases in which objects are dropped or pushed onto surfaces that the
-// prescan observed but that are now hidden from the camera.
+// scenarios.hpp: makes and judges test cases of objects dropped or pushed onto hidden surfaces. The prescan
+// observed these surfaces, but an occluder now hides them from the camera.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -20,12 +20,12 @@ ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed = 1);
 ///   hidden from the camera. The contact point projects into the image.
 /// - At least three cameras of T_world_prescan observed each of these points, at 0.6 to 3.5 m and not at a
 ///   grazing angle.
-/// - The prescan observed the space that the object sweeps, so the object never enters unknown space.
+/// - The prescan observed the space that the object sweeps. The object thus never enters unknown space.
 /// - The object starts at least 2 cm from the room's surfaces, and stays at least 4 cm from the occluder.
-/// - If the object started 5 mm to the side, in any of four directions, its distance to contact would change
-///   by at most 15 mm. This condition excludes contacts that depend on detail finer than the map's voxels.
+/// - A start 5 mm to the side, in any of four directions, would change the distance to contact by at most 15
+///   mm. This excludes contacts that depend on detail finer than the map's voxels.
 ///
-/// Four drops and four pushes follow each other in turn; each group of four contains all four kinds of
+/// Four drops and four pushes follow each other in turn. Each group of four contains all four kinds of
 /// occluder. Object shapes also take turns. The occluder alone, without the room, hides at least half of the
 /// points that could stop the object. If 3,000 random draws find no placement, the next kind of occluder is
 /// tried, then the next shape. Throws Error if all fail.

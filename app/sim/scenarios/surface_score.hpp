@@ -1,5 +1,5 @@
-// surface_score.hpp: accuracy and completeness of a reconstructed mesh, relative to the surface of the
-// simulated room.
+// surface_score.hpp: accuracy and completeness of a reconstructed mesh relative to the simulated room's
+// surface.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace roomradar {
 
-/// Max distance between mesh and true surface at which they count as coincident.
+/// Max distance at which mesh and true surface count as coincident.
 inline constexpr double kSurfaceFound_m = 0.02;
 
-/// The part of a room's true surface that depth frames measured within 5 m, as one point per cube of side
+/// Points of a room's true surface that depth frames measured within 5 m, one per cube of side
 /// kSurfaceFound_m.
 class SeenSurface {
  public:

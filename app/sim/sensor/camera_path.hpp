@@ -16,8 +16,8 @@ struct Sway {
   double phase_rad = 0.0;
 };
 
-/// A smooth camera path. A scan (kScan) follows an ellipse at constant angular speed; a viewer (kView) stands
-/// still. Sway, a sum of sines of time, is added to both, so all derivatives are continuous.
+/// A smooth camera path. A scan (kScan) follows an ellipse at constant angular speed. A viewer (kView) stands
+/// still. Sway, a sum of sines of time, is added to both. All derivatives are thus continuous.
 struct CameraPath {
   CameraPathKind kind = CameraPathKind::kScan;
   /// Centre of the ellipse, or position of a viewer.
@@ -39,8 +39,8 @@ struct CameraPath {
   std::array<std::array<Sway, 2>, 3> turn_sway{};
 };
 
-/// Draws up to 64 paths at random. Returns the first path with a clearance of 0.5 m from all solids, or the
-/// path with the greatest clearance if there is none. During a scan, the camera moves at 0.3 to 0.6 m/s and
+/// Draws up to 64 paths at random. Returns the first path with a clearance of 0.5 m from all solids. If there
+/// is none, returns the path with the max clearance. During a scan, the camera moves at 0.3 to 0.6 m/s and
 /// rotates by less than 40 degrees/s. If duration_s permits a full round at this speed, the path ends at its
 /// start.
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s);

@@ -28,13 +28,13 @@ struct ExactView {
 };
 
 /// Renders exact depth, solid and cosine along each pixel's ray.
-/// @param rays  each pixel's viewing ray, as an image point of `camera`; empty: rays through the pixels'
+/// @param rays  each pixel's viewing ray, as an image point of `camera`. Empty: rays through the pixels'
 ///              centres
 void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
                   const PixelRays& rays, ExactView& exact);
 
-/// Returns the difference between adjacent measurable depths near depth_m, m: z^2 / (8 f b), where z is the
-/// depth, f the focal length and b the baseline. Disparities have steps of 1/8 px in an image of 640 px
+/// Returns the difference between adjacent measurable depths near depth_m, m. It is z^2 / (8 f b), where z is
+/// the depth, f the focal length and b the baseline. Disparities have steps of 1/8 px in an image of 640 px
 /// width. Source: Khoshelham and Elberink, Sensors 2012, equation (5).
 double quantisation_step_m(const Intrinsics& camera, double depth_m);
 
@@ -65,11 +65,11 @@ struct KinectScratch {
 /// - Lateral noise: each ray deviates from its pixel's centre, with standard deviation
 ///   sigma_L = 0.8 + 0.035 theta / (pi/2 - theta) px.
 /// - Shadow: depth 0 if a solid blocks the line from the projector to the surface.
-/// - Dropouts: depth 0 if too little light returns from a dark, grazing or far surface; the boundary of such
+/// - Dropouts: depth 0 if too little light returns from a dark, grazing or far surface. The boundary of such
 ///   areas is ragged.
 /// - Axial noise: standard deviation sigma(z, theta) of depth_noise.hpp without the contribution of
-///   quantisation; correlated over about 3 pixels.
-/// - Quantisation of the disparity; depth 0 outside 0.5 to 8 m.
+///   quantisation. Correlated over about 3 pixels.
+/// - Quantisation of the disparity. Depth is 0 outside 0.5 to 8 m.
 ///
 /// The result is deterministic in (seed, frame_index) and independent of other frames. Source: Nguyen, Izadi,
 /// Lovell, 3DIMPVT 2012, equations (1) and (3).

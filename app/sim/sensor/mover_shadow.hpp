@@ -1,4 +1,4 @@
-// mover_shadow.hpp: shadows of moving objects, applied in addition to the precomputed lighting.
+// mover_shadow.hpp: shadows of moving objects, added to the precomputed lighting.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Shadows of one frame's moving solids in the light of the room's first lamp, its strongest.
+/// Shadows of one frame's moving solids in the light of the room's first and strongest lamp.
 class MoverShadow {
  public:
   void prepare(std::span<const Solid> movers);

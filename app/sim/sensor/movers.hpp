@@ -33,12 +33,12 @@ struct Mover {
 };
 
 /// Plans the motion of a moving object.
-/// @param viewer_world  camera position; a hand passes between the camera and Room::focus_world
-/// @param duration_s    duration of the recording; with Pace::kLeaves, the object leaves after half of it
+/// @param viewer_world  camera position. A hand passes between the camera and Room::focus_world
+/// @param duration_s    duration of the recording. With Pace::kLeaves, the object leaves after half of it
 Mover plan_mover(MoverKind kind, const Room& room, const Eigen::Vector3d& viewer_world, std::uint64_t seed,
                  Pace pace = Pace::kSteady, double duration_s = 0.0);
 
-/// Appends the object's solids at time t_s. Number and order of the solids do not depend on t_s; their
+/// Appends the object's solids at time t_s. Number and order of the solids do not depend on t_s. Their
 /// positions have continuous derivatives.
 void append_solids(const Mover& mover, double t_s, std::vector<Solid>& solids);
 

@@ -1,5 +1,5 @@
-// sensor_faults.hpp: calibration errors of a simulated Kinect: differences between its true cameras and the
-// cameras that its frames declare.
+// sensor_faults.hpp: calibration errors of a simulated Kinect, i.e. differences between its true cameras and
+// the cameras that its frames declare.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -21,7 +21,7 @@ struct SensorFaults {
 };
 
 /// Returns the true cameras of a simulated device whose frames declare `depth_camera`, `colour_camera` and
-/// `T_colour_depth`. The errors are always the same: about 1 % in focal lengths, 3 px in principal points.
+/// `T_colour_depth`. The errors are fixed, about 1 % in focal lengths and 3 px in principal points.
 SensorFaults sensor_faults(const Intrinsics& depth_camera, const Intrinsics& colour_camera,
                            const Eigen::Isometry3d& T_colour_depth);
 
@@ -29,8 +29,8 @@ SensorFaults sensor_faults(const Intrinsics& depth_camera, const Intrinsics& col
 /// rings about the image centre plus a linear slope. It corresponds to at most 3 mm at 1 m and 27 mm at 3 m.
 double inverse_depth_offset_per_m(const Intrinsics& depth_camera, double x_px, double y_px);
 
-/// Per pixel of the true camera: the point in the declared pinhole camera's image to which the pixel's
-/// viewing ray projects.
+/// Projection of each viewing ray of the true camera into the declared pinhole camera's image. One entry per
+/// pixel of the true camera.
 using PixelRays = Image<PlanePoint<float>>;
 /// Computes the rays of a camera.
 /// @param truth  true camera

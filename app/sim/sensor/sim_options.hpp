@@ -73,10 +73,10 @@ struct SimOptions {
   /// Timing of all moving objects.
   Pace pace = Pace::kSteady;
   CrateKind crate = CrateKind::kNone;
-  /// Factor on the Kinect's noise; 0: exact depth, without shadow or dropouts.
+  /// Factor on the Kinect's noise. 0: exact depth, without shadow or dropouts.
   double noise_scale = 1.0;
   Intrinsics depth_camera = kKinectDepthCamera;
-  /// True: the true cameras differ from the cameras that the frames declare; see sensor_faults.hpp.
+  /// True: the true cameras differ from those that the frames declare; see sensor_faults.hpp.
   bool faults = false;
   /// True: colour images have the depth camera's view. False: the colour camera is 2.5 cm beside the depth
   /// camera.
@@ -90,7 +90,7 @@ struct SimOptions {
 ///   (steady, slow, waits, leaves), noise (0: none, 1: as a Kinect), crate (0, 1: an additional crate; comes,
 ///   goes: after half of the frames), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
 ///   separate, none), faults (0, 1: the true cameras differ from those the frames declare).
-/// @throws Error with the key or value that is unknown or out of range, and the list of valid ones
+/// @throws Error naming the key or value that is unknown or out of range, and the valid ones
 SimOptions parse_sim_spec(std::string_view spec);
 
 /// Returns the shortest spec that parse_sim_spec() converts to `options`. The depth camera must be a result

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// Finaliser of splitmix64: flipping any input bit flips about half of the output bits. Source: Steele, Lea,
+/// Finaliser of splitmix64. Flipping any input bit flips about half of the output bits. Source: Steele, Lea,
 /// Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014.
 inline std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;

@@ -11,7 +11,7 @@ namespace roomradar {
 struct Separation {
   /// Distance between the surfaces, m; 0 if the solids touch or overlap.
   double distance_m = 0.0;
-  /// Unit vector from b towards a; zero if the solids overlap even without their inflation (Solid::round_m).
+  /// Unit vector from b towards a. Zero if the solids overlap even without their inflation (Solid::round_m).
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
   /// Point of b's surface nearest to a.
   Eigen::Vector3d point_b_world = Eigen::Vector3d::Zero();
@@ -21,8 +21,8 @@ struct Separation {
 /// Gilbert, Johnson, Keerthi, IEEE Journal of Robotics and Automation 1988.
 Separation separation(const Solid& a, const Solid& b);
 
-/// Returns the distance between the nearest of `obstacles` and an object at T_world_object that consists of
-/// `parts`, or enough_m if the distance is larger.
+/// Returns the distance between the nearest of `obstacles` and an object of `parts` at T_world_object.
+/// Returns enough_m if the distance is larger.
 double clearance_m(std::span<const Solid> obstacles, std::span<const Solid> parts,
                    const Eigen::Isometry3d& T_world_object, double enough_m);
 

@@ -21,7 +21,7 @@ struct SweptTravel {
 /// Moves each part towards each obstacle by conservative advancement until they touch or can no longer touch.
 /// The result is less than 1e-7 m too small and never too large. Source: Mirtich, PhD thesis, Berkeley 1996,
 /// section 2.3.
-/// @param parts            solids of the object, in its own frame; they may overlap
+/// @param parts            solids of the object, in its own frame. They may overlap
 /// @param T_world_object   start pose
 /// @param direction_world  unit direction of motion
 /// @param limit_m          max distance

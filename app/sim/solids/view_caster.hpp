@@ -26,7 +26,8 @@ class ViewCaster {
 
   /// Returns the first surface on the ray through image point (u, v).
   [[nodiscard]] PixelHit cast(double u_px, double v_px) const;
-  /// Returns the depth at which the ray enters one solid, ignoring all others; 0 if the ray misses the solid.
+  /// Returns the depth at which the ray enters one solid, ignoring all others. Returns 0 if the ray misses
+  /// the solid.
   [[nodiscard]] double depth_of(int solid, double u_px, double v_px) const;
   /// Returns true if the ray enters any solid at a depth below depth_m.
   [[nodiscard]] bool is_blocked(double u_px, double v_px, double depth_m) const;

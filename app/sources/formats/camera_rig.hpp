@@ -25,21 +25,20 @@ struct CameraRig {
 ///    "colour": {... the same fields; absent if there is no colour},
 ///    "T_colour_depth": [[r, r, r, tx], [r, r, r, ty], [r, r, r, tz], [0, 0, 0, 1]],       (metres)
 ///    "calibrated": true}                           (absent if frames are as the device delivered them)
-/// Throws Error with the file's name, and with the name of a field that is missing, has the wrong type or an
-/// impossible value.
+/// Throws Error naming the file and a field that is missing, has the wrong type or an invalid value.
 CameraRig read_camera_file(const std::filesystem::path& path);
 /// Writes camera.json. Throws Error with the file's name if it cannot be written.
 void write_camera_file(const CameraRig& rig, const std::filesystem::path& path);
 
 /// Reads camera-intrinsics.txt, the 3 x 3 matrix fx 0 cx / 0 fy cy / 0 0 1. The file does not contain the
-/// image size, which callers pass. Throws Error with the file's name and the problem if the file is invalid.
-/// Also throws Error if the principal point is farther from the image centre than a fifth of the image size,
-/// since the file then belongs to another image size.
+/// image size, which callers pass. Throws Error naming the file and the fault if the file is invalid. Also
+/// throws Error if the principal point is farther from the image centre than a fifth of the image size. The
+/// file then belongs to another image size.
 Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_px, int height_px);
 
 /// Returns the rotation nearest to `almost` in the Frobenius norm, computed by SVD. Returns nullopt if
-/// `almost` has an entry that is not finite or is more than 0.01 from the rotation's, or if `almost` contains
-/// a reflection.
+/// `almost` contains a reflection. Also returns nullopt if an entry is not finite or more than 0.01 from the
+/// rotation's.
 std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& almost);
 
 }  // namespace roomradar

@@ -11,8 +11,8 @@ namespace roomradar {
 
 /// Reads the whole file, at most 1 MiB. Throws Error with the file's name if it cannot be read or is larger.
 std::string read_json_text(const std::filesystem::path& path);
-/// Parses a JSON file. Throws Error, with the file's name and the problem, if it is not JSON or its fields
-/// "format" and "version" differ from the arguments.
+/// Parses a JSON file. Throws Error naming the file and the fault if it is not JSON, or its fields "format"
+/// and "version" differ from the arguments.
 nlohmann::json parse_json_of_format(const std::filesystem::path& path, const char* format, int version);
 /// Writes a JSON file. Throws Error with the file's name if it cannot be written.
 void write_json(const nlohmann::json& root, const std::filesystem::path& path);
@@ -33,8 +33,8 @@ bool said_calibrated(const Json& root, const std::string& where) {
   return said->template get<bool>();
 }
 
-/// Reads the fields depth, colour and T_colour_depth of camera.json. Throws Error with the name of a field
-/// that is missing, has the wrong type or an impossible value.
+/// Reads the fields depth, colour and T_colour_depth of camera.json. Throws Error naming a field that is
+/// missing, has the wrong type or an invalid value.
 CameraRig rig_from_json(const nlohmann::json& root, const std::string& where);
 /// Returns the fields depth, colour and T_colour_depth of camera.json.
 nlohmann::json json_of(const CameraRig& rig);

@@ -18,8 +18,7 @@ struct FrameRange {
 FrameRange parse_frame_range(std::string_view text);
 
 /// Returns a source that delivers only the frames `first` to `last` of `source`, with their original indices
-/// and stamps. Unreadable frames are counted too. Works for sources of unknown length, since nothing is read
-/// ahead.
+/// and stamps. Unreadable frames are counted, too. Nothing is read ahead, so sources of unknown length work.
 /// @throws Error unless 0 <= first <= last, or if the range exceeds the recording. If the recording's length
 ///         is unknown, next() throws that error at the recording's end.
 std::unique_ptr<FrameSource> limit_frames(std::unique_ptr<FrameSource> source, std::int64_t first,

@@ -9,11 +9,11 @@ namespace roomradar {
 
 /// Encoding of depth as integers in a file.
 enum class DepthEncoding {
-  /// 16 bit grey PNG in mm; 0 and 65535 are invalid (7-Scenes, numbered folders).
+  /// 16 bit grey PNG in mm. 0 and 65535 are invalid (7-Scenes, numbered folders).
   kMillimetres,
-  /// 16 bit grey PNG in 1/5000 m; 0 is invalid.
+  /// 16 bit grey PNG in 1/5000 m. 0 is invalid.
   kTum,
-  /// 11 bit disparity as 16 bit little-endian (unlike standard PGM) after a PGM header; 2047 is invalid.
+  /// 11 bit disparity as 16 bit little-endian (unlike standard PGM) after a PGM header. 2047 is invalid.
   kKinectRaw,
 };
 

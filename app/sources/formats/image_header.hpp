@@ -12,7 +12,7 @@ struct ImageHeader {
   ImageKind kind = ImageKind::kPng;
   int width_px = 0;
   int height_px = 0;
-  /// Number of channels. 1: grey; 3: colour, including palette images; 2 and 4: grey and colour with
+  /// Number of channels. 1 is grey, 3 is colour (including palette images). 2 and 4 are grey and colour with
   /// transparency.
   int channels = 0;
   /// Bits per channel.
@@ -22,8 +22,8 @@ struct ImageHeader {
 };
 
 /// Reads the header of a PNG, JPEG, binary PGM (P5) or binary PPM (P6), recognised by its content. Checks
-/// that the file is complete without decoding it: PNG and JPEG by their end markers, PGM and PPM by their
-/// length.
+/// that the file is complete without decoding it. Checks PNG and JPEG by their end markers, PGM and PPM by
+/// their length.
 /// @param name  file name for error messages
 /// @throws Error if the file is empty, of another type, truncated, or wider or higher than 16384 px
 ImageHeader read_image_header(std::span<const std::uint8_t> bytes, const std::string& name);

@@ -15,7 +15,7 @@ constexpr double kKinectTicksPerSecond = 60e6;
 constexpr double kKinectCountsPerG = 819.0;
 /// Magnitude of 1 g.
 constexpr double kStandardGravity_m_s2 = 9.80665;
-/// Greatest valid raw value, 9.88 m. For greater values, one raw step is more than 0.5 m.
+/// Max valid raw value, 9.88 m. Above it, one raw step is more than 0.5 m.
 constexpr std::uint16_t kRawFarthest = 1057;
 
 /// Converts a raw 11 bit disparity to depth along the optical axis, m: 0.1236 tan(raw / 2842.5 + 1.1863).
@@ -27,8 +27,7 @@ constexpr std::uint16_t kRawFarthest = 1057;
 float raw_depth_m(std::uint16_t raw);
 
 /// Returns the raw disparity whose depth is nearest to depth_m. Returns kRawNoDepth for depth 0, and for
-/// depths outside the range by more than half a raw step. raw_from_depth_m(raw_depth_m(raw)) == raw for raw
-/// <= kRawFarthest.
+/// depths outside the range by more than half a raw step. Inverse of raw_depth_m() for raw <= kRawFarthest.
 std::uint16_t raw_from_depth_m(float depth_m);
 
 /// Factory calibration of a Kinect's depth measurement. Lengths are in centimetres, as the device stores
@@ -51,9 +50,9 @@ float raw_depth_m(std::uint16_t raw, const KinectZeroPlane& zero_plane);
 
 /// Computes the unit direction of gravity in the depth camera's frame (x right, y down, z forward) from an
 /// accelerometer reading in g. The accelerometer's axes are x left, y up, z forward. At rest, the
-/// accelerometer measures the support force, opposite to gravity; the result is therefore (x, y, -z),
-/// normalised. Returns nullopt if the magnitude is outside 0.8 to 1.2 g, since the device then accelerates or
-/// has no reading.
+/// accelerometer measures the support force, opposite to gravity. The result is therefore (x, y, -z),
+/// normalised. Returns nullopt if the magnitude is outside 0.8 to 1.2 g. The device then accelerates or has
+/// no reading.
 std::optional<Eigen::Vector3d> down_from_acceleration(const Eigen::Vector3d& acceleration_g);
 
 /// Returns the accelerometer reading (g) at rest for a direction of gravity. Inverse of
@@ -61,8 +60,8 @@ std::optional<Eigen::Vector3d> down_from_acceleration(const Eigen::Vector3d& acc
 Eigen::Vector3d acceleration_at_rest_g(const Eigen::Vector3d& down_camera);
 
 /// Converts the device's timestamps, which wrap, to seconds. Successive stamps must be less than 35 s apart.
-/// Depth and colour images share one clock, so pass the stamps of both to the same object, in order of
-/// arrival. The device's clock is reset when the device is unplugged; see restart().
+/// Depth and colour images share one clock. Pass the stamps of both to the same object, in order of arrival.
+/// The device's clock is reset when the device is unplugged; see restart().
 class KinectClock {
  public:
   double seconds(std::uint32_t ticks) {

@@ -8,13 +8,13 @@
 namespace roomradar {
 
 enum class NominalRig {
-  /// A Kinect v1 as published by 7-Scenes; depth is not registered to colour.
+  /// A Kinect v1 as published by 7-Scenes. Depth is not registered to colour.
   kSevenScenes,
   /// A Kinect v1 with depth registered to colour.
   kTum,
   /// An unknown sensor.
   kNumbered,
-  /// A Kinect v1 through libfreenect; depth is not registered to colour.
+  /// A Kinect v1 through libfreenect. Depth is not registered to colour.
   kKinect,
 };
 
@@ -24,15 +24,15 @@ struct ImageSize {
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// Returns default intrinsics, published or measured by us, for a kind of recording, scaled to the images'
-/// width. If the images' aspect ratio differs from that of the calibrated images, equal numbers of rows are
-/// assumed to be cropped at top and bottom.
+/// Returns published or measured default intrinsics for a kind of recording, scaled to the images' width. If
+/// the images' aspect ratio differs from that of the calibrated images, equal numbers of rows are assumed to
+/// be cropped at top and bottom.
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour);
 
 /// Returns the cameras of the recording in `folder`. Intrinsics come from the first of these sources that
 /// exists: `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt (depth camera only), and
-/// nominal_rig(). Throws Error if a file is invalid, or, with both sizes and a remedy, if a camera's size
-/// differs from the image size.
+/// nominal_rig(). Throws Error if a file is invalid. Also throws if a camera's size differs from the image
+/// size. The message then contains both sizes and a remedy.
 CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
                            const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
                            std::optional<ImageSize> colour);

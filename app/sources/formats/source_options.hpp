@@ -31,10 +31,10 @@ struct SourceOptions {
   std::optional<Intrinsics> depth_camera;
   /// Depth mode of a live Kinect.
   KinectDepth kinect_depth = KinectDepth::kRaw;
-  /// True: up to 120 frames of a live device are queued, for a scan, which needs every frame. False: only the
+  /// True: up to 120 frames of a live device are queued, for scans. Scans need every frame. False: only the
   /// newest frame is kept, for live display.
   bool keep_all = false;
-  /// True: a calibration.json beside a recording is ignored, so frames are delivered as recorded.
+  /// True: a calibration.json beside a recording is ignored. Frames are then delivered as recorded.
   bool as_recorded = false;
   /// Max time without depth images from a live device, despite restarts, before next() throws Error, s.
   double device_timeout_s = 60.0;

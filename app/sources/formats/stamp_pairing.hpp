@@ -1,4 +1,4 @@
-// stamp_pairing.hpp: pairs colour images with depth images by timestamp; all sources use it.
+// stamp_pairing.hpp: pairs colour images with depth images by timestamp, for all sources.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,16 +7,16 @@
 
 namespace roomradar {
 
-/// Default max number of unpaired colour images in a StampPairing. Callers store the pixels of as many colour
-/// images.
+/// Default max number of unpaired colour images in a StampPairing. Callers store the pixels of this number of
+/// colour images.
 constexpr std::size_t kColoursKept = 8;
 
 struct PairingConfig {
-  /// Max time between the images of a pair; half a period at 30 Hz is 0.017 s.
+  /// Max time between the images of a pair. Half a period at 30 Hz is 0.017 s.
   double tolerance_s = 0.020;
   /// Half the min time between images of one kind; 0 if unknown. A colour image within this time of a depth
-  /// image is paired with it immediately, since no other image can be closer. Immediate pairing saves a live
-  /// device up to one frame of latency.
+  /// image is paired with it immediately, since no other image can be closer. Immediate pairing reduces a
+  /// live device's latency by up to one frame.
   double unbeatable_s = 0.0;
   /// Max number of unpaired colour images. Recordings use a larger number than devices.
   std::size_t colours_kept = kColoursKept;
@@ -32,17 +32,17 @@ struct DepthColourPair {
   std::optional<std::int64_t> colour{};
   /// Colour stamp minus depth stamp; 0 without colour.
   double colour_after_depth_s = 0.0;
-  /// True if the depth image's stamp is not later than the previous depth image's; the image is then
+  /// True if the depth image's stamp is not later than the previous depth image's. The image is then
   /// unusable.
   bool stamp_goes_back = false;
 };
 
 /// Pairs depth and colour images, which callers add in order of arrival. Pairs are returned in the order of
-/// the depth images. A depth image is paired with the colour image nearest in time, among those within the
-/// tolerance that are unpaired and not nearer to the next depth image. A lost colour image thus leaves only
-/// one depth image without colour. A pair is decided when no later colour image can be nearer, or when the
-/// next depth image has arrived. The result depends only on stamps and order of arrival, so a recording in
-/// order of arrival gives the same pairs as the live device.
+/// the depth images. A depth image is paired with the colour image nearest in time. Candidates are unpaired
+/// colour images within the tolerance that are not nearer to the next depth image. A lost colour image thus
+/// leaves only one depth image without colour. A pair is decided when no later colour image can be nearer, or
+/// when the next depth image has arrived. The result depends only on stamps and order of arrival. A recording
+/// in order of arrival thus gives the same pairs as the live device.
 class StampPairing {
  public:
   explicit StampPairing(const PairingConfig& config) : config_(config) {}

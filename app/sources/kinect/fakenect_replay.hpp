@@ -1,5 +1,5 @@
-// fakenect_replay.hpp: prepares a recording for replay by fakenect, libfreenect's replay library, which does
-// not check files.
+// fakenect_replay.hpp: prepares a recording for replay by fakenect, libfreenect's replay library. fakenect
+// does not check files.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -16,7 +16,7 @@ inline constexpr const char* kFakenectPath = "FAKENECT_PATH";
 /// variable is set.
 std::optional<std::filesystem::path> replayed_folder();
 
-/// Protects the process from broken files: fakenect reads past the end of a truncated image, and exits if a
+/// Protects the process from broken files. fakenect reads past the end of a truncated image, and exits if a
 /// file is missing. While a FakenectReplay exists, a recording with broken files is replayed from a temporary
 /// folder of links to the intact files.
 class FakenectReplay {
@@ -27,8 +27,8 @@ class FakenectReplay {
   FakenectReplay(const FakenectReplay&) = delete;
   FakenectReplay& operator=(const FakenectReplay&) = delete;
 
-  /// Returns the problem of each omitted depth image. Keys are indices among all depth images of the
-  /// recording, from 0.
+  /// Returns the fault of each omitted depth image. Keys are indices among all depth images of the recording,
+  /// from 0.
   [[nodiscard]] const std::map<std::int64_t, std::string>& broken() const { return broken_; }
 
  private:

@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// Callbacks of KinectDevice::serve(). Images are in the device's buffers; stamps are the 32 bit stamps of
+/// Callbacks of KinectDevice::serve(). Images are in the device's buffers. Stamps are the 32 bit stamps of
 /// its clock.
 struct KinectListener {
   /// Called per depth image, with 640 x 480 values in the requested KinectDepth mode. Another number of
@@ -39,8 +39,8 @@ class KinectDevice {
   virtual void ask_acceleration() = 0;
   /// Returns the last accelerometer reading, g, or nullopt if there is none.
   [[nodiscard]] virtual std::optional<Eigen::Vector3d> acceleration_g() const = 0;
-  /// Returns the camera's serial number, which identifies the device after it was unplugged, or an empty
-  /// string if unknown.
+  /// Returns the camera's serial number, or an empty string if unknown. The number identifies the device
+  /// after it was unplugged.
   [[nodiscard]] virtual std::string serial() const = 0;
   /// Returns the device's factory calibration, or nullopt if unknown.
   [[nodiscard]] virtual std::optional<KinectConstants> constants() const = 0;

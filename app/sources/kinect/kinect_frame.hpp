@@ -15,7 +15,7 @@ namespace roomradar {
 
 /// A depth image with its colour image, or the error message of an unusable frame.
 struct KinectFrame {
-  /// Index of the depth image, from 0; broken and dropped images are counted too.
+  /// Index of the depth image, from 0. Broken and dropped images are counted, too.
   std::int64_t number = 0;
   double stamp_s = 0.0;
   /// Raw values, 640 x 480.
@@ -26,8 +26,8 @@ struct KinectFrame {
   double colour_after_depth_s = 0.0;
   /// Unit direction of gravity in the depth camera's frame, if known.
   std::optional<Eigen::Vector3d> down_camera{};
-  /// Error message if the frame is unusable; the other fields except `number` are then invalid. Empty
-  /// otherwise.
+  /// Error message if the frame is unusable, else empty. With a message, all other fields except `number` are
+  /// invalid.
   std::string fault{};
 };
 
@@ -37,7 +37,7 @@ struct KinectFeedConfig {
   /// Index among the connected devices.
   int number = 0;
   KinectDepth depth = KinectDepth::kRaw;
-  /// Max number of queued frames. If the queue is full, the oldest frame of a live device is dropped; a
+  /// Max number of queued frames. If the queue is full, the oldest frame of a live device is dropped. A
   /// replay waits for the reader instead.
   std::size_t most_waiting = 1;
   /// True if fakenect replays a recording. The feed then ends with the replay, waits for its reader, and does

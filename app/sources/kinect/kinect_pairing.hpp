@@ -25,8 +25,8 @@ class KinectPairing {
   KinectPairing(const KinectFeedConfig& config, std::function<void(KinectFrame)> put)
       : config_(config), put_(std::move(put)) {}
 
-  /// Makes stamps advance by the elapsed host time across a gap. Call before the device is reopened, since
-  /// its first images may arrive while it is being opened.
+  /// Makes stamps advance by the elapsed host time across a gap. Call before the device is reopened. Its
+  /// first images may arrive while it is being opened.
   void restart_clock();
   /// Adds a depth image. Returns false if its size is wrong.
   /// @param pixels          640 x 480 values
@@ -36,7 +36,7 @@ class KinectPairing {
   bool add_depth(std::span<const std::uint16_t> pixels, std::uint32_t ticks,
                  const std::function<KinectFrame()>& memory,
                  const std::optional<Eigen::Vector3d>& acceleration_g);
-  /// Adds a colour image. Returns false if its size is wrong; the depth image then has no colour.
+  /// Adds a colour image. Returns false if its size is wrong. The depth image then has no colour.
   /// @param bytes  640 x 480 x 3 values
   /// @param ticks  stamp of the device's clock
   bool add_colour(std::span<const std::uint8_t> bytes, std::uint32_t ticks);
@@ -54,7 +54,7 @@ class KinectPairing {
 
   double stamp_of(std::uint32_t ticks);
   void pass_over_broken();
-  /// Adds an error to the depth images that wait for colour, so frames keep their order.
+  /// Adds an error to the queue of depth images that wait for colour. Frames thus keep their order.
   void fail(std::int64_t number, const std::string& what);
   [[nodiscard]] KinectFrame broken_frame(std::int64_t number, const std::string& what) const;
   void put_broken();

@@ -11,7 +11,7 @@
 namespace roomradar {
 
 /// A correspondence between the cameras. The depth camera sees a point at pixel `depth_px` with depth
-/// `depth_m`; the colour camera sees the same point at pixel `colour_px`.
+/// `depth_m`. The colour camera sees the same point at pixel `colour_px`.
 struct SeenByBoth {
   Eigen::Vector2d depth_px;
   double depth_m = 0.0;
@@ -27,9 +27,9 @@ struct KinectConstants {
 
 /// Fits the colour camera to correspondences of the device's registration by least squares. The depth camera
 /// is that of `nominal`. Parameters are one focal length for both axes, the principal point, the rotation,
-/// and the translation along x. Since the parameters partly compensate for each other, a weak prior pulls
-/// each of them towards its value in `nominal`. Returns nullopt if the RMS error is above 3 px, since the
-/// factory calibration is then not what this function assumes.
+/// and the translation along x. The parameters partly compensate for each other. A weak prior therefore pulls
+/// each of them towards its value in `nominal`. Returns nullopt if the RMS error is above 3 px. The factory
+/// calibration is then not of the assumed form.
 std::optional<CameraRig> fit_kinect_rig(const std::vector<SeenByBoth>& seen_by_both,
                                         const CameraRig& nominal);
 

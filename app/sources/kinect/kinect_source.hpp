@@ -17,8 +17,8 @@ namespace roomradar {
 ///
 /// Frames of a live device that are not fetched in time are dropped, oldest first. Dropped frames are counted
 /// in Frame::index. With options.keep_all, several seconds of frames are queued. While the device sends no
-/// images or is unplugged, next() returns ReadResult::waiting about every second. The source cannot rewind;
-/// see spooled_source.hpp.
+/// images or is unplugged, next() returns ReadResult::waiting about every second. The source cannot rewind
+/// (see spooled_source.hpp).
 ///
 /// A replay by fakenect drops no frames, and ends with the recording (FAKENECT_LOOP=0). It delivers the same
 /// frames as open_folder() for the same recording.
@@ -27,8 +27,8 @@ namespace roomradar {
 std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& options = {});
 
 /// Opens a device with `opener` instead of libfreenect.
-/// @param config  settings of the feed; `options` replace the fields that they determine
-/// @param recording  folder that may contain a camera.json, which takes precedence over published values
+/// @param config  settings of the feed. `options` replace the fields that they determine
+/// @param recording  folder. Its camera.json, if any, takes precedence over published values
 std::unique_ptr<FrameSource> open_kinect(KinectOpener opener, KinectFeedConfig config,
                                          const SourceOptions& options,
                                          const std::filesystem::path& recording = {});

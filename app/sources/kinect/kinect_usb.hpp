@@ -12,13 +12,13 @@ constexpr const char* kKinectForWindows = "Kinect for Windows";
 
 /// A Kinect v1 on the USB bus. It consists of three USB devices: camera, motor and microphones.
 struct KinectOnUsb {
-  /// False if a motor or microphones are on the bus without a camera. USB powers only the motor; camera and
-  /// microphones need the Kinect's power supply. The fields below are then unknown.
+  /// False if a motor or microphones are on the bus without a camera. The fields below are then unknown. USB
+  /// powers only the motor. Camera and microphones need the Kinect's power supply.
   bool has_camera = true;
   /// Model: one of the constants above.
   std::string model;
   int bus = 0;
-  /// Speed of the camera's connection; should be 480. 0: unknown.
+  /// Speed of the camera's connection. Should be 480. 0: unknown.
   double speed_mbit_s = 0.0;
   /// Device node that libfreenect opens: /dev/bus/usb/BBB/DDD.
   std::filesystem::path node;
@@ -26,7 +26,7 @@ struct KinectOnUsb {
   bool may_open = false;
   /// Kernel driver bound to the camera, such as gspca_kinect; empty: none.
   std::string kernel_driver;
-  /// True if a Kinect's motor or microphones are on the bus too; unset if there are several cameras.
+  /// True if a Kinect's motor or microphones are on the bus, too. Unset if there are several cameras.
   std::optional<bool> has_power;
 };
 

@@ -14,15 +14,15 @@ namespace roomradar {
 ///   7-Scenes      frame-XXXXXX.depth.png, .color.jpg, .color.png or .color.none (empty: no colour),
 ///                 optional .pose.txt
 ///   numbered      depth/NNNNN.png (mm), optional color/NNNNN.jpg or .png
-/// Intrinsics are read from the folder's camera.json (camera_rig.hpp) or, if it does not exist, from
-/// camera-intrinsics.txt (3 x 3 matrix of the depth camera). If neither file exists, the format's published
-/// values are scaled to the images' width.
+/// Intrinsics are read from the folder's camera.json (camera_rig.hpp). If it does not exist, they are read
+/// from camera-intrinsics.txt (3 x 3 matrix of the depth camera). If neither file exists, the format's
+/// published values are scaled to the images' width.
 ///
 /// Image files are read on demand. next() reports unreadable frames as FrameSource describes. The source can
 /// rewind and seek, and knows its number of frames.
-/// @throws Error if the folder is absent, empty or of none of these formats (the message lists them), a list
-///         in it is unusable as a whole, none of its first ten frames can be read, or the intrinsics do not
-///         match the images
+/// @throws Error if the folder is absent, empty or of none of these formats (the message lists them). Also
+///         throws if a list in it is unusable, none of its first ten frames can be read, or the intrinsics do
+///         not match the images
 std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder,
                                          const SourceOptions& options = {});
 

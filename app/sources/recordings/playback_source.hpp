@@ -1,4 +1,4 @@
-// playback_source.hpp: pauses, rewinds and repeats a frame source; stamps always increase.
+// playback_source.hpp: pauses, rewinds and repeats a frame source. Stamps always increase.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -17,7 +17,7 @@ enum class AtEnd {
   kEnd,
   /// The last frame is repeated.
   kStay,
-  /// The source is rewound; if it cannot rewind, the last frame is repeated.
+  /// The source is rewound. If it cannot rewind, the last frame is repeated.
   kLoop,
 };
 
@@ -26,15 +26,15 @@ constexpr std::string_view to_string(AtEnd at_end) {
 }
 
 /// Delivers the frames of an inner source, and can hold (repeat the last frame), rewind and loop. Stamps
-/// always increase, since callers simulate physics by them. A repeated frame, and the first frame after a
-/// rewind, a hold or a pause, has a stamp 1/30 s after the previous frame's. After a hold, the stamp is later
-/// if more time has passed on the source's clock. Index and pose are those of the inner source.
+/// always increase, since callers simulate physics by them. A repeated frame has a stamp 1/30 s after the
+/// previous frame's. So has the first frame after a rewind, a hold or a pause. After a hold, the stamp is
+/// later if more time has passed on the source's clock. Index and pose are those of the inner source.
 class PlaybackSource final : public FrameSource {
  public:
   PlaybackSource(std::unique_ptr<FrameSource> source, AtEnd at_end);
 
-  /// Delivers the next frame. `frame` must still contain the result of the previous call, since a repeated
-  /// frame is not copied.
+  /// Delivers the next frame. A repeated frame is not copied, so `frame` must still contain the result of the
+  /// previous call.
   ReadResult next(Frame& frame) override;
   bool rewind() override;
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override;
@@ -62,7 +62,7 @@ class PlaybackSource final : public FrameSource {
   [[nodiscard]] bool is_again() const { return is_again_; }
 
  private:
-  // Number of frames that may have been read before a pause: a run reads one ahead, a session's spool two,
+  // Number of frames that may have been read before a pause. A run reads one ahead, a session's spool two,
   // and one is new.
   static constexpr int kOld = 4;
 
@@ -71,7 +71,7 @@ class PlaybackSource final : public FrameSource {
   bool is_held_ = false;
   bool is_repeating_ = false;
   bool is_again_ = false;
-  /// Greatest index delivered.
+  /// Max index delivered.
   std::int64_t newest_index_ = -1;
   /// Stamp of the last frame delivered.
   std::optional<double> last_stamp_s_;

@@ -36,7 +36,7 @@ struct RecordedFrame {
 struct RecordingIndex {
   DepthEncoding depth_encoding = DepthEncoding::kMillimetres;
   NominalRig nominal = NominalRig::kSevenScenes;
-  /// Frames; stamps of usable frames increase.
+  /// Frames. Stamps of usable frames increase.
   std::vector<RecordedFrame> frames;
 };
 
@@ -54,7 +54,7 @@ RecordingIndex index_numbered(const std::filesystem::path& folder);
 struct ListedImage {
   double stamp_s = 0.0;
   std::filesystem::path file{};
-  /// Reason why the line cannot be used; `file` is then empty. Empty if the line is valid.
+  /// Reason why the line cannot be used. Then `file` is empty. Empty if the line is valid.
   std::string fault{};
 };
 
@@ -63,9 +63,9 @@ struct ListedImage {
 void pair_up(StampPairing& pairing, const std::vector<ListedImage>& colours,
              std::vector<RecordedFrame>& frames);
 
-/// Reads a 7-Scenes pose, a 4 x 4 matrix from camera to world. Replaces its rotation, which deviates by about
-/// 1e-4 in recordings, by the nearest exact rotation. Returns nullopt if an entry is not finite, which means
-/// that tracking was lost during recording. Throws Error with the file's name if it is missing or not a pose.
+/// Reads a 7-Scenes pose, a 4 x 4 matrix from camera to world. Replaces its rotation by the nearest exact
+/// rotation. Rotations in recordings deviate by about 1e-4. Returns nullopt if an entry is not finite.
+/// Tracking was then lost during recording. Throws Error naming the file if it is missing or not a pose.
 std::optional<Eigen::Isometry3d> read_pose_file(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -24,7 +24,7 @@ std::string_view to_string(RecordingFormat format);
 ///                 beyond 10 m), colour, gravity to 1/819 g; no poses. Gaps over 30 s become 30 s, since
 ///                 the device's clock wraps after 72 s. 640 x 480 only, the one size that fakenect
 ///                 replays.
-/// Colour is stored without loss. All frames must have the cameras of the first frame, which are written to
+/// Colour is stored without loss. All frames must have the cameras of the first frame. They are written to
 /// camera.json.
 class RecordingWriter {
  public:
@@ -32,8 +32,8 @@ class RecordingWriter {
   /// @param are_calibrated  true if lens and depth errors were removed from the frames; stored in camera.json
   RecordingWriter(std::filesystem::path folder, RecordingFormat format, bool are_calibrated = false);
 
-  /// Appends a frame. Throws Error if a file cannot be written, the cameras change, the stamp is not later
-  /// than the previous frame's, or an image's size differs from its camera's.
+  /// Appends a frame. Throws Error if a file cannot be written or the cameras change. Also throws if the
+  /// stamp is not later than the previous frame's, or an image's size differs from its camera's.
   void write(const Frame& frame);
 
   /// Completes the recording's text files. Throws Error if they cannot be written. No write() may follow. A

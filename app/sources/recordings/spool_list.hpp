@@ -1,4 +1,4 @@
-// spool_list.hpp: files of a spool, a frame cache on disk: a list of the frames, and their images.
+// spool_list.hpp: files of a spool (a frame cache on disk), that is, a list of the frames and their images.
 //
 // The list, list.bin, begins with "RRSPOOL1" and the source's name. For each frame follow the size of its
 // entry in bytes (u32) and the entry. A size of 0 marks the end of the source.
@@ -28,7 +28,7 @@ struct SpoolList {
   std::vector<SpoolEntry> entries;
   /// True if the source had ended.
   bool at_end = false;
-  /// Size of the list's valid part; an incomplete entry may follow.
+  /// Size of the list's valid part. An incomplete entry may follow.
   std::uintmax_t sound_bytes = 0;
 };
 
@@ -54,7 +54,7 @@ void append_to_spool_list(SpoolEntry* entry, const std::filesystem::path& folder
 
 /// Writes the images of a frame to the folder, and returns the frame's entry. Throws Error if an image cannot
 /// be written.
-/// @param position  index of the frame in the list, from which the images' file names are formed
+/// @param position  index of the frame in the list. It determines the images' file names
 SpoolEntry write_spooled(const Frame& frame, const std::filesystem::path& folder, std::size_t position);
 
 /// Reads the frame of an entry, identical in all bits to the frame written. Throws Error if its images are

@@ -1,4 +1,4 @@
-// spooled_source.hpp: caches the frames of a live source on disk, so that they can be read again.
+// spooled_source.hpp: caches the frames of a live source on disk for repeated reading.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -32,11 +32,11 @@ class SpooledSource final : public FrameSource {
   explicit SpooledSource(std::unique_ptr<FrameSource> source,
                          const std::filesystem::path& parent_folder = {});
 
-  /// Caches frames in `folder`, which is not removed. Frames of an earlier process in the folder are
+  /// Caches frames in `folder`. The folder is not removed. Frames of an earlier process in the folder are
   /// delivered first. Indices and stamps of the source's frames then continue from the last of those frames.
   /// @param source      may be null if has_end(folder)
-  /// @param most_ahead  max number of unread frames. At this number, the source is not read, so a live source
-  ///                    loses frames
+  /// @param most_ahead  max number of unread frames. At this number, the source is not read. A live source
+  ///                    then loses frames
   /// @throws Error if the folder cannot be created, or its list.bin is not a spool's list
   static std::unique_ptr<SpooledSource> kept(std::unique_ptr<FrameSource> source,
                                              const std::filesystem::path& folder,
@@ -96,7 +96,7 @@ class SpooledSource final : public FrameSource {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::size_t position_ = 0;
-  /// List of the frames; existing entries never move.
+  /// List of the frames. Existing entries never move.
   std::deque<SpoolEntry> entries_;
   bool at_end_ = false;
   bool stop_ = false;

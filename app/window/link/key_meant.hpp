@@ -9,7 +9,7 @@ namespace roomradar {
 ///
 /// @param key    GLFW's key code
 /// @param types  UTF-8 text typed by the key without modifiers, as from glfwGetKeyName(); may be null
-/// @return the typed character in uppercase, if it is ASCII; `key` for other characters, for the keypad, and
+/// @return the typed character in uppercase if it is ASCII. `key` for other characters, for the keypad, and
 ///         for keys that type nothing
 inline int key_meant(int key, const char* types) {
   constexpr int kLastThatTypes = 162;  // GLFW_KEY_WORLD_2, the last key that types a character

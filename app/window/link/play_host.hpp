@@ -1,4 +1,4 @@
-// play_host.hpp: connects a session to the window: waits until frames are due, delivers the user's events,
+// play_host.hpp: connects a session to the window. Waits until frames are due, delivers the user's events,
 // and publishes results.
 #pragma once
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace roomradar {
 /// object.
 class PlayHost {
  public:
-  /// @param is_live  true: frames are shown when they arrive; only repeated frames wait for their timestamps
+  /// @param is_live  true: frames are shown when they arrive. Only repeated frames wait for their timestamps
   PlayHost(UiChannel& link, const Session& session, const PlaybackSource& source, const StageTimes& times,
            const Mesh& room, bool is_live)
       : link_(link), session_(session), source_(source), times_(times), is_live_(is_live), maker_(room) {}
@@ -30,7 +30,7 @@ class PlayHost {
   bool wait_turn(const Frame& frame);
   [[nodiscard]] bool is_closed() const { return link_.is_closed(); }
   /// Returns the user's events since the last frame, with at most one kAdd. Meshes of added objects are read
-  /// on another thread; the kAdd is returned when its mesh has been read. A mesh that is not suitable as an
+  /// on another thread. The kAdd is returned when its mesh has been read. A mesh that is not suitable as an
   /// object is only reported in the window.
   std::vector<ScriptEvent> take_events();
   /// Returns the ObjectParts for the last kAdd that take_events() has returned.

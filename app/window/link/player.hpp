@@ -1,4 +1,4 @@
-// player.hpp: converts user commands into script events, by means of the displayed picture.
+// player.hpp: converts user commands on the displayed picture into script events.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -19,18 +19,18 @@ struct Pointed {
   std::optional<MeshHit> object;   ///< nearest point of a virtual object on the ray, if in front of `surface`
   std::string name;                ///< name of the virtual object
 };
-/// Returns the surfaces at a pixel; both points are unset if the camera was not localised.
+/// Returns the surfaces at a pixel. Both points are unset if the camera was not localised.
 Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel);
 
-/// Returns the rotation vector (world axes, degrees) for a mouse drag; the object's front follows the mouse.
+/// Returns the rotation vector (world axes, degrees) for a mouse drag. The object's front follows the mouse.
 /// Sideways drags rotate about the vertical, or about the picture's up axis if the camera looks almost
 /// vertically. Drags up and down rotate about the picture's right axis.
 /// @param R_world_view  camera axes: x right, y down, z forward
 /// @param way_px        motion of the mouse, x right, y down
 Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, const Eigen::Vector2d& way_px);
 
-/// Converts user commands into script events. Remembers which object the user has chosen, and which one is
-/// grabbed with the mouse.
+/// Converts user commands into script events. Remembers the chosen object and the object grabbed with the
+/// mouse.
 class Player {
  public:
   /// Returns the commands' events, without frame numbers, in order of execution before the next frame. If an

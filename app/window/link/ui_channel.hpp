@@ -1,7 +1,7 @@
 // ui_channel.hpp: thread-safe channel between the window's thread and the session's thread.
 //
-// The session runs on another thread, so the window remains responsive while a camera stalls or a frame takes
-// long. The window does not access the session. The window receives copies of the session's state (Snapshot)
+// The session runs on another thread. The window thus remains responsive while a camera stalls or a frame
+// takes long. The window does not access the session. It receives copies of the session's state (Snapshot)
 // and sends user commands (UserCommand). The session's thread converts the commands into events between two
 // frames.
 #pragma once
@@ -24,7 +24,7 @@
 
 namespace roomradar {
 
-/// Kind of a user command. Pixels are in the picture; the chosen object is the one that the user selected
+/// Kind of a user command. Pixels are in the picture. The chosen object is the one that the user selected
 /// last.
 enum class UserCommandKind {
   kEvent,  ///< execute `event` unchanged
@@ -33,7 +33,7 @@ enum class UserCommandKind {
   kThrow,  ///< throw the chosen object from the camera towards the pixel
   kGrab,   ///< grab and choose the object at the pixel
   kDrag,   ///< carry the grabbed object to the pixel
-  /// Release the grabbed object; if no object was grabbed: drop the chosen object at the pixel.
+  /// Release the grabbed object. If no object was grabbed, drop the chosen object at the pixel.
   kLetGo,
   kTurn,    ///< rotate the grabbed object, or the chosen one if none is grabbed, by `event.turn_world_deg`
   kChoose,  ///< choose the object `event.name`
@@ -54,7 +54,7 @@ struct UserCommand {
   ScriptEvent event;
 };
 
-/// Expensive views, which are computed only while they are visible, and the pixel under the mouse.
+/// Expensive views that are computed only while they are visible, and the pixel under the mouse.
 struct ViewsWanted {
   bool radar = false;   ///< Cyber Radar's images R, M and L
   bool models = false;  ///< meshes of dynamic surfaces

@@ -1,5 +1,4 @@
-// model_view.hpp: 3D view of room, dynamic foreground, objects, camera, and the target volume that the radar
-// searched.
+// model_view.hpp: 3D view of room, dynamic foreground, objects, camera, and the radar's target volume.
 #pragma once
 #include <Eigen/Geometry>
 #include <map>
@@ -22,8 +21,8 @@ struct Orbit {
 /// Returns the eye's pose: x right, y up, looking along -z (OpenGL).
 Eigen::Isometry3d eye_of(const Orbit& orbit);
 
-/// Renders the view into a texture, only when its content has changed. Without a GPU, a room of half a
-/// million triangles takes tens of milliseconds. The window's OpenGL context must be current for all calls.
+/// Renders the view into a texture. Renders only after its content has changed. Without a GPU, a room of half
+/// a million triangles takes tens of milliseconds. The window's OpenGL context must be current for all calls.
 class ModelView {
  public:
   ModelView();

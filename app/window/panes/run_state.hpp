@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// Draws a word for the state, such as loading, paused or tracked, at the right end of the bar or, with two
-/// rows, at the left end of the second row.
+/// Draws a word for the state, such as loading, paused or tracked, at the right end of the bar. With two
+/// rows, draws it at the left end of the second row.
 /// @param silent_s  time since the newest frame
 void draw_run_state(const Area& area, bool has_two_rows, const Snapshot& shown, const UiChannel& link,
                     double silent_s);

@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// The user's settings for future commands; not part of the session.
+/// The user's settings for future commands. Not part of the session.
 struct PlaySettings {
   float drop_height_m = 0.3F;
   float throw_speed_mps = 3.0F;
@@ -25,7 +25,7 @@ void draw_side_panel(const Area& area, const Snapshot& shown, UiChannel& link, P
 
 /// Returns the command that adds an object with the mesh and size in `settings`.
 UserCommand new_object_command(const PlaySettings& settings);
-/// Return commands that change a policy; used by keys and panels.
+/// Return commands that change a policy. Used by keys and panels.
 UserCommand surfaces_command(SurfacePolicy surfaces);
 UserCommand unknown_command(bool is_solid);
 UserCommand radar_command(const RadarConfig& radar);

@@ -29,7 +29,7 @@ class TimingPane {
   /// Returns the time of the last frame, without reading.
   [[nodiscard]] float frame_ms() const { return frames_.empty() ? 0.0F : frames_.back().whole_ms; }
 
-  /// Stages from bottom to top of the chart; "rest" is the time outside all other stages.
+  /// Stages from bottom to top of the chart. "rest" is the time outside all other stages.
   static constexpr std::array<const char*, 9> kStages = {
       "locate", "expected", "foreground", "changes", "mesh", "physics", "radar", "compose", "rest"};
 

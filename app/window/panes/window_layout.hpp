@@ -18,7 +18,7 @@ struct WindowLayout {
 };
 
 /// Returns the panes of a window of this size. A narrow window has a bar with two rows and a narrower side
-/// panel; in a low window, the panes `timing` and `radar` are empty.
+/// panel. In a low window, the panes `timing` and `radar` are empty.
 /// @param scale  scale of the screen; 1 at 96 dpi
 constexpr WindowLayout window_layout(float width, float height, MainView view, float scale = 1.0F) {
   const bool has_two_rows = width < scale * 1240.0F;

@@ -6,7 +6,7 @@
 namespace roomradar {
 
 /// A failure that a user can repair. The message says what failed, in which file, field or frame, and how to
-/// repair it. Thrown only by code that handles files, devices, settings and arguments; per-frame code returns
+/// repair it. Thrown only by code that handles files, devices, settings and arguments. Per-frame code returns
 /// status values.
 class Error : public std::runtime_error {
  public:

@@ -1,4 +1,4 @@
-// worker_thread.hpp: a worker thread that runs one task in parallel with the caller's own.
+// worker_thread.hpp: a worker thread that runs one task in parallel with the caller's.
 #pragma once
 #include <atomic>
 #include <exception>
@@ -17,7 +17,7 @@ class WorkerThread {
   WorkerThread& operator=(const WorkerThread&) = delete;
 
   /// Calls here() on the caller's thread and beside() on the worker thread, and waits until both are done.
-  /// Then rethrows an exception of either task; if both threw, that of here().
+  /// Then rethrows an exception of either task. If both threw, rethrows that of here().
   template <typename Here, typename Beside>
   void run(const Here& here, const Beside& beside) {
     start([](const void* work) { (*static_cast<const Beside*>(work))(); }, &beside);
