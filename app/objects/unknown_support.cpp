@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "app/physics/ray_hit.hpp"
+#include "radar/exact/ray_hit.hpp"
 
 namespace roomradar {
 namespace {

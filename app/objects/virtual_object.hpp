@@ -36,6 +36,8 @@ struct VirtualObject {
   /// Pose from which its motion is measured for still_s.
   Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
   double waited_s = 0.0;  ///< time since advance() was last called for it
+  /// Pose at which no surface of the room and no other object overlaps it, since physics moved it there.
+  std::optional<Eigen::Isometry3d> T_world_undisturbed;
   /// Number of cells of the last frame's dynamic mesh that have full resolution because this object is near.
   std::size_t fine_cells = 0;
   std::shared_ptr<const ObjectModel> model;  ///< not null

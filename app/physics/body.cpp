@@ -1,6 +1,8 @@
 // body.cpp: pose, centre and inertia of a body in the world.
 #include "app/physics/body.hpp"
 
+#include <Eigen/LU>
+
 namespace roomradar {
 
 void make_orthonormal(Eigen::Isometry3d& T) {
@@ -18,6 +20,15 @@ Eigen::Vector3d centre_world(const Body& body) { return body.T_world_object * bo
 Eigen::Matrix3d inertia_world_m2(const Body& body) {
   const Eigen::Matrix3d R = body.T_world_object.linear();
   return R * body.mass.inertia_m2 * R.transpose();
+}
+
+Eigen::Vector3d mean_free_spin(const Body& body, const Eigen::Vector3d& angular_rad_s, double time_s) {
+  const double speed_rad_s = angular_rad_s.norm();
+  if (!(speed_rad_s > 0.0)) return angular_rad_s;
+  const Eigen::Matrix3d R_half = Eigen::AngleAxisd(0.5 * time_s * speed_rad_s, angular_rad_s / speed_rad_s) *
+                                 body.T_world_object.linear();
+  const Eigen::Matrix3d inertia_half = R_half * body.mass.inertia_m2 * R_half.transpose();
+  return inertia_half.inverse() * (inertia_world_m2(body) * angular_rad_s);
 }
 
 void note_contact(SurfaceKind touched, StepReport& report) {

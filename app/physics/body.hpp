@@ -23,6 +23,8 @@ struct Body {
   /// sleep_pose_candidate.
   double sleep_timer_s = 0.0;
   Eigen::Isometry3d sleep_pose_candidate = Eigen::Isometry3d::Identity();
+  /// Time for which the weight on the sleeping body would have set it in motion.
+  double unbalanced_s = 0.0;
   /// Kind of the surface that supported the body when it last moved.
   SurfaceKind rests_on = SurfaceKind::kNothing;
   /// Another body that was in contact with this body when this body fell asleep.
@@ -67,5 +69,9 @@ double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before);
 Eigen::Vector3d centre_world(const Body& body);
 /// Returns the inertia about the centre of mass, in world axes.
 Eigen::Matrix3d inertia_world_m2(const Body& body);
+
+/// Returns the mean angular velocity of a body that rotates freely for time_s from the given one. Free
+/// rotation conserves angular momentum, not angular velocity. Second order in time_s.
+Eigen::Vector3d mean_free_spin(const Body& body, const Eigen::Vector3d& angular_rad_s, double time_s);
 
 }  // namespace roomradar

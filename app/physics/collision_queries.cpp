@@ -23,14 +23,16 @@ CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field
     return radar.query({{&object, T_world_object}, direction, distance_m}, scene);
   };
   probe.near = [&, spent_ms](const Eigen::Isometry3d& T_world_object, double reach_m,
-                             SurfaceKindMask left_out, std::vector<ClosestPoint>& points) {
+                             SurfaceKindMask left_out, const TreeStates& trees,
+                             std::vector<ClosestPoint>& points) {
     const Spent spent{spent_ms};
-    return field.near({&object, T_world_object}, scene, reach_m, left_out, points);
+    return field.near({&object, T_world_object}, scene, reach_m, left_out, trees, points);
   };
   probe.free_time = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
-                                  double duration_s, double keep_m, SurfaceKindMask left_out) {
+                                  double duration_s, double keep_m, SurfaceKindMask left_out,
+                                  const TreeStates& trees) {
     const Spent spent{spent_ms};
-    return field.free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out);
+    return field.free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out, trees);
   };
   return probe;
 }

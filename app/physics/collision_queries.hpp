@@ -32,11 +32,12 @@ struct CollisionQueries {
   DistanceQuery travel;
   /// Closest features within reach_m; see ProximityQuery::near().
   std::function<SurfaceKindMask(const Eigen::Isometry3d& T_world_object, double reach_m,
-                                SurfaceKindMask left_out, std::vector<ClosestPoint>& points)>
+                                SurfaceKindMask left_out, const TreeStates& trees,
+                                std::vector<ClosestPoint>& points)>
       near;
   /// Contact-free duration of a motion; see ProximityQuery::free_time().
   std::function<FreeTime(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
-                         double duration_s, double keep_m, SurfaceKindMask left_out)>
+                         double duration_s, double keep_m, SurfaceKindMask left_out, const TreeStates& trees)>
       free_time;
   /// One entry per tree of the scene, in the scene's order. Trees beyond the last entry do not belong to
   /// bodies.

@@ -1,7 +1,9 @@
-// contact_solver.cpp: projected Gauss-Seidel, one system of connected bodies at a time.
+// contact_solver.cpp: projected Gauss-Seidel with conjugate gradients, one system of connected bodies at a
+// time.
 #include "app/physics/contact_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "mapping/types/disjoint_sets.hpp"
@@ -12,7 +14,7 @@ namespace {
 using Vec3 = Eigen::Vector3d;
 
 constexpr int kMaxSweeps = 200;
-constexpr double kSettled_mps = 1e-9;
+constexpr double kSettled_mps = 1e-8;
 
 bool is_movable(std::span<const SolverBody> bodies, std::size_t body) {
   return body < bodies.size() && bodies[body].inverse_mass_per_kg > 0.0;
@@ -48,6 +50,11 @@ Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const SolverBody
   const Vec3 own = velocity_at(bodies[contact.body].velocity, contact.contact_offset_m);
   if (contact.other >= bodies.size()) return own;
   return own - velocity_at(bodies[contact.other].velocity, contact.other_offset_m);
+}
+
+Eigen::Vector3d ContactSolver::impulses_of(const SolverContact& contact, const Rows& rows) {
+  return {contact.impulse_Ns, contact.friction_impulse_Ns.dot(rows.x.direction),
+          contact.friction_impulse_Ns.dot(rows.y.direction)};
 }
 
 /// Joins movable bodies that touch, and sets each contact's system. A contact between immovable bodies has
@@ -121,11 +128,47 @@ void ContactSolver::solve_system(std::span<SolverContact> contacts, std::span<So
       if (guess_Ns != 0.0) apply(contact, bodies, row->direction, row->turns, row->other_turns, guess_Ns);
     }
   }
+  double before = 0.0;  // squared norm of the change by the last sweep
+  search_.assign(order_.size(), Vec3::Zero());
   for (int sweeps = 0; sweeps < kMaxSweeps; ++sweeps) {
+    impulses_before_.clear();
+    for (const std::size_t i : order_) impulses_before_.push_back(impulses_of(contacts[i], rows_[i]));
     const double turned_mps = rolling > 0.0 ? resist_rolling(contacts, bodies, rolling) : 0.0;
-    const double change_mps = sweep(contacts, bodies, sweeps % 2 == 1);
-    if (std::max(change_mps, turned_mps) < kSettled_mps) return;
+    const double change_mps = sweep(contacts, bodies);
+    if (std::max(change_mps, turned_mps) < kSettled_mps || sweeps + 1 == kMaxSweeps) return;
+    before = accelerate(contacts, bodies, before);
   }
+}
+
+/// Continues the changes of the past sweeps: conjugate gradients of Fletcher and Reeves, with restarts. The
+/// next sweep restores feasible impulses. Returns the squared norm of the last sweep's change.
+double ContactSolver::accelerate(std::span<SolverContact> contacts, std::span<SolverBody> bodies,
+                                 double before) {
+  double now = 0.0;
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const SolverContact& contact = contacts[order_[k]];
+    const Rows& rows = rows_[order_[k]];
+    Vec3& change = impulses_before_[k];
+    change = impulses_of(contact, rows) - change;
+    now += change.x() * change.x() / rows.normal.effective_mass_kg +
+           change.y() * change.y() / rows.x.effective_mass_kg +
+           change.z() * change.z() / rows.y.effective_mass_kg;
+  }
+  const bool restarts = !(before > 0.0) || now > before;
+  const double kept = restarts ? 0.0 : now / before;
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const Vec3 more_Ns = kept * search_[k];
+    search_[k] = more_Ns + impulses_before_[k];
+    if (restarts || more_Ns.isZero(0.0)) continue;
+    SolverContact& contact = contacts[order_[k]];
+    const Rows& rows = rows_[order_[k]];
+    const std::array<const Row*, 3> all = {&rows.normal, &rows.x, &rows.y};
+    for (int axis = 0; axis < 3; ++axis)
+      apply(contact, bodies, all[axis]->direction, all[axis]->turns, all[axis]->other_turns, more_Ns[axis]);
+    contact.impulse_Ns += more_Ns.x();
+    contact.friction_impulse_Ns += more_Ns.y() * rows.x.direction + more_Ns.z() * rows.y.direction;
+  }
+  return now;
 }
 
 /// Applies rolling resistance; returns the greatest change of a body's angular momentum per kg and m.
@@ -157,8 +200,7 @@ double ContactSolver::resist_rolling(std::span<const SolverContact> contacts, st
 }
 
 /// Solves each contact of the system once; returns the greatest change of a velocity.
-double ContactSolver::sweep(std::span<SolverContact> contacts, std::span<SolverBody> bodies,
-                            bool is_backwards) {
+double ContactSolver::sweep(std::span<SolverContact> contacts, std::span<SolverBody> bodies) {
   double change_mps = 0.0;
   const auto slip_along = [&](const SolverContact& contact, const Row& row) {
     const Velocity& own = bodies[contact.body].velocity;
@@ -169,8 +211,7 @@ double ContactSolver::sweep(std::span<SolverContact> contacts, std::span<SolverB
     }
     return slip_mps;
   };
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const std::size_t i = order_[is_backwards ? order_.size() - 1 - k : k];
+  for (const std::size_t i : order_) {
     SolverContact& contact = contacts[i];
     const Rows& rows = rows_[i];
     const auto change = [&](const Row& row, double more_Ns) {

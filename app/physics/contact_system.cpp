@@ -16,31 +16,39 @@ constexpr double kCarried = 1e6;       // factor of a carried body's mass: other
 const Body* body_of(const MovingBody& moving, const ClosestPoint& p) {
   return p.tree < moving.probe->others.size() ? moving.probe->others[p.tree].body : nullptr;
 }
+std::size_t member_of(const MovingBody& moving, const ClosestPoint& p) {
+  return p.tree < moving.member_of_tree.size() ? moving.member_of_tree[p.tree] : kNoOther;
+}
 
 /// Sets `near` of a body. Returns the kinds of surfaces that intersect the body.
-/// @param apart  queries objects and other surfaces apart, since a query returns few points
-SurfaceKindMask query_near(MovingBody& moving, double reach_m, bool apart) {
-  constexpr SurfaceKindMask kObjects = bit_of(SurfaceKind::kObject);
-  const CollisionQueries& probe = *moving.probe;
-  const Eigen::Isometry3d& T_world_object = moving.body->T_world_object;
-  const SurfaceKindMask left_out = moving.push ? kMovingSurfaces : 0;
-  if (!apart) return probe.near(T_world_object, reach_m, left_out, moving.near);
-  std::vector<ClosestPoint> objects;
-  const SurfaceKindMask crossed = probe.near(T_world_object, reach_m, left_out | kObjects, moving.near) |
-                                  probe.near(T_world_object, reach_m, ~kObjects, objects);
-  moving.near.insert(moving.near.end(), objects.begin(), objects.end());
-  return crossed;
+SurfaceKindMask query_near(MovingBody& moving, double reach_m, const TreeStates& trees) {
+  return moving.probe->near(moving.body->T_world_object, reach_m, moving.push ? kMovingSurfaces : 0, trees,
+                            moving.near);
+}
+
+/// Returns true if one of the points is within a margin of the point, with the same normal.
+bool is_among(const std::vector<ClosestPoint>& points, const ClosestPoint& sought, double margin_m) {
+  return std::any_of(points.begin(), points.end(), [&](const ClosestPoint& p) {
+    return (p.point_world - sought.point_world).norm() < margin_m &&
+           p.normal_world.dot(sought.normal_world) > 0.99;
+  });
 }
 
 /// Adds the feature that ended the body's last motion, unless it is among the features found.
-void add_limit(MovingBody& moving, double margin_m, double reach_m) {
+void add_limit(std::span<MovingBody> bodies, MovingBody& moving, double margin_m, double reach_m) {
   const ClosestPoint& limit = moving.limited_by;
   if (limit.kind == SurfaceKind::kNothing || limit.gap_m > reach_m) return;
-  const bool is_known = std::any_of(moving.near.begin(), moving.near.end(), [&](const ClosestPoint& p) {
-    return (p.point_world - limit.point_world).norm() < margin_m &&
-           p.normal_world.dot(limit.normal_world) > 0.99;
-  });
-  if (!is_known) moving.near.push_back(limit);
+  if (is_among(moving.near, limit, margin_m)) return;
+  const std::size_t other = member_of(moving, limit);
+  if (other == kNoOther) {
+    moving.near.push_back(limit);
+    return;
+  }
+  // The pair may have been queried from the other body.
+  ClosestPoint reversed = limit;
+  reversed.point_world += limit.gap_m * limit.normal_world;
+  reversed.normal_world = -limit.normal_world;
+  if (!is_among(bodies[other].near, reversed, margin_m)) moving.near.push_back(limit);
 }
 
 /// Returns the solver's state of a body; set_masses() sets its mass.
@@ -49,11 +57,9 @@ SolverBody solver_body(const Body& body, const Velocity& velocity) {
   return {velocity, 0.0, inertia_m2, inertia_m2.inverse()};
 }
 
-/// Returns the solver index of a body of the scene; adds a bystander for a body that is not moved here.
-std::size_t index_of(std::span<const MovingBody> bodies, const SceneBody& scene_body, double mass_kg,
-                     ContactSystem& system) {
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (bodies[i].body == scene_body.body) return i;
+/// Returns the solver index of a bystander.
+std::size_t bystander_index(std::span<const MovingBody> bodies, const SceneBody& scene_body, double mass_kg,
+                            ContactSystem& system) {
   for (std::size_t i = 0; i < system.bystanders.size(); ++i)
     if (system.bystanders[i].body == scene_body.body) return bodies.size() + i;
   system.bystanders.push_back({scene_body.body, scene_body.mass_ratio / mass_kg});
@@ -62,7 +68,7 @@ std::size_t index_of(std::span<const MovingBody> bodies, const SceneBody& scene_
   return system.bodies.size() - 1;
 }
 
-/// Adds the contacts of one body, except those with bodies whose own contacts are in the system.
+/// Adds the contacts of one body, except those of pairs that are in the system.
 void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const std::vector<bool>& is_listed,
                   const PhysicsConfig& config, ContactSystem& system) {
   const MovingBody& moving = bodies[index];
@@ -74,9 +80,12 @@ void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const s
     contact.normal = p.normal_world;
     contact.friction = moving.is_carried ? 0.0 : config.friction;
     if (const Body* other = body_of(moving, p)) {
-      contact.other = index_of(bodies, moving.probe->others[p.tree], moving.mass_kg, system);
+      contact.other = member_of(moving, p);
+      if (contact.other == kNoOther)
+        contact.other = bystander_index(bodies, moving.probe->others[p.tree], moving.mass_kg, system);
       // Bodies are listed upwards, moving ones before sleeping ones; a sleeping body's features may be older.
-      if (contact.other < bodies.size() && is_listed[contact.other]) continue;
+      const bool is_limit = p.point_world == moving.limited_by.point_world;  // known to be in no other list
+      if (contact.other < bodies.size() && is_listed[contact.other] && !is_limit) continue;
       contact.other_offset_m = p.point_world - centre_world(*other);
       // The hand that carries an object has no friction of its own.
       if (contact.other < bodies.size() && !bodies[contact.other].is_carried)
@@ -109,37 +118,48 @@ bool is_hit(std::size_t index, const ContactSystem& system) {
 
 /// Makes the contacts of a sleeping body known. Returns false if they are not reliable: its support is not a
 /// surface at rest, or a surface intersects it. Such a body does not move by the weight of others.
-bool know_contacts(MovingBody& sleeper, double reach_m) {
+bool know_contacts(MovingBody& sleeper, double reach_m, ContactSystem& system) {
   if (is_moving_surface(sleeper.body->rests_on)) return false;
-  return query_near(sleeper, reach_m, /*apart=*/true) == 0;
+  const Body& body = *sleeper.body;
+  const std::span<const SceneBody> others = sleeper.probe->others;
+  if (sleeper.is_undisturbed && recall_contacts(system.sleepers, body, others, sleeper.near)) return true;
+  if (query_near(sleeper, reach_m, {}) != 0) return false;
+  remember_contacts(system.sleepers, body, others, sleeper.near);
+  return true;
 }
 
 /// Queries the features near all active bodies and near the sleeping ones that they touch, directly or
-/// through others. Returns which sleeping bodies are touched.
-std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, double reach_m) {
-  std::vector<bool> is_reached(bodies.size());
+/// through others. Returns which sleeping bodies are touched. Queries each pair of active bodies once, from
+/// the lower one.
+std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, double reach_m,
+                                 ContactSystem& system) {
+  std::vector<bool> is_reached(bodies.size()), is_queried(bodies.size());
   std::vector<std::size_t> reached;
   const auto reach_others_of = [&](const MovingBody& moving) {
     for (const ClosestPoint& p : moving.near) {
-      const Body* other = body_of(moving, p);
-      if (other == nullptr || !other->asleep) continue;
-      for (std::size_t i = 0; i < bodies.size(); ++i)
-        if (bodies[i].body == other && !is_reached[i]) {
-          is_reached[i] = true;
-          reached.push_back(i);
-        }
+      const std::size_t other = member_of(moving, p);
+      if (other == kNoOther || !bodies[other].body->asleep || is_reached[other]) continue;
+      is_reached[other] = true;
+      reached.push_back(other);
     }
   };
-  for (MovingBody& moving : bodies) {
+  TreeStates trees;
+  for (const std::size_t i : system.upwards) {
+    MovingBody& moving = bodies[i];
     if (!is_active(moving)) continue;
-    moving.crosses = query_near(moving, reach_m, bodies.size() > 1) != 0;
+    trees.left_out.assign(moving.member_of_tree.size(), false);
+    for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree)
+      trees.left_out[tree] =
+          moving.member_of_tree[tree] != kNoOther && is_queried[moving.member_of_tree[tree]];
+    moving.crosses = query_near(moving, reach_m, trees) != 0;
     if (moving.crosses) continue;
-    add_limit(moving, config.contact_margin_m, reach_m);
+    is_queried[i] = true;
+    add_limit(bodies, moving, config.contact_margin_m, reach_m);
     reach_others_of(moving);
   }
   for (std::size_t k = 0; k < reached.size(); ++k) {
     MovingBody& sleeper = bodies[reached[k]];
-    if (!sleeper.contacts_known && !know_contacts(sleeper, reach_m)) continue;
+    if (!sleeper.contacts_known && !know_contacts(sleeper, reach_m, system)) continue;
     sleeper.contacts_known = true;
     reach_others_of(sleeper);
   }
@@ -170,7 +190,7 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
   std::stable_sort(system.upwards.begin(), system.upwards.end(), [&](std::size_t a, std::size_t b) {
     return centre_world(*bodies[a].body).dot(up_world) < centre_world(*bodies[b].body).dot(up_world);
   });
-  const std::vector<bool> is_reached = query_contacts(bodies, config, reach_m);
+  const std::vector<bool> is_reached = query_contacts(bodies, config, reach_m, system);
   std::vector<bool> is_listed(bodies.size());
   for (const bool lists_sleeping : {false, true})
     for (const std::size_t i : system.upwards) {

@@ -11,6 +11,7 @@
 #include "app/physics/collision_queries.hpp"
 #include "app/physics/contact_solver.hpp"
 #include "app/physics/physics_config.hpp"
+#include "app/physics/sleeper_contacts.hpp"
 
 namespace roomradar {
 
@@ -39,6 +40,10 @@ struct MovingBody {
   double dt_s = 0.0;             ///< length of the substep
   /// Called after each change of the body's pose, to update the other bodies' scenes. May be null.
   const std::function<void()>* moved = nullptr;
+  /// Apart from the bodies of the call, nothing has moved near the body since its last substep.
+  bool is_undisturbed = false;
+  /// Per tree of the probe's scene: index of its body among the substep's bodies; kNoOther if it is none.
+  std::vector<std::size_t> member_of_tree{};
 
   double left_s = 0.0;  ///< time of the substep that remains to be simulated
   /// A surface other than the pushing one intersects the body. The contact solver then does not move it.
@@ -73,6 +78,7 @@ struct ContactSystem {
   std::vector<SolverBody> bodies;
   std::vector<Bystander> bystanders;
   std::vector<PastContact> past;  ///< contacts of the last support solve, for warm starts
+  std::vector<SleeperContacts> sleepers;
   ContactSolver solver;
   std::vector<std::size_t> upwards;  ///< scratch: indices of bodies by height
 };

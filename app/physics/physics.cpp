@@ -107,7 +107,7 @@ bool Stepper::is_in_a_hollow(const Way& way) {
   constexpr double kTouching_m = 1e-6;
   const SurfaceKind kind = way.contact.touched;
   if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind)) return false;
-  if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, near_);
+  if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, {}, near_);
   return (*crossed_ & bit_of(kind)) == 0;
 }
 
@@ -163,7 +163,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_di
 }
 
 bool Stepper::is_held_up() const {
-  if (down_.isZero()) return true;
+  if (down_.isZero() || advanced_.is_undisturbed) return true;
   return below_ && below_.lower_m <= config_.wake_gap_m + config_.contact_margin_m;
 }
 
@@ -232,7 +232,7 @@ void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& confi
     if (advanced.dt_s == 0.0) continue;
     const double dt_s = std::min(advanced.dt_s, config.max_advance_s);
     Stepper& stepper = steppers.emplace_back(advanced, config);
-    stepper.leave_overlaps(dt_s, advanced.depenetration_directions_world);
+    if (!advanced.is_undisturbed) stepper.leave_overlaps(dt_s, advanced.depenetration_directions_world);
     if (stepper.failed()) {
       steppers.pop_back();
       continue;
@@ -246,8 +246,16 @@ void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& confi
                       .push = stepper.push(),
                       .report = &advanced.report,
                       .dt_s = dt_s,
-                      .moved = &advanced.moved});
+                      .moved = &advanced.moved,
+                      .is_undisturbed = advanced.is_undisturbed});
   }
+  for (MovingBody& one : moving)
+    for (const SceneBody& other : one.probe->others) {
+      const auto member = std::find_if(moving.begin(), moving.end(),
+                                       [&](const MovingBody& two) { return two.body == other.body; });
+      one.member_of_tree.push_back(
+          member == moving.end() ? kNoOther : static_cast<std::size_t>(member - moving.begin()));
+    }
   constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two substeps of 1/60 s, not three
   const int pieces = std::max(static_cast<int>(std::ceil(longest_s / config.max_step_s - kOver)), 1);
   for (MovingBody& body : moving) body.dt_s /= pieces;

@@ -21,6 +21,9 @@ struct AdvancedBody {
   /// hardly slow it.
   bool is_carried = false;
   double dt_s = 0.0;  ///< time since the body was last advanced, >= 0; 0 changes nothing
+  /// No surface has moved near the body since it was last advanced, except bodies that were advanced with it.
+  /// Nothing can overlap it then: no query looks for overlaps, and a sleeping body costs nothing.
+  bool is_undisturbed = false;
   /// Directions towards dynamic surfaces, see depenetration_directions(); may be empty.
   std::span<const Eigen::Vector3d> depenetration_directions_world{};
   /// Called after each change of the body's pose. Callers update the scenes of the other bodies in it.
@@ -34,11 +37,11 @@ struct AdvancedBody {
 /// cancels approach velocity, with restitution for impacts faster than bounce_mps. A second solve adds
 /// gravity, support and friction, without restitution. Both solve each connected component of bodies in
 /// contact as one system. A body thus bears the weight of everything on it. Each body then moves with the
-/// mean of its velocities before and after the second solve, until its time of impact
-/// (CollisionQueries::free_time). Bodies at the front of the common motion move first. The remaining time of
-/// the substep is simulated in the same way from the new poses. Hence neither translation nor rotation
-/// tunnels, at any step size. No body enters another. Between contacts, the path is a parabola and angular
-/// momentum is conserved.
+/// mean of its velocities before and after the second solve, all bodies at the same time, until the first
+/// time of impact of any of them (CollisionQueries::free_time). Bodies whose paths cannot meet are
+/// independent. The remaining time of the substep is simulated in the same way from the new poses. Hence
+/// neither translation nor rotation tunnels, at any step size. No body enters another. Between contacts, the
+/// path is a parabola and angular momentum is conserved.
 ///
 /// Bodies in the scene of AdvancedBody::probe that are not advanced in this call receive the opposite
 /// impulses. Their velocity changes at once, their pose when they are advanced.

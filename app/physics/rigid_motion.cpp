@@ -3,10 +3,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "app/physics/sliding.hpp"
+#include "radar/motion/joint_motion.hpp"
 
 namespace roomradar {
 namespace {
@@ -30,6 +30,7 @@ double speed_of(const Body& body, const Velocity& velocity) {
 
 void wake(MovingBody& sleeper) {
   sleeper.body->asleep = false;
+  sleeper.body->unbalanced_s = 0.0;
   sleeper.report->woke = true;
 }
 
@@ -38,10 +39,7 @@ class Substep {
  public:
   Substep(std::span<MovingBody> bodies, const PhysicsConfig& config, ContactSystem& system,
           std::vector<SubstepResult>& results)
-      : bodies_(bodies), config_(config), system_(system), results_(results) {
-    const double g = config.gravity_world_mps2.norm();
-    if (g > 0.0) up_ = -config.gravity_world_mps2 / g;
-  }
+      : bodies_(bodies), config_(config), system_(system), results_(results) {}
 
   void run();
 
@@ -50,10 +48,11 @@ class Substep {
   const PhysicsConfig& config_;
   ContactSystem& system_;
   std::vector<SubstepResult>& results_;
-  Vec3 up_ = Vec3::Zero();
+  const Vec3 up_ = -config_.gravity_world_mps2.stableNormalized();  // zero without gravity
+  TreeStates trees_;                                                // scratch
 
   [[nodiscard]] bool is_member(std::size_t solver_index) const { return solver_index < bodies_.size(); }
-  void solve(double rolling);
+  void solve(double rolling) { system_.solver.solve(system_.contacts, system_.bodies, rolling); }
 
   [[nodiscard]] bool bounce();
   [[nodiscard]] bool note_impacts();
@@ -61,12 +60,16 @@ class Substep {
   void wake_unbalanced_sleepers();
   void find_balanced();
   void move();
+  [[nodiscard]] std::vector<RigidMotion> motions();
+  [[nodiscard]] std::vector<std::vector<std::size_t>> meeting_sets(
+      const std::vector<RigidMotion>& motions) const;
+  [[nodiscard]] FreeTime free_time(std::size_t body, double duration_s,
+                                   const std::vector<RigidMotion>& motions,
+                                   const std::vector<bool>& is_in_set);
+  [[nodiscard]] double move_set(const std::vector<std::size_t>& set, const std::vector<RigidMotion>& motions);
   [[nodiscard]] std::vector<Velocity> corrections();
   [[nodiscard]] std::vector<Velocity> mean_velocities();
-  void move(MovingBody& moving, const Velocity& mean, const Velocity& correction, bool is_free);
 };
-
-void Substep::solve(double rolling) { system_.solver.solve(system_.contacts, system_.bodies, rolling); }
 
 /// Cancels the velocity into contacts that would close within the time left, with restitution for fast
 /// impacts. Returns true if it woke a sleeping body, whose contacts are not in the system.
@@ -120,18 +123,7 @@ bool Substep::note_impacts() {
     body.velocity_world_mps = solved.velocity.linear_mps;
     body.angular_velocity_world_rad_s = solved.velocity.angular_rad_s;
   }
-  // Each kind counts once per body, whatever its number of points.
-  std::vector<std::array<bool, kSurfaceKinds>> is_met(bodies_.size());
-  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
-    const SolverContact& contact = system_.contacts[i];
-    if (!(contact.impulse_Ns > 0.0)) continue;
-    is_met[contact.body][static_cast<std::size_t>(system_.kinds[i])] = true;
-    if (is_member(contact.other))
-      is_met[contact.other][static_cast<std::size_t>(SurfaceKind::kObject)] = true;
-  }
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
-    for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
-      if (is_met[i][kind]) note_contact(static_cast<SurfaceKind>(kind), *bodies_[i].report);
+  count_impacts(bodies_, system_);
   return woke;
 }
 
@@ -157,20 +149,26 @@ void Substep::hold_up(bool keeps_impulses) {
     if (is_active(bodies_[i])) bodies_[i].after = system_.bodies[i].velocity;
 }
 
-/// Wakes sleeping bodies that the weight on them would set in motion.
+/// Wakes sleeping bodies that the weight on them would set in motion: slowly, if it lasts; fast, at once.
+/// What jiggles on a heap before it comes to rest does not keep the heap awake.
 void Substep::wake_unbalanced_sleepers() {
+  constexpr double kFast = 0.05, kSlow = 1.5 * kUnbalanced;  // fractions of gravity's acceleration
+  constexpr double kLasts_s = 0.04;
   const double g = config_.gravity_world_mps2.norm();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     MovingBody& moving = bodies_[i];
-    if (!moving.body->asleep || !(system_.bodies[i].inverse_mass_per_kg > 0.0)) continue;
-    if (speed_of(*moving.body, system_.bodies[i].velocity) < kUnbalanced * g * moving.dt_s) continue;
-    wake(moving);  // moves from the next substep on
+    if (!moving.body->asleep) continue;
+    const bool is_solved = system_.bodies[i].inverse_mass_per_kg > 0.0;
+    const double begins_mps2 =
+        is_solved ? speed_of(*moving.body, system_.bodies[i].velocity) / moving.dt_s : 0.0;
+    double& unbalanced_s = moving.body->unbalanced_s;
+    unbalanced_s = begins_mps2 < kSlow * g ? 0.0 : unbalanced_s + moving.dt_s;
+    if (unbalanced_s >= kLasts_s || begins_mps2 >= kFast * g) wake(moving);  // moves from the next substep on
   }
 }
 
 /// Finds the slow bodies that would stay at rest if all were at rest.
 void Substep::find_balanced() {
-  const double g = config_.gravity_world_mps2.norm();
   constexpr double kSlow_mps = 0.3;
   const bool is_any_slow = std::any_of(bodies_.begin(), bodies_.end(), [](const MovingBody& moving) {
     return is_active(moving) && speed_of(*moving.body, moving.velocity) < kSlow_mps;
@@ -189,7 +187,7 @@ void Substep::find_balanced() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (!is_active(bodies_[i])) continue;
     const double begins_mps2 = speed_of(*bodies_[i].body, system_.bodies[i].velocity) / bodies_[i].dt_s;
-    results_[i].is_balanced = begins_mps2 < kUnbalanced * g;
+    results_[i].is_balanced = begins_mps2 < kUnbalanced * config_.gravity_world_mps2.norm();
   }
 }
 
@@ -241,66 +239,108 @@ std::vector<Velocity> Substep::mean_velocities() {
   return means;
 }
 
-/// Moves the active bodies, those in front first.
-void Substep::move() {
+/// Returns the motions of the active bodies with their mean velocities; zero for others.
+std::vector<RigidMotion> Substep::motions() {
   const std::vector<Velocity> means = mean_velocities();
   const std::vector<Velocity> lifts = corrections();
-  std::vector<bool> is_free(bodies_.size(), true);
+  std::vector<bool> is_free(bodies_.size(), true);  // without contacts
   for (const SolverContact& contact : system_.contacts) {
     is_free[contact.body] = false;
     if (is_member(contact.other)) is_free[contact.other] = false;
   }
-  Vec3 forward = Vec3::Zero();
-  std::vector<std::size_t> order;
+  std::vector<RigidMotion> motions(bodies_.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (!is_active(bodies_[i])) continue;
-    forward += means[i].linear_mps + lifts[i].linear_mps;
-    order.push_back(i);
+    const MovingBody& moving = bodies_[i];
+    if (!is_active(moving)) continue;
+    const Body& body = *moving.body;
+    RigidMotion& motion = motions[i];
+    motion.centre_object = body.mass.centre_object;
+    motion.linear_m_s = means[i].linear_mps;
+    motion.angular_rad_s = means[i].angular_rad_s;
+    if (is_free[i]) motion.angular_rad_s = mean_free_spin(body, motion.angular_rad_s, moving.left_s);
+    limit(motion.angular_rad_s, config_.max_angular_rad_s);
+    motion.linear_m_s += lifts[i].linear_mps;
+    motion.angular_rad_s += lifts[i].angular_rad_s;
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return centre_world(*bodies_[a].body).dot(forward) > centre_world(*bodies_[b].body).dot(forward);
-  });
-  for (const std::size_t i : order) move(bodies_[i], means[i], lifts[i], is_free[i]);
+  return motions;
 }
 
-/// Moves a body with the mean velocity for as long as the motion is free.
-/// @param is_free  without contacts
-void Substep::move(MovingBody& moving, const Velocity& mean, const Velocity& correction, bool is_free) {
-  Body& body = *moving.body;
-  const Eigen::Matrix3d inertia_m2 = inertia_world_m2(body);
-  RigidMotion motion;
-  motion.centre_object = body.mass.centre_object;
-  motion.linear_m_s = mean.linear_mps;
-  motion.angular_rad_s = mean.angular_rad_s;
-  if (is_free) {
-    // Free rotation conserves angular momentum, not angular velocity: use the angular velocity half-way.
-    const Eigen::Isometry3d T_half = pose_after(body.T_world_object, motion, 0.5 * moving.left_s);
-    const Eigen::Matrix3d inertia_half = T_half.linear() * body.mass.inertia_m2 * T_half.linear().transpose();
-    motion.angular_rad_s = inertia_half.inverse() * (inertia_m2 * motion.angular_rad_s);
+/// Returns sets of active bodies whose paths may meet: indices, in order.
+std::vector<std::vector<std::size_t>> Substep::meeting_sets(const std::vector<RigidMotion>& motions) const {
+  std::vector<PathBall> paths(bodies_.size());
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (!is_active(bodies_[i])) continue;
+    const double radius_m = bodies_[i].body->mass.radius_m;
+    const double speed_mps = motions[i].linear_m_s.norm() + motions[i].angular_rad_s.norm() * radius_m;
+    paths[i] = {centre_world(*bodies_[i].body),
+                radius_m + speed_mps * bodies_[i].left_s + config_.contact_margin_m};
   }
-  limit(motion.angular_rad_s, config_.max_angular_rad_s);
-  motion.linear_m_s += correction.linear_mps;
-  motion.angular_rad_s += correction.angular_rad_s;
+  return sets_that_meet(paths);
+}
 
-  const FreeTime free =
-      moving.probe->free_time(body.T_world_object, motion, moving.left_s, kKept * config_.contact_margin_m,
-                              moving.push ? kMovingSurfaces : 0);
-  const double gone_s = std::clamp(free.free_s, 0.0, moving.left_s);
-  moving.limited_by = free.limit;
-  if (gone_s > 0.0) {
-    body.T_world_object = pose_after(body.T_world_object, motion, gone_s);
-    make_orthonormal(body.T_world_object);
-    if (moving.moved != nullptr && *moving.moved) (*moving.moved)();
+/// Returns how long a body moves free of contact with surfaces, resting bodies, and members of its set.
+/// Each pair of members is tested once, from the body that spins faster: the bounds are tighter relative to
+/// the slower one.
+FreeTime Substep::free_time(std::size_t body, double duration_s, const std::vector<RigidMotion>& motions,
+                            const std::vector<bool>& is_in_set) {
+  MovingBody& moving = bodies_[body];
+  const double spins = motions[body].angular_rad_s.squaredNorm();
+  trees_.left_out.assign(moving.member_of_tree.size(), false);
+  trees_.motions.assign(moving.member_of_tree.size(), {});
+  for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree) {
+    const std::size_t other = moving.member_of_tree[tree];
+    if (other == kNoOther || !is_active(bodies_[other])) continue;
+    const double other_spins = motions[other].angular_rad_s.squaredNorm();
+    const bool is_others_turn = other_spins > spins || (other_spins == spins && other < body);
+    trees_.left_out[tree] = is_others_turn || !is_in_set[other];
+    trees_.motions[tree] = motions[other];
   }
-  const double part = gone_s / moving.left_s;
-  Velocity& velocity = moving.velocity;
-  velocity.linear_mps += part * (moving.after.linear_mps - velocity.linear_mps);
-  const Vec3 momentum_after =
-      inertia_m2 * (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
-  velocity.angular_rad_s = inertia_world_m2(body).inverse() * momentum_after;
-  limit(velocity.linear_mps, config_.max_speed_mps);
-  limit(velocity.angular_rad_s, config_.max_angular_rad_s);
-  moving.left_s -= gone_s;
+  return moving.probe->free_time(moving.body->T_world_object, motions[body], duration_s,
+                                 kKept * config_.contact_margin_m, moving.push ? kMovingSurfaces : 0, trees_);
+}
+
+/// Moves a set of bodies at the same time, until the first contact of any of them. Returns the time moved.
+double Substep::move_set(const std::vector<std::size_t>& set, const std::vector<RigidMotion>& motions) {
+  double left_s = bodies_[set.front()].left_s;
+  std::vector<bool> is_in_set(bodies_.size(), false);
+  for (const std::size_t i : set) {
+    left_s = std::min(left_s, bodies_[i].left_s);
+    is_in_set[i] = true;
+  }
+  std::vector<JointMover> movers;
+  for (const std::size_t i : set)
+    movers.push_back(
+        {.T_world_object = &bodies_[i].body->T_world_object,
+         .motion = motions[i],
+         .free_time = [&, i](double duration_s) { return free_time(i, duration_s, motions, is_in_set); },
+         .moved = bodies_[i].moved != nullptr ? *bodies_[i].moved : std::function<void()>{},
+         .limited_by = {}});
+  const double gone_s = move_to_contact(movers, left_s);
+  for (std::size_t k = 0; k < set.size(); ++k) bodies_[set[k]].limited_by = movers[k].limited_by;
+  return gone_s;
+}
+
+/// Moves the active bodies, and changes their velocities by the fraction of the time that they moved.
+void Substep::move() {
+  const std::vector<RigidMotion> planned = motions();
+  std::vector<Eigen::Matrix3d> inertia_m2(bodies_.size());
+  for (std::size_t i = 0; i < bodies_.size(); ++i) inertia_m2[i] = inertia_world_m2(*bodies_[i].body);
+  for (const std::vector<std::size_t>& set : meeting_sets(planned)) {
+    const double gone_s = move_set(set, planned);
+    for (const std::size_t i : set) {
+      MovingBody& moving = bodies_[i];
+      const double part = gone_s / moving.left_s;
+      Velocity& velocity = moving.velocity;
+      velocity.linear_mps += part * (moving.after.linear_mps - velocity.linear_mps);
+      const Vec3 momentum_after =
+          inertia_m2[i] *
+          (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
+      velocity.angular_rad_s = inertia_world_m2(*moving.body).inverse() * momentum_after;
+      limit(velocity.linear_mps, config_.max_speed_mps);
+      limit(velocity.angular_rad_s, config_.max_angular_rad_s);
+      moving.left_s -= gone_s;
+    }
+  }
 }
 
 void Substep::run() {
@@ -318,7 +358,7 @@ void Substep::run() {
     find_contacts(bodies_, config_, up_, system_);
     if (bounce()) continue;
     hold_up(stop == 0);
-    wake_unbalanced_sleepers();
+    if (stop == 0) wake_unbalanced_sleepers();
     note_support(bodies_, config_, up_, system_, results_);
     if (stop == 0) find_balanced();
     move();

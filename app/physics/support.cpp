@@ -2,6 +2,7 @@
 #include "app/physics/support.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "app/physics/sliding.hpp"
 
@@ -56,6 +57,20 @@ void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& confi
     results[i].is_held_up = true;
     results[i].rests_on = loads[i].any_kind;
   }
+}
+
+void count_impacts(std::span<const MovingBody> bodies, const ContactSystem& system) {
+  std::vector<std::array<bool, kSurfaceKinds>> is_met(bodies.size());
+  for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+    const SolverContact& contact = system.contacts[i];
+    if (!(contact.impulse_Ns > 0.0)) continue;
+    is_met[contact.body][static_cast<std::size_t>(system.kinds[i])] = true;
+    if (contact.other < bodies.size())
+      is_met[contact.other][static_cast<std::size_t>(SurfaceKind::kObject)] = true;
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
+      if (is_met[i][kind]) note_contact(static_cast<SurfaceKind>(kind), *bodies[i].report);
 }
 
 }  // namespace roomradar

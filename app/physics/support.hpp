@@ -27,4 +27,8 @@ void note_support(std::span<const MovingBody> bodies, const PhysicsConfig& confi
                   const Eigen::Vector3d& up_world, const ContactSystem& system,
                   std::vector<SubstepResult>& results);
 
+/// Adds the impacts of the last solve to the bodies' reports. Simultaneous impacts of a body on one kind of
+/// surface count once.
+void count_impacts(std::span<const MovingBody> bodies, const ContactSystem& system);
+
 }  // namespace roomradar

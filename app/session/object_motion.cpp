@@ -73,6 +73,7 @@ void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, Cybe
                         .probe = &probes.back(),
                         .mass_kg = body.mass.mass_kg,
                         .is_carried = one.object->carried_to_world.has_value(),
+                        .is_undisturbed = one.is_undisturbed,
                         .depenetration_directions_world = one.push.span(),
                         .moved = [&body, seen_as = std::move(seen_as)] {
                           for (SceneTree* tree : seen_as) tree->instance.T_world_mesh = body.T_world_object;
@@ -86,10 +87,12 @@ void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, Cybe
       if (due[i].object->carried_to_world) set_in_hand(*due[i].object, left * advanced[i].dt_s);
     }
     advance_together(advanced, config, contacts);
-    for (const AdvancedBody& one : advanced) {
-      counts.contacts += one.report.contacts;
+    for (std::size_t i = 0; i < due.size(); ++i) {
+      const StepReport& report = advanced[i].report;
+      due[i].was_overlapped |= report.deepest_overlap_m > config.overlap_allowed_m;
+      counts.contacts += report.contacts;
       for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
-        counts.by_kind[kind] += one.report.contacts_by_kind[kind];
+        counts.by_kind[kind] += report.contacts_by_kind[kind];
     }
   }
 }

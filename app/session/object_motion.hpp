@@ -35,6 +35,8 @@ struct DueObject {
   double waited_s = 0.0;  ///< time since the object was last advanced; may exceed config.max_advance_s
   PushDirections push{};
   std::vector<SceneTree> scene{};   ///< surfaces, then the other objects
+  bool is_undisturbed = false;      ///< see AdvancedBody::is_undisturbed
+  bool was_overlapped = false;      ///< out: a surface overlapped the object, which may have been shifted
   std::vector<SceneBody> bodies{};  ///< body of each tree of the scene; null for surfaces
 };
 

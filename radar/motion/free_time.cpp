@@ -26,12 +26,14 @@ double allowed_m(double distance_m, double keep_m) {
   return distance_m > 2.0 * keep_m ? distance_m - keep_m : 0.5 * distance_m;
 }
 
-/// A rigid motion in the frame of a scene's mesh, with bounds of its approach.
+/// The object's motion relative to a tree of the scene, in the tree's frame, with bounds of its approach.
 struct RelativeMotion {
   Vec3 linear, angular, centre;
   double turn_rad_s;
   double reach_m;  // from the centre to the farthest point of the object
   double keep_m;
+  double tree_quadratic_m_s2;  // displacement by the tree's rotation: at most this times t^2
+  bool tree_moves;             // then no bound holds for ever
   /// Displacement by rotation along each axis of the frame: at most quadratic_m_s2 t^2 beyond the present
   /// velocity, and at most fastest_m_s t.
   Vec3 quadratic_m_s2, fastest_m_s;
@@ -53,7 +55,7 @@ struct RelativeMotion {
       const double side = between[k] > 0.0 ? 1.0 : -1.0;
       const double allowed = allowed_m(apart_m, keep_m);
       const double now = time_for(allowed, -side * velocity[k] + spread, quadratic_m_s2[k]);
-      const double ever = time_for(allowed, -side * linear[k] + fastest_m_s[k], 0.0);
+      const double ever = tree_moves ? 0.0 : time_for(allowed, -side * linear[k] + fastest_m_s[k], 0.0);
       free_s = std::max({free_s, now, ever});
     }
     return static_cast<float>(free_s) * (1.0F - 1e-6F);
@@ -66,7 +68,8 @@ struct RelativeMotion {
     const double apart_m = direction.dot(middle - s.corners[0]) - direction.cwiseAbs().dot(half);
     if (!(apart_m > 0.0)) return 0.0;
     const double closing = -direction.dot(velocity_at(middle)) + turning.cwiseAbs().dot(half);
-    return time_for(allowed_m(apart_m, keep_m), closing, 0.5 * turning.norm() * turn_rad_s * reach_m);
+    return time_for(allowed_m(apart_m, keep_m), closing,
+                    0.5 * turning.norm() * turn_rad_s * reach_m + tree_quadratic_m_s2);
   }
   /// Returns the time for two triangles and a direction from the scene's to the object's, the least over the
   /// corners. Negative if the direction does not separate them.
@@ -76,7 +79,7 @@ struct RelativeMotion {
   /// Returns the time for everything that lies no farther along the direction than face_at.
   [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, double face_at) const {
     const double turning = direction.cross(angular).norm();
-    const double quadratic = 0.5 * turning * turn_rad_s * reach_m;
+    const double quadratic = 0.5 * turning * turn_rad_s * reach_m + tree_quadratic_m_s2;
     const double fastest = -direction.dot(linear) + turning * reach_m;
     double free_s = kInfinity<double>;
     for (const Vec3& corner : o.corners) {
@@ -84,40 +87,73 @@ struct RelativeMotion {
       if (!(apart_m > 0.0)) return -1.0;
       const double allowed = allowed_m(apart_m, keep_m);
       const double now = time_for(allowed, -direction.dot(velocity_at(corner)), quadratic);
-      free_s = std::min(free_s, std::max(now, time_for(allowed, fastest, 0.0)));
+      free_s = std::min(free_s, tree_moves ? now : std::max(now, time_for(allowed, fastest, 0.0)));
     }
     return free_s;
   }
 };
 
-/// Returns the distance from the centre of rotation to the farthest corner of the object's box.
-double reach_of(const TreeInstance& object, const RigidMotion& motion) {
+/// Returns the distance from the centre of rotation to the farthest corner of the tree's box.
+double reach_of(const TriangleTree& tree, const Vec3& centre) {
   double reach_m = 0.0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 side((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 4) != 0 ? 1.0 : -1.0);
-    const Vec3 corner = object.tree->origin() + object.tree->centre() +
-                        side.cwiseProduct(object.tree->half_size().cast<double>()) - motion.centre_object;
+    const Vec3 corner =
+        tree.origin() + tree.centre() + side.cwiseProduct(tree.half_size().cast<double>()) - centre;
     reach_m = std::max(reach_m, corner.norm());
   }
   return reach_m;
 }
 
-RelativeMotion course_of(const TreeInstance& object, const RigidMotion& motion, double keep_m,
-                         const TreePair& trees) {
+bool is_still(const RigidMotion& motion) {
+  return motion.linear_m_s.isZero(0.0) && motion.angular_rad_s.isZero(0.0);
+}
+
+/// Returns the greatest distance that a point of the mesh travels.
+double path_m(const TreeInstance& instance, const RigidMotion& motion, double duration_s) {
+  if (is_still(motion)) return 0.0;
+  const double reach_m = reach_of(*instance.tree, motion.centre_object);
+  return duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_m);
+}
+
+RelativeMotion relative_motion(const TreeInstance& object, const RigidMotion& motion,
+                               const TreeInstance& tree, const RigidMotion& tree_motion, double duration_s,
+                               double keep_m, const TreePair& trees) {
+  const Vec3 centre_world = object.T_world_mesh * motion.centre_object;
+  Vec3 linear_world = motion.linear_m_s, angular_world = motion.angular_rad_s;
+  const double reach_m = reach_of(*object.tree, motion.centre_object);
+  const bool is_tree_still = is_still(tree_motion);
+  double accelerates_m_s2 = 0.0;
+  if (!is_tree_still) {
+    // In the tree's frame, a point accelerates by the Coriolis and centrifugal terms of the tree's rotation.
+    // Those of a common rotation about the object's centre cancel.
+    const Vec3& spin = tree_motion.angular_rad_s;
+    const Vec3 between = centre_world - tree.T_world_mesh * tree_motion.centre_object;
+    const Vec3 apart_m_s = motion.linear_m_s - tree_motion.linear_m_s;
+    linear_world = apart_m_s - spin.cross(between);
+    angular_world -= spin;
+    accelerates_m_s2 = 2.0 * spin.norm() * angular_world.norm() * reach_m +
+                       (spin.cross(spin.cross(between)) - 2.0 * spin.cross(apart_m_s)).norm() +
+                       spin.squaredNorm() * apart_m_s.norm() * duration_s;
+  }
   const Eigen::Matrix3d R_frame_world = trees.T_world_frame.linear().transpose();
-  const Vec3 angular = R_frame_world * motion.angular_rad_s;
-  const double turn_rad_s = angular.norm(), reach_m = reach_of(object, motion);
+  const Vec3 angular = R_frame_world * angular_world;
+  const double turn_rad_s = angular.norm();
   const Vec3 turning_m_s =
       reach_m * Vec3(std::hypot(angular.y(), angular.z()), std::hypot(angular.z(), angular.x()),
                      std::hypot(angular.x(), angular.y()));
-  return {R_frame_world * motion.linear_m_s,
-          angular,
-          trees.T_world_frame.inverse() * (object.T_world_mesh * motion.centre_object),
-          turn_rad_s,
-          reach_m,
-          keep_m,
-          0.5 * turn_rad_s * turning_m_s,
-          turning_m_s};
+  RelativeMotion relative{R_frame_world * linear_world,
+                          angular,
+                          trees.T_world_frame.inverse() * centre_world,
+                          turn_rad_s,
+                          reach_m,
+                          keep_m,
+                          0.5 * accelerates_m_s2,
+                          !is_tree_still,
+                          0.5 * turn_rad_s * turning_m_s,
+                          turning_m_s};
+  relative.quadratic_m_s2.array() += 0.5 * accelerates_m_s2;
+  return relative;
 }
 
 /// Free time against one tree of the scene, from its pairs of triangles.
@@ -185,22 +221,26 @@ struct TreeFreedom {
 }  // namespace
 
 FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                   const RadarScene& scene, SurfaceKindMask left_out, std::vector<PendingPair>& pending) {
+                   const RadarScene& scene, SurfaceKindMask left_out, const TreeStates& trees,
+                   std::vector<PendingPair>& pending) {
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
   result.free_s = duration_s;
-  // No point of the object travels farther than path_length_m. Pairs farther apart than twice keep_m may
-  // approach to keep_m.
-  const double path_length_m =
-      duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_of(object, motion));
+  // No point travels farther than its path. Pairs farther apart than twice keep_m may approach to keep_m.
+  const double object_path_m = path_m(object, motion, duration_s);
   for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
     const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
-    if (are_farther_apart(object, tree.instance, path_length_m + 2.0 * keep_m)) continue;
-    TreePair trees(object, tree.instance);
-    TreeFreedom freedom{trees, tree.kind, number, course_of(object, motion, keep_m, trees), result};
+    if (number < trees.left_out.size() && trees.left_out[number]) continue;
+    const RigidMotion tree_motion = number < trees.motions.size() ? trees.motions[number] : RigidMotion{};
+    const double paths_m = object_path_m + path_m(tree.instance, tree_motion, duration_s);
+    if (are_farther_apart(object, tree.instance, paths_m + 2.0 * keep_m)) continue;
+    TreePair pair(object, tree.instance);
+    TreeFreedom freedom{pair, tree.kind, number,
+                        relative_motion(object, motion, tree.instance, tree_motion, duration_s, keep_m, pair),
+                        result};
     visit_pairs<PairOrder::kLeastFirst>(
-        trees, pending, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
+        pair, pending, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
         [&](const PairBox& o, const PairBox& s) {
           freedom.look_at_leaves(o, s);
           return static_cast<float>(freedom.result.free_s);

@@ -20,18 +20,25 @@ struct FreeTime {
   ClosestPoint limit;
 };
 
-/// Returns a lower bound of the duration for which a rigid motion stays free of contact. Ignores surfaces
-/// that intersect the object now. Each pair of triangles is separated by a plane. It is the plane of one
-/// triangle, or perpendicular to the segment between their nearest points. The approach speed of a vertex to
-/// the plane is at most its present speed plus a bound of the change by rotation. A pair's minimum distance
-/// is keep_m, or half its present distance if the present distance is less than 2 * keep_m. Sources: Mirtich,
-/// PhD thesis, Berkeley 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA
-/// 2009.
+/// States of single trees of a scene, in the scene's order. Trees beyond the end are included, at rest.
+struct TreeStates {
+  std::vector<bool> left_out;
+  std::vector<RigidMotion> motions;
+};
+
+/// Returns a lower bound of the duration for which rigid motions of the object and of the scene's trees stay
+/// free of contact between the object and the trees. Ignores surfaces that intersect the object now. Each
+/// pair of triangles is separated by a plane. It is the plane of one triangle, or perpendicular to the
+/// segment between their nearest points. The approach speed of a vertex to the plane is at most its present
+/// speed plus a bound of the change by rotation. A pair's minimum distance is keep_m, or half its present
+/// distance if the present distance is less than 2 * keep_m. Sources: Mirtich, PhD thesis, Berkeley 1996,
+/// section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
 ///
 /// @param keep_m    minimum distance to keep, m
 /// @param left_out  kinds of surfaces to ignore
 /// @param pending   scratch memory
 FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                   const RadarScene& scene, SurfaceKindMask left_out, std::vector<PendingPair>& pending);
+                   const RadarScene& scene, SurfaceKindMask left_out, const TreeStates& trees,
+                   std::vector<PendingPair>& pending);
 
 }  // namespace roomradar

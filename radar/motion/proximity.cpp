@@ -47,16 +47,17 @@ bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const F
 }  // namespace
 
 SurfaceKindMask ProximityQuery::near(const TreeInstance& object, const RadarScene& scene, double reach_m,
-                                     SurfaceKindMask left_out, std::vector<ClosestPoint>& points) {
+                                     SurfaceKindMask left_out, const TreeStates& states,
+                                     std::vector<ClosestPoint>& points) {
   points.clear();
-  found_.clear();
   SurfaceKindMask crossed = 0;
   if (!is_usable(object) || !(reach_m > 0.0)) return crossed;
   for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
     const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
+    if (number < states.left_out.size() && states.left_out[number]) continue;
     if (are_farther_apart(object, tree.instance, reach_m)) continue;
-    const std::size_t found_before = found_.size();
+    found_.clear();
     TreePair trees(object, tree.instance);
     const FeatureCollector places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),
                                   tree.kind, trees.T_world_frame,      found_};
@@ -70,18 +71,21 @@ SurfaceKindMask ProximityQuery::near(const TreeInstance& object, const RadarScen
           crosses = look_at_leaves(trees, o, s, places);
           return crosses ? -kInfinity<float> : kInfinity<float>;
         });
-    for (std::size_t i = found_before; i < found_.size(); ++i) found_[i].tree = number;
-    if (!crosses) continue;
-    crossed |= bit_of(tree.kind);
-    found_.resize(found_before);
+    if (crosses) {
+      crossed |= bit_of(tree.kind);
+      continue;
+    }
+    for (ClosestPoint& point : found_) point.tree = number;
+    keep_the_outermost(found_, kept_);
+    points.insert(points.end(), kept_.begin(), kept_.end());
   }
-  keep_the_outermost(found_, points);
   return crossed;
 }
 
 FreeTime ProximityQuery::free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s,
-                                   double keep_m, const RadarScene& scene, SurfaceKindMask left_out) {
-  return roomradar::free_time(object, motion, duration_s, keep_m, scene, left_out, pending_);
+                                   double keep_m, const RadarScene& scene, SurfaceKindMask left_out,
+                                   const TreeStates& trees) {
+  return roomradar::free_time(object, motion, duration_s, keep_m, scene, left_out, trees, pending_);
 }
 
 }  // namespace roomradar

@@ -25,25 +25,30 @@ namespace roomradar {
 /// intersecting.
 class ProximityQuery {
  public:
-  /// Finds the vertex-face and edge-edge pairs within reach_m. Groups the pairs by normal into up to four
-  /// clusters, nearest cluster first. Of each, returns the nearest pair and the outermost pairs in eight
-  /// directions perpendicular to the normal. For a closed object, only features outside it count.
-  /// A tree that intersects the object gives no points.
+  /// Finds the vertex-face and edge-edge pairs within reach_m. Groups the pairs of each tree by normal into
+  /// up to four clusters, nearest cluster first. Of each, returns the nearest pair and the outermost pairs in
+  /// eight directions perpendicular to the normal. For a closed object, only features outside it count. A
+  /// tree that intersects the object gives no points.
   /// @param left_out  kinds of surfaces to ignore
-  /// @param[out] points  the closest features, at most kMaxPoints
+  /// @param trees     trees to ignore; motions have no effect
+  /// @param[out] points  the closest features, at most kMaxPointsPerTree per tree
   /// @return kinds of the surfaces that intersect the object
   SurfaceKindMask near(const TreeInstance& object, const RadarScene& scene, double reach_m,
-                       SurfaceKindMask left_out, std::vector<ClosestPoint>& points);
+                       SurfaceKindMask left_out, const TreeStates& trees, std::vector<ClosestPoint>& points);
+  SurfaceKindMask near(const TreeInstance& object, const RadarScene& scene, double reach_m,
+                       SurfaceKindMask left_out, std::vector<ClosestPoint>& points) {
+    return near(object, scene, reach_m, left_out, {}, points);
+  }
 
   /// Computes the contact-free duration of a motion; see free_time.hpp.
   FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                     const RadarScene& scene, SurfaceKindMask left_out = 0);
+                     const RadarScene& scene, SurfaceKindMask left_out = 0, const TreeStates& trees = {});
 
-  static constexpr std::size_t kMaxPoints = kMaxClosestPoints;
+  static constexpr std::size_t kMaxPointsPerTree = kMaxClosestPoints;
 
  private:
   std::vector<PendingPair> pending_;
-  std::vector<ClosestPoint> found_;
+  std::vector<ClosestPoint> found_, kept_;
 };
 
 }  // namespace roomradar

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "app/physics/ray_hit.hpp"
+#include "radar/exact/ray_hit.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/run/run_budget.hpp"
 #include "app/session/apply_quality.hpp"

@@ -114,7 +114,8 @@ void measure_rest(nlohmann::json& rows) {
             Lying& one = of_policy.emplace_back();
             one.thing = thing;
             one.body.mass = thing->mass;
-            one.body.T_world_object.translation() = support.point_world + Vec3(0, 0, 0.1 + thing->mass.radius_m);
+            one.body.T_world_object.translation() =
+                support.point_world + Vec3(0, 0, 0.1 + thing->mass.radius_m);
           }
         }
       }
@@ -271,8 +272,8 @@ void measure_throws(int throws, nlohmann::json& rows) {
     };
     probe.free_time = [&, ask = probe.free_time](const Eigen::Isometry3d& T_world_object,
                                                  const RigidMotion& motion, double duration_s, double keep_m,
-                                                 SurfaceKindMask left_out) {
-      const FreeTime free = ask(T_world_object, motion, duration_s, keep_m, left_out);
+                                                 SurfaceKindMask left_out, const TreeStates& trees) {
+      const FreeTime free = ask(T_world_object, motion, duration_s, keep_m, left_out, trees);
       follow_to(T_world_object);
       follow(T_world_object, motion, free.free_s);
       return free;

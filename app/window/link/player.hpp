@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/physics/ray_hit.hpp"
+#include "radar/exact/ray_hit.hpp"
 #include "app/session/script/script.hpp"
 #include "app/session/session.hpp"
 #include "app/window/link/ui_channel.hpp"

@@ -234,14 +234,18 @@ TEST(BodiesTogether, ALoadTipsTheBoardItIsPutOnOrNotAsStaticsSays) {
       group.put(1, {-0.1, 0.0, 0.051});
       group.put(0, {board_x, 0.0, 0.112});
       group.put(2, {is_late ? 3.0 : load_x, 0.0, is_late ? 0.051 : 0.173});
-      group.run(2.0, {});
       if (is_late) {
+        group.run(2.0, {});
         ASSERT_TRUE(group.bodies[0].asleep);
         group.put(2, {load_x, 0.0, 0.1732});
         group.bodies[2].asleep = false;
       }
-      group.run(3.0, {});
-      const bool has_tipped = group.bodies[0].T_world_object.linear()(2, 2) < 0.99;
+      // The load slides off the tipping board, which then falls back.
+      bool has_tipped = false;
+      for (int frame = 0; frame < 120; ++frame) {
+        group.step({});
+        has_tipped |= group.bodies[0].T_world_object.linear()(2, 2) < 0.99;
+      }
       EXPECT_EQ(has_tipped, factor > 1.0) << factor << (is_late ? ", later" : "");
       EXPECT_EQ(group.deepest_m, 0.0);
     }

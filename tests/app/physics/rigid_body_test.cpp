@@ -40,7 +40,7 @@ struct BallOverPlane {
       contact.touched = SurfaceKind::kStatic;
       return contact;
     };
-    probe.near = [this](const Eigen::Isometry3d& T, double reach_m, SurfaceKindMask,
+    probe.near = [this](const Eigen::Isometry3d& T, double reach_m, SurfaceKindMask, const TreeStates&,
                         std::vector<ClosestPoint>& points) {
       points.clear();
       const double gap = gap_m(T.translation());
@@ -49,7 +49,7 @@ struct BallOverPlane {
       return SurfaceKindMask{0};
     };
     probe.free_time = [this](const Eigen::Isometry3d& T, const RigidMotion& motion, double duration_s,
-                             double keep_m, SurfaceKindMask) {
+                             double keep_m, SurfaceKindMask, const TreeStates&) {
       const double closing_mps = -normal.dot(motion.linear_m_s);
       const double gap = gap_m(T.translation());
       const double allowed_m = gap > 2.0 * keep_m ? gap - keep_m : 0.5 * gap;

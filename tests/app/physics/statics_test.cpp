@@ -150,8 +150,12 @@ TEST(Statics, WeightWakesWhatSleepsAndBearsThroughSeveralBodies) {
   for (std::size_t i = 2; i < 5; ++i) {
     group.put(i, {0.12, 0.0, 0.154 + 0.0612 * static_cast<double>(i - 2)});
     group.bodies[i].asleep = false;
-    group.run(3.0, {});
-    EXPECT_EQ(group.bodies[0].T_world_object.linear()(2, 2) < 0.99, i == 4) << i;
+    bool has_tipped = false;  // the column slides off the tipping board, which then falls back
+    for (int frame = 0; frame < 90; ++frame) {
+      group.step({});
+      has_tipped |= group.bodies[0].T_world_object.linear()(2, 2) < 0.99;
+    }
+    EXPECT_EQ(has_tipped, i == 4) << i;
   }
   EXPECT_EQ(group.deepest_m, 0.0);
 }

@@ -1,5 +1,5 @@
 // ray_hit.cpp: traverses the tree of boxes, pruned by the nearest hit so far.
-#include "app/physics/ray_hit.hpp"
+#include "radar/exact/ray_hit.hpp"
 
 #include <algorithm>
 #include <array>

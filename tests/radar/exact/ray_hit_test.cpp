@@ -1,5 +1,5 @@
 // ray_hit_test.cpp: rays against meshes.
-#include "app/physics/ray_hit.hpp"
+#include "radar/exact/ray_hit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,41 @@
+// sleeper_contacts.cpp: keeps contacts by body; compares poses bit by bit.
+#include "app/physics/sleeper_contacts.hpp"
+
+#include <algorithm>
+
+namespace roomradar {
+
+bool recall_contacts(std::span<const SleeperContacts> known, const Body& body,
+                     std::span<const SceneBody> others, std::vector<ClosestPoint>& near) {
+  const auto own =
+      std::find_if(known.begin(), known.end(), [&](const SleeperContacts& one) { return one.body == &body; });
+  if (own == known.end() || own->T_world_object.matrix() != body.T_world_object.matrix()) return false;
+  near = own->near;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const SleeperContacts::Touched& touched = own->touched[i];
+    const auto other = std::find_if(others.begin(), others.end(),
+                                    [&](const SceneBody& one) { return one.body == touched.body; });
+    near[i].tree = static_cast<std::uint32_t>(other - others.begin());  // beyond the end: no body
+    if (touched.body == nullptr) continue;
+    if (other == others.end() || other->body->T_world_object.matrix() != touched.T_world_body.matrix())
+      return false;
+  }
+  return true;
+}
+
+void remember_contacts(std::vector<SleeperContacts>& known, const Body& body,
+                       std::span<const SceneBody> others, const std::vector<ClosestPoint>& near) {
+  auto own =
+      std::find_if(known.begin(), known.end(), [&](const SleeperContacts& one) { return one.body == &body; });
+  if (own == known.end()) own = known.insert(own, SleeperContacts{});
+  own->body = &body;
+  own->T_world_object = body.T_world_object;
+  own->near = near;
+  own->touched.clear();
+  for (const ClosestPoint& p : near) {
+    const Body* other = p.tree < others.size() ? others[p.tree].body : nullptr;
+    own->touched.push_back({other, other != nullptr ? other->T_world_object : Eigen::Isometry3d::Identity()});
+  }
+}
+
+}  // namespace roomradar

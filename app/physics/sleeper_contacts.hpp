@@ -1,0 +1,33 @@
+// sleeper_contacts.hpp: contacts of sleeping bodies, kept from substep to substep.
+#pragma once
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "app/physics/body.hpp"
+#include "app/physics/collision_queries.hpp"
+
+namespace roomradar {
+
+/// Contacts of a sleeping body. They hold as long as neither it nor a body that it touches has moved.
+struct SleeperContacts {
+  struct Touched {
+    const Body* body;  ///< null: static surface
+    Eigen::Isometry3d T_world_body;
+  };
+  const Body* body = nullptr;
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+  std::vector<ClosestPoint> near;
+  std::vector<Touched> touched;  ///< per point of `near`
+};
+
+/// Copies a body's known contacts to `near` if they still hold. Returns false if they do not.
+/// @param others  bodies of the scene's trees; ClosestPoint::tree is set to their order
+bool recall_contacts(std::span<const SleeperContacts> known, const Body& body,
+                     std::span<const SceneBody> others, std::vector<ClosestPoint>& near);
+
+/// Replaces the known contacts of a body.
+void remember_contacts(std::vector<SleeperContacts>& known, const Body& body,
+                       std::span<const SceneBody> others, const std::vector<ClosestPoint>& near);
+
+}  // namespace roomradar
