@@ -294,7 +294,7 @@ TEST_F(Models, AbsurdSizesAreRefusedWithTheOptionToPaste) {
             "part.stl: its longest side is 4 mm, less than 5 mm; give it a size in metres, such as "
             "--object-size 0.3");
   EXPECT_EQ(refusal(1e6F, 6.0),
-            "part.stl: its longest side is 1e+06 m, more than 5 m; give it a size in metres, such as "
+            "part.stl: its longest side is 1000000 m, more than 5 m; give it a size in metres, such as "
             "--object-size 0.3");
   EXPECT_EQ(
       message_of([&] {
