@@ -77,9 +77,12 @@ void PlayUi::draw(float width, float height) {
 void PlayUi::draw_waiting(const Area& area) {
   look::begin_pane("waiting", area, look::kGround);
   const char* text = link_.is_over() ? "the run is over" : "loading the map, waiting for the first frame ...";
-  const ImVec2 size = ImGui::CalcTextSize(text);
+  const float wrap = 0.8F * area.width;
+  const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, wrap);
   ImGui::SetCursorScreenPos({area.x + 0.5F * (area.width - size.x), area.y + 0.5F * (area.height - size.y)});
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
   ImGui::TextDisabled("%s", text);
+  ImGui::PopTextWrapPos();
   look::end_pane();
 }
 
