@@ -68,8 +68,7 @@ void PlayUi::draw(float width, float height) {
   if (!layout.timing.empty()) timing_.draw(layout.timing, fonts_);
   if (!layout.radar.empty()) radar_.draw(layout.radar, shown_.shown_radar, fonts_);
   draw_side_panel(layout.side, shown_, link_, settings_, fonts_);
-  const Area main = window_layout(width, height, MainView::kCamera, scale).camera;
-  draw_message(main);
+  draw_message(window_layout(width, height, MainView::kCamera, scale).camera);
   if (shows_help_ && draw_help(width, height, fonts_)) shows_help_ = false;
   link_.want({.radar = true, .models = view_ != MainView::kCamera, .point_px = picture_.pixel()});
 }
