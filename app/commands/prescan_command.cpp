@@ -54,7 +54,7 @@ void announce_memory(FrameSource& source, const PrescanConfig& config, Report& r
 }
 
 constexpr const char* kStops =
-    "\nroomradar: stops before the next frame, without a map; after the last frame the map is still made. "
+    "\nroomradar: stops after the next frame, without a map; after the last frame the map is still made. "
     "Press Ctrl-C again to end at once\n";
 
 struct StoppedByUser : Error {
@@ -178,7 +178,8 @@ class ScanProgress {
  public:
   ScanProgress(const PrescanOptions& options, const ScanStart& start) : options_(options), start_(start) {}
 
-  /// Call after each frame of a stage. Throws StoppedByUser after Ctrl-C, unless the source ends by itself.
+  /// Call after each frame of a stage. After Ctrl-C it requests a checkpoint of the frames read so far, and
+  /// the call after the next frame throws StoppedByUser. No effect in a stage whose source ends by itself.
   void show(const std::string& stage, const std::string& note) {
     if (stage_.empty() && start_.checkpoints)  // the checkpoints have been read
       for (const std::string& fault : start_.checkpoints->faults())
@@ -186,7 +187,9 @@ class ScanProgress {
     if (stage != stage_) begin(stage);
     progress_->step(note);
     const bool ends_by_itself = start_.is_live && stage == "track";
-    if (!ends_by_itself && Interrupt::take()) stop(options_.map, start_.checkpoints.get());
+    if (is_stopping_) stop(options_.map, start_.checkpoints.get());
+    is_stopping_ = !ends_by_itself && Interrupt::take();
+    if (is_stopping_ && start_.checkpoints) start_.checkpoints->write_soon();
   }
 
  private:
@@ -194,6 +197,7 @@ class ScanProgress {
   const ScanStart& start_;
   std::unique_ptr<Progress> progress_;
   std::string stage_;
+  bool is_stopping_ = false;
 
   void begin(const std::string& stage) {
     progress_.reset();

@@ -155,7 +155,7 @@ void bring_origin_near(const std::filesystem::path& path, Model& model) {
   if (!(away_m > box.sizes().maxCoeff())) return;
   const Eigen::Vector3d middle = box.center();
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex = (vertex.cast<double>() - middle).cast<float>();
-  model.notes.push_back(path.string() + ": lies " + format_general(away_m, 3) +
+  model.notes.push_back(path.string() + ": lies " + format_readable(away_m, 3) +
                         " m from the origin of its file; its middle is taken as its origin");
 }
 

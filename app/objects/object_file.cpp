@@ -30,7 +30,8 @@ float longest_side_m(const Mesh& mesh) {
 }
 
 std::string length_words(double length_m) {
-  return length_m < 0.01 ? format_general(1000.0 * length_m, 3) + " mm" : format_general(length_m, 3) + " m";
+  return length_m < 0.01 ? format_readable(1000.0 * length_m, 3) + " mm"
+                         : format_readable(length_m, 3) + " m";
 }
 
 /// Returns the end of the sentence: the option to paste, and why.
@@ -42,9 +43,9 @@ std::string cure(double longest_m, double most_m, const std::string& option) {
   for (const Unit& unit : {Unit{"millimetres", 0.001}, Unit{"centimetres", 0.01}}) {
     const double size_m = longest_m * unit.in_m;
     if (size_m < kPlausibleLeast_m || size_m > std::min(kPlausibleMost_m, most_m)) continue;
-    return std::string("; if its unit is ") + unit.name + ", use " + option + format_general(size_m, 3);
+    return std::string("; if its unit is ") + unit.name + ", use " + option + format_readable(size_m, 3);
   }
-  return "; give it a size in metres, such as " + option + format_general(std::min(kPlainSize_m, most_m), 2);
+  return "; give it a size in metres, such as " + option + format_readable(std::min(kPlainSize_m, most_m), 2);
 }
 
 }  // namespace

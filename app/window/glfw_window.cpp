@@ -4,21 +4,32 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 
 #include "app/window/link/key_meant.hpp"
+#include "app/window/panes/window_layout.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr int kWidth_px = 1280, kHeight_px = 800;
-constexpr int kLeastWidth_px = 640, kLeastHeight_px = 480;
 
 std::string last_glfw_error() {
   const char* what = nullptr;
   glfwGetError(&what);
   return what != nullptr ? what : "no reason was given";
+}
+
+/// Returns the window's first size, which fits a small screen.
+std::array<int, 2> first_size_px() {
+  int x = 0, y = 0, width_px = kWidth_px, height_px = kHeight_px;
+  if (GLFWmonitor* screen = glfwGetPrimaryMonitor())
+    glfwGetMonitorWorkarea(screen, &x, &y, &width_px, &height_px);
+  return {std::clamp(width_px, kLeastWidth_px, kWidth_px),
+          std::clamp(height_px, kLeastHeight_px, kHeight_px)};
 }
 
 }  // namespace
@@ -37,9 +48,10 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   // EGL if it works, as for the radar, so the process loads one driver; else the window system's own API.
+  const auto [width_px, height_px] = first_size_px();
   for (const int way : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, way);
-    window_ = glfwCreateWindow(kWidth_px, kHeight_px, title.c_str(), nullptr, nullptr);
+    window_ = glfwCreateWindow(width_px, height_px, title.c_str(), nullptr, nullptr);
     if (window_ != nullptr) break;
   }
   if (window_ == nullptr) {

@@ -68,8 +68,7 @@ void PlayUi::draw(float width, float height) {
   if (!layout.timing.empty()) timing_.draw(layout.timing, fonts_);
   if (!layout.radar.empty()) radar_.draw(layout.radar, shown_.shown_radar, fonts_);
   draw_side_panel(layout.side, shown_, link_, settings_, fonts_);
-  const Area main = window_layout(width, height, MainView::kCamera, scale).camera;
-  draw_message(main);
+  draw_message(window_layout(width, height, MainView::kCamera, scale).camera);
   if (shows_help_ && draw_help(width, height, fonts_)) shows_help_ = false;
   link_.want({.radar = true, .models = view_ != MainView::kCamera, .point_px = picture_.pixel()});
 }
@@ -77,9 +76,12 @@ void PlayUi::draw(float width, float height) {
 void PlayUi::draw_waiting(const Area& area) {
   look::begin_pane("waiting", area, look::kGround);
   const char* text = link_.is_over() ? "the run is over" : "loading the map, waiting for the first frame ...";
-  const ImVec2 size = ImGui::CalcTextSize(text);
+  const float wrap = 0.8F * area.width;
+  const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, wrap);
   ImGui::SetCursorScreenPos({area.x + 0.5F * (area.width - size.x), area.y + 0.5F * (area.height - size.y)});
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
   ImGui::TextDisabled("%s", text);
+  ImGui::PopTextWrapPos();
   look::end_pane();
 }
 

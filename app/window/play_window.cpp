@@ -23,6 +23,7 @@
 
 #include "app/window/glfw_window.hpp"
 #include "app/window/panes/theme.hpp"
+#include "app/window/panes/window_layout.hpp"
 #include "app/window/play_ui.hpp"
 
 namespace roomradar {
@@ -36,7 +37,7 @@ struct ImGuiOfWindow {
     ImGui::GetIO().IniFilename = nullptr;
     float scale = 1.0F;
     glfwGetWindowContentScale(window, &scale, nullptr);
-    fonts = look::apply(ui_scale ? static_cast<float>(*ui_scale) : std::clamp(scale, 1.0F, 3.0F));
+    wanted_scale_ = ui_scale ? static_cast<float>(*ui_scale) : std::clamp(scale, 1.0F, 3.0F);
     ImGui_ImplGlfw_InitForOpenGL(window, /*install_callbacks=*/true);  // calls the callbacks installed
                                                                        // before, too
     ImGui_ImplOpenGL3_Init("#version 330 core");
@@ -48,21 +49,41 @@ struct ImGuiOfWindow {
   }
   ImGuiOfWindow(const ImGuiOfWindow&) = delete;
   ImGuiOfWindow& operator=(const ImGuiOfWindow&) = delete;
+
+  /// Begins a frame, with style and fonts of the scale that the window's size allows.
+  void begin_frame(GLFWwindow* window) {
+    int width = 0, height = 0;
+    glfwGetWindowSize(window, &width, &height);
+    const float scale = scale_in_window(wanted_scale_, static_cast<float>(width), static_cast<float>(height));
+    if (scale != scale_) {
+      ImGui_ImplOpenGL3_DestroyFontsTexture();
+      ImGui::GetIO().Fonts->Clear();
+      fonts = look::apply(scale);
+      const bool is_first = scale_ == 0.0F;  // then the next call creates the texture
+      if (!is_first) ImGui_ImplOpenGL3_CreateFontsTexture();
+      scale_ = scale;
+    }
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+  }
+
+ private:
+  float wanted_scale_ = 1.0F;
+  float scale_ = 0.0F;  // of style and fonts; 0: not loaded
 };
 
 /// Draws after every event, otherwise every kIdle_s.
 void show(GlfwWindow& window, UiChannel& link, const std::vector<ObjectSource>& meshes,
           std::optional<double> budget_ms, std::optional<double> ui_scale) {
-  const ImGuiOfWindow imgui(window.get(), ui_scale);
+  ImGuiOfWindow imgui(window.get(), ui_scale);
   PlayUi ui(link, imgui.fonts, meshes, budget_ms);
   constexpr double kLeastFrame_s = 1.0 / 60.0, kIdle_s = 0.25;
   while (glfwWindowShouldClose(window.get()) == GLFW_FALSE && !ui.wants_to_quit()) {
     glfwWaitEventsTimeout(kIdle_s);
     const double began_s = glfwGetTime();
     ui.take_news();
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
+    imgui.begin_frame(window.get());
     const std::vector<Key> keys = window.take_keys();
     if (!ImGui::GetIO().WantTextInput)
       for (const Key& key : keys)

@@ -111,13 +111,13 @@ std::optional<Checkpoint> Checkpoints::resume() {
 }
 
 bool Checkpoints::is_due() {
-  reap(/*wait=*/false);
-  return writer_ < 0 && since_last_s() >= every_s_.count();
+  reap(/*wait=*/writes_soon_);
+  return writes_soon_ || (writer_ < 0 && since_last_s() >= every_s_.count());
 }
 
 bool Checkpoints::is_due_at_end() {
   reap(/*wait=*/true);
-  return since_last_s() >= every_s_.count() / 3.0;
+  return writes_soon_ || since_last_s() >= every_s_.count() / 3.0;
 }
 
 double Checkpoints::since_last_s() const {
@@ -126,6 +126,7 @@ double Checkpoints::since_last_s() const {
 
 void Checkpoints::write(const std::string& stage, const WriteFiles& write_files) {
   reap(/*wait=*/true);
+  writes_soon_ = false;
   last_start_ = std::chrono::steady_clock::now();
   being_written_since_ = fs::file_time_type::clock::now();
   try {

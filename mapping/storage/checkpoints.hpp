@@ -49,6 +49,9 @@ class Checkpoints {
   /// Waits for the last checkpoint to complete, and returns true if a third of `every_s` has passed since it
   /// began. Call at the end of a stage.
   bool is_due_at_end();
+  /// Makes is_due() and is_due_at_end() wait for the last checkpoint and return true, until write() is
+  /// called. For work that is about to be stopped.
+  void write_soon() { writes_soon_ = true; }
   /// Starts a child process that writes a checkpoint. Returns after a few milliseconds. If the child fails
   /// (disk full), the previous checkpoint stays and failures() increases. Only the first failure is reported,
   /// through the callback of tell_failure().
@@ -85,6 +88,7 @@ class Checkpoints {
   std::filesystem::file_time_type being_written_since_;
   std::filesystem::file_time_type on_disk_until_ = std::filesystem::file_time_type::min();
   std::int64_t last_number_ = 0;  ///< number of the last complete checkpoint; 0: none
+  bool writes_soon_ = false;
   int lock_ = -1;
   pid_t writer_ = -1;
   std::int64_t failures_ = 0;

@@ -64,7 +64,8 @@ void add_playback_options(CLI::App& command, RunOptions& options) {
                    "(default: off)");
   command
       .add_option("--ui-scale", options.ui_scale,
-                  "scale of the window's text and panes (default: the monitor's)")
+                  "scale of the window's text and panes, reduced in a window that is too small for it "
+                  "(default: the monitor's)")
       ->check(within(0.5, 4.0, "times"))
       ->type_name("X");
   command

@@ -24,9 +24,11 @@ constexpr char kStyle[] =
     ".wide{overflow-x:auto}svg{max-width:100%;height:auto}"
     "figure{display:inline-block;margin:.5em "
     "0;width:560px;max-width:100%;vertical-align:top}figcaption{font-size:13px}"
-    "img{max-width:100%}.cells{display:inline-table;margin-right:2em;vertical-align:top}"
+    "img{max-width:100%}.part{display:inline-block;max-width:100%;margin-right:2em;vertical-align:top}"
     ".cells th,.cells td{min-width:3.3em;text-align:center;font-variant-numeric:tabular-nums}"
-    ".cells tr>th:first-child{text-align:left;font-weight:400}";
+    ".cells tr>th:first-child{text-align:left;font-weight:400}td{white-space:nowrap}"
+    "@media(max-width:500px){.part{margin-right:0}.cells{font-size:12px}"
+    ".cells th,.cells td{min-width:0;padding:.25em .35em}}";
 
 constexpr const char* kColours[] = {"#8a8a8a", "#c98a1b", "#b04ab0", "#2367c9", "#1a9850"};
 static_assert(std::size(kColours) == kPolicyCount);
@@ -104,7 +106,7 @@ std::string outcome_cells(const std::vector<ScenarioRow>& rows, const std::strin
     for (std::size_t i = 0; i < kPolicyCount; ++i)
       table.share.back().push_back(static_cast<double>(count[i]) / count[kPolicyCount]);
   }
-  return share_cells(table);
+  return "<div class=\"wide part\">" + share_cells(table) + "</div>\n";
 }
 
 std::string speed_of(const ScenarioRow& row) {
@@ -140,9 +142,9 @@ void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
   for (const auto& [title, outcome] :
        {std::pair{std::string("Passed through, by "), Outcome::kPassedThrough},
         {std::string("Stopped where nothing is, by "), Outcome::kStoppedFalse}}) {
-    file << "<p>" << outcome_cells(rows, title + "shape", outcome, shape)
+    file << "<div>" << outcome_cells(rows, title + "shape", outcome, shape)
          << outcome_cells(rows, title + "occluder", outcome, hider)
-         << outcome_cells(rows, title + "speed", outcome, speed_of) << "</p>\n";
+         << outcome_cells(rows, title + "speed", outcome, speed_of) << "</div>\n";
   }
   file << "<h2>Failures</h2><p>Left: the camera's depth. Right: a section along the object's path; grey the "
           "true room, orange the occluder, lines the surfaces that the object could touch: black the map, "

@@ -14,12 +14,17 @@ void draw_line(ImDrawList& draw, const Eigen::Vector3d& a, const Eigen::Vector3d
   if (from && to) draw.AddLine(*from, *to, colour, thickness);
 }
 
+/// Draws a text on a dark ground. If `at` lies within the clip rectangle, the whole label is moved into it.
 void draw_label(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colour,
                 const look::Fonts& fonts) {
   ImGui::PushFont(fonts.small);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   ImGui::PopFont();
   const float beside = look::px(5.0F), above = look::px(3.0F);
+  const ImVec2 low = draw.GetClipRectMin(), high = draw.GetClipRectMax();
+  if (at.x >= low.x && at.x <= high.x && at.y >= low.y && at.y <= high.y)
+    at = {shifted_inside(at.x, size.x, low.x + beside, high.x - beside),
+          shifted_inside(at.y, size.y, low.y + above, high.y - above)};
   draw.AddRectFilled({at.x - beside, at.y - above}, {at.x + size.x + beside, at.y + size.y + above},
                      IM_COL32(16, 19, 24, 190), look::px(4.0F));
   draw.AddText(fonts.small, fonts.small->FontSize, at, colour, text.c_str());

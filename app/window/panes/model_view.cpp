@@ -109,6 +109,39 @@ Eigen::AlignedBox3d bounds_of(const Mesh& mesh) {
   return {mesh.origin + box.min().cast<double>(), mesh.origin + box.max().cast<double>()};
 }
 
+/// Draws the meaning of the colours along the bottom, in as many rows as the width needs.
+void draw_legend(ImDrawList& list, const Area& area, const look::Fonts& fonts) {
+  struct Entry {
+    ImU32 colour;
+    const char* what;
+    float x = 0.0F;
+    int row = 0;
+  };
+  std::array<Entry, 4> legend = {{{IM_COL32(158, 168, 184, 255), "room"},
+                                  {IM_COL32(237, 115, 102, 255), "dynamic"},
+                                  {IM_COL32(140, 92, 158, 255), "inferred back"},
+                                  {IM_COL32(64, 196, 172, 255), "chosen object"}}};
+  const float margin = look::px(12.0F), beside_dot = look::px(9.0F), size = fonts.small->FontSize;
+  float x = margin;
+  int row = 0;
+  for (Entry& entry : legend) {
+    const float wide = beside_dot + fonts.small->CalcTextSizeA(size, 1e4F, 0.0F, entry.what).x;
+    if (x > margin && x + wide > area.width - margin) {
+      x = margin;
+      ++row;
+    }
+    entry.x = area.x + x;
+    entry.row = row;
+    x += wide + look::px(16.0F);
+  }
+  for (const Entry& entry : legend) {
+    const float y =
+        area.y + area.height - look::px(22.0F) - look::px(16.0F) * static_cast<float>(row - entry.row);
+    list.AddCircleFilled({entry.x, y + look::px(7.0F)}, look::px(4.0F), entry.colour);
+    list.AddText(fonts.small, size, {entry.x + beside_dot, y}, look::kDim, entry.what);
+  }
+}
+
 }  // namespace
 
 Eigen::Isometry3d eye_of(const Orbit& orbit) {
@@ -305,21 +338,7 @@ void ModelView::draw(const Area& area, const Snapshot& shown, const look::Fonts&
   };
   if (shown.view) draw_camera(list, *shown.view, 0.45, to_window);
   draw_target_volume(list, shown.shown_radar, to_window, fonts);
-  const struct {
-    ImU32 colour;
-    const char* what;
-  } legend[] = {{IM_COL32(158, 168, 184, 255), "room"},
-                {IM_COL32(237, 115, 102, 255), "dynamic"},
-                {IM_COL32(140, 92, 158, 255), "inferred back"},
-                {IM_COL32(64, 196, 172, 255), "chosen object"}};
-  float x = area.x + look::px(12.0F);
-  const float y = area.y + area.height - look::px(22.0F);
-  for (const auto& entry : legend) {
-    list.AddCircleFilled({x, y + look::px(7.0F)}, look::px(4.0F), entry.colour);
-    list.AddText(fonts.small, fonts.small->FontSize, {x + look::px(9.0F), y}, look::kDim, entry.what);
-    x += look::px(9.0F) + fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e4F, 0.0F, entry.what).x +
-         look::px(16.0F);
-  }
+  draw_legend(list, area, fonts);
   look::end_pane();
 }
 

@@ -22,6 +22,16 @@ void draw_note(ImDrawList& draw, ImVec2 at, const std::string& text, const look:
   draw.AddText(fonts.small, fonts.small->FontSize, at, look::kText, text.c_str());
 }
 
+/// Draws the position under the mouse below the frame's number, because messages cover the bottom.
+void draw_position(ImDrawList& draw, const Area& image, const Eigen::Vector3d& p_world,
+                   const look::Fonts& fonts) {
+  const float margin = look::px(10.0F);
+  const std::string position = position_words(p_world) + " m", advised = position + "   (Ctrl+C copies)";
+  const float wide = fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e4F, 0.0F, advised.c_str()).x;
+  draw_note(draw, {image.x + margin, image.y + look::px(25.0F)},
+            wide + 2.0F * margin > image.width ? position : advised, fonts);
+}
+
 }  // namespace
 
 std::string position_words(const Eigen::Vector3d& p_world) {
@@ -55,9 +65,7 @@ void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Font
     std::snprintf(text.data(), text.size(), "frame %lld   %.1f s", static_cast<long long>(shown.source_frame),
                   shown.run_time_s);
     draw_note(*draw, {image.x + look::px(10.0F), image.y + look::px(8.0F)}, text.data(), fonts);
-    if (is_here && shown.pointed_world)
-      draw_note(*draw, {image.x + look::px(10.0F), image.y + image.height - look::px(24.0F)},
-                position_words(*shown.pointed_world) + " m   (Ctrl+C copies)", fonts);
+    if (is_here && shown.pointed_world) draw_position(*draw, image, *shown.pointed_world, fonts);
   }
   look::end_pane();
 }

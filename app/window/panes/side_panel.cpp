@@ -44,7 +44,8 @@ void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings
     command.kind = kind;
     link.ask(command);
   };
-  const float half = look::px(128.0F);
+  // The scrollbar of a low window leaves less width.
+  const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
   if (look::button("Remove", "Del", false, {half, 0.0F}, !shown.objects.empty()))
     ask(UserCommandKind::kRemove);
   ImGui::SameLine();

@@ -16,8 +16,9 @@ float px(float length) { return scale_of_screen * length; }
 
 Fonts apply(float scale) {
   scale_of_screen = scale;
-  ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
+  style = ImGuiStyle();  // ScaleAllSizes() scales what is there
+  ImGui::StyleColorsDark();
   style.WindowRounding = 0.0F;
   style.WindowBorderSize = 0.0F;
   style.WindowPadding = {14.0F, 10.0F};

@@ -10,6 +10,19 @@ struct Area {
   [[nodiscard]] bool empty() const { return width < 8.0F || height < 8.0F; }
 };
 
+/// Least size of the window at scale 1, at which nothing in it is cut.
+inline constexpr int kLeastWidth_px = 640, kLeastHeight_px = 480;
+
+/// Returns the scale of text and panes in a window of this size: the wanted scale, or the largest multiple of
+/// 1/8 at which the window's content still fits. It is not below 1 unless the wanted scale is.
+constexpr float scale_in_window(float wanted, float width, float height) {
+  constexpr float kSteps = 8.0F;
+  const float most =
+      std::min(width / static_cast<float>(kLeastWidth_px), height / static_cast<float>(kLeastHeight_px));
+  if (wanted <= most) return wanted;
+  return std::max(static_cast<float>(static_cast<int>(kSteps * most)) / kSteps, std::min(wanted, 1.0F));
+}
+
 enum class MainView { kCamera, kModels, kBoth };
 
 struct WindowLayout {
@@ -41,6 +54,12 @@ constexpr WindowLayout window_layout(float width, float height, MainView view, f
     layout.models = {whole.x + 0.5F * whole.width, whole.y, 0.5F * whole.width, whole.height};
   }
   return layout;
+}
+
+/// Returns the start of an interval of this length, shifted as little as possible to lie in low..high. An
+/// interval that is too long starts at `low`.
+constexpr float shifted_inside(float start, float length, float low, float high) {
+  return std::max(std::min(start, high - length), low);
 }
 
 /// Returns the largest area with an image's aspect ratio, centred in `area`.

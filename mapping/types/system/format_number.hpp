@@ -30,6 +30,13 @@ inline std::string format_general(double value, int digits) {
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr};
 }
 
+/// Formats for people: with `digits` (1..17) significant digits, but all digits before the point, and no
+/// exponent from 0.0001 on: "0.35", "1040".
+inline std::string format_readable(double value, int digits) {
+  const std::string text = format_general(value, digits);
+  return text.find("e+") == std::string::npos ? text : format_fixed(value, 0);
+}
+
 /// Returns a frame's number for file names: zero-padded to six digits, longer if needed.
 inline std::string format_frame_number(std::int64_t number) {
   std::string text = std::to_string(number);

@@ -259,7 +259,7 @@ TEST_F(Models, AModelFarFromItsOriginGetsItsMiddleAsOrigin) {
   const Model model = read_model(path("far.ply"));
   EXPECT_LT(box_of(model.mesh).center().norm(), 1e-6F);
   ASSERT_EQ(model.notes.size(), 1U);
-  EXPECT_NE(model.notes[0].find("1e+03 m from the origin"), std::string::npos) << model.notes[0];
+  EXPECT_NE(model.notes[0].find("1000 m from the origin"), std::string::npos) << model.notes[0];
   EXPECT_GT(box_of(read_model(path("far.ply"), std::nullopt, ModelOrigin::kAsInFile).mesh).min().x(), 999.0F);
   mesh.origin = {0.25, 0.0, 0.0};  // beside it, nearer than it is long
   write_mesh(mesh, path("near.ply"));
@@ -294,7 +294,7 @@ TEST_F(Models, AbsurdSizesAreRefusedWithTheOptionToPaste) {
             "part.stl: its longest side is 4 mm, less than 5 mm; give it a size in metres, such as "
             "--object-size 0.3");
   EXPECT_EQ(refusal(1e6F, 6.0),
-            "part.stl: its longest side is 1e+06 m, more than 5 m; give it a size in metres, such as "
+            "part.stl: its longest side is 1000000 m, more than 5 m; give it a size in metres, such as "
             "--object-size 0.3");
   EXPECT_EQ(
       message_of([&] {

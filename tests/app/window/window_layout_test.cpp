@@ -44,5 +44,22 @@ TEST(WindowLayout, PanesFillEverySizeOfWindowWithoutOverlap) {
     }
 }
 
+TEST(WindowLayout, ASmallWindowReducesTheScale) {
+  EXPECT_EQ(scale_in_window(2.0F, 3840.0F, 2160.0F), 2.0F);
+  EXPECT_EQ(scale_in_window(2.0F, 1280.0F, 720.0F), 1.5F);
+  EXPECT_EQ(scale_in_window(2.0F, 1920.0F, 1030.0F), 2.0F);
+  EXPECT_EQ(scale_in_window(4.0F, 1920.0F, 1030.0F), 2.125F) << "in steps of 1/8";
+  EXPECT_EQ(scale_in_window(2.0F, 640.0F, 480.0F), 1.0F);
+  EXPECT_EQ(scale_in_window(2.0F, 500.0F, 400.0F), 1.0F);
+  EXPECT_EQ(scale_in_window(0.5F, 500.0F, 400.0F), 0.5F) << "as asked for";
+}
+
+TEST(WindowLayout, LabelsAreShiftedInsideTheirPane) {
+  EXPECT_EQ(shifted_inside(20.0F, 50.0F, 10.0F, 100.0F), 20.0F) << "fits already";
+  EXPECT_EQ(shifted_inside(80.0F, 50.0F, 10.0F, 100.0F), 50.0F) << "would be cut at the right";
+  EXPECT_EQ(shifted_inside(2.0F, 50.0F, 10.0F, 100.0F), 10.0F) << "would be cut at the left";
+  EXPECT_EQ(shifted_inside(30.0F, 200.0F, 10.0F, 100.0F), 10.0F) << "too long: its beginning is shown";
+}
+
 }  // namespace
 }  // namespace roomradar::window_layout_test

@@ -70,6 +70,23 @@ TEST_F(CheckpointsTest, NothingIsThereBeforeTheFirst) {
   EXPECT_FALSE(fs::exists(folder()));
 }
 
+TEST_F(CheckpointsTest, WorkAboutToStopGetsOneMoreBeforeItsTime) {
+  Checkpoints checkpoints(folder(), kScan, 1000.0);
+  const auto write = [&] {
+    checkpoints.write("track", [](const fs::path& into, const fs::path&) { std::ofstream(into / "state"); });
+  };
+  EXPECT_FALSE(checkpoints.is_due());
+  EXPECT_FALSE(checkpoints.is_due_at_end());
+  checkpoints.write_soon();
+  EXPECT_TRUE(checkpoints.is_due_at_end());
+  ASSERT_TRUE(checkpoints.is_due());
+  write();
+  EXPECT_FALSE(checkpoints.is_due()) << "one is enough";
+  checkpoints.write_soon();
+  EXPECT_TRUE(checkpoints.is_due()) << "also while one is being written";
+  EXPECT_TRUE(checkpoints.has_any());
+}
+
 TEST_F(CheckpointsTest, AFolderWithNothingToGoOnFromGoes) {
   { Checkpoints(folder(), kScan, 0.0).ensure_folder(); }
   EXPECT_FALSE(fs::exists(folder()));

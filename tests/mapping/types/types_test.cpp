@@ -147,6 +147,10 @@ TEST(NumberText, HasTheDigitsThatAreAskedForWhateverTheLocale) {
   EXPECT_EQ(format_general(1.0 / 3.0, 12), "0.333333333333");
   EXPECT_EQ(format_general(-1e-7, 12), "-1e-07");
   EXPECT_EQ(format_general(std::nan(""), 12), "nan");
+  EXPECT_EQ(format_readable(0.35, 3), "0.35");
+  EXPECT_EQ(format_readable(1039.7, 3), "1040");
+  EXPECT_EQ(format_readable(999.9, 3), "1000") << "rounds up to more digits";
+  EXPECT_EQ(format_readable(1e-7, 3), "1e-07");
   EXPECT_EQ(format_general(-std::numeric_limits<double>::max(), 20), "-1.7976931348623157081e+308");
 }
 

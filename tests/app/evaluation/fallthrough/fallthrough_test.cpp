@@ -138,6 +138,12 @@ TEST(FallthroughFiles, CsvHasALineAScenarioAndPolicyAndThePageNeedsNothingElse) 
   EXPECT_EQ(page.find("://"), std::string::npos) << "no network";
   EXPECT_NE(page.find("1 of " + std::to_string(kPolicyCount) + " are shown"), std::string::npos);
   EXPECT_EQ(page.find("nan "), std::string::npos);
+  const auto count = [&](const std::string& part) {
+    int found = 0;
+    for (std::size_t at = page.find(part); at != std::string::npos; at = page.find(part, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("<div class=\"wide"), count("<table")) << "on a narrow screen, tables scroll on their own";
   EXPECT_THROW(write_page(rows, "", {}, folder.path() / "none" / "page.html"), Error);
 }
 
