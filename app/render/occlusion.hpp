@@ -1,10 +1,12 @@
 // occlusion.hpp: occlusion of virtual objects by real surfaces, with edges aligned to the colour image.
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
 #include "app/render/object_layer.hpp"
 #include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {
 
@@ -25,6 +27,20 @@ struct OcclusionConfig {
 /// @throws Error naming the field, its value and the rule
 void require_valid(const OcclusionConfig& config);
 
+/// Level planes through the lowest points of objects, as seen from a camera.
+struct Feet {
+  struct Plane {
+    /// Upwards, unit, in the camera's frame.
+    Eigen::Vector3f up_camera = Eigen::Vector3f::UnitY();
+    /// Height of the camera above the plane, m.
+    float camera_m = 0.0F;
+  };
+  Intrinsics camera{};
+  std::vector<Plane> planes;
+  /// Points of an object up to this height above its foot belong to its contact.
+  float height_m = 0.012F;
+};
+
 /// Result and buffers of find_occlusion(), for a rectangle of the image.
 struct Occlusion {
   /// The object layer's rectangle, enlarged by occlusion_margin_px(), within the image.
@@ -40,6 +56,8 @@ struct Occlusion {
   /// 255 in pixels that are occluded according to depth alone.
   Image<std::uint8_t> by_depth;
   MaskImage edges;
+  /// 255 in pixels of an object's contact with its support.
+  MaskImage contact;
   /// Numbers of edge pixels and of occluded pixels in each pixel's neighbourhood.
   Image<int> near_edges, near_hidden;
   std::vector<int> column_sums;
@@ -66,15 +84,20 @@ int occlusion_margin_px(const OcclusionConfig& config);
 /// depth. The depth edge is kept if both sides have similar colours, or if the object intersects a surface.
 /// Finally, `hidden` is averaged over 3 x 3 pixels.
 ///
+/// An object's contact is not hidden by what the object stands on: where a pixel shows a point just above an
+/// object's foot, and the real surface there is level with the foot within the tolerance, the real surface is
+/// the support, which lies below the object. This does not apply within edge_reach_px of an occluder's edge.
+///
 /// @param background    colour image of the camera, with the objects' shadows
 /// @param real_depth_m  depth of real surfaces in the same camera, with the size of `background`; pixels with
 ///                      depth 0 occlude nothing
 /// @param layer         the rendered objects, within the image
 /// @param[out] occlusion  the result
+/// @param feet          where the objects stand
 ///
 /// Source of the colour models and the band: Chuang et al., A Bayesian approach to digital matting, CVPR
 /// 2001. Here each side has one Gaussian, and pixels are opaque.
 void find_occlusion(const ColourImage& background, const DepthImage& real_depth_m, const ObjectLayer& layer,
-                    const OcclusionConfig& config, Occlusion& occlusion);
+                    const OcclusionConfig& config, Occlusion& occlusion, const Feet& feet = {});
 
 }  // namespace roomradar
