@@ -15,7 +15,7 @@ constexpr int kHuesAcross = 24;
 constexpr int kHues = kHuesAcross * kHuesAcross;
 constexpr float kHueWidth = 0.22F;    // of log ratios of linear colours
 constexpr float kFromAbove = 0.2F;    // slope of the ambient light, over its mean
-constexpr std::size_t kTurns = 16;    // frames after which each candidate was tested again
+constexpr double kRound_s = 0.5;      // time in which each candidate is tested again
 
 /// A lamp beside ambient light of mean irradiance 1.
 struct Candidate {
@@ -85,7 +85,7 @@ float score_of(const Candidate& lamp, const Points& points, std::vector<float>& 
 
 /// Returns the weights of candidates from their scores, sum 1.
 std::vector<float> weights_of(const std::vector<float>& scores) {
-  constexpr float kScale = 0.001F;  // of a score: twice the variance of albedo over about 100 independent points
+  constexpr float kScale = 0.001F;  // twice the variance of log albedo over about 100 independent points
   const float best = *std::min_element(scores.begin(), scores.end());
   std::vector<float> weights;
   float sum = 0.0F;
@@ -135,7 +135,7 @@ void LightEstimator::take_points(std::span<const LightSample> samples, const Eig
 void LightEstimator::add(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m,
                          double dt_s, const LightConfig& config) {
   constexpr std::size_t kFewest = 30;
-  if (!place_world_m.allFinite()) return;
+  if (!place_world_m.allFinite() || !std::isfinite(dt_s)) return;
   take_points(samples, place_world_m);
   if (points_.size() < kFewest) return;
   const std::vector<Candidate>& lamps = candidates();
@@ -144,8 +144,11 @@ void LightEstimator::add(std::span<const LightSample> samples, const Eigen::Vect
   const auto part_after = [&](double seconds) {
     return is_first ? 1.0F : static_cast<float>(1.0 - std::exp(-std::max(seconds, 0.0) / config.memory_s));
   };
-  const std::size_t tested = is_first ? lamps.size() : (lamps.size() + kTurns - 1) / kTurns;
-  const float score_part = part_after(dt_s * static_cast<double>(kTurns));
+  const double round = std::clamp(dt_s / kRound_s, 1.0 / 64.0, 1.0);  // fraction tested in this frame
+  const std::size_t tested =
+      is_first ? lamps.size()
+               : static_cast<std::size_t>(std::ceil(round * static_cast<double>(lamps.size())));
+  const float score_part = part_after(dt_s / round);
   std::vector<float> residuals;
   for (std::size_t i = 0; i < tested; ++i) {
     float& score = scores_[next_candidate_];
@@ -167,7 +170,9 @@ void LightEstimator::add(std::span<const LightSample> samples, const Eigen::Vect
   mean.direction.normalize();
   log_level_ += part_after(dt_s) * (log_level_of(mean, points_) - log_level_);
   const Eigen::Matrix<float, 9, 3> coefficients = shape * log_level_.array().exp().matrix().transpose();
-  if (coefficients.allFinite()) light_ = RoomLight{coefficients};
+  if (!coefficients.allFinite()) return;
+  if (!light_) light_ = RoomLight{coefficients};
+  light_->coefficients += part_after(dt_s) * (coefficients - light_->coefficients);
 }
 
 }  // namespace roomradar

@@ -32,8 +32,8 @@ void require_valid(const LightConfig& config);
 class LightEstimator {
  public:
   /// Adds a frame's samples, dt_s after the previous frame. The first frame tests all candidates, later frames
-  /// a sixteenth of them in turn. Does nothing with fewer than 30 samples. Ignores samples that are not
-  /// finite.
+  /// some in turn, so that all are tested every half second. Does nothing with fewer than 30 samples. Ignores samples that are not
+  /// finite, and frames with a dt_s that is not.
   /// @param place_world_m  where the light is wanted; should change slowly
   void add(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m, double dt_s,
            const LightConfig& config);

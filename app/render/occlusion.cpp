@@ -150,39 +150,6 @@ void hide_by_depth(const DepthImage& real_depth_m, const OcclusionConfig& config
   }
 }
 
-/// Marks the pixels of contacts, and shows the object there.
-void show_contacts(const DepthImage& real_depth_m, const OcclusionConfig& config, const Feet& feet,
-                   Occlusion& occlusion) {
-  const PixelRect& rect = occlusion.rect;
-  occlusion.contact.resize(rect.width, rect.height);
-  constexpr float kUneven_m = 0.006F;
-  for (const Feet::Plane& plane : feet.planes) {
-    for (int y = 0; y < rect.height; ++y) {
-      for (int x = 0; x < rect.width; ++x) {
-        if (occlusion.covered.at(x, y) == 0) continue;
-        const float object_m = occlusion.object_m.at(x, y), real_m = real_depth_m.at(rect.x + x, rect.y + y);
-        if (!(real_m > 0.0F)) continue;
-        const float rise = plane.up_camera.dot(
-            back_project(feet.camera, rect.x + x, rect.y + y, 1.0).cast<float>());  // per metre of depth
-        const float object_height_m = plane.camera_m + rise * object_m;
-        const float tolerance_m = config.tolerance_m + kUneven_m + config.tolerance_per_m2 * object_m * object_m;
-        if (!(std::abs(object_height_m) < feet.height_m) ||
-            !(std::abs(plane.camera_m + rise * real_m) < tolerance_m))
-          continue;
-        occlusion.contact.at(x, y) = 255;
-        occlusion.by_depth.at(x, y) = 0;
-      }
-    }
-  }
-}
-
-/// Removes what softening has hidden of the contacts, except near edges of occluders.
-void keep_contacts(bool has_edges, Occlusion& occlusion) {
-  for (std::size_t i = 0; i < occlusion.hidden.pixels.size(); ++i)
-    if (occlusion.contact.pixels[i] != 0 && !(has_edges && occlusion.near_edges.pixels[i] != 0))
-      occlusion.hidden.pixels[i] = 0.0F;
-}
-
 bool find_edges(const DepthImage& real_depth_m, Occlusion& occlusion) {
   const PixelRect& rect = occlusion.rect;
   bool found = false;
@@ -286,24 +253,6 @@ void agree_with_neighbours(const ColourImage& background, Occlusion& occlusion) 
   }
 }
 
-/// Averages over 3 x 3 pixels with more weight at the centre. Neighbours that no object covers have a depth
-/// borrowed from elsewhere, so the pixel's own value is used instead.
-void soften(const Image<float>& hidden, const MaskImage& covered, Image<float>& softened) {
-  softened.resize(hidden.width, hidden.height);
-  for (int y = 0; y < hidden.height; ++y) {
-    for (int x = 0; x < hidden.width; ++x) {
-      const float own = hidden.at(x, y);
-      const auto at = [&](int u, int v) {
-        return covered.contains(u, v) && covered.at(u, v) != 0 ? hidden.at(u, v) : own;
-      };
-      float sum = 4.0F * at(x, y);
-      sum += 2.0F * (at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1));
-      sum += at(x - 1, y - 1) + at(x + 1, y - 1) + at(x - 1, y + 1) + at(x + 1, y + 1);
-      softened.at(x, y) = sum / 16.0F;
-    }
-  }
-}
-
 }  // namespace
 
 void require_valid(const OcclusionConfig& config) {
@@ -331,7 +280,10 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
   spread_object_depth(layer, rect, occlusion.object_m, occlusion.covered);
 
   hide_by_depth(real_depth_m, config, occlusion);
-  show_contacts(real_depth_m, config, feet, occlusion);
+  find_contacts(feet, rect, real_depth_m, occlusion.object_m,
+                {config.tolerance_m, config.tolerance_per_m2}, occlusion.contact);
+  for (std::size_t i = 0; i < occlusion.contact.pixels.size(); ++i)
+    if (occlusion.contact.pixels[i] != 0) occlusion.by_depth.pixels[i] = 0;
   occlusion.front.resize(rect.width, rect.height);
   occlusion.unsoftened.resize(rect.width, rect.height);
   for (int y = 0; y < rect.height; ++y)
@@ -339,13 +291,11 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
   std::transform(occlusion.by_depth.pixels.begin(), occlusion.by_depth.pixels.end(),
                  occlusion.unsoftened.pixels.begin(),
                  [](std::uint8_t hidden) { return static_cast<float>(hidden) / 255.0F; });
-  const bool has_edges = config.edge_reach_px > 0 && find_edges(real_depth_m, occlusion);
-  if (has_edges) {
+  if (config.edge_reach_px > 0 && find_edges(real_depth_m, occlusion)) {
     judge_alone(background, config.edge_reach_px, occlusion);
     agree_with_neighbours(background, occlusion);
   }
-  soften(occlusion.unsoftened, occlusion.covered, occlusion.hidden);
-  keep_contacts(has_edges, occlusion);
+  soften(occlusion.unsoftened, occlusion.covered, occlusion.contact, occlusion.hidden);
 }
 
 }  // namespace roomradar

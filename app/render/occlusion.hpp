@@ -1,12 +1,11 @@
 // occlusion.hpp: occlusion of virtual objects by real surfaces, with edges aligned to the colour image.
 #pragma once
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
+#include "app/render/contact_pixels.hpp"
 #include "app/render/object_layer.hpp"
 #include "mapping/types/image.hpp"
-#include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {
 
@@ -26,20 +25,6 @@ struct OcclusionConfig {
 /// Checks that all values are in their ranges.
 /// @throws Error naming the field, its value and the rule
 void require_valid(const OcclusionConfig& config);
-
-/// Level planes through the lowest points of objects, as seen from a camera.
-struct Feet {
-  struct Plane {
-    /// Upwards, unit, in the camera's frame.
-    Eigen::Vector3f up_camera = Eigen::Vector3f::UnitY();
-    /// Height of the camera above the plane, m.
-    float camera_m = 0.0F;
-  };
-  Intrinsics camera{};
-  std::vector<Plane> planes;
-  /// Points of an object up to this height above its foot belong to its contact.
-  float height_m = 0.012F;
-};
 
 /// Result and buffers of find_occlusion(), for a rectangle of the image.
 struct Occlusion {
@@ -84,9 +69,7 @@ int occlusion_margin_px(const OcclusionConfig& config);
 /// depth. The depth edge is kept if both sides have similar colours, or if the object intersects a surface.
 /// Finally, `hidden` is averaged over 3 x 3 pixels.
 ///
-/// An object's contact is not hidden by what the object stands on: where a pixel shows a point just above an
-/// object's foot, and the real surface there is level with the foot within the tolerance, the real surface is
-/// the support, which lies below the object. This does not apply within edge_reach_px of an occluder's edge.
+/// Contacts of objects with their support are not hidden, see find_contacts().
 ///
 /// @param background    colour image of the camera, with the objects' shadows
 /// @param real_depth_m  depth of real surfaces in the same camera, with the size of `background`; pixels with
