@@ -99,7 +99,7 @@ std::vector<float> weights_of(const std::vector<float>& scores) {
 /// since the things of a room are yellowish on average.
 template <typename Points>
 Eigen::Vector3f log_level_of(const Candidate& lamp, const Points& points) {
-  constexpr float kNorm = 6.0F, kUsualAlbedo = 0.6F, kTrustInColour = 0.6F;
+  constexpr float kNorm = 6.0F, kUsualAlbedo = 0.5F, kTrustInColour = 0.6F;
   Eigen::Array<float, 3, Eigen::Dynamic> sums = Eigen::Array<float, 3, Eigen::Dynamic>::Zero(3, kHues);
   Eigen::ArrayXf counts = Eigen::ArrayXf::Zero(kHues);
   for (const auto& point : points) {
