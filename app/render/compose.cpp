@@ -20,9 +20,16 @@ PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
   const Eigen::Vector3f low(shadow.x0_m, shadow.y0_m, shadow.bottom_m - shadow.extent_m);
   const Eigen::Vector3f size(static_cast<float>(shadow.columns) * shadow.cell_m,
                              static_cast<float>(shadow.rows) * shadow.cell_m, 1.1F * shadow.extent_m);
+  Eigen::AlignedBox3f bounds(low, low + size);
+  if (caster.directed_fraction > 0.0F && caster.to_light_world.z() > kLowestLight) {
+    const Eigen::Vector2f shift =
+        -shadow.height_m / caster.to_light_world.z() * caster.to_light_world.head<2>();
+    const Eigen::Vector3f moved(shift.x(), shift.y(), 0.0F);
+    bounds.extend(Eigen::AlignedBox3f(low + moved, low + moved + size));
+  }
   const Eigen::Isometry3d T_camera_shadow =
       T_world_camera.inverse() * Eigen::Translation3d(origin_world(shadow, caster.T_world_object));
-  return pixels_of(Eigen::AlignedBox3f(low, low + size).cast<double>(), camera, T_camera_shadow, kNear_m);
+  return pixels_of(bounds.cast<double>(), camera, T_camera_shadow, kNear_m);
 }
 
 std::uint8_t to_byte(float value) {
@@ -33,6 +40,7 @@ void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m, float strength,
                  ColourImage& picture) {
   const PixelRect rect = shadowed_pixels(caster, camera, T_world_camera);
+  const float directed_fraction = std::clamp(caster.directed_fraction, 0.0F, 1.0F) * std::min(1.0F, strength);
   // From pixel and depth directly to the shadow's frame, with world axes and its own origin.
   const Eigen::Matrix3f R_world_camera = T_world_camera.linear().cast<float>();
   const Eigen::Vector3f camera_from_object_m =
@@ -45,9 +53,14 @@ void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
     for (int x = rect.x; x < rect.x + rect.width; ++x) {
       if (!(depth_m[x] > 0.0F)) continue;
       const Eigen::Vector3f ray = ray_at_column_0 + static_cast<float>(x) * step_x;
-      const float taken = ambient_occlusion(*caster.shadow, camera_from_object_m + depth_m[x] * ray);
-      if (taken <= 0.0F) continue;
-      const float left = 1.0F - strength * taken;
+      const Eigen::Vector3f p_object_m = camera_from_object_m + depth_m[x] * ray;
+      const float taken = ambient_occlusion(*caster.shadow, p_object_m);
+      const float in_shadow = directed_fraction > 0.0F
+                                  ? light_occlusion(*caster.shadow, p_object_m, caster.to_light_world)
+                                  : 0.0F;
+      if (taken <= 0.0F && in_shadow <= 0.0F) continue;
+      // A byte is about the square root of linear light.
+      const float left = (1.0F - strength * taken) * std::sqrt(1.0F - directed_fraction * in_shadow);
       Rgb& pixel = pixels[x];
       pixel = {to_byte(left * static_cast<float>(pixel.r)), to_byte(left * static_cast<float>(pixel.g)),
                to_byte(left * static_cast<float>(pixel.b))};
@@ -100,6 +113,7 @@ void require_size(const char* what, const Image<Pixel>& image, int width_px, int
 
 void require_valid(const ComposeConfig& config) {
   require_valid(config.occlusion);
+  require_valid(config.light);
   const ConfigCheck require{"compose"};
   const auto is_length = [](float value_m) { return value_m >= 0.0F && value_m <= 1.0F; };
   require(is_length(config.shadow_strength), "shadow_strength", config.shadow_strength, "in 0..1");
@@ -132,7 +146,7 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
 }
 
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
-                 Occlusion& occlusion, ColourImage& picture) {
+                 Occlusion& occlusion, ColourImage& picture, const Feet& feet) {
   require_size("the real depth", real_depth_m, picture.width, picture.height);
   if (layer.rect.width <= 0 || layer.rect.height <= 0) return;
   if (!(clamped(layer.rect, picture.width, picture.height) == layer.rect))
@@ -141,7 +155,7 @@ void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const
                layer.rect.height * layer.samples);
   require_size("the layer's depth", layer.depth_m, layer.rect.width * layer.samples,
                layer.rect.height * layer.samples);
-  find_occlusion(picture, real_depth_m, layer, config, occlusion);
+  find_occlusion(picture, real_depth_m, layer, config, occlusion, feet);
   lay_over(layer, occlusion, picture);
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "app/render/contact_shadow.hpp"
+#include "app/render/light_estimate.hpp"
 #include "app/render/object_layer.hpp"
 #include "app/render/occlusion.hpp"
 #include "mapping/types/image.hpp"
@@ -16,6 +17,7 @@ struct ComposeConfig {
   /// Darkness of shadows, 0 to 1. 0: no shadows. 1: points from which objects occlude the whole sky are
   /// black.
   float shadow_strength = 0.75F;
+  LightConfig light;
 };
 /// Checks that all values are in their ranges.
 /// @throws Error naming the field, its value and the rule
@@ -26,6 +28,10 @@ void require_valid(const ComposeConfig& config);
 struct ShadowCaster {
   const ContactShadow* shadow = nullptr;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+  /// Direction towards the main light, unit, and its fraction of all light on a level surface. 0: only
+  /// ambient light.
+  Eigen::Vector3f to_light_world = Eigen::Vector3f::UnitZ();
+  float directed_fraction = 0.0F;
 };
 
 /// Returns the rectangle of pixels in which the functions below need the depth of real surfaces. The
@@ -34,7 +40,8 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
                             const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
                             const OcclusionConfig& config);
 
-/// Copies the background and darkens it by the objects' shadows. Does not draw the objects. The run time is
+/// Copies the background and darkens it by the objects' shadows: in ambient light and, where a caster has one,
+/// in its main light. Does not draw the objects. The run time is
 /// that of one copy, plus a time proportional to the area of the shadows' rectangles.
 ///
 /// @param background       colour image of the camera, or result of shade_depth(). Must have the size of
@@ -58,9 +65,10 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
 ///                      nothing
 /// @param[out] occlusion    occlusion of the objects; its buffers are reused
 /// @param[in,out] picture   image that contains the shadows
+/// @param feet          where the objects stand; their contacts are never hidden, see find_occlusion()
 /// @throws Error if sizes differ, or the layer exceeds the image
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
-                 Occlusion& occlusion, ColourImage& picture);
+                 Occlusion& occlusion, ColourImage& picture, const Feet& feet = {});
 
 /// Renders a depth image as a grey image with a light source at the camera, for sources without colour.
 /// Pixels without depth are dark.

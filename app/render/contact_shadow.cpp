@@ -155,6 +155,7 @@ void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_w
   shadow.columns = cells(bounds.sizes().x());
   shadow.rows = cells(bounds.sizes().y());
   shadow.bottom_m = bounds.min().z();
+  shadow.height_m = bounds.sizes().z();
   shadow.extent_m = spread_m;
   const std::vector<Patch> patches = underside(turned, shadow);
 
@@ -215,6 +216,28 @@ float ambient_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_ob
   const float high_m = shadow.clearances_m[upper];
   const float part = std::clamp((clearance_m - low_m) / (high_m - low_m), 0.0F, 1.0F);
   return (1.0F - part) * in_level(upper - 1) + part * in_level(upper);
+}
+
+float light_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m,
+                      const Eigen::Vector3f& to_light) {
+  constexpr int kSteps = 6;
+  constexpr float kSoft = 0.04F;  // clearance at which the outline is looked up, fraction of extent_m
+  constexpr float kWhole = 0.6F;  // occlusion of the sky, this close to the underside, that hides the light
+  if (shadow.covered.empty() || !(to_light.z() > kLowestLight)) return 0.0F;
+  const float clearance_m = shadow.bottom_m - p_object_m.z();
+  if (clearance_m > shadow.extent_m || clearance_m < -kAboveBottom_m) return 0.0F;
+  const Eigen::Vector2f shift = to_light.head<2>() / to_light.z();  // per metre of height
+  const float lookup_z_m = shadow.bottom_m - kSoft * shadow.extent_m;
+  float most = 0.0F;
+  for (int i = 0; i <= kSteps; ++i) {
+    const float up_m = std::max(clearance_m, 0.0F) +
+                       0.9F * shadow.height_m * static_cast<float>(i) / static_cast<float>(kSteps);
+    const Eigen::Vector2f at = p_object_m.head<2>() + up_m * shift;
+    most = std::max(most, ambient_occlusion(shadow, {at.x(), at.y(), lookup_z_m}));
+  }
+  const float fade = clearance_m < 0.0F ? std::min(1.0F, (clearance_m + kAboveBottom_m) / kFadeAbove_m)
+                                        : 1.0F - clearance_m / shadow.extent_m;
+  return fade * std::min(most / kWhole, 1.0F);
 }
 
 }  // namespace roomradar

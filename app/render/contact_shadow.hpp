@@ -36,6 +36,8 @@ struct ContactShadow {
   int columns = 0, rows = 0;
   /// Height of the object's lowest point relative to its origin.
   float bottom_m = 0.0F;
+  /// Height of the object's highest point above its lowest.
+  float height_m = 0.0F;
   /// Max clearance. Points with at least this clearance get no shadow.
   float extent_m = 0.0F;
   /// Clearance of each level, ascending.
@@ -64,5 +66,15 @@ Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3
 /// above the object's lowest point.
 /// @param p_object_m  surface point relative to the table's origin (origin_world()), world axes, m
 float ambient_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m);
+
+/// Returns the occluded fraction of a light at a real surface point, 0 to 1. The object counts as a column
+/// with the outline of its underside. Returns 0 for light from below 15 degrees, and for points more than
+/// 4 cm above the object's lowest point.
+/// @param p_object_m  as for ambient_occlusion()
+/// @param to_light    unit, world axes
+float light_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m,
+                      const Eigen::Vector3f& to_light);
+/// Least height of to_light at which light_occlusion() finds a shadow: sine of 15 degrees.
+inline constexpr float kLowestLight = 0.26F;
 
 }  // namespace roomradar

@@ -48,7 +48,8 @@ void main() {
 }
 )";
 
-// Lighting of a room: ambient light, stronger from above, one broad lamp, and reflections on glaze.
+// The estimated light of the room, or a usual one: ambient light, stronger from above, and one broad lamp. Both
+// with reflections on glaze.
 // Highlight: normalised Blinn-Phong. Grazing reflection: Schlick's approximation of the Fresnel term.
 constexpr const char* kFragmentShader = R"(
 in vec3 p_eye;
@@ -63,32 +64,49 @@ layout(location = 3) uniform vec3 up;
 layout(location = 4) uniform vec3 to_light;
 layout(location = 5) uniform vec2 exposure_gloss;
 layout(location = 6) uniform bool has_normals;
+layout(location = 8) uniform bool has_room_light;
+layout(location = 9) uniform vec3 room_light[9];  // coefficients of light_basis()
+layout(location = 18) uniform vec3 room_lamp;     // irradiance facing the main light
+layout(location = 19) uniform vec3 to_room_lamp;
 out vec4 colour;
 const vec3 sky = vec3(0.80, 0.83, 0.88);
 const vec3 ground = vec3(0.26, 0.23, 0.20);
 const vec3 lamp = vec3(0.85, 0.80, 0.72);
+vec3 irradiance(vec3 n) {
+  vec3 sum = room_light[0] + room_light[1] * n.x + room_light[2] * n.y + room_light[3] * n.z
+           + room_light[4] * (n.x * n.y) + room_light[5] * (n.y * n.z) + room_light[6] * (n.z * n.x)
+           + room_light[7] * (3.0 * n.z * n.z - 1.0) + room_light[8] * (n.x * n.x - n.y * n.y);
+  return max(sum, vec3(0.0));
+}
 void main() {
   vec3 to_eye = normalize(-p_eye);
   vec3 facet = normalize(cross(dFdx(p_eye), dFdy(p_eye)));
   if (dot(facet, to_eye) < 0.0) facet = -facet;
   vec3 n = has_normals && dot(normal_eye, normal_eye) > 0.0 ? normalize(normal_eye) : facet;
   if (dot(n, facet) < 0.0) n = -n;  // back side of an open mesh
-  vec3 ambient = mix(ground, sky, 0.5 + 0.5 * dot(n, up));
-  float lambert = max(dot(n, to_light), 0.0);
-  vec3 halfway = normalize(to_light + to_eye);
+  vec3 to_lamp = has_room_light ? to_room_lamp : to_light;
+  float lambert = max(dot(n, to_lamp), 0.0);
+  vec3 halfway = normalize(to_lamp + to_eye);
   float highlight = max(dot(n, halfway), 0.0);  // to the power of 64
   highlight *= highlight; highlight *= highlight; highlight *= highlight;
   highlight *= highlight; highlight *= highlight; highlight *= highlight;
-  highlight *= 2.5 * step(0.0, dot(n, to_light));
+  highlight *= 2.5 * step(0.0, dot(n, to_lamp));
   float away = 1.0 - max(dot(n, to_eye), 0.0);
   float fresnel = 0.04 + 0.96 * away * away * away * away * away;
-  vec3 mirrored = mix(ground, sky, smoothstep(-0.3, 0.6, dot(reflect(-to_eye, n), up)));
+  vec3 mirror = reflect(-to_eye, n);
   vec3 base = albedo;
 #ifdef TEXTURED
   vec4 texel = texture(base_srgb, p_texture);
   if (texel.a < least_opacity) discard;
   base *= texel.rgb * texel.rgb;  // gamma 2, as for colours
 #endif
+  if (has_room_light) {
+    vec3 glaze = room_lamp * highlight + fresnel * irradiance(mirror);
+    colour = vec4(sqrt(base * irradiance(n) + exposure_gloss.y * glaze), 1.0);
+    return;
+  }
+  vec3 ambient = mix(ground, sky, 0.5 + 0.5 * dot(n, up));
+  vec3 mirrored = mix(ground, sky, smoothstep(-0.3, 0.6, dot(mirror, up)));
   vec3 light = base * (ambient * 0.75 + lamp * lambert * 0.75)
              + exposure_gloss.y * (lamp * highlight + fresnel * mirrored);
   light *= exposure_gloss.x;
@@ -131,6 +149,18 @@ struct ObjectDrawer::State {
     glProgramUniform2f(program, 5, lighting.exposure, lighting.gloss);
   }
 
+  /// Sets an object's own light, if it has one.
+  static void set_light(const RoomLight* light) {
+    glUniform1i(8, light != nullptr ? 1 : 0);
+    if (light == nullptr) return;
+    const Eigen::Matrix<float, 3, 9> coefficients = light->coefficients.transpose();  // a vec3 per column
+    const MainLight main = main_light(*light);
+    const Eigen::Vector3f to_lamp = main.to_light_world.cast<float>();
+    glUniform3fv(9, 9, coefficients.data());
+    glUniform3fv(18, 1, main.directed.data());
+    glUniform3fv(19, 1, to_lamp.data());
+  }
+
   /// Draws a mesh at a pose.
   void draw(const DrawnPart& part, const DrawnObject& object, const Eigen::Matrix4d& clip_from_world,
             const Eigen::Vector3d& camera_world) const {
@@ -149,6 +179,7 @@ struct ObjectDrawer::State {
     const Rgb colour = part.texture != nullptr ? Rgb{255, 255, 255} : object.colour;
     glUniform4f(2, level(colour.r), level(colour.g), level(colour.b), mesh.has_colours() ? 0.0F : 1.0F);
     glUniform1i(6, mesh.has_normals() ? 1 : 0);
+    set_light(object.light);
     if (part.texture != nullptr) {
       glUniform1f(7, part.texture->least_opacity());
       glBindTextureUnit(0, part.texture->name());

@@ -6,6 +6,7 @@
 
 #include "app/render/gpu_texture.hpp"
 #include "app/render/object_layer.hpp"
+#include "app/render/room_light.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "radar/gl/gpu_mesh.hpp"
 
@@ -27,15 +28,18 @@ struct DrawnObject {
   /// Parts that are drawn at the instance's pose instead of the instance's mesh. All must have the mesh
   /// origin. Empty: the instance's mesh is drawn.
   std::span<const DrawnPart> parts{};
+  /// Light at the object; null: that of Lighting.
+  const RoomLight* light = nullptr;
 };
 
+/// Light of objects without DrawnObject::light, as in a room with white lamps on the ceiling.
 struct Lighting {
   Eigen::Vector3d up_world = Eigen::Vector3d::UnitZ();
   /// Direction towards the main light, such as a ceiling lamp; any length > 0.
   Eigen::Vector3d to_key_light_world{0.35, -0.25, 0.9};
   /// Factor on all light; 1 for a lit room.
   float exposure = 1.0F;
-  /// Strength of the specular highlight. 0 looks like clay, 1 like glazed ceramics.
+  /// Strength of the specular highlight, of all objects. 0 looks like clay, 1 like glazed ceramics.
   float gloss = 0.35F;
 };
 

@@ -253,24 +253,6 @@ void agree_with_neighbours(const ColourImage& background, Occlusion& occlusion) 
   }
 }
 
-/// Averages over 3 x 3 pixels with more weight at the centre. Neighbours that no object covers have a depth
-/// borrowed from elsewhere, so the pixel's own value is used instead.
-void soften(const Image<float>& hidden, const MaskImage& covered, Image<float>& softened) {
-  softened.resize(hidden.width, hidden.height);
-  for (int y = 0; y < hidden.height; ++y) {
-    for (int x = 0; x < hidden.width; ++x) {
-      const float own = hidden.at(x, y);
-      const auto at = [&](int u, int v) {
-        return covered.contains(u, v) && covered.at(u, v) != 0 ? hidden.at(u, v) : own;
-      };
-      float sum = 4.0F * at(x, y);
-      sum += 2.0F * (at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1));
-      sum += at(x - 1, y - 1) + at(x + 1, y - 1) + at(x - 1, y + 1) + at(x + 1, y + 1);
-      softened.at(x, y) = sum / 16.0F;
-    }
-  }
-}
-
 }  // namespace
 
 void require_valid(const OcclusionConfig& config) {
@@ -289,7 +271,7 @@ int occlusion_margin_px(const OcclusionConfig& config) {
 }
 
 void find_occlusion(const ColourImage& background, const DepthImage& real_depth_m, const ObjectLayer& layer,
-                    const OcclusionConfig& config, Occlusion& occlusion) {
+                    const OcclusionConfig& config, Occlusion& occlusion, const Feet& feet) {
   const int margin = occlusion_margin_px(config);
   const PixelRect rect = clamped({layer.rect.x - margin, layer.rect.y - margin, layer.rect.width + 2 * margin,
                                   layer.rect.height + 2 * margin},
@@ -298,6 +280,10 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
   spread_object_depth(layer, rect, occlusion.object_m, occlusion.covered);
 
   hide_by_depth(real_depth_m, config, occlusion);
+  find_contacts(feet, rect, real_depth_m, occlusion.object_m,
+                {config.tolerance_m, config.tolerance_per_m2}, occlusion.contact);
+  for (std::size_t i = 0; i < occlusion.contact.pixels.size(); ++i)
+    if (occlusion.contact.pixels[i] != 0) occlusion.by_depth.pixels[i] = 0;
   occlusion.front.resize(rect.width, rect.height);
   occlusion.unsoftened.resize(rect.width, rect.height);
   for (int y = 0; y < rect.height; ++y)
@@ -309,7 +295,7 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
     judge_alone(background, config.edge_reach_px, occlusion);
     agree_with_neighbours(background, occlusion);
   }
-  soften(occlusion.unsoftened, occlusion.covered, occlusion.hidden);
+  soften(occlusion.unsoftened, occlusion.covered, occlusion.contact, occlusion.hidden);
 }
 
 }  // namespace roomradar

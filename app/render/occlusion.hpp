@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "app/render/contact_pixels.hpp"
 #include "app/render/object_layer.hpp"
 #include "mapping/types/image.hpp"
 
@@ -40,6 +41,8 @@ struct Occlusion {
   /// 255 in pixels that are occluded according to depth alone.
   Image<std::uint8_t> by_depth;
   MaskImage edges;
+  /// 255 in pixels of an object's contact with its support.
+  MaskImage contact;
   /// Numbers of edge pixels and of occluded pixels in each pixel's neighbourhood.
   Image<int> near_edges, near_hidden;
   std::vector<int> column_sums;
@@ -66,15 +69,18 @@ int occlusion_margin_px(const OcclusionConfig& config);
 /// depth. The depth edge is kept if both sides have similar colours, or if the object intersects a surface.
 /// Finally, `hidden` is averaged over 3 x 3 pixels.
 ///
+/// Contacts of objects with their support are not hidden, see find_contacts().
+///
 /// @param background    colour image of the camera, with the objects' shadows
 /// @param real_depth_m  depth of real surfaces in the same camera, with the size of `background`; pixels with
 ///                      depth 0 occlude nothing
 /// @param layer         the rendered objects, within the image
 /// @param[out] occlusion  the result
+/// @param feet          where the objects stand
 ///
 /// Source of the colour models and the band: Chuang et al., A Bayesian approach to digital matting, CVPR
 /// 2001. Here each side has one Gaussian, and pixels are opaque.
 void find_occlusion(const ColourImage& background, const DepthImage& real_depth_m, const ObjectLayer& layer,
-                    const OcclusionConfig& config, Occlusion& occlusion);
+                    const OcclusionConfig& config, Occlusion& occlusion, const Feet& feet = {});
 
 }  // namespace roomradar

@@ -2,6 +2,7 @@
 #include "app/session/picture_composer.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/objects/unknown_support.hpp"
 
@@ -41,6 +42,72 @@ void PictureComposer::keep_colour(const Frame& frame, const Eigen::Isometry3d& T
                       : T_world_camera;
   colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
   background_ = frame.colour;
+  estimate_light(frame, T_world_camera, dt_s);
+}
+
+void PictureComposer::estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                                     double dt_s) {
+  const ExpectedView& expected = scene_.expected();
+  const MaskImage& dynamic_mask = scene_.foreground().dynamic_mask;
+  light_samples_.clear();
+  Eigen::Vector3d place_world = Eigen::Vector3d::Zero();
+  int placed = 0;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    place_world += object->body.T_world_object * object->model->middle;
+    ++placed;
+  }
+  if (placed == 0 || expected.depth_m.empty()) return;
+  place_world /= placed;
+  take_light_samples({background_, colour_view_->camera, colour_view_->T_world_view},
+                     {expected.depth_m, expected.camera, T_world_camera, frame.depth_m, dynamic_mask},
+                     config_.picture.light.samples, light_samples_);
+  light_.add(light_samples_, place_world.cast<float>(), dt_s, config_.picture.light);
+  if (light_.light()) find_reaches(dt_s);
+}
+
+void PictureComposer::find_reaches(double dt_s) {
+  const Eigen::Vector3d to_light_world = main_light(*light_.light()).to_light_world;
+  const auto part = static_cast<float>(1.0 - std::exp(-std::max(dt_s, 0.0) / config_.picture.light.memory_s));
+  TreeInstance room;
+  for (const SceneTree& surface : scene_.surfaces())
+    if (surface.kind == SurfaceKind::kStatic) room = surface.instance;
+  reaches_.resize(objects_.size());
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const VirtualObject& object = *objects_[i];
+    if (!object.in_room) {
+      reaches_[i].reset();
+      continue;
+    }
+    const LightReach now = light_reach(room, object.body.T_world_object * object.model->middle,
+                                       radius_m(object), to_light_world);
+    LightReach& smooth = reaches_[i] ? *reaches_[i] : reaches_[i].emplace(now);
+    smooth.directed += part * (now.directed - smooth.directed);
+    smooth.ambient += part * (now.ambient - smooth.ambient);
+  }
+}
+
+ShadowCaster PictureComposer::caster_of(const VirtualObject& object, const RoomLight* light) {
+  ShadowCaster caster{&object.shadow, object.body.T_world_object};
+  if (light == nullptr) return caster;
+  const MainLight main = main_light(*light);
+  const float on_level = main.directed.sum() * std::max(0.0F, static_cast<float>(main.to_light_world.z()));
+  const float all = irradiance(*light, Eigen::Vector3f::UnitZ()).sum();
+  caster.to_light_world = main.to_light_world.cast<float>();
+  caster.directed_fraction = all > 0.0F ? std::min(on_level / all, 1.0F) : 0.0F;
+  return caster;
+}
+
+void PictureComposer::find_feet(const ShownView& view) {
+  feet_.camera = view.camera;
+  feet_.planes.clear();
+  const Eigen::Vector3d up_camera = view.T_world_view.linear().transpose() * Eigen::Vector3d::UnitZ();
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    const double foot_m = object->body.T_world_object.translation().z() + lowest_m(*object);
+    feet_.planes.push_back({up_camera.cast<float>(),
+                            static_cast<float>(view.T_world_view.translation().z() - foot_m)});
+  }
 }
 
 void PictureComposer::begin_frame(const Frame& frame) {
@@ -93,11 +160,18 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
 
   const bool has_shadows = config_.picture.shadow_strength > 0.0F;
   std::vector<DrawnObject> drawn;
+  object_lights_.clear();
+  object_lights_.reserve(objects_.size());  // drawn objects keep pointers
   std::vector<ShadowCaster> casters;
-  for (const auto& object : objects_) {
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const VirtualObject* object = objects_[i].get();
     if (!object->in_room) continue;
     drawn.push_back(drawn_object(*object, camera, T_world_view, config_.object_error_px));
-    if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
+    if (colour_view_ && light_.light() && i < reaches_.size() && reaches_[i]) {
+      object_lights_.push_back(shaded(*light_.light(), reaches_[i]->directed, reaches_[i]->ambient));
+      drawn.back().light = &object_lights_.back();
+    }
+    if (has_shadows) casters.push_back(caster_of(*object, drawn.back().light));
   }
   drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // runs in parallel with real depth and shadows
 
@@ -115,7 +189,8 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
            footprint_radius_m(*object, object->body.T_world_object.linear()) + kBesideObject_m});
   hatch(patches_, camera, T_world_view, real_depth_m_, picture_);
   drawer_.finish(layer_);
-  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_);
+  find_feet(*shown_view_);
+  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_, feet_);
 }
 
 }  // namespace roomradar

@@ -6,8 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "app/objects/object_light.hpp"
 #include "app/objects/virtual_object.hpp"
 #include "app/render/draw.hpp"
+#include "app/render/light_estimate.hpp"
 #include "app/render/hatched_patch.hpp"
 #include "app/render/occlusion.hpp"
 #include "app/session/frame_scene.hpp"
@@ -34,7 +36,8 @@ class PictureComposer {
   /// First call for each frame. After 15 frames without a colour image, pictures show the shaded depth image
   /// instead.
   void begin_frame(const Frame& frame);
-  /// Stores the colour image of a localised frame, with the pose at the colour image's timestamp.
+  /// Stores the colour image of a localised frame, with the pose at the colour image's timestamp, and updates
+  /// the estimate of the room's light. Call it after the scene has found the frame's dynamic pixels.
   /// @param dt_s  time since the previous frame
   void keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
   /// Composes the picture of a localised frame. Recomputes the shadow of at most one object, with 16 instead
@@ -48,6 +51,11 @@ class PictureComposer {
   void end_frame(const std::optional<Eigen::Isometry3d>& T_world_camera) { T_world_before_ = T_world_camera; }
 
   [[nodiscard]] const ColourImage& picture() const { return picture_; }
+  /// The drawn objects of the last picture, and how much real surfaces occlude them.
+  [[nodiscard]] const ObjectLayer& layer() const { return layer_; }
+  [[nodiscard]] const Occlusion& occlusion() const { return occlusion_; }
+  /// The room's light as estimated from the colours so far; unset before the first colours.
+  [[nodiscard]] const std::optional<RoomLight>& room_light() const { return light_.light(); }
   /// Camera and pose of the picture. Unset before the first localised frame with a picture, and after a frame
   /// that is not localised.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return shown_view_; }
@@ -70,12 +78,26 @@ class PictureComposer {
   int frames_without_colour_ = kColourLasts_frames + 1;  ///< number of frames since the last colour image
   /// Buffer: hatched areas under objects that rest on unknown space.
   std::vector<HatchedPatch> patches_;
+  LightEstimator light_;
+  std::vector<LightSample> light_samples_;
+  /// Light that the room leaves for each object, in the order of the objects, smoothed over time. Unset:
+  /// not determined since the object was placed.
+  std::vector<std::optional<LightReach>> reaches_;
+  std::vector<RoomLight> object_lights_;  ///< buffer: light of each drawn object
+  Feet feet_;                             ///< buffer
   std::size_t last_shadow_ = 0;  ///< index of the object whose shadow was recomputed last
   ColourImage background_;
   ColourImage picture_;
 
   /// Returns the view of the last colour image, or that of the depth camera if there is none.
   ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  /// Updates the light at the middle of the objects in the room, from the stored colour image.
+  void estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
+  void find_reaches(double dt_s);
+  /// Returns an object's shadow, in the light that arrives at it.
+  [[nodiscard]] static ShadowCaster caster_of(const VirtualObject& object, const RoomLight* light);
+  /// Sets feet_ from the objects in the room.
+  void find_feet(const ShownView& view);
   /// Recomputes the contact shadow of one object that has rotated by more than 0.05 rad or has fallen asleep.
   void renew_a_shadow(bool may_refine);
 };

@@ -1,0 +1,45 @@
+// contact_pixels.hpp: pixels along an object's contact with what it stands on, which is never in front of it.
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
+#include "radar/gl/projection.hpp"
+
+namespace roomradar {
+
+/// Level planes through the lowest points of objects, as seen from a camera.
+struct Feet {
+  struct Plane {
+    /// Upwards, unit, in the camera's frame.
+    Eigen::Vector3f up_camera = Eigen::Vector3f::UnitY();
+    /// Height of the camera above the plane.
+    float camera_m = 0.0F;
+  };
+  Intrinsics camera{};
+  std::vector<Plane> planes;
+  /// Points of an object up to this height above its foot belong to its contact.
+  float height_m = 0.012F;
+};
+
+/// Error of real depth: constant term and increase with the square of the distance.
+struct DepthTolerance {
+  float constant_m = 0.0F, per_m2 = 0.0F;
+};
+
+/// Marks the pixels that show a point just above an object's foot where the real surface is level with the
+/// foot within the tolerance and 6 mm. That surface is the support, which lies below the object.
+/// @param rect          rectangle of the image
+/// @param real_depth_m  depth of real surfaces in the whole image
+/// @param object_m      depth of the objects in `rect`
+/// @param[out] contact  255 in pixels of contacts; with the size of `rect`
+void find_contacts(const Feet& feet, const PixelRect& rect, const DepthImage& real_depth_m,
+                   const Image<float>& object_m, const DepthTolerance& tolerance, MaskImage& contact);
+
+/// Averages over 3 x 3 pixels with more weight at the centre. Neighbours that no object covers have a depth
+/// borrowed from elsewhere, so the pixel's own value is used instead. Contacts get 0.
+void soften(const Image<float>& hidden, const MaskImage& covered, const MaskImage& contact,
+            Image<float>& softened);
+
+}  // namespace roomradar

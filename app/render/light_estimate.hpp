@@ -1,0 +1,60 @@
+// light_estimate.hpp: estimates a room's light from the colours of mapped surfaces of unknown albedo.
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "app/render/light_samples.hpp"
+#include "app/render/room_light.hpp"
+
+namespace roomradar {
+
+struct LightConfig {
+  /// Number of surface points per frame; 0: the light is not estimated.
+  int samples = 1500;
+  /// Time constant with which older frames are forgotten.
+  double memory_s = 1.0;
+};
+/// Checks that all values are in their ranges.
+/// @throws Error naming the field, its value and the rule
+void require_valid(const LightConfig& config);
+
+/// Estimates the light that arrives at a place in the room, frame by frame.
+///
+/// The light is ambient light plus one lamp, whose light falls off with the square of its distance. Candidate
+/// lamps are on a grid of 43 directions, 3 distances and 3 strengths around the place. The logarithm of a
+/// pixel's colour is log albedo + log irradiance. Surfaces of one hue are assumed to have one albedo, so a
+/// candidate is judged by the variance of log colour - log irradiance within the hues, robust against
+/// outliers such as shadows and patterns. The light is the mean over the candidates, weighted by their
+/// likelihood: an uncertain direction gives soft light, and the estimate has no jumps. The level and the
+/// colour follow from the hues' albedos, since the brightest common surfaces are near white. Source of the
+/// latter: Finlayson and Trezzi, Shades of gray and colour constancy, CIC 2004 (Minkowski norm with p = 6).
+class LightEstimator {
+ public:
+  /// Adds a frame's samples, dt_s after the previous frame. The first frame tests all candidates, later frames
+  /// some in turn, so that all are tested every half second. Does nothing with fewer than 30 samples. Ignores samples that are not
+  /// finite, and frames with a dt_s that is not.
+  /// @param place_world_m  where the light is wanted; should change slowly
+  void add(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m, double dt_s,
+           const LightConfig& config);
+  /// The light at the place, if nothing shades it; unset before the first samples.
+  [[nodiscard]] const std::optional<RoomLight>& light() const { return light_; }
+
+ private:
+  struct Point {
+    Eigen::Vector3f from_place_m;
+    Eigen::Vector3f normal_world;
+    Eigen::Vector3f log_colour;
+    float grey;  ///< mean of log_colour
+    int hue;
+  };
+  std::vector<Point> points_;  ///< buffer: the frame's samples
+  std::vector<float> scores_;  ///< mean squared residual per candidate; empty before the first samples
+  std::size_t next_candidate_ = 0;
+  Eigen::Vector3f log_level_ = Eigen::Vector3f::Zero();
+  std::optional<RoomLight> light_;
+
+  void take_points(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m);
+};
+
+}  // namespace roomradar

@@ -1,0 +1,46 @@
+// light_samples.hpp: surface points of the map with the colours that the camera sees there.
+#pragma once
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
+
+namespace roomradar {
+
+/// A surface point of the static room in a frame.
+struct LightSample {
+  Eigen::Vector3f p_world_m = Eigen::Vector3f::Zero();
+  /// Unit normal of the map's surface, towards the camera.
+  Eigen::Vector3f normal_world = Eigen::Vector3f::UnitZ();
+  /// Natural logarithm of red, green and blue in linear light. A byte b counts as (b / 255)^2, as in
+  /// ObjectDrawer.
+  Eigen::Vector3f log_colour = Eigen::Vector3f::Zero();
+};
+
+/// A colour image with its camera.
+struct ColourView {
+  const ColourImage& colour;
+  const Intrinsics& camera;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+};
+
+/// The map's surface as seen from the depth camera, and what the sensor measured there.
+struct SurfaceView {
+  const DepthImage& expected_m;  ///< depth of the map
+  const Intrinsics& camera;      ///< camera of expected_m
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  /// Measured depth in the same view. Its size is that of expected_m or a multiple.
+  const DepthImage& measured_m;
+  /// Non-zero: dynamic pixel of expected_m. Empty: none.
+  const MaskImage& dynamic_mask;
+};
+
+/// Takes about max_samples points on a regular grid of the depth image. Leaves out points where measured and
+/// expected depth disagree, which are dynamic, whose neighbourhood is not one smooth surface, which the
+/// colour image does not show, or whose colour is saturated or almost black. Deterministic; reuses the
+/// vector's memory. Returns no samples without colour or depth, or if sizes do not match.
+void take_light_samples(const ColourView& colour, const SurfaceView& surface, int max_samples,
+                        std::vector<LightSample>& samples);
+
+}  // namespace roomradar
