@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/physics/ray_hit.hpp"
+#include "radar/exact/ray_hit.hpp"
 
 namespace roomradar {
 namespace {
@@ -42,8 +42,8 @@ double ambient_fraction(const TreeInstance& room, const Eigen::Vector3d& middle_
 
 LightReach light_reach(const TreeInstance& room, const Eigen::Vector3d& middle_world, double radius_m,
                        const Eigen::Vector3d& to_light_world) {
-  if (room.tree == nullptr || room.tree->empty() || !middle_world.allFinite() || !to_light_world.allFinite() ||
-      !std::isfinite(radius_m))
+  if (room.tree == nullptr || room.tree->empty() || !middle_world.allFinite() ||
+      !to_light_world.allFinite() || !std::isfinite(radius_m))
     return {};
   return {static_cast<float>(directed_fraction(room, middle_world, radius_m, to_light_world)),
           static_cast<float>(ambient_fraction(room, middle_world))};

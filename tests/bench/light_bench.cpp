@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "app/media/picture_file.hpp"
-#include "app/physics/ray_hit.hpp"
+#include "radar/exact/ray_hit.hpp"
 #include "app/session/picture_composer.hpp"
 #include "app/sim/room/room_mesh.hpp"
 #include "app/sim/solids/counter_random.hpp"

@@ -709,6 +709,28 @@ TEST(Session, WhatIsPlacedInAFloorIsMovedOutOfItAndSaidSo) {
   }
 }
 
+TEST(Session, AHeavyObjectOnTheEndOfABoardTipsItAndALightOneDoesNot) {
+  const SavedMap map = floor_map();
+  for (const float load_size_m : {0.05F, 0.1F}) {
+    Session session(map, by_recorded_poses());
+    session.add_object("base", shapes::box({0.2F, 0.2F, 0.1F}));
+    session.add_object("board", shapes::box({0.4F, 0.2F, 0.02F}));  // 1.6 kg, its middle 5 cm before the edge
+    session.add_object("load", shapes::box(Eigen::Vector3f::Constant(load_size_m)));  // 0.125 kg or 1 kg
+    session.place("base", {.position_world = {-0.1, 0.0, 0.051}});
+    session.place("board", {.position_world = {-0.05, 0.0, 0.112}});
+    (void)wait(session, 0, 45);
+    const Body& board = session.objects()[1]->body;
+    ASSERT_TRUE(board.asleep);
+    session.place("load", {.position_world = {0.12, 0.0, 0.1225 + 0.5 * load_size_m}});
+    bool has_tipped = false;
+    for (int frame = 0; frame < 60; ++frame) {
+      (void)wait(session, 45 + frame, 46 + frame);
+      has_tipped |= board.T_world_object.linear()(2, 2) < 0.99;
+    }
+    EXPECT_EQ(has_tipped, load_size_m > 0.06F) << load_size_m;
+  }
+}
+
 /// A floor and 9 cm above it a ceiling: no room for a box of 10 cm; 2 x 2 m.
 SavedMap slot_map() {
   SavedMap map = floor_map();
