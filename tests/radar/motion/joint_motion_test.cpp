@@ -81,6 +81,21 @@ TEST(JointMotion, BodiesThatMoveAlikeAreFreeForAllOfTheTime) {
   EXPECT_EQ(two.free_time(0.5).free_s, 0.5);
 }
 
+TEST(JointMotion, ASpinningCubeHitsWhatRestsBesideItsFace) {
+  // Relative to the cube, the small box begins to move along the face: only its acceleration brings it nearer.
+  Two two(shapes::box({0.004F, 0.004F, 0.004F}), shapes::box({0.2F, 0.2F, 0.2F}));
+  two.T[0] = Eigen::Isometry3d(Eigen::Translation3d(0.105, 0.0, 0.0));  // 3 mm beside the face
+  two.T[1].setIdentity();
+  for (const double drift_mps : {0.0, 3.0}) {  // both may also drift
+    two.motions[0].linear_m_s = two.motions[1].linear_m_s = {0.0, drift_mps, 0.0};
+    two.motions[1].angular_rad_s = {0.0, 0.0, 20.0};
+    const double hits_s = std::acos(0.1 / 0.103) / 20.0;  // the face, 0.1 / cos(turn) away, reaches 0.103 m
+    const FreeTime free = two.free_time(0.1);
+    EXPECT_LT(free.free_s, hits_s);
+    EXPECT_GT(free.free_s, 0.2 * hits_s);
+  }
+}
+
 /// Two boxes 0.3 m apart that approach each other along x.
 TEST(JointMotion, TwoThatMeetStopTogetherWhereTheyMeet) {
   Two two(shapes::box({0.1F, 0.1F, 0.1F}), shapes::box({0.1F, 0.1F, 0.1F}));
