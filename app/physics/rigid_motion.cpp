@@ -253,7 +253,7 @@ std::vector<RigidMotion> Substep::motions() {
     const MovingBody& moving = bodies_[i];
     if (!is_active(moving)) continue;
     const Body& body = *moving.body;
-    RigidMotion& motion = motions[i];
+    RigidMotion motion;
     motion.centre_object = body.mass.centre_object;
     motion.linear_m_s = means[i].linear_mps;
     motion.angular_rad_s = means[i].angular_rad_s;
@@ -261,6 +261,7 @@ std::vector<RigidMotion> Substep::motions() {
     limit(motion.angular_rad_s, config_.max_angular_rad_s);
     motion.linear_m_s += lifts[i].linear_mps;
     motion.angular_rad_s += lifts[i].angular_rad_s;
+    motions[i] = motion;
   }
   return motions;
 }
@@ -284,6 +285,7 @@ std::vector<std::vector<std::size_t>> Substep::meeting_sets(const std::vector<Ri
 FreeTime Substep::free_time(std::size_t body, double duration_s, const std::vector<RigidMotion>& motions,
                             const std::vector<bool>& is_in_set) {
   MovingBody& moving = bodies_[body];
+  const RigidMotion motion = motions[body];  // a copy: the same alignment in every run
   const double spins = motions[body].angular_rad_s.squaredNorm();
   trees_.left_out.assign(moving.member_of_tree.size(), false);
   trees_.motions.assign(moving.member_of_tree.size(), {});
@@ -295,7 +297,7 @@ FreeTime Substep::free_time(std::size_t body, double duration_s, const std::vect
     trees_.left_out[tree] = is_others_turn || !is_in_set[other];
     trees_.motions[tree] = motions[other];
   }
-  return moving.probe->free_time(moving.body->T_world_object, motions[body], duration_s,
+  return moving.probe->free_time(moving.body->T_world_object, motion, duration_s,
                                  kKept * config_.contact_margin_m, moving.push ? kMovingSurfaces : 0, trees_);
 }
 
@@ -323,18 +325,18 @@ double Substep::move_set(const std::vector<std::size_t>& set, const std::vector<
 /// Moves the active bodies, and changes their velocities by the fraction of the time that they moved.
 void Substep::move() {
   const std::vector<RigidMotion> planned = motions();
-  std::vector<Eigen::Matrix3d> inertia_m2(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) inertia_m2[i] = inertia_world_m2(*bodies_[i].body);
+  std::vector<Eigen::Matrix3d> inertias_m2(bodies_.size());
+  for (std::size_t i = 0; i < bodies_.size(); ++i) inertias_m2[i] = inertia_world_m2(*bodies_[i].body);
   for (const std::vector<std::size_t>& set : meeting_sets(planned)) {
     const double gone_s = move_set(set, planned);
     for (const std::size_t i : set) {
       MovingBody& moving = bodies_[i];
+      const Eigen::Matrix3d inertia_m2 = inertias_m2[i];  // a copy: the same alignment in every run
       const double part = gone_s / moving.left_s;
       Velocity& velocity = moving.velocity;
       velocity.linear_mps += part * (moving.after.linear_mps - velocity.linear_mps);
-      const Vec3 momentum_after =
-          inertia_m2[i] *
-          (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
+      const Vec3 momentum_after = inertia_m2 * (velocity.angular_rad_s +
+                                                part * (moving.after.angular_rad_s - velocity.angular_rad_s));
       velocity.angular_rad_s = inertia_world_m2(*moving.body).inverse() * momentum_after;
       limit(velocity.linear_mps, config_.max_speed_mps);
       limit(velocity.angular_rad_s, config_.max_angular_rad_s);

@@ -16,11 +16,14 @@ struct Progress {
   int queries = 0;
 };
 
-/// Moves the body to its pose after time_s.
+/// Moves the body to its pose after time_s. Computes with local copies: with AVX, Eigen's sums may depend on
+/// the alignment of their operands, which differs from run to run in a vector.
 void move_to(JointMover& mover, const Progress& progress, double time_s) {
-  Eigen::Isometry3d& T = *mover.T_world_object;
-  T = pose_after(progress.T_world_start, mover.motion, time_s);
+  const RigidMotion motion = mover.motion;
+  const Eigen::Isometry3d T_world_start = progress.T_world_start;
+  Eigen::Isometry3d T = pose_after(T_world_start, motion, time_s);
   T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+  *mover.T_world_object = T;
   if (mover.moved) mover.moved();
 }
 
