@@ -9,7 +9,6 @@ namespace roomradar {
 namespace {
 
 using Vec3 = Eigen::Vector3d;
-
 constexpr double kTouchingBand = 0.5;  // fraction of the margin by which contacts may exceed it
 constexpr double kCarried = 1e6;       // factor of a carried body's mass: other bodies hardly move the hand
 
@@ -39,16 +38,12 @@ void add_limit(std::span<MovingBody> bodies, MovingBody& moving, double margin_m
   const ClosestPoint& limit = moving.limited_by;
   if (limit.kind == SurfaceKind::kNothing || limit.gap_m > reach_m) return;
   if (is_among(moving.near, limit, margin_m)) return;
-  const std::size_t other = member_of(moving, limit);
-  if (other == kNoOther) {
-    moving.near.push_back(limit);
-    return;
-  }
   // The pair may have been queried from the other body.
+  const std::size_t other = member_of(moving, limit);
   ClosestPoint reversed = limit;
   reversed.point_world += limit.gap_m * limit.normal_world;
   reversed.normal_world = -limit.normal_world;
-  if (!is_among(bodies[other].near, reversed, margin_m)) moving.near.push_back(limit);
+  if (other == kNoOther || !is_among(bodies[other].near, reversed, margin_m)) moving.near.push_back(limit);
 }
 
 /// Returns the solver's state of a body; set_masses() sets its mass.
@@ -183,7 +178,6 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
   system.bodies.clear();
   system.bystanders.clear();
   for (const MovingBody& moving : bodies) system.bodies.push_back(solver_body(*moving.body, moving.velocity));
-
   // Upwards, so that one sweep of the solver carries weight down to the lowest body.
   system.upwards.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) system.upwards[i] = i;

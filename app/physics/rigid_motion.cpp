@@ -19,8 +19,7 @@ constexpr double kKept = 0.5;  // fraction of the margin at which approaching su
 constexpr double kUnbalanced = 0.004;
 
 void limit(Vec3& v, double most) {
-  const double size = v.norm();
-  if (size > most) v *= most / size;
+  if (const double size = v.norm(); size > most) v *= most / size;
 }
 
 /// Upper bound of the speed of the body's points.
@@ -325,8 +324,8 @@ double Substep::move_set(const std::vector<std::size_t>& set, const std::vector<
 /// Moves the active bodies, and changes their velocities by the fraction of the time that they moved.
 void Substep::move() {
   const std::vector<RigidMotion> planned = motions();
-  std::vector<Eigen::Matrix3d> inertias_m2(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) inertias_m2[i] = inertia_world_m2(*bodies_[i].body);
+  std::vector<Eigen::Matrix3d> inertias_m2;
+  for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(*moving.body));
   for (const std::vector<std::size_t>& set : meeting_sets(planned)) {
     const double gone_s = move_set(set, planned);
     for (const std::size_t i : set) {

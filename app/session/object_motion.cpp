@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/physics/physics.hpp"
+#include "radar/geometry/tree_pairs.hpp"
 #include "radar/motion/time_of_impact.hpp"
 
 namespace roomradar {
@@ -48,6 +49,16 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
   }
   bodies.insert(bodies.begin(), scene.size() - bodies.size(), SceneBody{});  // objects come last
   return bodies;
+}
+
+bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene, double reach_m) {
+  if (!object.T_world_undisturbed) return false;
+  if (object.T_world_undisturbed->matrix() != object.body.T_world_object.matrix()) return false;
+  const TreeInstance own{&object.model->shape.touched, object.body.T_world_object};
+  return std::none_of(scene.begin(), scene.end(), [&](const SceneTree& surface) {
+    return is_moving_surface(surface.kind) && is_usable(surface.instance) &&
+           !are_farther_apart(own, surface.instance, reach_m);
+  });
 }
 
 void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,

@@ -46,6 +46,10 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
                                  std::span<const std::unique_ptr<VirtualObject>> objects,
                                  const VirtualObject& object);
 
+/// Returns true if nothing can have come to overlap the object since physics moved it to its pose: nothing
+/// else has moved it, and no moving surface is within reach_m.
+bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene, double reach_m);
+
 /// Advances the objects together; see advance_together(). A carried object moves at the velocity that reaches
 /// its target after waited_s. Gravity, friction and restitution do not act on it. It stops at obstacles.
 /// @param contacts  buffers, and first guesses of impulses if the next call has the same objects

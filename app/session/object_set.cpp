@@ -8,11 +8,9 @@
 #include "app/session/object_overlap.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/validity.hpp"
-#include "radar/geometry/tree_pairs.hpp"
 
 namespace roomradar {
 namespace {
-
 constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
 
 }  // namespace
@@ -171,7 +169,6 @@ PushDirections ObjectSet::push_of(const VirtualObject& object) const {
 ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes& times) {
   constexpr double kStuckLooksAfter_s = 0.5;  // overlaps are the most expensive contacts
   double radar_ms = 0.0;
-  ContactCounts counts;
   std::vector<DueObject> due;
   for (std::size_t index = 0; index < objects_.size(); ++index) {
     VirtualObject* const object = objects_[index].get();
@@ -185,15 +182,16 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
   for (DueObject& one : due) {
     one.push = push_of(*one.object);
     one.scene = scene_without(one.object);
-    one.is_undisturbed = is_undisturbed(*one.object, one.scene);
+    one.is_undisturbed = config_.scene.surfaces == SurfacePolicy::kMap &&
+                         is_undisturbed(*one.object, one.scene, kNearbyReach_m);
     if (!one.is_undisturbed)
       drop_engulfing_back(*one.object, one.waited_s, one.push, config_.physics, radar_, proximity_, one.scene,
                           radar_ms);
     one.bodies = bodies_in(one.scene, objects_, *one.object);
   }
+  ContactCounts counts;
   advance_objects(due, config_.physics, radar_, proximity_, contact_system_, counts, radar_ms);
-  // What was shifted out of an overlap may overlap other objects now.
-  const bool is_any_overlapped =
+  const bool is_any_overlapped =  // what was shifted out of an overlap may overlap other objects now
       std::any_of(due.begin(), due.end(), [](const DueObject& one) { return one.was_overlapped; });
   for (const DueObject& one : due) {
     VirtualObject& object = *one.object;
@@ -205,16 +203,6 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
   }
   times.add_ms("radar", radar_ms);
   return counts;
-}
-
-bool ObjectSet::is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene) const {
-  if (config_.scene.surfaces != SurfacePolicy::kMap || !object.T_world_undisturbed) return false;
-  if (object.T_world_undisturbed->matrix() != object.body.T_world_object.matrix()) return false;
-  return std::none_of(scene.begin(), scene.end(), [&](const SceneTree& surface) {
-    if (!is_moving_surface(surface.kind) || !is_usable(surface.instance)) return false;
-    const TreeInstance own{&object.model->shape.touched, object.body.T_world_object};
-    return !are_farther_apart(own, surface.instance, kNearbyReach_m);
-  });
 }
 
 std::vector<Departure> ObjectSet::end_departures() {

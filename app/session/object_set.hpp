@@ -124,8 +124,6 @@ class ObjectSet {
   [[nodiscard]] WayOut way_out_of(const VirtualObject& object);
   /// Returns the directions from the object to nearby dynamic surfaces, see depenetration_directions().
   [[nodiscard]] PushDirections push_of(const VirtualObject& object) const;
-  /// Returns true if nothing can have come to overlap the object since physics moved it to its pose.
-  [[nodiscard]] bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene) const;
 };
 
 }  // namespace roomradar
