@@ -13,9 +13,9 @@ struct LightReach {
   float ambient = 1.0F;
 };
 
-/// Casts rays at the room's surfaces: seven towards the main light, from points of the object's inscribed disk
-/// that faces it, up to 3 m, and 16 upwards, cosine weighted, up to 1 m. Nearer surfaces take more of the
-/// ambient light. Both fractions are 1 without surfaces, and for values that are not finite.
+/// Casts rays at the room's surfaces: seven towards the main light, from points of the object's inscribed
+/// disk that faces it, up to 3 m, and 16 upwards, cosine weighted, up to 1 m. Nearer surfaces take more of
+/// the ambient light. Both fractions are 1 without surfaces, and for values that are not finite.
 /// @param room            the room's surfaces; may be null or empty
 /// @param middle_world    centre of the object
 /// @param radius_m        radius of its bounding sphere

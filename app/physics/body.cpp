@@ -5,10 +5,6 @@
 
 namespace roomradar {
 
-void make_orthonormal(Eigen::Isometry3d& T) {
-  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
-}
-
 double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before) {
   const Eigen::Matrix3d turned = T_world_before.linear().transpose() * body.T_world_object.linear();
   return (centre_world(body) - T_world_before * body.mass.centre_object).norm() +

@@ -58,9 +58,6 @@ struct [[nodiscard]] StepReport {
 /// Adds one contact with a surface of kind `touched` to `report`.
 void note_contact(SurfaceKind touched, StepReport& report);
 
-/// Restores the orthonormality of T's rotation, which rounding errors degrade.
-void make_orthonormal(Eigen::Isometry3d& T);
-
 /// Returns an upper bound of the displacement of the body's points since the pose T_world_before. The bound
 /// is the translation of the centre of mass plus the rotation angle times MassProperties::radius_m.
 double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before);

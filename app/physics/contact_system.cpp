@@ -12,9 +12,6 @@ using Vec3 = Eigen::Vector3d;
 constexpr double kTouchingBand = 0.5;  // fraction of the margin by which contacts may exceed it
 constexpr double kCarried = 1e6;       // factor of a carried body's mass: other bodies hardly move the hand
 
-const Body* body_of(const MovingBody& moving, const ClosestPoint& p) {
-  return p.tree < moving.probe->others.size() ? moving.probe->others[p.tree].body : nullptr;
-}
 std::size_t member_of(const MovingBody& moving, const ClosestPoint& p) {
   return p.tree < moving.member_of_tree.size() ? moving.member_of_tree[p.tree] : kNoOther;
 }
@@ -74,7 +71,7 @@ void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const s
     contact.contact_offset_m = p.point_world + p.gap_m * p.normal_world - centre;
     contact.normal = p.normal_world;
     contact.friction = moving.is_carried ? 0.0 : config.friction;
-    if (const Body* other = body_of(moving, p)) {
+    if (const Body* other = body_of(moving.probe->others, p)) {
       contact.other = member_of(moving, p);
       if (contact.other == kNoOther)
         contact.other = bystander_index(bodies, moving.probe->others[p.tree], moving.mass_kg, system);

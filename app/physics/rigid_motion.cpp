@@ -285,7 +285,7 @@ FreeTime Substep::free_time(std::size_t body, double duration_s, const std::vect
                             const std::vector<bool>& is_in_set) {
   MovingBody& moving = bodies_[body];
   const RigidMotion motion = motions[body];  // a copy: the same alignment in every run
-  const double spins = motions[body].angular_rad_s.squaredNorm();
+  const double spins = motion.angular_rad_s.squaredNorm();
   trees_.left_out.assign(moving.member_of_tree.size(), false);
   trees_.motions.assign(moving.member_of_tree.size(), {});
   for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree) {
@@ -314,7 +314,7 @@ double Substep::move_set(const std::vector<std::size_t>& set, const std::vector<
         {.T_world_object = &bodies_[i].body->T_world_object,
          .motion = motions[i],
          .free_time = [&, i](double duration_s) { return free_time(i, duration_s, motions, is_in_set); },
-         .moved = bodies_[i].moved != nullptr ? *bodies_[i].moved : std::function<void()>{},
+         .moved = bodies_[i].moved,
          .limited_by = {}});
   const double gone_s = move_to_contact(movers, left_s);
   for (std::size_t k = 0; k < set.size(); ++k) bodies_[set[k]].limited_by = movers[k].limited_by;

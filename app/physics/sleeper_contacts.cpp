@@ -33,7 +33,7 @@ void remember_contacts(std::vector<SleeperContacts>& known, const Body& body,
   own->near = near;
   own->touched.clear();
   for (const ClosestPoint& p : near) {
-    const Body* other = p.tree < others.size() ? others[p.tree].body : nullptr;
+    const Body* other = body_of(others, p);
     own->touched.push_back({other, other != nullptr ? other->T_world_object : Eigen::Isometry3d::Identity()});
   }
 }

@@ -21,6 +21,12 @@ struct SleeperContacts {
   std::vector<Touched> touched;  ///< per point of `near`
 };
 
+/// Returns the body that a point of the scene lies on; null: a surface.
+/// @param others  bodies of the scene's trees
+inline const Body* body_of(std::span<const SceneBody> others, const ClosestPoint& p) {
+  return p.tree < others.size() ? others[p.tree].body : nullptr;
+}
+
 /// Copies a body's known contacts to `near` if they still hold. Returns false if they do not.
 /// @param others  bodies of the scene's trees; ClosestPoint::tree is set to their order
 bool recall_contacts(std::span<const SleeperContacts> known, const Body& body,

@@ -48,9 +48,9 @@ void main() {
 }
 )";
 
-// The estimated light of the room, or a usual one: ambient light, stronger from above, and one broad lamp. Both
-// with reflections on glaze.
-// Highlight: normalised Blinn-Phong. Grazing reflection: Schlick's approximation of the Fresnel term.
+// The estimated light of the room, or a usual one: ambient light, stronger from above, and one broad lamp.
+// Both with reflections on glaze. Highlight: normalised Blinn-Phong. Grazing reflection: Schlick's
+// approximation of the Fresnel term.
 constexpr const char* kFragmentShader = R"(
 in vec3 p_eye;
 in vec3 normal_eye;

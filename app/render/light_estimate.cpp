@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kHuesAcross = 24;
 constexpr int kHues = kHuesAcross * kHuesAcross;
-constexpr float kHueWidth = 0.22F;    // of log ratios of linear colours
-constexpr float kFromAbove = 0.2F;    // slope of the ambient light, over its mean
-constexpr double kRound_s = 0.5;      // time in which each candidate is tested again
+constexpr float kHueWidth = 0.22F;  // of log ratios of linear colours
+constexpr float kFromAbove = 0.2F;  // slope of the ambient light, over its mean
+constexpr double kRound_s = 0.5;    // time in which each candidate is tested again
 
 /// A lamp beside ambient light of mean irradiance 1.
 struct Candidate {
@@ -46,7 +46,8 @@ const std::vector<Candidate>& candidates() {
 }
 
 /// Returns the irradiance of a surface point from a candidate and the ambient light.
-float irradiance_of(const Candidate& lamp, const Eigen::Vector3f& from_place_m, const Eigen::Vector3f& normal) {
+float irradiance_of(const Candidate& lamp, const Eigen::Vector3f& from_place_m,
+                    const Eigen::Vector3f& normal) {
   constexpr float kNearest_m2 = 0.1F;
   const Eigen::Vector3f way = lamp.distance_m * lamp.direction - from_place_m;
   const float squared_m2 = std::max(way.squaredNorm(), kNearest_m2);
@@ -124,6 +125,10 @@ void require_valid(const LightConfig& config) {
           "in 0..60, not 0");
 }
 
+float renewed_fraction(double seconds, const LightConfig& config) {
+  return static_cast<float>(1.0 - std::exp(-std::max(seconds, 0.0) / config.memory_s));
+}
+
 void LightEstimator::take_points(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m) {
   points_.clear();
   for (const LightSample& sample : samples)
@@ -141,9 +146,7 @@ void LightEstimator::add(std::span<const LightSample> samples, const Eigen::Vect
   const std::vector<Candidate>& lamps = candidates();
   const bool is_first = scores_.empty();
   scores_.resize(lamps.size());
-  const auto part_after = [&](double seconds) {
-    return is_first ? 1.0F : static_cast<float>(1.0 - std::exp(-std::max(seconds, 0.0) / config.memory_s));
-  };
+  const auto part_after = [&](double seconds) { return is_first ? 1.0F : renewed_fraction(seconds, config); };
   const double round = std::clamp(dt_s / kRound_s, 1.0 / 64.0, 1.0);  // fraction tested in this frame
   const std::size_t tested =
       is_first ? lamps.size()

@@ -19,6 +19,9 @@ struct LightConfig {
 /// @throws Error naming the field, its value and the rule
 void require_valid(const LightConfig& config);
 
+/// Fraction of a smoothed value that is new after a time; the memory's part is exp(-seconds / memory_s).
+float renewed_fraction(double seconds, const LightConfig& config);
+
 /// Estimates the light that arrives at a place in the room, frame by frame.
 ///
 /// The light is ambient light plus one lamp, whose light falls off with the square of its distance. Candidate
@@ -31,9 +34,9 @@ void require_valid(const LightConfig& config);
 /// latter: Finlayson and Trezzi, Shades of gray and colour constancy, CIC 2004 (Minkowski norm with p = 6).
 class LightEstimator {
  public:
-  /// Adds a frame's samples, dt_s after the previous frame. The first frame tests all candidates, later frames
-  /// some in turn, so that all are tested every half second. Does nothing with fewer than 30 samples. Ignores samples that are not
-  /// finite, and frames with a dt_s that is not.
+  /// Adds a frame's samples, dt_s after the previous frame. The first frame tests all candidates, later
+  /// frames some in turn, so that all are tested every half second. Does nothing with fewer than 30 samples.
+  /// Ignores samples that are not finite, and frames with a dt_s that is not.
   /// @param place_world_m  where the light is wanted; should change slowly
   void add(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m, double dt_s,
            const LightConfig& config);

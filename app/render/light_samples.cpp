@@ -23,8 +23,7 @@ std::optional<Eigen::Vector3d> normal_at(const DepthImage& depth_m, const Intrin
   const auto bend = [&](float a_m, float b_m) { return std::abs(z_m * (0.5F / a_m + 0.5F / b_m) - 1.0F); };
   if (!(bend(left_m, right_m) < kBend && bend(above_m, below_m) < kBend)) return std::nullopt;
   const auto point = [&](int u, int v, float at_m) { return back_project(camera, u, v, at_m); };
-  const Eigen::Vector3d across =
-      point(x + kReach_px, y, right_m) - point(x - kReach_px, y, left_m);
+  const Eigen::Vector3d across = point(x + kReach_px, y, right_m) - point(x - kReach_px, y, left_m);
   const Eigen::Vector3d down = point(x, y + kReach_px, below_m) - point(x, y - kReach_px, above_m);
   const Eigen::Vector3d normal = down.cross(across).normalized();
   const double facing = -normal.dot(point(x, y, z_m).normalized());
@@ -96,8 +95,8 @@ void take_light_samples(const ColourView& colour, const SurfaceView& surface, in
       if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() < colour.camera.width_px &&
             pixel.y() < colour.camera.height_px))
         continue;
-      const auto log_colour = log_colour_at(colour.colour, static_cast<int>(pixel.x() + 0.5),
-                                            static_cast<int>(pixel.y() + 0.5));
+      const auto log_colour =
+          log_colour_at(colour.colour, static_cast<int>(pixel.x() + 0.5), static_cast<int>(pixel.y() + 0.5));
       if (!log_colour) continue;
       samples.push_back({(surface.T_world_camera * p_camera).cast<float>(),
                          (surface.T_world_camera.linear() * *normal).cast<float>(), *log_colour});

@@ -280,8 +280,8 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
   spread_object_depth(layer, rect, occlusion.object_m, occlusion.covered);
 
   hide_by_depth(real_depth_m, config, occlusion);
-  find_contacts(feet, rect, real_depth_m, occlusion.object_m,
-                {config.tolerance_m, config.tolerance_per_m2}, occlusion.contact);
+  find_contacts(feet, rect, real_depth_m, occlusion.object_m, {config.tolerance_m, config.tolerance_per_m2},
+                occlusion.contact);
   for (std::size_t i = 0; i < occlusion.contact.pixels.size(); ++i)
     if (occlusion.contact.pixels[i] != 0) occlusion.by_depth.pixels[i] = 0;
   occlusion.front.resize(rect.width, rect.height);

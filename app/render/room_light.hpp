@@ -11,8 +11,8 @@ namespace roomradar {
 /// with a mean error of 1 %.
 using LightBasis = Eigen::Matrix<float, 9, 1>;
 LightBasis light_basis(const Eigen::Vector3f& normal);
-/// Returns the coefficients of max(0, n.l) up to order 2: 1/4 + t/2 + 5/16 P2(t) with t = n.l and the Legendre
-/// polynomial P2.
+/// Returns the coefficients of max(0, n.l) up to order 2: 1/4 + t/2 + 5/16 P2(t) with t = n.l and the
+/// Legendre polynomial P2.
 /// @param l  unit
 LightBasis directed_light(const Eigen::Vector3f& l);
 

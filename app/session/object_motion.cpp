@@ -7,6 +7,7 @@
 
 #include "app/physics/physics.hpp"
 #include "radar/geometry/tree_pairs.hpp"
+#include "radar/motion/joint_motion.hpp"
 #include "radar/motion/time_of_impact.hpp"
 
 namespace roomradar {

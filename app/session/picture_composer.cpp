@@ -2,7 +2,6 @@
 #include "app/session/picture_composer.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/objects/unknown_support.hpp"
 
@@ -68,7 +67,7 @@ void PictureComposer::estimate_light(const Frame& frame, const Eigen::Isometry3d
 
 void PictureComposer::find_reaches(double dt_s) {
   const Eigen::Vector3d to_light_world = main_light(*light_.light()).to_light_world;
-  const auto part = static_cast<float>(1.0 - std::exp(-std::max(dt_s, 0.0) / config_.picture.light.memory_s));
+  const float part = renewed_fraction(dt_s, config_.picture.light);
   TreeInstance room;
   for (const SceneTree& surface : scene_.surfaces())
     if (surface.kind == SurfaceKind::kStatic) room = surface.instance;
@@ -105,8 +104,8 @@ void PictureComposer::find_feet(const ShownView& view) {
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
     const double foot_m = object->body.T_world_object.translation().z() + lowest_m(*object);
-    feet_.planes.push_back({up_camera.cast<float>(),
-                            static_cast<float>(view.T_world_view.translation().z() - foot_m)});
+    feet_.planes.push_back(
+        {up_camera.cast<float>(), static_cast<float>(view.T_world_view.translation().z() - foot_m)});
   }
 }
 

@@ -9,8 +9,8 @@
 #include "app/objects/object_light.hpp"
 #include "app/objects/virtual_object.hpp"
 #include "app/render/draw.hpp"
-#include "app/render/light_estimate.hpp"
 #include "app/render/hatched_patch.hpp"
+#include "app/render/light_estimate.hpp"
 #include "app/render/occlusion.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/session_config.hpp"
@@ -85,7 +85,7 @@ class PictureComposer {
   std::vector<std::optional<LightReach>> reaches_;
   std::vector<RoomLight> object_lights_;  ///< buffer: light of each drawn object
   Feet feet_;                             ///< buffer
-  std::size_t last_shadow_ = 0;  ///< index of the object whose shadow was recomputed last
+  std::size_t last_shadow_ = 0;           ///< index of the object whose shadow was recomputed last
   ColourImage background_;
   ColourImage picture_;
 

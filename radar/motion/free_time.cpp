@@ -33,7 +33,7 @@ struct RelativeMotion {
   double reach_m;  // from the centre to the farthest point of the object
   double keep_m;
   double tree_quadratic_m_s2;  // displacement by the tree's rotation: at most this times t^2
-  bool tree_moves;             // then no bound holds for ever
+  bool tree_moves;             // then only the bound at present speed holds
   /// Displacement by rotation along each axis of the frame: at most quadratic_m_s2 t^2 beyond the present
   /// velocity, and at most fastest_m_s t.
   Vec3 quadratic_m_s2, fastest_m_s;
@@ -231,7 +231,7 @@ FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double
   for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
     const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
-    if (number < trees.left_out.size() && trees.left_out[number]) continue;
+    if (trees.is_left_out(number)) continue;
     const RigidMotion tree_motion = number < trees.motions.size() ? trees.motions[number] : RigidMotion{};
     const double paths_m = object_path_m + path_m(tree.instance, tree_motion, duration_s);
     if (are_farther_apart(object, tree.instance, paths_m + 2.0 * keep_m)) continue;

@@ -1,5 +1,6 @@
 // free_time.hpp: contact-free duration of a rigid motion, by conservative advancement with separating planes.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "radar/geometry/contact.hpp"
@@ -24,6 +25,8 @@ struct FreeTime {
 struct TreeStates {
   std::vector<bool> left_out;
   std::vector<RigidMotion> motions;
+
+  [[nodiscard]] bool is_left_out(std::size_t tree) const { return tree < left_out.size() && left_out[tree]; }
 };
 
 /// Returns a lower bound of the duration for which rigid motions of the object and of the scene's trees stay

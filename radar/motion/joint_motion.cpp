@@ -8,6 +8,11 @@
 #include "mapping/types/disjoint_sets.hpp"
 
 namespace roomradar {
+
+void make_orthonormal(Eigen::Isometry3d& T) {
+  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+}
+
 namespace {
 
 struct Progress {
@@ -22,9 +27,9 @@ void move_to(JointMover& mover, const Progress& progress, double time_s) {
   const RigidMotion motion = mover.motion;
   const Eigen::Isometry3d T_world_start = progress.T_world_start;
   Eigen::Isometry3d T = pose_after(T_world_start, motion, time_s);
-  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+  make_orthonormal(T);
   *mover.T_world_object = T;
-  if (mover.moved) mover.moved();
+  if (mover.moved != nullptr && *mover.moved) (*mover.moved)();
 }
 
 }  // namespace

@@ -12,6 +12,9 @@
 
 namespace roomradar {
 
+/// Restores the orthonormality of T's rotation, which rounding errors degrade.
+void make_orthonormal(Eigen::Isometry3d& T);
+
 /// A body that moves together with others.
 struct JointMover {
   Eigen::Isometry3d* T_world_object = nullptr;  ///< in and out
@@ -19,8 +22,9 @@ struct JointMover {
   /// Returns free_time() of the body at its present pose, for at most this duration, s. Between two movers,
   /// one of both has to include the other, with its motion.
   std::function<FreeTime(double duration_s)> free_time;
-  std::function<void()> moved;  ///< called after each change of the pose; may be empty
-  ClosestPoint limited_by;      ///< out: feature that ended the motion; kind kNothing if another body's did
+  const std::function<void()>* moved =
+      nullptr;              ///< called after each change of the pose; may be null or empty
+  ClosestPoint limited_by;  ///< out: feature that ended the motion; kind kNothing if another body's did
 };
 
 /// Moves all bodies at the same time, until the first contact of any of them. A body's free time is a lower

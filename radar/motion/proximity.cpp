@@ -55,7 +55,7 @@ SurfaceKindMask ProximityQuery::near(const TreeInstance& object, const RadarScen
   for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
     const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
-    if (number < states.left_out.size() && states.left_out[number]) continue;
+    if (states.is_left_out(number)) continue;
     if (are_farther_apart(object, tree.instance, reach_m)) continue;
     found_.clear();
     TreePair trees(object, tree.instance);

@@ -23,7 +23,6 @@
 #include <string>
 #include <vector>
 
-#include "radar/exact/ray_hit.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/run/run_budget.hpp"
 #include "app/session/apply_quality.hpp"
@@ -33,6 +32,7 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/system/error.hpp"
+#include "radar/exact/ray_hit.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/support/exact_depth.hpp"

@@ -2,8 +2,9 @@
 // direction of light, flicker, and pixels lost along the contact with what it rests on.
 //
 // usage: light_bench [--views N] [--maps FOLDER] [--only WORD] [--pictures FOLDER] [--json FILE]
-//        N: views per room, lamps and place, 9 if not given. FOLDER of --maps: saved scans of simulated rooms,
-//        as where_bench and placement_bench keep them; without it, no contact rows. WORD: part of a row's name.
+//        N: views per room, lamps and place, 9 if not given. FOLDER of --maps: saved scans of simulated
+//        rooms, as where_bench and placement_bench keep them; without it, no contact rows. WORD: part of a
+//        row's name.
 //
 //   ROOM-LAMPS-PLACE  the room's true mesh is the map; poses are true; depth exact; colour with noise
 //     colour      mean difference of the object's pixels from the real object's, of 255
@@ -27,7 +28,6 @@
 #include <vector>
 
 #include "app/media/picture_file.hpp"
-#include "radar/exact/ray_hit.hpp"
 #include "app/session/picture_composer.hpp"
 #include "app/sim/room/room_mesh.hpp"
 #include "app/sim/solids/counter_random.hpp"
@@ -35,6 +35,7 @@
 #include "bench_times.hpp"
 #include "light_bench_scenes.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "radar/exact/ray_hit.hpp"
 #include "where_bench_rooms.hpp"
 
 namespace roomradar {
@@ -166,9 +167,10 @@ void compare_view(Stage& stage, const LitRoom& empty, const LitRoom& real, const
   std::optional<Vector3d> found_world;
   if (stage.composer().room_light()) found_world = main_light(*stage.composer().room_light()).to_light_world;
   if (true_world)
-    measured.light_deg.push_back(
-        found_world ? std::acos(std::clamp(true_world->dot(*found_world), -1.0, 1.0)) * 180.0 / std::numbers::pi
-                    : 180.0);
+    measured.light_deg.push_back(found_world
+                                     ? std::acos(std::clamp(true_world->dot(*found_world), -1.0, 1.0)) *
+                                           180.0 / std::numbers::pi
+                                     : 180.0);
   save(settings, name + "-virtual", picture);
   save(settings, name + "-real", truth);
   for (std::uint64_t i = 0; i < 6; ++i) {  // held, at 30 frames per second, with each frame's own noise
@@ -188,12 +190,6 @@ void compare_view(Stage& stage, const LitRoom& empty, const LitRoom& real, const
   }
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
 nlohmann::json colour_row(const std::string& row, const std::string& room, const LampSet& lamps,
                           const Vector3d& foot, const Settings& settings) {
   const auto empty = lit_room(room, lamps, std::nullopt);
@@ -206,22 +202,23 @@ nlohmann::json colour_row(const std::string& row, const std::string& room, const
   Measured measured;
   std::uint64_t view = 0;
   for (const Eigen::Isometry3d& T_room_camera : views_of(empty->room, foot, settings.views, 1)) {
-    compare_view(stage, *empty, *real, middle, T_room_camera, view, row + "-" + std::to_string(view), settings,
-                 measured);
+    compare_view(stage, *empty, *real, middle, T_room_camera, view, row + "-" + std::to_string(view),
+                 settings, measured);
     ++view;
   }
   std::sort(stage.compose_ms.begin(), stage.compose_ms.end());
   const auto& degrees = measured.light_deg;
-  return {{"row", row},
-          {"views", view},
-          {"colour", mean_of(measured.colour)},
-          {"colour_max", view > 0 ? *std::max_element(measured.colour.begin(), measured.colour.end()) : 0.0},
-          {"shadow", mean_of(measured.shadow)},
-          {"light_deg", degrees.empty() ? nlohmann::json() : nlohmann::json(mean_of(degrees))},
-          {"light_max_deg",
-           degrees.empty() ? nlohmann::json() : nlohmann::json(*std::max_element(degrees.begin(), degrees.end()))},
-          {"flicker", measured.flicker},
-          {"compose_ms", view > 0 ? stage.compose_ms[stage.compose_ms.size() / 2] : 0.0}};
+  return {
+      {"row", row},
+      {"views", view},
+      {"colour", test::Times{measured.colour}.mean()},
+      {"colour_max", view > 0 ? *std::max_element(measured.colour.begin(), measured.colour.end()) : 0.0},
+      {"shadow", test::Times{measured.shadow}.mean()},
+      {"light_deg", degrees.empty() ? nlohmann::json() : nlohmann::json(test::Times{degrees}.mean())},
+      {"light_max_deg", degrees.empty() ? nlohmann::json()
+                                        : nlohmann::json(*std::max_element(degrees.begin(), degrees.end()))},
+      {"flicker", measured.flicker},
+      {"compose_ms", view > 0 ? stage.compose_ms[stage.compose_ms.size() / 2] : 0.0}};
 }
 
 /// Returns the height of the map's highest point under the object's foot, in the world.
@@ -243,8 +240,9 @@ struct Lost {
 
 /// Counts the pixels of the object that the last picture hides or shows wrongly.
 /// @param room_m  exact depth of the room
-void count_lost(const PictureComposer& composer, const DepthImage& room_m, const Eigen::Isometry3d& T_world_camera,
-                const Intrinsics& camera, double foot_z_m, Lost& lost) {
+void count_lost(const PictureComposer& composer, const DepthImage& room_m,
+                const Eigen::Isometry3d& T_world_camera, const Intrinsics& camera, double foot_z_m,
+                Lost& lost) {
   constexpr float kNothingBefore_m = 0.015F, kBefore_m = 0.05F;
   constexpr double kFoot_m = 0.010;
   const ObjectLayer& layer = composer.layer();
@@ -294,12 +292,13 @@ nlohmann::json contact_row(const std::string& row, const SimOptions& scan, const
       const ColourImage& picture = stage.show(frame, T_world_room * T_room_camera, 0.1);
       if (i == 2) save(settings, row + "-" + std::to_string(view), picture);
     }
-    count_lost(stage.composer(), source.truth().depth_m, T_world_room * T_room_camera, frame.depth_camera, *z_m,
-               lost);
+    count_lost(stage.composer(), source.truth().depth_m, T_world_room * T_room_camera, frame.depth_camera,
+               *z_m, lost);
     ++view;
   }
-  return {{"row", row},           {"views", view},       {"pixels", lost.pixels},     {"foot", lost.foot},
-          {"lost", lost.lost}, {"lost_all", lost.lost_all}, {"shown", lost.shown}};
+  return {{"row", row},         {"views", view},     {"pixels", lost.pixels},
+          {"foot", lost.foot},  {"lost", lost.lost}, {"lost_all", lost.lost_all},
+          {"shown", lost.shown}};
 }
 
 Settings parse(int argc, char** argv) {
@@ -326,9 +325,9 @@ int bench(const Settings& settings) {
   const struct {
     const char *room, *place;
     Vector3d foot;
-  } places[] = {{"table", "top", {0.12, -0.14, 0.75}},   {"table", "under", {0.0, 0.0, 0.008}},
-                {"shelf", "top", {0.0, 0.0, 0.46}},      {"shelf", "under", {0.0, 0.1, 0.008}},
-                {"wall", "crate", {0.0, 1.2, 0.4}},      {"wall", "under", {2.2, -2.25, 0.0}}};
+  } places[] = {{"table", "top", {0.12, -0.14, 0.75}}, {"table", "under", {0.0, 0.0, 0.008}},
+                {"shelf", "top", {0.0, 0.0, 0.46}},    {"shelf", "under", {0.0, 0.1, 0.008}},
+                {"wall", "crate", {0.0, 1.2, 0.4}},    {"wall", "under", {2.2, -2.25, 0.0}}};
   for (const auto& place : places)
     for (const LampSet& lamps : {LampSet{"above", false}, LampSet{"side", true}}) {
       const std::string row = std::string(place.room) + "-" + lamps.name + "-" + place.place;

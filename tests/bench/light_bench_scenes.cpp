@@ -104,7 +104,8 @@ void render_lit(const LitRoom& lit, const Intrinsics& camera, const Eigen::Isome
       const float grain =
           noise > 0.0 ? static_cast<float>(noise) * gaussian(mixed(noise_seed + colour.index(x, y))) : 0.0F;
       const auto seen_as = [&](std::uint8_t of, float by) {
-        return static_cast<std::uint8_t>(std::clamp(by * static_cast<float>(of) + grain + 0.5F, 0.0F, 255.0F));
+        return static_cast<std::uint8_t>(
+            std::clamp(by * static_cast<float>(of) + grain + 0.5F, 0.0F, 255.0F));
       };
       colour.at(x, y) = {seen_as(shaded.r, factor.x()), seen_as(shaded.g, factor.y()),
                          seen_as(shaded.b, factor.z())};
@@ -120,9 +121,9 @@ std::vector<Eigen::Isometry3d> views_of(const Room& room, const Vector3d& foot_r
   for (int draw = 0; draw < 4000 && views.size() < count; ++draw) {
     const double azimuth = random.uniform(0.0, 2.0 * std::numbers::pi);
     const double elevation = random.uniform(0.2, 0.9), away_m = random.uniform(0.7, 1.6);
-    const Vector3d eye = middle + away_m * Vector3d(std::cos(elevation) * std::cos(azimuth),
-                                                    std::cos(elevation) * std::sin(azimuth),
-                                                    std::sin(elevation));
+    const Vector3d eye =
+        middle + away_m * Vector3d(std::cos(elevation) * std::cos(azimuth),
+                                   std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
     if (signed_distance_m(room, eye) < 0.15) continue;
     if (((eye - room.interior_min_world).array() < 0.1).any() ||
         ((room.interior_max_world - eye).array() < 0.1).any())

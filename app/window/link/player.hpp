@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "radar/exact/ray_hit.hpp"
 #include "app/session/script/script.hpp"
 #include "app/session/session.hpp"
 #include "app/window/link/ui_channel.hpp"
+#include "radar/exact/ray_hit.hpp"
 
 namespace roomradar {
 

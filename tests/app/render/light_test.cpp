@@ -1,5 +1,5 @@
-// light_test.cpp: light estimated from surfaces of known and unknown albedo, its split, shade and shadows, and
-// contacts that stay visible.
+// light_test.cpp: light estimated from surfaces of known and unknown albedo, its split, shade and shadows,
+// and contacts that stay visible.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,7 +48,8 @@ RoomLight estimated(const std::vector<LightSample>& samples) {
 }
 
 TEST(LightEstimator, FindsTheDirectionUnderUnknownAlbedos) {
-  for (const Vector3f& to_light : {Vector3f(0.8F, 0.1F, 0.59F), Vector3f(-0.5F, -0.6F, 0.62F), Vector3f(0, 0, 1)}) {
+  for (const Vector3f& to_light :
+       {Vector3f(0.8F, 0.1F, 0.59F), Vector3f(-0.5F, -0.6F, 0.62F), Vector3f(0, 0, 1)}) {
     const MainLight main = main_light(estimated(lit_points(to_light.normalized(), 0.3F)));
     EXPECT_LT(angle_deg(main.to_light_world, to_light.normalized()), 15.0F) << to_light.transpose();
     EXPECT_GT(main.directed.mean(), 0.8F * main.ambient.mean());
@@ -80,8 +81,8 @@ TEST(LightEstimator, IgnoresWhatIsNotFiniteAndTooFewPoints) {
   EXPECT_FALSE(estimator.light());
   std::vector<LightSample> samples = lit_points({0, 0, 1}, 0.3F);
   const RoomLight clean = estimated(samples);
-  samples.push_back({Vector3f::Zero(), Vector3f::UnitZ(),
-                     Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())});
+  samples.push_back(
+      {Vector3f::Zero(), Vector3f::UnitZ(), Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())});
   EXPECT_EQ(estimated(samples).coefficients, clean.coefficients);
   EXPECT_THROW(require_valid(LightConfig{.memory_s = 0.0}), Error);
 }
@@ -101,7 +102,8 @@ TEST(RoomLight, SplitsIntoAmbientAndDirectedLight) {
 /// A level plate at a height.
 Mesh plate(float half_m, float z_m) {
   Mesh mesh;
-  mesh.vertices = {{-half_m, -half_m, z_m}, {half_m, -half_m, z_m}, {half_m, half_m, z_m}, {-half_m, half_m, z_m}};
+  mesh.vertices = {
+      {-half_m, -half_m, z_m}, {half_m, -half_m, z_m}, {half_m, half_m, z_m}, {-half_m, half_m, z_m}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return mesh;
 }
@@ -134,8 +136,8 @@ TEST(ContactShadow, TheMainLightsShadowFallsAwayFromIt) {
   EXPECT_EQ(light_occlusion(shadow, {-0.12F, 0, 0}, Vector3f(1, 0, 0)), 0.0F);
 }
 
-/// The camera looks level from 0.3 m above a table whose measured depth is 1.4 cm too high; an object stands at
-/// 1 m.
+/// The camera looks level from 0.3 m above a table whose measured depth is 1.4 cm too high; an object stands
+/// at 1 m.
 TEST(Occlusion, WhatAnObjectStandsOnDoesNotHideItsContact) {
   const Intrinsics camera{64, 64, 60.0, 60.0, 31.5, 31.5};
   const float camera_m = 0.3F, object_m = 1.0F;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -82,7 +83,8 @@ TEST(JointMotion, BodiesThatMoveAlikeAreFreeForAllOfTheTime) {
 }
 
 TEST(JointMotion, ASpinningCubeHitsWhatRestsBesideItsFace) {
-  // Relative to the cube, the small box begins to move along the face: only its acceleration brings it nearer.
+  // Relative to the cube, the small box begins to move along the face: only its acceleration brings it
+  // nearer.
   Two two(shapes::box({0.004F, 0.004F, 0.004F}), shapes::box({0.2F, 0.2F, 0.2F}));
   two.T[0] = Eigen::Isometry3d(Eigen::Translation3d(0.105, 0.0, 0.0));  // 3 mm beside the face
   two.T[1].setIdentity();
@@ -104,11 +106,12 @@ TEST(JointMotion, TwoThatMeetStopTogetherWhereTheyMeet) {
   two.motions[0].linear_m_s = {2.0, 0.0, 0.0};
   two.motions[1].linear_m_s = {-1.0, 0.0, 0.0};
   int moves = 0;
+  const std::function<void()> count = [&] { ++moves; };
   std::vector<JointMover> movers;
   movers.push_back({.T_world_object = &two.T[0],
                     .motion = two.motions[0],
                     .free_time = [&](double duration_s) { return two.free_time(duration_s); },
-                    .moved = [&] { ++moves; },
+                    .moved = &count,
                     .limited_by = {}});
   movers.push_back({.T_world_object = &two.T[1],
                     .motion = two.motions[1],
@@ -116,7 +119,7 @@ TEST(JointMotion, TwoThatMeetStopTogetherWhereTheyMeet) {
                         [](double duration_s) {
                           return FreeTime{duration_s, {}};
                         },
-                    .moved = {},
+                    .moved = nullptr,
                     .limited_by = {}});
   const double gone_s = move_to_contact(movers, 1.0);
   EXPECT_NEAR(gone_s, (0.3 - kKeep_m) / 3.0, 1e-3);
