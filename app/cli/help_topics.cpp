@@ -14,6 +14,7 @@ the file: an event that stands below a later one waits for it. Positions are in 
 
   frame 0    add pot teapot size 0.2          # longest side, m
   frame 0    add chair chair.obj size 0.9 up z   # axis of the file that points up: x, y, z, -x, -y, -z
+  frame 0    add ball teapot density 600 friction 0.3 restitution 0.8   # kg/m3 (or mass, kg); 0..10; 0..1
   frame 10   drop pot view height 0.3         # on the free level place nearest to the view's middle
   frame 11   drop pot near 0.4 -0.1 0.7       # on the one nearest to this point, at most 25 cm away
   time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
@@ -23,6 +24,7 @@ the file: an event that stands below a later one waits for it. Positions are in 
   time 5.5   turn pot 0 0 45                  # about the world's axes
   time 5.6   carry pot 0.4 -0.1 1.0           # held in the air, on its way there
   time 5.9   release pot velocity 0 0 0
+  time 5.9   material pot mass 2 friction 0.1 # what is not named stays as it is
   time 6     remove pot
   time 7     adopt                            # what stands still in view becomes part of the room
   frame 200  surfaces skirt                   # holes, skirt, border or map
@@ -47,6 +49,10 @@ vertex colours, in their rest pose.
   units     Numbers are metres, unless a .dae states another unit. size=M (--object-size; `size` in a script)
             scales the longest side. A model that is less than 5 mm, more than 5 m or more than half of the room
             long is refused unless a size is given.
+  material  mass=KG or density=KG/M3, friction=F (on surfaces of the room) and restitution=E follow the name like
+            size=M; in a script `mass`, `density`, `friction` and `restitution` follow `add` or `material`. A
+            closed mesh weighs 1000 kg/m3, an open one 5 kg/m2; friction is 0.5 and restitution 0 unless given.
+            Between two objects, friction is the geometric mean, and restitution the larger of both.
   textures  are found beside the file, or inside it. One that cannot be read is named on standard error, and the
             material's colour is drawn.
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "mapping/types/system/error.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -43,6 +45,21 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
   std::shared_ptr<const ObjectModel> model = model_among(others, parts.source);
   if (!model) model = std::make_shared<const ObjectModel>(context, std::move(parts));
   return std::make_unique<VirtualObject>(name, std::move(model));
+}
+
+void change_material(VirtualObject& object, const BodyMaterial& change) {
+  Body& body = object.body;
+  BodyMaterial material = body.material;
+  roomradar::change(material, change);
+  try {
+    require_valid(material);
+    body.mass.mass_kg = mass_kg(material, object.model->mass);
+  } catch (const Error& fault) {
+    throw Error(body.name + ": " + fault.what());
+  }
+  body.material = material;
+  body.asleep = false;
+  body.sleep_timer_s = 0.0;
 }
 
 DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,

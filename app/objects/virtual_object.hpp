@@ -58,6 +58,10 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
+/// Overwrites the values of the object's material that `change` sets, and wakes the object. Throws Error, and
+/// changes nothing, if a value is out of range, and for a density if the mesh is open.
+void change_material(VirtualObject& object, const BodyMaterial& change);
+
 /// Returns the object of this name; null if there is none.
 VirtualObject* find_object(std::span<const std::unique_ptr<VirtualObject>> objects, const std::string& name);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/physics/body_material.hpp"
 #include "app/physics/mass_properties.hpp"
 #include "radar/geometry/contact.hpp"
 
@@ -15,6 +16,7 @@ namespace roomradar {
 struct Body {
   std::string name;
   MassProperties mass;
+  BodyMaterial material;  ///< its friction and restitution; mass.mass_kg includes its mass
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();            ///< of the centre of mass
   Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< right-handed

@@ -35,7 +35,8 @@ struct SolverContact {
   /// Lower bound of the separation velocity along the normal after the solve. A negative bound permits
   /// approach at up to -leaves_mps.
   double leaves_mps = 0.0;
-  double friction = 0.0;  ///< Coulomb's coefficient
+  double friction = 0.0;     ///< Coulomb's coefficient
+  double restitution = 0.0;  ///< not used by the solver: callers set leaves_mps
   /// In: warm-start guess. Out: normal impulse on the body, >= 0.
   double impulse_Ns = 0.0;
   /// In: warm-start guess. Out: tangential friction impulse on the body.

@@ -18,8 +18,7 @@ std::size_t member_of(const MovingBody& moving, const ClosestPoint& p) {
 
 /// Sets `near` of a body. Returns the kinds of surfaces that intersect the body.
 SurfaceKindMask query_near(MovingBody& moving, double reach_m, const TreeStates& trees) {
-  return moving.probe->near(moving.body->T_world_object, reach_m, moving.push ? kMovingSurfaces : 0, trees,
-                            moving.near);
+  return moving.probe->near(moving.body->T_world_object, reach_m, moving.left_out, trees, moving.near);
 }
 
 /// Returns true if one of the points is within a margin of the point, with the same normal.
@@ -70,7 +69,8 @@ void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const s
     contact.body = index;
     contact.contact_offset_m = p.point_world + p.gap_m * p.normal_world - centre;
     contact.normal = p.normal_world;
-    contact.friction = moving.is_carried ? 0.0 : config.friction;
+    const BodyMaterial& material = moving.body->material;
+    Coefficients coefficients = moving.is_carried ? Coefficients{} : on_room(material, config);
     if (const Body* other = body_of(moving.probe->others, p)) {
       contact.other = member_of(moving, p);
       if (contact.other == kNoOther)
@@ -80,9 +80,11 @@ void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const s
       if (contact.other < bodies.size() && is_listed[contact.other] && !is_limit) continue;
       contact.other_offset_m = p.point_world - centre_world(*other);
       // The hand that carries an object has no friction of its own.
-      if (contact.other < bodies.size() && !bodies[contact.other].is_carried)
-        contact.friction = config.friction;
+      if (!moving.is_carried || (contact.other < bodies.size() && !bodies[contact.other].is_carried))
+        coefficients = between(material, other->material, config);
     }
+    contact.friction = coefficients.friction;
+    contact.restitution = coefficients.restitution;
     system.contacts.push_back(contact);
     system.gap_m.push_back(p.gap_m);
     system.kinds.push_back(p.kind);
@@ -93,7 +95,7 @@ void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const s
   contact.body = index;
   contact.contact_offset_m = moving.push->point_world - centre;
   contact.normal = moving.push->normal_world;
-  contact.friction = config.friction;
+  contact.friction = on_room(moving.body->material, config).friction;
   system.gap_m.push_back(0.0);
   system.kinds.push_back(moving.push->touched);
   system.is_push.push_back(true);

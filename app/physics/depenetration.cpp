@@ -60,7 +60,7 @@ PushDirections depenetration_directions(std::initializer_list<const Mesh*> movin
                  // gravity
     const Vec3 direction = level / length;
     if (result.count == 1 && direction.dot(result.direction_world[0]) > 0.97) continue;
-    result.direction_world[static_cast<std::size_t>(result.count++)] = direction;
+    result.add(direction);
   }
   return result;
 }

@@ -20,11 +20,15 @@ namespace roomradar {
 bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
                  std::span<const Eigen::Vector3d> depenetration_directions_world);
 
-/// Up to two horizontal unit directions from a body towards dynamic surfaces near it. The first points to
-/// their nearest vertex, the second to the mean of their vertices within reach_m.
+/// Up to three unit directions from a body towards dynamic surfaces near it: horizontal ones to their nearest
+/// vertex and to the mean of their vertices within reach_m, then the one that their motion comes from.
 struct PushDirections {
   int count = 0;
-  std::array<Eigen::Vector3d, 2> direction_world{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  std::array<Eigen::Vector3d, 3> direction_world{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                                 Eigen::Vector3d::Zero()};
+  void add(const Eigen::Vector3d& direction) {
+    direction_world[static_cast<std::size_t>(count++)] = direction;
+  }
   [[nodiscard]] std::span<const Eigen::Vector3d> span() const {
     return {direction_world.data(), static_cast<std::size_t>(count)};
   }

@@ -74,6 +74,7 @@ MassProperties mass_properties(const Mesh& mesh, bool is_closed) {
   MassProperties result = properties_of(has_volume ? solid : has_area ? shell : points, from);
   constexpr double kDensity_kg_m3 = 1000.0, kShell_kg_m2 = 5.0, kLeast_kg = 1e-3;
   result.mass_kg = std::max(has_volume ? kDensity_kg_m3 * solid.mass : kShell_kg_m2 * shell.mass, kLeast_kg);
+  if (has_volume) result.volume_m3 = solid.mass;
   result.radius_m = 0.0;
   for (const Triangle& t : mesh.triangles) {
     if (!is_usable(mesh, t)) continue;

@@ -15,6 +15,7 @@ struct MassProperties {
   double radius_m = 0.1;  ///< distance from the centre of mass to the farthest vertex
   /// Mass, > 0. A closed mesh is a solid of 1,000 kg/m^3. An open mesh is a shell of 5 kg/m^2.
   double mass_kg = 1.0;
+  double volume_m3 = 0.0;  ///< of a closed mesh; 0: open
 };
 
 /// Computes the properties of a uniform solid if the mesh is closed (TriangleTree::is_closed()). Otherwise

@@ -22,11 +22,14 @@ bool is_finite(const Body& body) {
          body.mass.inertia_m2.allFinite();
 }
 
-/// Returns the physics of a carried body: without gravity, friction and restitution, so it slides along
-/// surfaces.
-PhysicsConfig in_hand(PhysicsConfig config) {
-  config.gravity_world_mps2.setZero();
-  config.friction = config.restitution = 0.0;
+/// Returns the physics of one body: with its material, and the speed of the surfaces that push it. A carried
+/// body has no gravity, friction and restitution, so that it slides along surfaces.
+PhysicsConfig physics_of(const AdvancedBody& advanced, PhysicsConfig config) {
+  if (advanced.is_carried) config.gravity_world_mps2.setZero();
+  const Coefficients own = advanced.is_carried ? Coefficients{} : on_room(advanced.body->material, config);
+  config.max_depenetration_mps = max_push_mps(advanced, config);
+  config.friction = own.friction;
+  config.restitution = own.restitution;
   return config;
 }
 
@@ -37,7 +40,7 @@ class Stepper {
       : advanced_(advanced),
         body_(*advanced.body),
         probe_(*advanced.probe),
-        config_(advanced.is_carried ? in_hand(config) : config),
+        config_(physics_of(advanced, config)),
         report_(advanced.report) {
     const double g = config_.gravity_world_mps2.norm();
     if (g > 0.0) down_ = config_.gravity_world_mps2 / g;
@@ -144,6 +147,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_di
   const double push_m =
       std::min(way.depth_m + config_.contact_margin_m, config_.max_depenetration_mps * dt_s);
   if (is_moving_surface(way.contact.touched)) {
+    if (advanced_.is_gripped) return;
     const bool is_out_at_once = way.direction == down_ && way.depth_m <= push_m;
     if (!is_out_at_once)
       push_ = Push{way.contact.point_world, -way.direction, push_m / dt_s, way.contact.touched};
@@ -218,6 +222,11 @@ void Stepper::end_substep(const MovingBody& moved, const SubstepResult& result) 
 
 }  // namespace
 
+double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config) {
+  constexpr double kFaster = 1.5;  // a push also makes up for what earlier ones left
+  return std::max(config.max_depenetration_mps, kFaster * advanced.surface_speed_mps);
+}
+
 void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& config, ContactSystem& system) {
   std::vector<Stepper> steppers;
   steppers.reserve(bodies.size());
@@ -239,15 +248,17 @@ void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& confi
     }
     stepper.wake_if_due();
     longest_s = std::max(longest_s, dt_s);
-    moving.push_back({.body = advanced.body,
-                      .probe = advanced.probe,
-                      .mass_kg = advanced.mass_kg,
-                      .is_carried = advanced.is_carried,
-                      .push = stepper.push(),
-                      .report = &advanced.report,
-                      .dt_s = dt_s,
-                      .moved = &advanced.moved,
-                      .is_undisturbed = advanced.is_undisturbed});
+    moving.push_back(
+        {.body = advanced.body,
+         .probe = advanced.probe,
+         .mass_kg = advanced.mass_kg,
+         .is_carried = advanced.is_carried,
+         .push = stepper.push(),
+         .left_out = stepper.push() || advanced.is_gripped ? kMovingSurfaces : SurfaceKindMask{0},
+         .report = &advanced.report,
+         .dt_s = dt_s,
+         .moved = &advanced.moved,
+         .is_undisturbed = advanced.is_undisturbed});
   }
   for (MovingBody& one : moving)
     for (const SceneBody& other : one.probe->others) {

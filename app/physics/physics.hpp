@@ -24,12 +24,21 @@ struct AdvancedBody {
   /// No surface has moved near the body since it was last advanced, except bodies that were advanced with it.
   /// Nothing can overlap it then: no query looks for overlaps, and a sleeping body costs nothing.
   bool is_undisturbed = false;
+  /// Dynamic surfaces grip the body from two sides. They may overlap it, and do not push it. The caller also
+  /// sets is_carried, and the body's velocity to theirs.
+  bool is_gripped = false;
+  /// Speed of the dynamic surfaces near the body. They push it at up to 1.5 times this speed, or up to
+  /// PhysicsConfig::max_depenetration_mps if that is more.
+  double surface_speed_mps = 0.0;
   /// Directions towards dynamic surfaces, see depenetration_directions(); may be empty.
   std::span<const Eigen::Vector3d> depenetration_directions_world{};
   /// Called after each change of the body's pose. Callers update the scenes of the other bodies in it.
   std::function<void()> moved{};
   StepReport report{};  ///< out
 };
+
+/// Returns the max speed at which surfaces push the body or move it out of an overlap.
+double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 
 /// Advances bodies under gravity, contacts and Coulomb friction, and puts them to sleep or wakes them.
 ///

@@ -84,7 +84,7 @@ bool Substep::bounce() {
     const bool is_carried = bodies_[contact.body].is_carried && contact.other == kNoOther;
     if (system_.is_push[i] || is_carried || !(closing_mps > config_.bounce_mps)) continue;
     is_fast = true;
-    contact.leaves_mps = config_.restitution * closing_mps;
+    contact.leaves_mps = contact.restitution * closing_mps;
   }
   if (!enters) return false;
   set_masses(bodies_, Movable::kAllButSleeping, system_);
@@ -297,7 +297,7 @@ FreeTime Substep::free_time(std::size_t body, double duration_s, const std::vect
     trees_.motions[tree] = motions[other];
   }
   return moving.probe->free_time(moving.body->T_world_object, motion, duration_s,
-                                 kKept * config_.contact_margin_m, moving.push ? kMovingSurfaces : 0, trees_);
+                                 kKept * config_.contact_margin_m, moving.left_out, trees_);
 }
 
 /// Moves a set of bodies at the same time, until the first contact of any of them. Returns the time moved.

@@ -36,6 +36,7 @@ Script drop_objects(const std::vector<ObjectOption>& objects) {
     add.mesh = object.source.mesh;
     add.size_m = object.source.size_m;
     add.up = object.source.up;
+    add.material = object.material;
     ScriptEvent drop;
     drop.frame = 0;
     drop.action = Action::kDrop;

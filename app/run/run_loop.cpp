@@ -163,7 +163,7 @@ ScriptEvent RunLoop::apply(const ScriptEvent& event) {
   if (event.action == Action::kCamera) control(*run_.playback, event.camera);
   if (event.action == Action::kRadar && run_.budget) run_.budget->keep(event.radar);
   if (event.action == Action::kAdd)
-    run_.session->add_object(event.name, std::move(parts));
+    run_.session->add_object(event.name, std::move(parts), event.material);
   else
     roomradar::apply(*run_.session, event);
   return kept;

@@ -50,7 +50,11 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
     const Eigen::Quaterniond q(R_world_object);
     const double turned_deg = Eigen::AngleAxisd(object->R_world_put.transpose() * R_world_object).angle() *
                               (180.0 / std::numbers::pi);
+    const Coefficients surface = on_room(object->body.material, session.config().physics);
     objects.push_back({{"name", object->body.name},
+                       {"mass_kg", object->body.mass.mass_kg},
+                       {"friction", surface.friction},
+                       {"restitution", surface.restitution},
                        {"in_room", object->in_room},
                        {"at_rest", object->body.asleep},
                        {"stuck", object->stuck},

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "app/physics/placement.hpp"
+#include "app/physics/placement/placement.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

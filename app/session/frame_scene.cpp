@@ -40,6 +40,7 @@ void FrameScene::set_surfaces(SurfacePolicy surfaces) {
   config_.surfaces = surfaces;
   dynamic_world_.inferred_world = {};  // backs are inferred with kMap only
   inferred_.build_in_order(dynamic_world_.inferred_world);
+  points_world_.clear();
 }
 
 const MaskImage& FrameScene::previous_dynamic_mask(const Intrinsics& camera) {
@@ -66,6 +67,8 @@ void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_wo
   if (config_.surfaces != SurfacePolicy::kMap) return mesh_all_pixels(frame, T_world_camera);
   mesh_dynamic(frame.depth_m, foreground.dynamic_mask, expected.depth_m, frame.depth_camera, T_world_camera,
                fine, config_.moved, dynamic_scratch_, dynamic_world_);
+  points_world_.swap(last_points_world_);
+  dynamic_points(frame.depth_m, foreground.dynamic_mask, frame.depth_camera, T_world_camera, points_world_);
   inferred_.build_in_order(dynamic_world_.inferred_world);
   moved_.set(dynamic_world_.seen_world, MeshUsage::kStreamed);
 }

@@ -10,6 +10,7 @@
 #include "dynamic/foreground/foreground.hpp"
 #include "dynamic/surface/depth_mesh.hpp"
 #include "dynamic/surface/dynamic_surface.hpp"
+#include "dynamic/surface/surface_motion.hpp"
 #include "dynamic/surface/surface_policy.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/mesh.hpp"
@@ -106,6 +107,11 @@ class FrameScene {
   /// The last result of find_dynamic().
   [[nodiscard]] const FrameForeground& foreground() const { return foreground_; }
   [[nodiscard]] const DynamicSurface& dynamic_world() const { return dynamic_world_; }
+  /// Points of the dynamic pixels of this frame, and of the frame before it; kMap only.
+  [[nodiscard]] std::span<const Eigen::Vector3d> dynamic_points_world() const { return points_world_; }
+  [[nodiscard]] std::span<const Eigen::Vector3d> last_dynamic_points_world() const {
+    return last_points_world_;
+  }
   [[nodiscard]] std::size_t dynamic_triangles() const { return moved_.touched.triangle_count(); }
   [[nodiscard]] std::size_t inferred_triangles() const { return inferred_.triangle_count(); }
 
@@ -123,6 +129,7 @@ class FrameScene {
   DepthMeshScratch mesh_scratch_;
   DynamicSurfaceScratch dynamic_scratch_;
   DynamicSurface dynamic_world_;
+  std::vector<Eigen::Vector3d> points_world_, last_points_world_;
   TriangleTree inferred_;  ///< inferred backs; can be touched, but are never drawn
 };
 

@@ -18,6 +18,119 @@ int pieces_of(double waited_s, const PhysicsConfig& config) {
   return std::max(1, static_cast<int>(std::ceil(waited_s / config.max_advance_s - 1e-9)));
 }
 
+constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
+
+/// How the dynamic surfaces near an object move in this frame.
+struct SurfaceSweep {
+  Eigen::Vector3d way_world = Eigen::Vector3d::Zero();  // from the last frame to this one, m
+  std::vector<SceneTree> at_end{};                      // the object's scene with this frame's surfaces
+  PushDirections push{};
+};
+
+SurfaceSweep sweep_near(const DueObject& one, const FrameScene& moving) {
+  constexpr double kFarthest_m = 0.15;  // 4.5 m/s at 30 frames/s
+  const VirtualObject& object = *one.object;
+  const auto way = translation_near(moving.last_dynamic_points_world(), moving.dynamic_points_world(),
+                                    object.body.T_world_object * object.model->middle,
+                                    radius_m(object) + kNearbyReach_m, kFarthest_m);
+  return {way.value_or(Eigen::Vector3d::Zero()), one.scene, {}};
+}
+
+/// Returns in how many steps the surfaces move; 1 if slow: then only this frame's surfaces count.
+int steps_of(const SurfaceSweep& sweep) {
+  constexpr double kStep_m = 0.015;
+  return std::max(1, static_cast<int>(std::ceil(sweep.way_world.norm() / kStep_m)));
+}
+
+/// Moves the dynamic surfaces in the object's scene to where they are when a part of their way is left.
+void put_surfaces(SurfaceSweep& sweep, double left, const FrameScene& moving, DueObject& one,
+                  AdvancedBody& advanced) {
+  const Eigen::Vector3d back_world = -left * sweep.way_world;
+  for (std::size_t i = 0; i < one.scene.size(); ++i) {
+    if (!is_moving_surface(one.scene[i].kind)) continue;
+    one.scene[i] = sweep.at_end[i];
+    one.scene[i].instance.T_world_mesh.pretranslate(back_world);
+  }
+  const VirtualObject& object = *one.object;
+  sweep.push = depenetration_directions(
+      {&moving.dynamic_world().seen_world, &moving.dynamic_world().inferred_world},
+      object.body.T_world_object * object.model->middle - back_world, radius_m(object) + kNearbyReach_m);
+  if (steps_of(sweep) > 1) sweep.push.add(-sweep.way_world.normalized());
+  advanced.depenetration_directions_world = sweep.push.span();
+}
+
+/// Returns the triangles of the dynamic surfaces within reach_m of a point and on one side of it.
+Mesh side_of(const DynamicSurface& surfaces, const Eigen::Vector3d& point_world, double reach_m,
+             const Eigen::Vector3d& direction) {
+  Mesh side;
+  side.origin = surfaces.seen_world.origin;
+  for (const Mesh* mesh : {&surfaces.seen_world, &surfaces.inferred_world}) {
+    const Eigen::Vector3f point = (point_world - mesh->origin).cast<float>();
+    for (const Triangle& t : mesh->triangles) {
+      const std::array<Eigen::Vector3f, 3> corners = {mesh->vertices[t[0]], mesh->vertices[t[1]],
+                                                      mesh->vertices[t[2]]};
+      const Eigen::Vector3f offset = (corners[0] + corners[1] + corners[2]) / 3.0F - point;
+      if (offset.norm() > static_cast<float>(reach_m) || offset.dot(direction.cast<float>()) < 0.0F) continue;
+      const auto first = static_cast<std::uint32_t>(side.vertices.size());
+      side.vertices.insert(side.vertices.end(), corners.begin(), corners.end());
+      side.triangles.push_back({first, first + 1, first + 2});
+    }
+  }
+  return side;
+}
+
+/// Returns how deep the surfaces on one side of the object's middle overlap it; 0: not.
+double depth_m(const Mesh& side, const Eigen::Vector3d& shift_world, const VirtualObject& object,
+               const Eigen::Vector3d& direction, CyberRadar& radar) {
+  TriangleTree tree;
+  tree.build_in_order(side);
+  SceneTree surface{{&tree, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic};
+  surface.instance.T_world_mesh.translation() = shift_world;
+  const Contact contact = radar.query(
+      {{&object.model->shape.touched, object.body.T_world_object}, direction, 0.001}, {{&surface, 1}, {}});
+  return contact.status == ContactStatus::kOverlap ? std::max(0.0, -contact.contact_distance_m) : 0.0;
+}
+
+/// If dynamic surfaces overlap the object from two opposite sides, as two fingers do: sets its velocity to
+/// theirs, and to the middle between them. Returns false otherwise.
+bool grip(const SurfaceSweep& sweep, const Eigen::Vector3d& shift_world, const DynamicSurface& surfaces,
+          const DueObject& one, double dt_s, CyberRadar& radar) {
+  constexpr double kDeepest_m = 0.03;  // fingers may be this deep in the object
+  constexpr double kCentred = 0.3;     // fraction of the way to the middle, per call
+  VirtualObject& object = *one.object;
+  const Eigen::Vector3d middle = object.body.T_world_object * object.model->middle - shift_world;
+  for (const Eigen::Vector3d& direction : sweep.push.span()) {
+    const Mesh ahead = side_of(surfaces, middle, radius_m(object), direction);
+    const Mesh behind = side_of(surfaces, middle, radius_m(object), -direction);
+    if (ahead.triangles.empty() || behind.triangles.empty()) continue;
+    const double ahead_m = depth_m(ahead, shift_world, object, direction, radar);
+    const double behind_m = depth_m(behind, shift_world, object, -direction, radar);
+    if (!(ahead_m > 0.0 && behind_m > 0.0 && std::max(ahead_m, behind_m) < kDeepest_m)) continue;
+    object.body.velocity_world_mps = sweep.way_world / std::max(one.waited_s, 1e-9) +
+                                     kCentred * 0.5 * (behind_m - ahead_m) / std::max(dt_s, 1e-9) * direction;
+    object.body.angular_velocity_world_rad_s.setZero();
+    object.body.asleep = false;
+    return true;
+  }
+  return false;
+}
+
+/// Removes the inferred back from the object's scene if it engulfs the object.
+void leave_out_engulfing_back(DueObject& one, const AdvancedBody& advanced, PhysicsConfig config,
+                              CyberRadar& radar, ProximityQuery& proximity, double& radar_ms) {
+  const auto back = std::find_if(one.scene.begin(), one.scene.end(), [](const SceneTree& surface) {
+    return surface.kind == SurfaceKind::kInferredBack;
+  });
+  if (back == one.scene.end()) return;
+  const RadarScene of_back{{&*back, 1}, {}};
+  const CollisionQueries probe =
+      make_collision_queries(radar, proximity, one.object->model->shape.touched, of_back, &radar_ms);
+  config.max_depenetration_mps = max_push_mps(advanced, config);
+  if (is_engulfed(*advanced.body, advanced.dt_s, probe.travel, config,
+                  advanced.depenetration_directions_world))
+    back->instance.tree = nullptr;
+}
+
 /// Sets the velocity that takes a carried object to its target by the end of this frame.
 void set_in_hand(VirtualObject& object, double dt_s) {
   const Eigen::Vector3d way = *object.carried_to_world - object.body.T_world_object.translation();
@@ -52,30 +165,32 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
   return bodies;
 }
 
-bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene, double reach_m) {
+bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene) {
   if (!object.T_world_undisturbed) return false;
   if (object.T_world_undisturbed->matrix() != object.body.T_world_object.matrix()) return false;
   const TreeInstance own{&object.model->shape.touched, object.body.T_world_object};
   return std::none_of(scene.begin(), scene.end(), [&](const SceneTree& surface) {
     return is_moving_surface(surface.kind) && is_usable(surface.instance) &&
-           !are_farther_apart(own, surface.instance, reach_m);
+           !are_farther_apart(own, surface.instance, kNearbyReach_m);
   });
 }
 
-void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
-                     ProximityQuery& proximity, ContactSystem& contacts, ContactCounts& counts,
-                     double& radar_ms) {
+void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
+                     CyberRadar& radar, ProximityQuery& proximity, ContactSystem& contacts,
+                     ContactCounts& counts, double& radar_ms) {
   std::vector<RadarScene> scenes;
   std::vector<CollisionQueries> probes;
   std::vector<AdvancedBody> advanced;
+  std::vector<SurfaceSweep> sweeps;
   scenes.reserve(due.size());  // the queries refer to them
   probes.reserve(due.size());
-  double longest_s = 0.0;
+  int pieces = 1;
   for (DueObject& one : due) {
     scenes.push_back({one.scene, {}});
     probes.push_back(
         make_collision_queries(radar, proximity, one.object->model->shape.touched, scenes.back(), &radar_ms));
     probes.back().others = one.bodies;
+    sweeps.push_back(moving == nullptr || one.is_undisturbed ? SurfaceSweep{} : sweep_near(one, *moving));
     Body& body = one.object->body;
     std::vector<SceneTree*> seen_as;  // in the scenes of the others
     for (DueObject& other : due)
@@ -86,17 +201,24 @@ void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, Cybe
                         .mass_kg = body.mass.mass_kg,
                         .is_carried = one.object->carried_to_world.has_value(),
                         .is_undisturbed = one.is_undisturbed,
-                        .depenetration_directions_world = one.push.span(),
+                        .surface_speed_mps = sweeps.back().way_world.norm() / std::max(one.waited_s, 1e-9),
                         .moved = [&body, seen_as = std::move(seen_as)] {
                           for (SceneTree* tree : seen_as) tree->instance.T_world_mesh = body.T_world_object;
                         }});
-    longest_s = std::max(longest_s, one.waited_s);
+    pieces = std::max({pieces, pieces_of(one.waited_s, config), steps_of(sweeps.back())});
   }
-  const int pieces = pieces_of(longest_s, config);
   for (int left = pieces; left > 0; --left) {
     for (std::size_t i = 0; i < due.size(); ++i) {
       advanced[i].dt_s = due[i].waited_s / pieces;
       if (due[i].object->carried_to_world) set_in_hand(*due[i].object, left * advanced[i].dt_s);
+      if (moving == nullptr || due[i].is_undisturbed) continue;
+      const double left_part = static_cast<double>(left - 1) / pieces;
+      put_surfaces(sweeps[i], left_part, *moving, due[i], advanced[i]);
+      advanced[i].is_gripped =
+          !due[i].object->carried_to_world && grip(sweeps[i], -left_part * sweeps[i].way_world,
+                                                   moving->dynamic_world(), due[i], advanced[i].dt_s, radar);
+      advanced[i].is_carried = advanced[i].is_gripped || due[i].object->carried_to_world;
+      leave_out_engulfing_back(due[i], advanced[i], config, radar, proximity, radar_ms);
     }
     advance_together(advanced, config, contacts);
     for (std::size_t i = 0; i < due.size(); ++i) {
@@ -107,19 +229,6 @@ void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, Cybe
         counts.by_kind[kind] += report.contacts_by_kind[kind];
     }
   }
-}
-
-void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
-                         const PhysicsConfig& config, CyberRadar& radar, ProximityQuery& proximity,
-                         std::vector<SceneTree>& scene, double& radar_ms) {
-  const auto back = std::find_if(scene.begin(), scene.end(), [](const SceneTree& surface) {
-    return surface.kind == SurfaceKind::kInferredBack;
-  });
-  if (back == scene.end()) return;
-  const RadarScene of_back{{&*back, 1}, {}};
-  const CollisionQueries probe =
-      make_collision_queries(radar, proximity, object.model->shape.touched, of_back, &radar_ms);
-  if (is_engulfed(object.body, waited_s, probe.travel, config, push.span())) scene.erase(back);
 }
 
 std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects) {

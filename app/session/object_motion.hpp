@@ -12,12 +12,21 @@
 #include "app/physics/contact_system.hpp"
 #include "app/physics/depenetration.hpp"
 #include "app/physics/physics_config.hpp"
+#include "app/session/frame_scene.hpp"
 #include "app/session/session_config.hpp"
 #include "dynamic/surface/dynamic_surface_config.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/geometry/radar_scene.hpp"
 
 namespace roomradar {
+
+/// Initial state of an object that is put into the room.
+struct ObjectState {
+  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();      ///< position of the object's origin
+  std::optional<Eigen::Matrix3d> R_world_object{};               ///< unset: the object keeps its orientation
+  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< velocity of the centre of mass
+  Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();
+};
 
 /// Contacts of one frame.
 struct ContactCounts {
@@ -33,7 +42,6 @@ bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const Session
 struct DueObject {
   VirtualObject* object = nullptr;
   double waited_s = 0.0;  ///< time since the object was last advanced; may exceed config.max_advance_s
-  PushDirections push{};
   std::vector<SceneTree> scene{};   ///< surfaces, then the other objects
   bool is_undisturbed = false;      ///< see AdvancedBody::is_undisturbed
   bool was_overlapped = false;      ///< out: a surface overlapped the object, which may have been shifted
@@ -47,23 +55,22 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
                                  const VirtualObject& object);
 
 /// Returns true if nothing can have come to overlap the object since physics moved it to its pose: nothing
-/// else has moved it, and no moving surface is within reach_m.
-bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene, double reach_m);
+/// else has moved it, and no moving surface is within 25 cm.
+bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene);
 
 /// Advances the objects together; see advance_together(). A carried object moves at the velocity that reaches
 /// its target after waited_s. Gravity, friction and restitution do not act on it. It stops at obstacles.
+///
+/// The dynamic surfaces near an object move from their place in the last frame to that in this frame, in
+/// steps of at most 15 mm, and push the object on the way: a fast hand does not pass it between two frames.
+/// If the surface's inferred back engulfs the object (is_engulfed()), the object's scene is without it.
+/// @param moving    this frame's surfaces; null: none is known to be dynamic
 /// @param contacts  buffers, and first guesses of impulses if the next call has the same objects
 /// @param counts    incremented by the contacts of this call
 /// @param radar_ms  incremented by the duration of the radar's queries, ms
-void advance_objects(std::span<DueObject> due, const PhysicsConfig& config, CyberRadar& radar,
-                     ProximityQuery& proximity, ContactSystem& contacts, ContactCounts& counts,
-                     double& radar_ms);
-
-/// Removes the dynamic surface's inferred back from `scene` if it engulfs the object (is_engulfed()).
-/// @param radar_ms  incremented by the duration of the queries, ms
-void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
-                         const PhysicsConfig& config, CyberRadar& radar, ProximityQuery& proximity,
-                         std::vector<SceneTree>& scene, double& radar_ms);
+void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
+                     CyberRadar& radar, ProximityQuery& proximity, ContactSystem& contacts,
+                     ContactCounts& counts, double& radar_ms);
 
 /// Returns one ball around each object in the room. Inside the balls, the dynamic mesh gets full resolution.
 std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects);

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "app/physics/free_pose.hpp"
+#include "app/physics/placement/free_pose.hpp"
 #include "app/physics/rigid_motion.hpp"
 
 namespace roomradar {

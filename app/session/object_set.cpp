@@ -10,11 +10,6 @@
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
-namespace {
-constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
-
-}  // namespace
-
 ObjectSet::ObjectSet(GlContext& context, const FrameScene& scene, const SessionRoom& room,
                      const SessionConfig& config)
     : context_(context), scene_(scene), room_(room), config_(config), radar_(config.radar) {}
@@ -30,19 +25,22 @@ void ObjectSet::require_new(const std::string& name) const {
     throw Error("script: there is an object named " + name + " already");
 }
 
-void ObjectSet::add(const std::string& name, const Mesh& mesh) { add(name, Model{.mesh = mesh}); }
-
-void ObjectSet::add(const std::string& name, Model model) {
+void ObjectSet::add(const std::string& name, Model model, const BodyMaterial& material) {
   require_new(name);
   std::vector<std::string> notes = model.notes;
-  objects_.push_back(object_of(context_, name, std::move(model), objects_));
-  for (std::string& note : notes) notices_.push_back({"", std::move(note)});
+  take_in(object_of(context_, name, std::move(model), objects_), std::move(notes), material);
 }
 
-void ObjectSet::add(const std::string& name, ObjectParts parts) {
+void ObjectSet::add(const std::string& name, ObjectParts parts, const BodyMaterial& material) {
   require_new(name);
   std::vector<std::string> notes = parts.source.notes;
-  objects_.push_back(object_of(context_, name, std::move(parts), objects_));
+  take_in(object_of(context_, name, std::move(parts), objects_), std::move(notes), material);
+}
+
+void ObjectSet::take_in(std::unique_ptr<VirtualObject> object, std::vector<std::string> notes,
+                        const BodyMaterial& material) {
+  change_material(*object, material);
+  objects_.push_back(std::move(object));
   for (std::string& note : notes) notices_.push_back({"", std::move(note)});
 }
 
@@ -158,14 +156,6 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
   }
 }
 
-PushDirections ObjectSet::push_of(const VirtualObject& object) const {
-  // Without the map, all surfaces are the frame's, and none is known to be dynamic.
-  if (config_.scene.surfaces != SurfacePolicy::kMap) return {};
-  return depenetration_directions(
-      {&scene_.dynamic_world().seen_world, &scene_.dynamic_world().inferred_world},
-      object.body.T_world_object * object.model->middle, radius_m(object) + kNearbyReach_m);
-}
-
 ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes& times) {
   constexpr double kStuckLooksAfter_s = 0.5;  // overlaps are the most expensive contacts
   double radar_ms = 0.0;
@@ -179,18 +169,16 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
     if (!object->body.asleep) object->in_unknown = object->in_unknown && is_in_solid_unknown(room_, *object);
     due.push_back({.object = object, .waited_s = std::exchange(object->waited_s, 0.0)});
   }
+  // Without the map, all surfaces are the frame's, and none is known to be dynamic.
+  const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
   for (DueObject& one : due) {
-    one.push = push_of(*one.object);
     one.scene = scene_without(one.object);
-    one.is_undisturbed = config_.scene.surfaces == SurfacePolicy::kMap &&
-                         is_undisturbed(*one.object, one.scene, kNearbyReach_m);
-    if (!one.is_undisturbed)
-      drop_engulfing_back(*one.object, one.waited_s, one.push, config_.physics, radar_, proximity_, one.scene,
-                          radar_ms);
+    one.is_undisturbed = has_map && is_undisturbed(*one.object, one.scene);
     one.bodies = bodies_in(one.scene, objects_, *one.object);
   }
   ContactCounts counts;
-  advance_objects(due, config_.physics, radar_, proximity_, contact_system_, counts, radar_ms);
+  advance_objects(due, has_map ? &scene_ : nullptr, config_.physics, radar_, proximity_, contact_system_,
+                  counts, radar_ms);
   const bool is_any_overlapped =  // what was shifted out of an overlap may overlap other objects now
       std::any_of(due.begin(), due.end(), [](const DueObject& one) { return one.was_overlapped; });
   for (const DueObject& one : due) {

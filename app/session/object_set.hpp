@@ -24,14 +24,6 @@
 
 namespace roomradar {
 
-/// Initial state of an object that is put into the room.
-struct ObjectState {
-  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();      ///< position of the object's origin
-  std::optional<Eigen::Matrix3d> R_world_object{};               ///< unset: the object keeps its orientation
-  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< velocity of the centre of mass
-  Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();
-};
-
 /// Functions that take the name of an existing object throw Error if there is none of that name. Not thread
 /// safe: call all functions on the constructing thread, whose GL context is used.
 class ObjectSet {
@@ -43,13 +35,16 @@ class ObjectSet {
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& all() const { return objects_; }
   [[nodiscard]] const std::vector<WaitingDrop>& waiting_drops() const { return waiting_; }
 
-  /// Adds an object, outside the room until it is placed or dropped. Throws Error if the name is taken or the
-  /// mesh has no valid triangles.
-  void add(const std::string& name, const Mesh& mesh);
-  /// Adds an object with textures. Model::notes become notices.
-  void add(const std::string& name, Model model);
+  /// Adds an object, outside the room until it is placed or dropped. Model::notes become notices. Throws
+  /// Error if the name is taken, the mesh has no valid triangles, or set_material() would throw.
+  void add(const std::string& name, Model model, const BodyMaterial& material = {});
   /// Adds an object from the result of object_parts(), which can be computed on another thread.
-  void add(const std::string& name, ObjectParts parts);
+  void add(const std::string& name, ObjectParts parts, const BodyMaterial& material = {});
+  /// Overwrites the values of an object's material that `change` sets, and wakes the object. Throws Error if
+  /// a value is out of range, and for a density if the mesh is open.
+  void set_material(const std::string& name, const BodyMaterial& change) {
+    change_material(named(name), change);
+  }
   /// Puts an object into the room. An object that would overlap other objects is placed on top of them if no
   /// surface of the room is in the way. If a surface intersects the object, or its centre is in solid unknown
   /// space, it is placed at the nearest free pose within 10 cm. A notice is then created. Throws PlaceRefused
@@ -116,14 +111,14 @@ class ObjectSet {
 
   VirtualObject& named(const std::string& name);
   void require_new(const std::string& name) const;
+  void take_in(std::unique_ptr<VirtualObject> object, std::vector<std::string> notes,
+               const BodyMaterial& material);
   /// Removes the object's waiting drop.
   void cancel_drop(const std::string& name);
   /// Returns the object. Cancels its waiting drop, and ends carrying it.
   VirtualObject& take_over(const std::string& name);
   void put(VirtualObject& object, const ObjectState& state);
   [[nodiscard]] WayOut way_out_of(const VirtualObject& object);
-  /// Returns the directions from the object to nearby dynamic surfaces, see depenetration_directions().
-  [[nodiscard]] PushDirections push_of(const VirtualObject& object) const;
 };
 
 }  // namespace roomradar

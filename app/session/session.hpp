@@ -40,13 +40,21 @@ class Session {
   FrameResult step(const Frame& frame, StageTimes& times);
 
   /// Adds an object, outside the room until placed. Throws Error if the name is taken or the mesh is invalid.
-  void add_object(const std::string& name, const Mesh& mesh) { objects_.add(name, mesh); }
+  void add_object(const std::string& name, const Mesh& mesh) { objects_.add(name, Model{.mesh = mesh}); }
   /// Adds an object with textures. Model::notes become notices.
-  void add_object(const std::string& name, Model model) { objects_.add(name, std::move(model)); }
+  void add_object(const std::string& name, Model model, const BodyMaterial& material = {}) {
+    objects_.add(name, std::move(model), material);
+  }
   /// Adds an object from the result of object_parts(), which can be computed on another thread.
-  void add_object(const std::string& name, ObjectParts parts) { objects_.add(name, std::move(parts)); }
-  /// Puts an object into the room; see ObjectSet::place(). place() and the functions below that take a name
-  /// throw Error if there is no object of that name.
+  void add_object(const std::string& name, ObjectParts parts, const BodyMaterial& material = {}) {
+    objects_.add(name, std::move(parts), material);
+  }
+  /// Changes an object's mass, density, friction or restitution; see ObjectSet::set_material().
+  void set_material(const std::string& name, const BodyMaterial& change) {
+    objects_.set_material(name, change);
+  }
+  /// Puts an object into the room; see ObjectSet::place(). All functions that take the name of an object
+  /// throw Error if there is none of that name.
   void place(const std::string& name, const ObjectState& state) { objects_.place(name, state); }
   /// Puts an object into the room with the velocities of `state`.
   void throw_object(const std::string& name, const ObjectState& state) { objects_.place(name, state); }

@@ -1,6 +1,6 @@
 // physics_bench.cpp: virtual objects at rest on noisy depth, thrown about in simulated rooms, and their cost.
 //
-// usage: physics_bench [--throws N] [--only rest|throws|time] [--json FILE]
+// usage: physics_bench [--throws N] [--hands N] [--only rest|throws|hands|time] [--json FILE]
 //
 //   rest    A cube, a teapot, a ball and a plate on a level surface in view of a simulated Kinect with its
 //           noise, in three rooms. All surfaces are each frame's depth (`depth`), or the room's mesh plus the
@@ -9,6 +9,8 @@
 //           exact solids: every substep of a path is sampled in steps no longer than the solids' clearance.
 //           The thrown solids are reduced by 0.9 mm on all sides, since meshes are up to 0.5 mm inside round
 //           solids.
+//   hands   A hand through N objects (200) on a table at 0.1 to 3 m/s, seen by a simulated Kinect with its
+//           noise; see physics_bench_hands.hpp.
 //   time    Time per frame with one body of some 6,300 triangles (12 for the cube), from the throw to rest;
 //           and of a board that falls flat on another, of 12 and of 10,800 triangles each.
 //
@@ -24,7 +26,7 @@
 #include <string>
 
 #include "app/objects/teapot.hpp"
-#include "app/physics/placement.hpp"
+#include "app/physics/placement/placement.hpp"
 #include "app/physics/rigid_motion.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/sim/room/room_mesh.hpp"
@@ -32,6 +34,7 @@
 #include "app/sim/solids/solid_distance.hpp"
 #include "bench_times.hpp"
 #include "mapping/types/system/error.hpp"
+#include "physics_bench_hands.hpp"
 #include "physics_bench_scenes.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/radar/shapes.hpp"
@@ -43,7 +46,7 @@ using Vec3 = Eigen::Vector3d;
 constexpr double kFrame_s = 1.0 / 30.0;
 
 struct Options {
-  int throws = 10'000;
+  int throws = 10'000, hands = 200;
   std::string only, json;
   [[nodiscard]] bool wants(const char* table) const { return only.empty() || only == table; }
 };
@@ -55,12 +58,14 @@ Options parse(int argc, char** argv) {
     if (i + 1 == argc) throw Error(name + ": has no value");
     if (name == "--throws") {
       options.throws = std::clamp(std::atoi(argv[i + 1]), 1, 10'000'000);
+    } else if (name == "--hands") {
+      options.hands = std::clamp(std::atoi(argv[i + 1]), 1, 100'000);
     } else if (name == "--only") {
       options.only = argv[i + 1];
     } else if (name == "--json") {
       options.json = argv[i + 1];
     } else {
-      throw Error(name + ": not known; there are --throws, --only and --json");
+      throw Error(name + ": not known; there are --throws, --hands, --only and --json");
     }
   }
   return options;
@@ -409,6 +414,7 @@ int run(int argc, char** argv) {
   if (options.wants("time")) measure_boards(rows);
   if (options.wants("rest")) measure_rest(rows);
   if (options.wants("throws")) measure_throws(options.throws, rows);
+  if (options.wants("hands")) measure_hands(options.hands, rows);
   test::write_rows(options.json, rows);
   return 0;
 }

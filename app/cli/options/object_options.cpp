@@ -13,13 +13,17 @@ namespace {
 
 constexpr double kLeastSize_m = 0.001, kMostSize_m = 10.0;
 constexpr double kMostCoordinate_m = 1e6;
-constexpr std::array<std::string_view, 3> kKeys = {"size", "up", "at"};
+constexpr auto kKeys = [] {
+  std::array<std::string_view, 3 + kMaterialFields.size()> keys = {"size", "up", "at"};
+  for (std::size_t i = 0; i < kMaterialFields.size(); ++i) keys[3 + i] = kMaterialFields[i].name;
+  return keys;
+}();
 
 [[noreturn]] void fail(const std::string& text, const std::string& fault) {
   throw CLI::ValidationError("--object " + text + ": " + fault);
 }
 
-/// Returns the position of the next ",size=", ",up=" or ",at="; npos if there is none.
+/// Returns the position of the next ",size=", ",up=" or another key; npos if there is none.
 std::size_t next_key(std::string_view text, std::size_t from) {
   std::size_t first = std::string_view::npos;
   for (const std::string_view key : kKeys)
@@ -56,6 +60,13 @@ void take_value(const std::string& text, const std::string& key, const std::stri
   const bool is_again = (key == "size" && object.source.size_m) || (key == "up" && object.source.up) ||
                         (key == "at" && object.at_world);
   if (is_again) fail(text, key + "= is given twice");
+  for (const MaterialField& field : kMaterialFields) {
+    if (key != field.name) continue;
+    std::optional<double>& number = object.material.*field.value;
+    if (number) fail(text, key + "= is given twice");
+    number = number_of(text, value, field.least, field.most, key + "= must be " + field.wanted);
+    return;
+  }
   if (key == "size")
     object.source.size_m =
         number_of(text, value, kLeastSize_m, kMostSize_m, "size= must be within 0.001 and 10 (metres)");
@@ -77,6 +88,8 @@ ObjectOption object_of(const std::string& text) {
                text.substr(equals + 1, end == std::string::npos ? end : end - equals - 1), object);
     at = end;
   }
+  if (object.material.mass_kg && object.material.density_kg_m3)
+    fail(text, "mass= and density= exclude each other");
   return object;
 }
 
@@ -89,7 +102,9 @@ void add_object_options(CLI::App& command, ObjectOptions& options) {
           "virtual object: teapot (built in), or a .glb, .gltf, .obj, .ply, .stl or .dae file; may be\n"
           "given several times. After the name may follow, each with a comma: size=M, the longest\n"
           "side (m); up=AXIS, the file's axis that points up (x, y, z, -x, -y, -z); at=X,Y,Z, a point\n"
-          "of the map (m) 5 cm above which it is dropped, else over a level surface in view:\n"
+          "of the map (m) 5 cm above which it is dropped, else over a level surface in view;\n"
+          "mass=KG or density=KG/M3 (default: 1000 kg/m3, an open mesh 5 kg/m2); friction=F, 0..10\n"
+          "(default: 0.5); restitution=E, 0..1 (default: 0):\n"
           "--object chair.glb,size=0.9,up=y,at=0.4,-0.1,0.75 (default: teapot)")
       ->allow_extra_args(false)
       ->type_name("MESH[,size=M][,up=AXIS][,at=X,Y,Z]");

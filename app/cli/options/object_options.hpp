@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/objects/object_file.hpp"
+#include "app/physics/body_material.hpp"
 
 namespace CLI {
 class App;
@@ -17,6 +18,7 @@ namespace roomradar {
 struct ObjectOption {
   std::string text{};  ///< text as given, such as "chair.glb,size=0.9,up=y,at=0.4,-0.1,0.75"
   ObjectSource source{};
+  BodyMaterial material{};
   /// Point above which the object is dropped. Unset: the object is dropped above a surface in view.
   std::optional<Eigen::Vector3d> at_world{};
 };

@@ -21,10 +21,11 @@ constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxAngular_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
 
-constexpr std::array<Word<Action>, 15> kActions = {{{"add", Action::kAdd},
+constexpr std::array<Word<Action>, 16> kActions = {{{"add", Action::kAdd},
                                                     {"place", Action::kPlace},
                                                     {"drop", Action::kDrop},
                                                     {"throw", Action::kThrow},
+                                                    {"material", Action::kMaterial},
                                                     {"remove", Action::kRemove},
                                                     {"turn", Action::kTurn},
                                                     {"carry", Action::kCarry},
@@ -88,6 +89,18 @@ constexpr auto kUpAxes = [] {
   return words;
 }();
 
+/// Reads one value of a material. Returns false if the next word names none, or one that is set.
+bool read_material(LineReader& line, BodyMaterial& material) {
+  for (const MaterialField& field : kMaterialFields) {
+    std::optional<double>& value = material.*field.value;
+    if (value || !line.take_if(field.name)) continue;
+    value = line.number(field.wanted, field.least, field.most);
+    if (material.mass_kg && material.density_kg_m3) line.fail("a mass and a density exclude each other");
+    return true;
+  }
+  return false;
+}
+
 /// Reads what follows the mesh, in any order.
 void read_add(LineReader& line, ScriptEvent& event) {
   while (!line.done()) {
@@ -95,7 +108,7 @@ void read_add(LineReader& line, ScriptEvent& event) {
       event.size_m = line.number("a size (m), 0.001..10", 0.001, 10.0);
     } else if (!event.up && line.take_if("up")) {
       event.up = line.choice("the axis of the file that points up", kUpAxes);
-    } else {
+    } else if (!read_material(line, event.material)) {
       return;
     }
   }
@@ -119,6 +132,13 @@ void read_action(LineReader& line, ScriptEvent& event) {
     case Action::kAdd:
       event.mesh = line.word("'teapot' or a mesh file");
       read_add(line, event);
+      break;
+    case Action::kMaterial:
+      if (!read_material(line, event.material))
+        line.fail("'material " + event.name +
+                  "' is followed by mass, density, friction or restitution, and a number");
+      while (read_material(line, event.material)) {
+      }
       break;
     case Action::kPlace:
       event.position_world = read_position(line);
@@ -181,6 +201,14 @@ std::string vector_words(const Eigen::Vector3d& v) {
   return number_word(v.x()) + number_word(v.y()) + number_word(v.z());
 }
 
+std::string material_words(const BodyMaterial& material) {
+  std::string words;
+  for (const MaterialField& field : kMaterialFields)
+    if (const auto& value = material.*field.value)
+      words.append(" ").append(field.name) += number_word(*value);
+  return words;
+}
+
 std::string turned_words(const ScriptEvent& event) {
   return event.R_world_object ? " turned" + vector_words(event.turned_deg) : std::string();
 }
@@ -241,6 +269,10 @@ std::string to_line(const ScriptEvent& event) {
       line.append(" ").append(event.mesh);
       if (event.size_m) line += " size" + number_word(*event.size_m);
       if (event.up) line.append(" up ").append(to_string(*event.up));
+      line += material_words(event.material);
+      break;
+    case Action::kMaterial:
+      line += material_words(event.material);
       break;
     case Action::kPlace:
       line += vector_words(*event.position_world) + turned_words(event);

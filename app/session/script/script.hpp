@@ -24,6 +24,8 @@ enum class LastLine { kWhole, kMayBeCut };
 ///
 ///     frame 0    add pot teapot size 0.2
 ///     frame 0    add chair chair.obj size 0.9 up z        longest side (m); axis of the file that points up
+///     frame 0    add ball ball.obj density 600 friction 0.3 restitution 0.8     kg/m3, 1..30000; friction on
+///                                                 the room 0..10; 0..1. Or mass 0.5 instead of density, kg
 ///     frame 10   drop pot view height 0.3         above the free level surface nearest to the image centre
 ///     frame 11   drop pot near 0.4 -0.1 0.7       above the one nearest to this point, at most 25 cm away
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
@@ -34,6 +36,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     time 5.5   turn pot 0 0 45                  about the world's axes (degrees)
 ///     time 5.6   carry pot 0.4 -0.1 1.0           moved to this position and held there
 ///     time 5.9   release pot velocity 0 0 0
+///     time 5.9   material pot mass 2 friction 0.1       what is not named stays; also density, restitution
 ///     time 6     remove pot
 ///     time 7     adopt                           objects in view that stand still are added to the map
 ///     frame 200  surfaces skirt                   holes, skirt, border or map

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/objects/object_file.hpp"
+#include "app/physics/body_material.hpp"
 #include "app/quality/frame_load.hpp"
 #include "app/quality/quality.hpp"
 #include "dynamic/surface/surface_policy.hpp"
@@ -18,6 +19,7 @@ enum class Action {
   kPlace,     ///< put an object at a position, with zero velocity
   kDrop,      ///< let an object fall from above a point, or from above a level surface in view
   kThrow,     ///< put an object at a position, with a velocity
+  kMaterial,  ///< change an object's mass, density, friction or restitution
   kRemove,    ///< take an object out of the room
   kTurn,      ///< rotate an object about its centre until the first contact
   kCarry,     ///< move an object towards a position and hold it there until kRelease; obstacles stop it
@@ -58,6 +60,7 @@ struct ScriptEvent {
   std::string mesh;
   std::optional<double> size_m;  ///< kAdd: length of the longest side after scaling; unset: not scaled
   std::optional<UpAxis> up;      ///< kAdd: axis of the file that points up; unset: the format's default
+  BodyMaterial material;         ///< kAdd, kMaterial: unset values are unchanged
   /// kAdd: origin of the model. kAsInFile is only for replaying sessions recorded before kNear was
   /// introduced.
   ModelOrigin origin = ModelOrigin::kNear;

@@ -25,7 +25,7 @@ void add_object(Session& session, const ScriptEvent& add) {
   const ObjectSource source = source_of(add);
   Model model = object_model(source);
   require_sensible_size(model, source, {session.room_extent_m(), option_before_size(add)});
-  session.add_object(add.name, std::move(model));
+  session.add_object(add.name, std::move(model), add.material);
 }
 
 }  // namespace
@@ -59,6 +59,9 @@ void apply(Session& session, const ScriptEvent& event) {
       break;
     case Action::kTurn:
       session.turn(event.name, event.turn_world_deg);
+      break;
+    case Action::kMaterial:
+      session.set_material(event.name, event.material);
       break;
     case Action::kRemove:
       session.remove(event.name);

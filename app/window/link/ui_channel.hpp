@@ -74,6 +74,8 @@ struct ShownObject {
   bool is_carried = false;
   bool stuck = false;
   SurfaceKind rests_on = SurfaceKind::kNothing;
+  double mass_kg = 0.0;
+  Coefficients on_room;  ///< on surfaces of the room
 };
 
 /// A radar query for the chosen object along its velocity, or along gravity if it is slow.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
 
 #include "app/window/panes/annotate.hpp"
 
@@ -73,6 +74,34 @@ void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings
                      ImGuiSliderFlags_AlwaysClamp);
   ImGui::SliderFloat("##speed", &settings.throw_speed_mps, 0.5F, 10.0F, "throw at %.1f m/s",
                      ImGuiSliderFlags_AlwaysClamp);
+  ImGui::PopItemWidth();
+}
+
+/// Draws sliders for the chosen object's mass, friction and restitution.
+void draw_material(const Snapshot& shown, UiChannel& link, PlaySettings& settings, const look::Fonts& fonts) {
+  const auto chosen = std::find_if(shown.objects.begin(), shown.objects.end(),
+                                   [&](const ShownObject& object) { return object.name == shown.chosen; });
+  if (chosen == shown.objects.end()) return;
+  look::heading("MATERIAL", fonts);
+  if (!ImGui::IsAnyItemActive()) {
+    settings.mass_kg = static_cast<float>(chosen->mass_kg);
+    settings.friction = static_cast<float>(chosen->on_room.friction);
+    settings.restitution = static_cast<float>(chosen->on_room.restitution);
+  }
+  const auto slider = [&](const char* id, float& value, float least, float most, const char* format,
+                          ImGuiSliderFlags flags, std::optional<double> BodyMaterial::*field) {
+    ImGui::SliderFloat(id, &value, least, most, format, flags | ImGuiSliderFlags_AlwaysClamp);
+    if (!ImGui::IsItemDeactivatedAfterEdit()) return;
+    BodyMaterial change;
+    change.*field = static_cast<double>(value);
+    link.ask(material_command(chosen->name, change));
+  };
+  ImGui::PushItemWidth(-1.0F);
+  slider("##mass", settings.mass_kg, 0.001F, 1000.0F, "weighs %.3g kg", ImGuiSliderFlags_Logarithmic,
+         &BodyMaterial::mass_kg);
+  slider("##friction", settings.friction, 0.0F, 2.0F, "friction %.2f", 0, &BodyMaterial::friction);
+  slider("##restitution", settings.restitution, 0.0F, 1.0F, "restitution %.2f", 0,
+         &BodyMaterial::restitution);
   ImGui::PopItemWidth();
 }
 
@@ -166,10 +195,18 @@ UserCommand camera_command(CameraPlay camera) {
   return command;
 }
 
+UserCommand material_command(const std::string& object, const BodyMaterial& change) {
+  UserCommand command = command_of(Action::kMaterial);
+  command.event.name = object;
+  command.event.material = change;
+  return command;
+}
+
 void draw_side_panel(const Area& area, const Snapshot& shown, UiChannel& link, PlaySettings& settings,
                      const look::Fonts& fonts) {
   look::begin_pane("side", area, look::kPanel, /*scrolls=*/true);
   draw_objects(shown, link, settings, fonts);
+  draw_material(shown, link, settings, fonts);
   draw_policies(shown, link, settings, fonts);
   draw_frame_facts(shown, fonts);
   look::end_pane();

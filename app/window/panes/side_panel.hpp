@@ -18,6 +18,8 @@ struct PlaySettings {
   std::vector<ObjectSource> meshes;  ///< objects that can be added: `teapot` and files
   std::size_t mesh = 0;
   int radar_px = 64;  ///< value of the radar's resolution slider while it is dragged
+  /// Values of the chosen object's material sliders while one is dragged: kg, coefficients.
+  float mass_kg = 1.0F, friction = 0.5F, restitution = 0.0F;
 };
 
 void draw_side_panel(const Area& area, const Snapshot& shown, UiChannel& link, PlaySettings& settings,
@@ -30,5 +32,7 @@ UserCommand surfaces_command(SurfacePolicy surfaces);
 UserCommand unknown_command(bool is_solid);
 UserCommand radar_command(const RadarConfig& radar);
 UserCommand camera_command(CameraPlay camera);
+/// Returns the command that changes an object's material.
+UserCommand material_command(const std::string& object, const BodyMaterial& change);
 
 }  // namespace roomradar

@@ -581,7 +581,8 @@ TEST_F(CommandLine, BareCommandsListTheirParts) {
   const Outcome bare = roomradar("");
   EXPECT_EQ(bare.status, 2);
   for (const char* command : {"prescan", "run", "map", "record", "calibrate", "doctor", "help", "simulate"})
-    EXPECT_NE(bare.out.find(std::string("\n  ") + command + " "), std::string::npos) << command << "\n" << bare.out;
+    EXPECT_NE(bare.out.find(std::string("\n  ") + command + " "), std::string::npos) << command << "\n"
+                                                                                     << bare.out;
   expect_fault(roomradar("map"), 2, "  export ");
 }
 
@@ -944,13 +945,17 @@ TEST_F(CommandLine, SeveralObjectsEachWithASizeAPlaceAndAnAxis) {
   std::ofstream(box) << "v 0 0 0\nv 300 0 0\nv 0 100 0\nv 0 0 100\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
   const std::string run = "run 'sim:table?frames=3&width=160' --map " + map();
   const std::string report = " --report " + (folder_ / "objects.json").string();
-  const Outcome two = roomradar(run + " --object " + box.string() +
-                                ",size=0.3,at=0.4,-0.1,0.75 --object teapot,at=0,-0.2,1" + report);
+  const Outcome two =
+      roomradar(run + " --object " + box.string() +
+                ",size=0.3,at=0.4,-0.1,0.75,friction=0.2 --object teapot,mass=2.5,at=0,-0.2,1" + report);
   ASSERT_EQ(two.status, 0) << two.out;
   const auto objects = nlohmann::json::parse(read_text(folder_ / "objects.json"))["objects"];
   ASSERT_EQ(objects.size(), 2U);
   EXPECT_EQ(objects[0]["name"], "box,1");
   EXPECT_EQ(objects[1]["name"], "teapot");
+  EXPECT_EQ(objects[0]["friction"], 0.2);
+  EXPECT_EQ(objects[1]["mass_kg"], 2.5);
+  EXPECT_EQ(objects[1]["friction"], 0.5);
   EXPECT_NEAR(objects[0]["position_m"][0].get<double>(), 0.4, 0.1);
   EXPECT_NEAR(objects[0]["middle_m"][2].get<double>() - objects[0]["position_m"][2].get<double>(), 0.05,
               0.02);
@@ -961,8 +966,10 @@ TEST_F(CommandLine, SeveralObjectsEachWithASizeAPlaceAndAnAxis) {
   std::ofstream(folder_ / "large.txt") << "frame 0 add box " << box.string() << "\n";
   expect_fault(roomradar(run + " --script " + (folder_ / "large.txt").string()), 1,
                "use add box " + box.string() + " size 0.3");
-  for (const char* bad : {"teapot,size=0", "teapot,size=big", "teapot,up=w", "teapot,at=1,2",
-                          "teapot,at=1,2,x", "teapot,size=0.2,size=0.3", ",size=0.3"})
+  for (const char* bad :
+       {"teapot,size=0", "teapot,size=big", "teapot,up=w", "teapot,at=1,2", "teapot,at=1,2,x",
+        "teapot,size=0.2,size=0.3", ",size=0.3", "teapot,mass=0", "teapot,mass=-1", "teapot,density=nan",
+        "teapot,friction=11", "teapot,restitution=2", "teapot,mass=1,density=1000", "teapot,mass=1,mass=2"})
     expect_fault(roomradar(run + " --object " + bad), 2, "--object");
   expect_fault(roomradar(run + " --object-up w"), 2, "--object-up w");
   expect_fault(roomradar(run + " --object-size 0.3 --script s.txt"), 2, "--script says how");

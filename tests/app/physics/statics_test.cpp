@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "app/sim/solids/counter_random.hpp"
 #include "tests/radar/shapes.hpp"
 #include "tests/support/body_group.hpp"
 
@@ -83,59 +87,163 @@ TEST(Statics, AnArchOfSevenWedgesStands) {
   expect_to_stand(group, 60.0, "arch");
 }
 
-TEST(Statics, AnOverhangOfFourBoardsStandsUpToTheHarmonicLimit) {
-  // Each board of length 0.4 m may reach beyond the one below by 0.2/1, 0.2/2, 0.2/3 m from the top down.
-  for (const double factor : {0.95, 1.05}) {
-    BodyGroup group = on_floor(std::vector<Mesh>(4, box(0.4, 0.2, 0.04)));
-    double x = 0.0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (i > 0) x += factor * 0.2 / static_cast<double>(4 - i);
-      group.put(i, {x, 0.0, 0.021 + 0.041 * static_cast<double>(i)});
+/// Number of random loads per test: 20 with ROOMRADAR_LONG_TESTS.
+int trials() { return std::getenv("ROOMRADAR_LONG_TESTS") != nullptr ? 20 : 3; }
+
+TEST(Statics, AnOverhangOfFourBoardsStandsUpToItsLimit) {
+  for (int trial = 0; trial < trials(); ++trial) {
+    // Equal boards first: the harmonic limit. Then boards of random masses.
+    CounterRandom random(1, static_cast<std::uint64_t>(trial));
+    std::vector<double> masses_kg(4, 1.0);
+    for (double& mass_kg : masses_kg) mass_kg = trial == 0 ? 1.0 : random.uniform(0.5, 2.0);
+    // A board of half length 0.2 m may reach beyond the one below until the centre of mass of all boards from
+    // it on is above that one's end.
+    double above_kg = 0.0, centre_m = 0.0;  // of the boards from i on; centre_m from the middle of board i
+    std::vector<double> reach_m(5, 0.0);
+    for (std::size_t i = 3; i > 0; --i) {
+      centre_m = above_kg * (reach_m[i + 1] + centre_m) / (above_kg + masses_kg[i]);
+      above_kg += masses_kg[i];
+      reach_m[i] = 0.2 - centre_m;
     }
-    if (factor < 1.0) {
-      expect_to_stand(group, 10.0, "overhang");
-    } else {
-      const Body put = group.bodies[3];
-      group.run(4.0, {});
-      EXPECT_GT(strayed_m(group.bodies[3], put.T_world_object), 0.02);
+    for (const double factor : {0.95, 1.05}) {
+      BodyGroup group = on_floor(std::vector<Mesh>(4, box(0.4, 0.2, 0.04)));
+      group.mass_kg = masses_kg;
+      double x = 0.0;
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (i > 0) x += factor * reach_m[i];
+        group.put(i, {x, 0.0, 0.021 + 0.041 * static_cast<double>(i)});
+      }
+      if (factor < 1.0) {
+        expect_to_stand(group, 10.0, "overhang " + std::to_string(trial));
+      } else {
+        const Body put = group.bodies[3];
+        group.run(4.0, {});
+        EXPECT_GT(strayed_m(group.bodies[3], put.T_world_object), 0.02) << trial;
+      }
     }
   }
 }
 
 TEST(Statics, ASeesawTipsToTheHeavierSide) {
   // A board over a ridge of 4 cm, loads at 0.3 m to either side: it stays as long as both lie within its top.
-  const double arm_m = 0.3, half_ridge_m = 0.02, board_kg = 1.0;
-  for (const double factor : {0.95, 1.05}) {
-    for (const double side : {-1.0, 1.0}) {
+  const double arm_m = 0.3, half_ridge_m = 0.02;
+  for (int trial = 0; trial < trials(); ++trial) {
+    CounterRandom random(2, static_cast<std::uint64_t>(trial));
+    const double board_kg = random.uniform(0.5, 2.0), lighter_kg = random.uniform(0.5, 2.0);
+    const double side = trial % 2 == 0 ? 1.0 : -1.0;
+    for (const double factor : {0.95, 1.05}) {
       BodyGroup group({box(0.8, 0.2, 0.02), box(0.06, 0.1, 0.06), box(0.06, 0.1, 0.06)});
       group.add_surface(shapes::floor(4.0F, 0.0F));
       Mesh ridge = shapes::box(Eigen::Vector3f(0.04F, 0.4F, 0.2F));
       ridge.origin.z() = 0.1;
       group.add_surface(ridge);
-      // The heavier load tips it if m (arm - half) > half board + 1 kg (arm + half).
-      const double limit_kg = (half_ridge_m * board_kg + arm_m + half_ridge_m) / (arm_m - half_ridge_m);
-      group.mass_kg = {board_kg, 1.0, factor * limit_kg};
+      // The heavier load tips it if m (arm - half) > half board + lighter (arm + half).
+      const double limit_kg =
+          (half_ridge_m * board_kg + lighter_kg * (arm_m + half_ridge_m)) / (arm_m - half_ridge_m);
+      group.mass_kg = {board_kg, lighter_kg, factor * limit_kg};
       group.put(0, {0.0, 0.0, 0.211});
       group.put(1, {-side * arm_m, 0.0, 0.252});
       group.put(2, {side * arm_m, 0.0, 0.252});
       group.run(4.0, {});
       const bool has_tipped = group.bodies[0].T_world_object.linear()(2, 2) < 0.99;
-      EXPECT_EQ(has_tipped, factor > 1.0) << factor << " " << side;
+      EXPECT_EQ(has_tipped, factor > 1.0) << factor << " " << trial;
       EXPECT_EQ(group.deepest_m, 0.0);
     }
   }
 }
 
 TEST(Statics, ABoxOverAnEdgeTipsPastItsMiddle) {
-  for (const double factor : {0.95, 1.05}) {
-    BodyGroup group({box(0.2, 0.1, 0.1)});
-    Mesh step = shapes::box(Eigen::Vector3f(1.0F, 1.0F, 0.5F));
-    step.origin = Vec3(-0.5, 0.0, 0.25);
-    group.add_surface(step);
+  for (int trial = 0; trial < trials(); ++trial) {
+    CounterRandom random(3, static_cast<std::uint64_t>(trial));
+    // A box with a load on its end: the common centre of mass is 5 % of the half length from the edge.
+    const double length_m = random.uniform(0.15, 0.3), height_m = random.uniform(0.04, 0.12);
+    const double load_kg = random.uniform(0.1, 2.0), load_x_m = random.uniform(-0.3, 0.3) * length_m;
+    for (const double factor : {0.95, 1.05}) {
+      BodyGroup group({box(length_m, 0.1, height_m), box(0.03, 0.08, 0.03)});
+      Mesh step = shapes::box(Eigen::Vector3f(1.0F, 1.0F, 0.5F));
+      step.origin = Vec3(-0.5, 0.0, 0.25);
+      group.add_surface(step);
+      group.add_surface(shapes::floor(4.0F, 0.0F));
+      group.mass_kg = {1.0, load_kg};
+      const double x = 0.5 * length_m * (factor - 1.0) - load_kg * load_x_m / (1.0 + load_kg);
+      group.put(0, {x, 0.0, 0.501 + 0.5 * height_m});
+      group.put(1, {x + load_x_m, 0.0, 0.502 + height_m + 0.015});
+      group.run(4.0, {});
+      EXPECT_EQ(group.bodies[0].T_world_object.translation().z() < 0.5, factor > 1.0)
+          << factor << " " << trial;
+      EXPECT_EQ(group.deepest_m, 0.0);
+    }
+  }
+}
+
+/// Returns a plane that falls towards +x at an angle.
+Mesh slope(double angle_rad) {
+  const auto at = [&](double x, double y) -> Eigen::Vector3f {
+    return Vec3(x * std::cos(angle_rad), y, -x * std::sin(angle_rad)).cast<float>();
+  };
+  Mesh mesh;
+  shapes::add_quad(mesh, at(-3, -3), at(3, -3), at(3, 3), at(-3, 3));
+  return mesh;
+}
+
+TEST(Statics, ABoxSlidesDownASlopeSteeperThanItsOwnFriction) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  for (const double friction : {0.1, 0.3, 0.8, 1.2}) {
+    for (const double beyond_rad : {-kDegree, kDegree}) {
+      const double angle_rad = std::atan(friction) + beyond_rad;
+      BodyGroup group({box(0.2, 0.2, 0.05)});
+      group.add_surface(slope(angle_rad));
+      group.bodies[0].material.friction = friction;
+      const Eigen::AngleAxisd tilt(angle_rad, Vec3::UnitY());
+      group.bodies[0].T_world_object.linear() = tilt.toRotationMatrix();
+      group.put(0, tilt * Vec3(0.0, 0.0, 0.026));
+      const Body put = group.bodies[0];
+      group.run(1.0, {});
+      const double slid_m = strayed_m(group.bodies[0], put.T_world_object);
+      const double expected_m =
+          0.5 * 9.81 * (std::sin(angle_rad) - friction * std::cos(angle_rad));  // after 1 s, if it slides
+      if (beyond_rad < 0.0)
+        EXPECT_LT(slid_m, 0.002) << friction;
+      else
+        EXPECT_NEAR(slid_m, expected_m, 0.02 * expected_m + 0.002) << friction;
+    }
+  }
+}
+
+TEST(Statics, FrictionBetweenTwoBodiesIsTheGeometricMean) {
+  for (const double factor : {0.95, 1.05}) {  // of the slope at which the upper one slides
+    BodyGroup group({box(0.4, 0.4, 0.05), box(0.1, 0.1, 0.05)});
     group.add_surface(shapes::floor(4.0F, 0.0F));
-    group.put(0, {0.1 * (factor - 1.0), 0.0, 0.551});  // its middle 5 mm to either side of the edge
-    group.run(4.0, {});
-    EXPECT_EQ(group.bodies[0].T_world_object.translation().z() < 0.5, factor > 1.0) << factor;
+    group.bodies[0].material.friction = 0.4;
+    group.bodies[1].material.friction = 0.9;
+    group.is_carried[0] = true;  // held at rest
+    group.put(0, {0.0, 0.0, 0.026});
+    group.put(1, {0.0, 0.0, 0.077});
+    const double slope_rad = std::atan(factor * 0.6);
+    PhysicsConfig config;
+    config.gravity_world_mps2 = 9.81 * Vec3(std::sin(slope_rad), 0.0, -std::cos(slope_rad));
+    const Body put = group.bodies[1];
+    group.run(0.5, config);
+    EXPECT_EQ(strayed_m(group.bodies[1], put.T_world_object) > 0.01, factor > 1.0) << factor;
+  }
+}
+
+TEST(Statics, ABallBouncesByItsOwnRestitution) {
+  for (const double restitution : {0.3, 0.5, 0.8}) {
+    BodyGroup group({shapes::ball(0.03F, 16, 24)});
+    group.add_surface(shapes::floor(4.0F, 0.0F));
+    group.frame_s = 1e-3;
+    group.bodies[0].material.restitution = restitution;
+    group.put(0, {0.0, 0.0, 1.03});
+    double lowest_m = 1.03, highest_m = 0.0;
+    for (int i = 0; i < 1200; ++i) {
+      group.step({});
+      const double z = group.bodies[0].T_world_object.translation().z();
+      if (group.bodies[0].velocity_world_mps.z() > 0.0) highest_m = std::max(highest_m, z);
+      lowest_m = std::min(lowest_m, z);
+    }
+    const double expected_m = restitution * restitution * (1.03 - lowest_m);
+    EXPECT_NEAR(highest_m - lowest_m, expected_m, 0.03 * expected_m) << restitution;
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "app/run/run_summary.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/radar/shapes.hpp"
@@ -757,6 +759,127 @@ TEST(Session, WhatHasNoFreePlaceNearIsRefusedWithTheNearestAndNothingHasChanged)
   EXPECT_THROW(session.place("box", {.position_world = {0.7, 0.0, 0.06}}), PlaceRefused);
   EXPECT_TRUE(box.in_room);
   EXPECT_EQ(box.body.T_world_object.translation(), Eigen::Vector3d(-1.5, 0.0, 0.3));
+}
+
+constexpr Intrinsics kFineCamera{320, 240, 292.0, 292.0, 159.5, 119.5};
+const Eigen::Isometry3d kAboveTheFloor = test::looking_at({0.1, -0.9, 0.8}, {0.1, 0.0, 0.1});
+
+/// Sweeps a fist of 6 cm at a height of 6 cm over the floor through a box of 10 cm. Returns where the box is,
+/// along the fist's path, minus where the fist is in the last frame.
+double swept_ahead_m(double speed_mps, const Eigen::Vector3d& way) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  session.add_object("box", shapes::box(Eigen::Vector3f::Constant(0.1F)));
+  session.place("box", {.position_world = {0.0, 0.0, 0.052}});
+  const VirtualObject& box = *session.objects().front();
+  const test::Scene floor = test::plane(Eigen::Vector3d::UnitZ(), 0.0);
+  StageTimes times;
+  std::int64_t index = 0;
+  const auto show = [&](const test::Scene& scene) {
+    Frame frame = test::exact_frame(scene, kFineCamera, kAboveTheFloor);
+    frame.index = index;
+    frame.stamp_s = static_cast<double>(index++) / 30.0;
+    static_cast<void>(session.step(frame, times));
+  };
+  while (index < 20) show(floor);
+  EXPECT_TRUE(box.body.asleep);
+  const double step_m = speed_mps / 30.0;
+  double along_m = -0.4;
+  for (; along_m < 0.15; along_m += step_m)
+    show(test::nearest_of(floor, test::sphere(along_m * way + Eigen::Vector3d(0, 0, 0.06), 0.06)));
+  return box.body.T_world_object.translation().dot(way) - (along_m - step_m);
+}
+
+TEST(Session, AHandPushesABoxAndDoesNotPassItAtAnySpeed) {
+  for (const double speed_mps : {0.3, 0.9, 1.5, 3.0})
+    for (const Eigen::Vector3d& way :
+         {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, -1, 0)})
+      EXPECT_GT(swept_ahead_m(speed_mps, way), 0.07) << speed_mps << " m/s along " << way.transpose();
+}
+
+TEST(Session, AnObjectIsGrippedBetweenTwoFingersLiftedCarriedAndPutDown) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  session.add_object("box", shapes::box(Eigen::Vector3f::Constant(0.06F)));
+  session.place("box", {.position_world = {0.0, 0.0, 0.032}});
+  const VirtualObject& box = *session.objects().front();
+  constexpr double kFinger_m = 0.025;
+  StageTimes times;
+  std::int64_t index = 0;
+  // Moves the two fingertips to a place, at a distance from each other, within some frames.
+  Eigen::Vector3d middle(0.0, 0.0, 0.035);
+  double apart_m = 0.4;
+  const auto move = [&](const Eigen::Vector3d& to, double to_apart_m, int frames) {
+    const Eigen::Vector3d from = middle;
+    const double from_apart_m = apart_m;
+    for (int i = 1; i <= frames; ++i) {
+      const double part = static_cast<double>(i) / frames;
+      middle = from + part * (to - from);
+      apart_m = from_apart_m + part * (to_apart_m - from_apart_m);
+      const Eigen::Vector3d half(0.5 * apart_m, 0.0, 0.0);
+      Frame frame =
+          test::exact_frame(test::nearest_of(test::plane(Eigen::Vector3d::UnitZ(), 0.0),
+                                             test::nearest_of(test::sphere(middle - half, kFinger_m),
+                                                              test::sphere(middle + half, kFinger_m))),
+                            kFineCamera, kAboveTheFloor);
+      frame.index = index;
+      frame.stamp_s = static_cast<double>(index++) / 30.0;
+      static_cast<void>(session.step(frame, times));
+    }
+  };
+  const auto at = [&]() -> Eigen::Vector3d { return box.body.T_world_object.translation(); };
+  const double closed_m = 0.06 + 2.0 * kFinger_m - 0.024;  // each 12 mm in the box
+  move(middle, closed_m, 30);
+  EXPECT_LT((at() - Eigen::Vector3d(0, 0, 0.031)).norm(), 0.02);
+  move({0.0, 0.0, 0.235}, closed_m, 30);
+  EXPECT_GT(at().z(), 0.2) << "not lifted";
+  move({0.25, 0.05, 0.235}, closed_m, 30);
+  EXPECT_LT((at() - Eigen::Vector3d(0.25, 0.05, 0.23)).norm(), 0.03) << at().transpose();
+  move(middle, closed_m, 15);  // held still
+  EXPECT_GT(at().z(), 0.2) << "let fall";
+  move({0.25, 0.05, 0.037}, closed_m, 30);
+  move(middle, 0.4, 30);
+  move(middle, 0.4, 30);
+  EXPECT_TRUE(box.body.asleep);
+  EXPECT_LT((at() - Eigen::Vector3d(0.25, 0.05, 0.031)).norm(), 0.04) << at().transpose();
+}
+
+TEST(Session, AnObjectsMaterialIsChangedOrRefused) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  session.add_object("box", Model{.mesh = shapes::box(Eigen::Vector3f::Constant(0.1F))},
+                     {.density_kg_m3 = 600.0, .friction = 0.2});
+  VirtualObject& box = *session.objects().front();
+  EXPECT_NEAR(box.body.mass.mass_kg, 0.6, 1e-6);
+  EXPECT_EQ(box.body.material.friction, 0.2);
+  box.body.asleep = true;
+  session.set_material("box", {.mass_kg = 3.0});
+  EXPECT_EQ(box.body.mass.mass_kg, 3.0);
+  EXPECT_EQ(box.body.material, (BodyMaterial{.mass_kg = 3.0, .friction = 0.2}));  // what is not named stays
+  EXPECT_FALSE(box.body.asleep);
+  session.set_material("box", {.density_kg_m3 = 2000.0});
+  EXPECT_NEAR(box.body.mass.mass_kg, 2.0, 1e-6);
+
+  const BodyMaterial before = box.body.material;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const BodyMaterial& wrong :
+       {BodyMaterial{.mass_kg = 0.0}, BodyMaterial{.mass_kg = -1.0}, BodyMaterial{.mass_kg = nan},
+        BodyMaterial{.density_kg_m3 = 0.0}, BodyMaterial{.friction = 11.0}, BodyMaterial{.friction = -0.1},
+        BodyMaterial{.restitution = 1.1}, BodyMaterial{.mass_kg = 1.0, .density_kg_m3 = 1000.0}})
+    EXPECT_THROW(session.set_material("box", wrong), Error);
+  EXPECT_EQ(test::error_of([&] { session.set_material("box", {.friction = 11.0}); }),
+            "box: material.friction = 11: must be a coefficient of friction, 0..10");
+  EXPECT_EQ(box.body.material, before);
+  EXPECT_THROW(session.set_material("ball", {.mass_kg = 1.0}), Error);
+
+  // An open mesh has no volume: its density says nothing, and nothing is added.
+  const std::string open = test::error_of([&] {
+    session.add_object("sheet", Model{.mesh = shapes::floor(0.1F, 0.0F)}, {.density_kg_m3 = 600.0});
+  });
+  EXPECT_NE(open.find("sheet: the mesh is open"), std::string::npos) << open;
+  EXPECT_EQ(session.objects().size(), 1U);
+  session.add_object("sheet", Model{.mesh = shapes::floor(0.1F, 0.0F)}, {.mass_kg = 0.1});
+  EXPECT_EQ(session.objects().back()->body.mass.mass_kg, 0.1);
 }
 
 TEST(Session, ADropNearAPointIsTriedOnceAndSaysWhyNot) {

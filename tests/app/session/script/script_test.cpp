@@ -105,6 +105,23 @@ TEST(Script, ReadsEachAction) {
   EXPECT_EQ(script.events[14].line, 17);
 }
 
+TEST(Script, AnObjectHasAMaterialFromTheBeginningOrLater) {
+  const Script script = parse_script(
+      "frame 0 add pot teapot friction 0.3 size 0.2 density 2700 restitution 1\n"
+      "frame 9 material pot mass 2\n",
+      "test");
+  ASSERT_EQ(script.events.size(), 2U);
+  EXPECT_EQ(script.events[0].size_m, 0.2);
+  EXPECT_EQ(script.events[0].material,
+            (BodyMaterial{.density_kg_m3 = 2700.0, .friction = 0.3, .restitution = 1.0}));
+  EXPECT_EQ(to_line(script.events[0]),
+            "frame 0 add pot teapot size 0.2 density 2700 friction 0.3 restitution 1");
+  EXPECT_EQ(script.events[1].action, Action::kMaterial);
+  EXPECT_EQ(script.events[1].name, "pot");
+  EXPECT_EQ(script.events[1].material, BodyMaterial{.mass_kg = 2.0});
+  EXPECT_EQ(to_line(script.events[1]), "frame 9 material pot mass 2");
+}
+
 TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
   Script script =
       parse_script(std::string(kWhole) +
@@ -196,6 +213,15 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 remove cup", "no object 'cup'"},
       {"frame 1 add pot teapot", "added in line 1 already"},
       {"frame 1 add cup teapot size 0", "'0' is out of range"},
+      {"frame 1 add cup teapot mass 0", "'0' is out of range for a mass (kg), 0.0001..10000"},
+      {"frame 1 add cup teapot density -5", "'-5' is out of range for a density (kg/m3), 1..30000"},
+      {"frame 1 add cup teapot friction 11", "'11' is out of range for a coefficient of friction, 0..10"},
+      {"frame 1 add cup teapot restitution nan", "'nan' is not a finite number"},
+      {"frame 1 add cup teapot mass 1 density 5", "a mass and a density exclude each other"},
+      {"frame 1 add cup teapot mass 1 mass 2", "'mass' is too much"},
+      {"frame 1 material pot", "is followed by mass, density, friction or restitution"},
+      {"frame 1 material pot heavy", "is followed by mass, density, friction or restitution"},
+      {"frame 1 material pot mass", "the line ends"},
       {"frame 1 quit now", "'now' is too much"},
       {"frame 1 turn pot 0 0", "the line ends"},
       {"frame 1 turn pot 0 0 4000", "'4000' is out of range"},

@@ -1,5 +1,5 @@
 // free_pose_test.cpp: ways of a box out of floors and corners.
-#include "app/physics/free_pose.hpp"
+#include "app/physics/placement/free_pose.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // placement_test.cpp: placement on a table and a floor, in depth images cast ray by ray.
-#include "app/physics/placement.hpp"
+#include "app/physics/placement/placement.hpp"
 
 #include <gtest/gtest.h>
 

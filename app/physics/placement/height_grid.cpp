@@ -1,5 +1,5 @@
 // height_grid.cpp: sorts the points of a depth image into horizontal cells.
-#include "app/physics/height_grid.hpp"
+#include "app/physics/placement/height_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // placement.cpp: finds a level surface in view, on a height map seen from above.
-#include "app/physics/placement.hpp"
+#include "app/physics/placement/placement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/physics/height_grid.hpp"
+#include "app/physics/placement/height_grid.hpp"
 #include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/config_check.hpp"
 

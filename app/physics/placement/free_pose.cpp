@@ -1,5 +1,5 @@
 // free_pose.cpp: samples translations in 26 directions, shortest first.
-#include "app/physics/free_pose.hpp"
+#include "app/physics/placement/free_pose.hpp"
 
 #include <algorithm>
 #include <vector>
