@@ -32,6 +32,7 @@ PrescanResult prescan_of(std::vector<Frame> frames, PoseOrigin poses = PoseOrigi
   test::KeptSource source(std::move(frames));
   PrescanConfig config;
   config.poses = poses;
+  config.resolution_m = 0.03;
   StageTimes times;
   return prescan(source, config, times);
 }

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSource = "sim:table?frames=60&width=128";
 // Shorter: closing loops takes a time that grows with the square of the frames.
-constexpr const char* kTrackedSource = "sim:table?frames=36&width=128";
+constexpr const char* kTrackedSource = "sim:table?frames=48&width=128";
 
 bool is_long_test() { return std::getenv("ROOMRADAR_LONG_TESTS") != nullptr; }
 
