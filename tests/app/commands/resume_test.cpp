@@ -248,7 +248,7 @@ TEST_F(ResumeTest, CtrlCEndsItInWordsAndItGoesOnFromThere) {
 
 TEST_F(ResumeTest, CtrlCBeforeTheFirstCheckpointKeepsTheFramesSoFar) {
   std::vector<std::string> words = {"prescan",
-                                    "sim:table?frames=200&width=128",
+                                    "sim:table?frames=100&width=128",
                                     "--map",
                                     map(),
                                     "--resolution",
