@@ -298,7 +298,8 @@ TEST(CalibratedSource, ImagesOfAnotherSizeAreRefusedWithBothSizes) {
 }
 
 TEST(BoardViews, AreOfTheWholeStillBoardWithItsDepthOnIt) {
-  SimulatedSource simulated(parse_sim_spec("sim:board?path=swing&colour=separate&faults=1&frames=40&rate=15"));
+  SimulatedSource simulated(
+      parse_sim_spec("sim:board?path=swing&colour=separate&faults=1&frames=40&rate=15"));
   std::vector<Frame> frames;
   for (Frame frame; simulated.next(frame).status == ReadStatus::kFrame;) frames.push_back(frame);
   KeptSource source(std::move(frames));

@@ -1,8 +1,7 @@
 // radar_bounds_test.cpp: the radar's results against the exact reference on random poses, convex and concave
 // objects.
 //
-// ROOMRADAR_LONG_TESTS=1 tests ten times as many poses, forty times as many of the dearest tests', a build
-// with the address sanitizer a tenth as many.
+// ROOMRADAR_LONG_TESTS=1 tests ten times as many poses, a build with the address sanitizer a tenth as many.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,11 +32,6 @@ int poses(int count) {
 #else
   return count;
 #endif
-}
-
-/// Of the tests that take longest.
-int dear_poses(int count) {
-  return std::getenv("ROOMRADAR_LONG_TESTS") != nullptr ? 10 * count : poses(count) / 4;
 }
 
 Eigen::Isometry3d at(double x, double y, double z) {
@@ -210,8 +204,8 @@ TEST(RadarBounds, HoldOverDepthImages) {
               .max_jump_m = 0.02F,
               .max_jump_slope = 0.01F});
   coarse.add(shapes::torus(24, 12, 0.25F, 0.07F, 0.02F), at(0.1, 0.2, 0.1), SurfaceKind::kObject);
-  throw_all(std::move(fine), 0.26, dear_poses(2400), 3);
-  throw_all(std::move(coarse), 0.45, dear_poses(800), 4);
+  throw_all(std::move(fine), 0.26, poses(600), 3);
+  throw_all(std::move(coarse), 0.45, poses(200), 4);
 }
 
 /// Free poses with scene in a hollow of the object, or the object in a hollow of the scene.
@@ -270,7 +264,7 @@ TEST(RadarBounds, SceneInAHollowIsNeitherContactNorOverlap) {
     const bool is_closed = hollow.name != "shell over bumps";
     std::mt19937 random(100 + static_cast<unsigned>(h));
     int kept = 0;
-    for (int tried = 0; kept < dear_poses(520) && tried < dear_poses(20000) && !HasFailure(); ++tried) {
+    for (int tried = 0; kept < poses(520) && tried < poses(20000) && !HasFailure(); ++tried) {
       const Eigen::Vector3d axis = shapes::random_point(random).normalized();
       object.T_world_mesh = Eigen::AngleAxisd(hollow.turn * shapes::random_point(random).x(), axis);
       object.T_world_mesh.pretranslate(hollow.centre +
@@ -288,12 +282,12 @@ TEST(RadarBounds, SceneInAHollowIsNeitherContactNorOverlap) {
                       ? 1
                       : 0;
     }
-    EXPECT_GE(kept, HasFailure() ? 0 : dear_poses(520)) << hollow.name;
+    EXPECT_GE(kept, HasFailure() ? 0 : poses(520)) << hollow.name;
     free += kept;
   }
   std::printf("%d free poses with scene in a hollow, %d contacts\n", free, contacts);
   radars.report();
-  EXPECT_GE(free, HasFailure() ? 0 : dear_poses(3000));
+  EXPECT_GE(free, HasFailure() ? 0 : poses(3000));
 }
 
 /// Returns the triangles that do not face along the motion, the only ones that the moving object can hit.
