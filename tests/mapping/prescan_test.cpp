@@ -28,10 +28,12 @@ std::vector<Frame> posed_frames() {
   return frames;
 }
 
-PrescanResult prescan_of(std::vector<Frame> frames, PoseOrigin poses = PoseOrigin::kRecorded) {
+PrescanResult prescan_of(std::vector<Frame> frames, PoseOrigin poses = PoseOrigin::kRecorded,
+                         double resolution_m = 0.03) {
   test::KeptSource source(std::move(frames));
   PrescanConfig config;
   config.poses = poses;
+  config.resolution_m = resolution_m;
   StageTimes times;
   return prescan(source, config, times);
 }
@@ -99,7 +101,7 @@ TEST(Prescan, AMapOfImagesOfAFewRowsIsReadAgain) {
       frame.depth_camera.cy_px -= 118.0;
       frame.colour.resize(0, 0);
     }
-    const SavedMap map = prescan_of(std::move(frames)).map;
+    const SavedMap map = prescan_of(std::move(frames), PoseOrigin::kRecorded, 0.01).map;
     ASSERT_FALSE(map.keyframe_database.keyframes.empty());
     EXPECT_GT(map.keyframe_database.keyframes.front().preview_depth_mm.height, 0);
     const test::TemporaryFolder folder;

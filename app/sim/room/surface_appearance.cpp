@@ -1,4 +1,4 @@
-// surface_appearance.cpp: precomputes textures and lighting, and samples them.
+// surface_appearance.cpp: computes textures and lighting where they are first seen, and samples them.
 #include "app/sim/room/surface_appearance.hpp"
 
 #include <algorithm>
@@ -13,6 +13,7 @@ using Eigen::Vector3d;
 constexpr int kCylinderSide = 6;
 constexpr double kLightCell_m = 0.05;
 constexpr double kGamma = 2.2;
+constexpr float kNotLit = -1.0F;  ///< node of a face's light that was not needed yet
 
 int face_of(const Solid& solid, const Vector3d& normal) {
   if (solid.shape == SolidShape::kCylinder && std::abs(normal.z()) < 0.707) return kCylinderSide;
@@ -103,89 +104,97 @@ std::uint8_t to_byte(float of) {
   return static_cast<std::uint8_t>(std::clamp(of, 0.0F, 1.0F) * 255.0F + 0.5F);
 }
 
+/// Returns the next coarser mip level, half as wide and high.
+template <typename Level>
+Level halved(const Level& fine) {
+  Level coarse;
+  coarse.width = fine.width / 2;
+  coarse.height = fine.height / 2;
+  for (int y = 0; y < coarse.height; ++y)
+    for (int x = 0; x < coarse.width; ++x) {
+      const Rgb* a = fine.texels.data() + static_cast<std::ptrdiff_t>(2 * y) * fine.width + 2 * x;
+      const Rgb* b = a + fine.width;
+      const auto mean = [](int p, int q, int r, int s) {
+        return static_cast<std::uint8_t>((p + q + r + s + 2) / 4);
+      };
+      coarse.texels.push_back({mean(a[0].r, a[1].r, b[0].r, b[1].r), mean(a[0].g, a[1].g, b[0].g, b[1].g),
+                               mean(a[0].b, a[1].b, b[0].b, b[1].b)});
+    }
+  return coarse;
+}
+
 /// Sample points of a lamp, in its unit ball.
 constexpr double kLampPoints[6][3] = {{0.8, 0.2, 0.1},  {-0.5, 0.6, -0.2}, {-0.3, -0.8, 0.2},
                                       {0.2, 0.1, -0.8}, {0.4, -0.5, 0.4},  {-0.3, 0.2, 0.7}};
 
 }  // namespace
 
-SurfaceAppearance::SurfaceAppearance(const Room& room, double texel_m) : room_(room) {
-  for (std::size_t i = 0; i < room.solids.size(); ++i)
-    add_solid(room.solids[i], room.materials[i], texel_m, true);
-}
+SurfaceAppearance::SurfaceAppearance(const Room& room, double texel_m)
+    : room_(room),
+      texel_m_(texel_m),
+      is_lit_(true),
+      solids_(room.solids),
+      materials_(room.materials),
+      faces_(room.solids.size() * kFaces) {}
 
 SurfaceAppearance::SurfaceAppearance(const Room& room, std::span<const Solid> solids,
                                      std::span<const Material> materials, double texel_m)
-    : room_(room) {
-  for (std::size_t i = 0; i < solids.size(); ++i) add_solid(solids[i], materials[i], texel_m, false);
-}
+    : room_(room),
+      texel_m_(texel_m),
+      is_lit_(false),
+      solids_(solids.begin(), solids.end()),
+      materials_(materials.begin(), materials.end()),
+      faces_(solids.size() * kFaces) {}
 
-void SurfaceAppearance::add_solid(const Solid& solid, const Material& material, double texel_m, bool lit) {
-  solids_.push_back(solid);
-  for (int index = 0; index < kFaces; ++index) {
-    Face& face = faces_.emplace_back();
-    const bool is_cylinder = solid.shape == SolidShape::kCylinder;
-    if (is_cylinder ? index < 4 : index == kCylinderSide) continue;
-    const Eigen::Vector2d half = face_half_m(solid, index);
-    if (lit && is_covered(room_, solid, index)) continue;
-    face.width_m = static_cast<float>(2.0 * half.x());
-    face.height_m = static_cast<float>(2.0 * half.y());
-    // Walls and floors are rarely seen from as near as 1 m.
-    face.texel_m = static_cast<float>(half.minCoeff() > 1.0 ? 1.5 * texel_m : texel_m);
-    Level level;
-    level.width = std::max(1, static_cast<int>(std::ceil(face.width_m / face.texel_m)));
-    level.height = std::max(1, static_cast<int>(std::ceil(face.height_m / face.texel_m)));
-    level.texels.reserve(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
-    for (int y = 0; y < level.height; ++y)
-      for (int x = 0; x < level.width; ++x) {
-        const float u_m =
-            ((static_cast<float>(x) + 0.5F) / static_cast<float>(level.width) - 0.5F) * face.width_m;
-        const float v_m =
-            ((static_cast<float>(y) + 0.5F) / static_cast<float>(level.height) - 0.5F) * face.height_m;
-        const auto colour = pattern_colour(material, u_m, v_m, face.width_m, face.height_m);
-        level.texels.push_back({to_byte(colour[0]), to_byte(colour[1]), to_byte(colour[2])});
-      }
-    face.levels.push_back(std::move(level));
-    while (face.levels.back().width > 1 && face.levels.back().height > 1) {
-      const Level& fine = face.levels.back();
-      Level coarse;
-      coarse.width = fine.width / 2;
-      coarse.height = fine.height / 2;
-      for (int y = 0; y < coarse.height; ++y)
-        for (int x = 0; x < coarse.width; ++x) {
-          const Rgb* a = fine.texels.data() + static_cast<std::ptrdiff_t>(2 * y) * fine.width + 2 * x;
-          const Rgb* b = a + fine.width;
-          const auto mean = [](int p, int q, int r, int s) {
-            return static_cast<std::uint8_t>((p + q + r + s + 2) / 4);
-          };
-          coarse.texels.push_back({mean(a[0].r, a[1].r, b[0].r, b[1].r), mean(a[0].g, a[1].g, b[0].g, b[1].g),
-                                   mean(a[0].b, a[1].b, b[0].b, b[1].b)});
-        }
-      face.levels.push_back(std::move(coarse));
+void SurfaceAppearance::prepare(std::size_t index, int face_index, Face& face) const {
+  face.is_prepared = true;
+  const Solid& solid = solids_[index];
+  if (is_lit_ && is_covered(room_, solid, face_index)) return;
+  const Eigen::Vector2d half = face_half_m(solid, face_index);
+  face.width_m = static_cast<float>(2.0 * half.x());
+  face.height_m = static_cast<float>(2.0 * half.y());
+  // Walls and floors are rarely seen from as near as 1 m.
+  face.texel_m = static_cast<float>(half.minCoeff() > 1.0 ? 1.5 * texel_m_ : texel_m_);
+  Level level;
+  level.width = std::max(1, static_cast<int>(std::ceil(face.width_m / face.texel_m)));
+  level.height = std::max(1, static_cast<int>(std::ceil(face.height_m / face.texel_m)));
+  level.texels.reserve(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+  for (int y = 0; y < level.height; ++y)
+    for (int x = 0; x < level.width; ++x) {
+      const float u_m =
+          ((static_cast<float>(x) + 0.5F) / static_cast<float>(level.width) - 0.5F) * face.width_m;
+      const float v_m =
+          ((static_cast<float>(y) + 0.5F) / static_cast<float>(level.height) - 0.5F) * face.height_m;
+      const auto colour = pattern_colour(materials_[index], u_m, v_m, face.width_m, face.height_m);
+      level.texels.push_back({to_byte(colour[0]), to_byte(colour[1]), to_byte(colour[2])});
     }
-    if (lit) light_face(solid, index, face);
-  }
-}
-
-void SurfaceAppearance::light_face(const Solid& solid, int face_index, Face& face) const {
+  face.levels.push_back(std::move(level));
+  while (face.levels.back().width > 1 && face.levels.back().height > 1)
+    face.levels.push_back(halved(face.levels.back()));
+  if (!is_lit_) return;
   const auto nodes = [](float extent_m) {
     return std::clamp(static_cast<int>(extent_m / kLightCell_m) + 2, 3, 160);
   };
   face.light_columns = nodes(face.width_m);
   face.light_rows = nodes(face.height_m);
-  for (int row = 0; row < face.light_rows; ++row)
-    for (int column = 0; column < face.light_columns; ++column) {
-      // Nodes on a face's edge are moved slightly inside, where adjacent solids do not cover them.
-      const auto inside = [](int i, int n, float extent_m) {
-        const double edge_m = std::min(0.004, 0.05 * extent_m);
-        return std::clamp((static_cast<double>(i) / (n - 1) - 0.5) * extent_m, -0.5 * extent_m + edge_m,
-                          0.5 * extent_m - edge_m);
-      };
-      const Vector3d p = from_face(solid, face_index, inside(column, face.light_columns, face.width_m),
-                                   inside(row, face.light_rows, face.height_m));
-      face.light.push_back(
-          light_at(solid.T_world_solid * p, solid.T_world_solid.linear() * normal_local(solid, p), true));
-    }
+  face.light.resize(static_cast<std::size_t>(face.light_columns) * static_cast<std::size_t>(face.light_rows),
+                    kNotLit);
+}
+
+float SurfaceAppearance::light_of(const Solid& solid, int face_index, Face& face, int column, int row) const {
+  float& light = face.light[static_cast<std::size_t>(row) * static_cast<std::size_t>(face.light_columns) +
+                            static_cast<std::size_t>(column)];
+  if (light != kNotLit) return light;
+  // Nodes on a face's edge are moved slightly inside, where adjacent solids do not cover them.
+  const auto inside = [](int i, int n, float extent_m) {
+    const double edge_m = std::min(0.004, 0.05 * extent_m);
+    return std::clamp((static_cast<double>(i) / (n - 1) - 0.5) * extent_m, -0.5 * extent_m + edge_m,
+                      0.5 * extent_m - edge_m);
+  };
+  const Vector3d p = from_face(solid, face_index, inside(column, face.light_columns, face.width_m),
+                               inside(row, face.light_rows, face.height_m));
+  light = light_at(solid.T_world_solid * p, solid.T_world_solid.linear() * normal_local(solid, p), true);
+  return light;
 }
 
 float SurfaceAppearance::light_at(const Vector3d& p_world, const Vector3d& normal_world, bool shadows) const {
@@ -218,10 +227,11 @@ float SurfaceAppearance::light_at(const Vector3d& p_world, const Vector3d& norma
 }
 
 Rgb SurfaceAppearance::shade(std::size_t index, const Vector3d& p_solid, const Vector3d& normal_solid,
-                             double footprint_m, const Eigen::Isometry3d& T_world_solid) const {
+                             double footprint_m, const Eigen::Isometry3d& T_world_solid) {
   const Solid& solid = solids_[index];
   const int face_index = face_of(solid, normal_solid);
-  const Face& face = faces_[index * kFaces + static_cast<std::size_t>(face_index)];
+  Face& face = faces_[index * kFaces + static_cast<std::size_t>(face_index)];
+  if (!face.is_prepared) prepare(index, face_index, face);
   if (face.levels.empty()) return {};
   const Eigen::Vector2d uv = on_face(solid, face_index, p_solid);
   const float u = std::clamp(static_cast<float>(uv.x()) / face.width_m + 0.5F, 0.0F, 1.0F);
@@ -248,9 +258,9 @@ Rgb SurfaceAppearance::shade(std::size_t index, const Vector3d& p_solid, const V
     const int lx0 = std::min(static_cast<int>(lx), face.light_columns - 2),
               ly0 = std::min(static_cast<int>(ly), face.light_rows - 2);
     const float bx = lx - static_cast<float>(lx0), by = ly - static_cast<float>(ly0);
-    const float* node = face.light.data() + static_cast<std::ptrdiff_t>(ly0) * face.light_columns + lx0;
-    light = (1 - by) * ((1 - bx) * node[0] + bx * node[1]) +
-            by * ((1 - bx) * node[face.light_columns] + bx * node[face.light_columns + 1]);
+    const auto node = [&](int dx, int dy) { return light_of(solid, face_index, face, lx0 + dx, ly0 + dy); };
+    light =
+        (1 - by) * ((1 - bx) * node(0, 0) + bx * node(1, 0)) + by * ((1 - bx) * node(0, 1) + bx * node(1, 1));
   }
   const auto channel = [&](std::uint8_t Rgb::*of) {
     const float mean = (1 - ay) * ((1 - ax) * top[0].*of + ax * top[right].*of) +

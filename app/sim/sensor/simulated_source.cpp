@@ -104,8 +104,7 @@ struct SimulatedSource::State {
     return options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
   }
   void fill_truth();
-  void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
-                   ColourImage& picture) const;
+  void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key, ColourImage& picture);
 
   /// Rays of the colour camera, and its pose relative to the depth camera.
   struct ColourCamera {
@@ -174,7 +173,7 @@ void SimulatedSource::State::fill_truth() {
 }
 
 void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
-                                         ColourImage& picture) const {
+                                         ColourImage& picture) {
   picture.resize(colour.camera.width_px, colour.camera.height_px);
   const auto noise_scale = static_cast<float>(options.noise_scale);
   for (int y = 0; y < picture.height; ++y)

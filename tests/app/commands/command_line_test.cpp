@@ -1,6 +1,8 @@
 // command_line_test.cpp: the program as users run it: exit status, messages, no lost data.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -10,7 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include "tests/support/forked_program.hpp"
 #include "tests/support/recordings.hpp"
 
 namespace roomradar::command_line_test {
@@ -34,7 +38,42 @@ Outcome shell(const std::string& line) {
   return outcome;
 }
 
-Outcome roomradar(const std::string& arguments) { return shell(ROOMRADAR_PROGRAM " " + arguments); }
+/// Runs the file of the program.
+Outcome file(const std::string& arguments) { return shell(ROOMRADAR_PROGRAM " " + arguments); }
+
+/// Returns the words of a line as a shell does. Knows no special characters but ' and blanks.
+std::vector<std::string> words_of(const std::string& line) {
+  std::vector<std::string> words;
+  bool is_quoted = false, is_word = false;
+  for (const char c : line) {
+    if (c == ' ' && !is_quoted) {
+      is_word = false;
+      continue;
+    }
+    if (!is_word) words.emplace_back();
+    is_word = true;
+    if (c == '\'')
+      is_quoted = !is_quoted;
+    else
+      words.back().push_back(c);
+  }
+  return words;
+}
+
+/// Runs the program in a fork of this process.
+Outcome roomradar(const std::string& arguments) {
+  int ends[2];
+  Outcome outcome;
+  if (pipe2(ends, O_CLOEXEC) != 0) return outcome;
+  const pid_t child = test::start_program(words_of(arguments), ends[1]);
+  close(ends[1]);
+  char buffer[4096];
+  for (ssize_t n = 0; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
+    outcome.out.append(buffer, static_cast<std::size_t>(n));
+  close(ends[0]);
+  outcome.status = test::status_of(child);
+  return outcome;
+}
 
 std::string read_text(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -147,9 +186,9 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   // The same with decisions that depend on a clock: a budget that cannot be met takes the last step of the
   // Pareto front.
   const fs::path hurried = folder_ / "hurried", hurried_report = folder_ / "hurried.json";
-  const Outcome in_hurry = roomradar("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
-                                     " --poses recorded --budget-ms 1 --record-session " + hurried.string() +
-                                     pictures("hurried") + " --report " + hurried_report.string());
+  const Outcome in_hurry = file("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
+                                " --poses recorded --budget-ms 1 --record-session " + hurried.string() +
+                                pictures("hurried") + " --report " + hurried_report.string());
   ASSERT_EQ(in_hurry.status, 0) << in_hurry.out;
   EXPECT_NE(in_hurry.out.find("budget 1 ms: with "), std::string::npos) << in_hurry.out;
   const nlohmann::json budget = nlohmann::json::parse(read_text(hurried_report))["budget"];

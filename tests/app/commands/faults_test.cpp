@@ -20,6 +20,7 @@
 
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
+#include "tests/support/forked_program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::faults_test {
@@ -85,24 +86,12 @@ class DeferredErrors : public ::testing::Test {
     if (available > left) std::ofstream(disk() / "filler") << std::string(available - left, 'x');
   }
 
-  /// Runs the program to its end and returns its exit status; said() returns its output. -1 if a signal ended
-  /// it.
+  /// Runs the program to its end and returns its exit status; said() returns its output.
   [[nodiscard]] int run(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), ROOMRADAR_PROGRAM);
-    const pid_t child = fork();
-    if (child == 0) {
-      const int said = open(at("said").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-      dup2(said, STDOUT_FILENO);
-      dup2(said, STDERR_FILENO);
-      std::vector<char*> words;
-      for (std::string& argument : arguments) words.push_back(argument.data());
-      words.push_back(nullptr);
-      execv(ROOMRADAR_PROGRAM, words.data());
-      _exit(127);
-    }
-    int status = -1;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    const int said = open(at("said").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    const pid_t child = test::start_program(std::move(arguments), said);
+    close(said);
+    return test::status_of(child);
   }
   [[nodiscard]] int scan(const fs::path& map, const char* resolution = "0.05") const {
     return run({"prescan", kSource, "--map", map, "--resolution", resolution});

@@ -21,6 +21,7 @@
 
 #include "mapping/map/map_diff.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "tests/support/forked_program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::resume_test {
@@ -29,6 +30,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSource = "sim:table?frames=60&width=128";
+// Shorter: closing loops takes a time that grows with the square of the frames.
+constexpr const char* kTrackedSource = "sim:table?frames=48&width=128";
+
+bool is_long_test() { return std::getenv("ROOMRADAR_LONG_TESTS") != nullptr; }
 
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -43,33 +48,28 @@ class ResumeTest : public ::testing::Test {
 
   /// Starts the program; said() returns its output.
   [[nodiscard]] pid_t start(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), ROOMRADAR_PROGRAM);
-    const pid_t child = fork();
-    if (child != 0) return child;
     const int said = open((temporary_.path() / "said").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    dup2(said, STDOUT_FILENO);
-    dup2(said, STDERR_FILENO);
-    std::vector<char*> raw;
-    for (std::string& argument : arguments) raw.push_back(argument.data());
-    raw.push_back(nullptr);
-    execv(raw.front(), raw.data());
-    _exit(127);
-  }
-  static int status_of(pid_t child) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    const pid_t child = test::start_program(std::move(arguments), said);
+    close(said);
+    return child;
   }
   [[nodiscard]] int run(const std::vector<std::string>& arguments) const {
-    return status_of(start(arguments));
+    return test::status_of(start(arguments));
   }
 
   // Uses recorded poses in tests that are not about tracking, which takes three times as long.
   [[nodiscard]] std::vector<std::string> scan(const fs::path& to, bool resume,
                                               const std::string& poses = "recorded") const {
-    std::vector<std::string> arguments = {
-        "prescan", kSource,   "--map", to, "--resolution", "0.04", "--checkpoint-every",
-        "0.01",    "--poses", poses};
+    std::vector<std::string> arguments = {"prescan",
+                                          poses == "tracked" ? kTrackedSource : kSource,
+                                          "--map",
+                                          to,
+                                          "--resolution",
+                                          "0.04",
+                                          "--checkpoint-every",
+                                          "0.01",
+                                          "--poses",
+                                          poses};
     if (resume) arguments.emplace_back("--resume");
     return arguments;
   }
@@ -82,7 +82,7 @@ class ResumeTest : public ::testing::Test {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     kill(child, SIGKILL);
-    return status_of(child) == 128 + SIGKILL;
+    return test::status_of(child) == 128 + SIGKILL;
   }
   /// Number of the newest checkpoint, 0 if there is none.
   [[nodiscard]] int newest() const {
@@ -128,8 +128,9 @@ TEST_F(ResumeTest, KilledAgainAndAgainTheMapIsTheSame) {
   const fs::path uncut = temporary_.path() / "uncut";
   ASSERT_EQ(run(scan(uncut, false, "tracked")), 0) << said();
   std::mt19937 random(1);
+  const int kills = is_long_test() ? 12 : 6;
   int killed = 0;
-  for (bool resume = false; killed < 12; resume = true, ++killed) {
+  for (bool resume = false; killed < kills; resume = true, ++killed) {
     // Waits for a new checkpoint, then for a random time, so the kill mostly hits the writing of the next
     // one.
     const int before = newest();
@@ -143,7 +144,7 @@ TEST_F(ResumeTest, KilledAgainAndAgainTheMapIsTheSame) {
     if (!cut) break;
     if (fs::exists(map())) expect_same_map_up_to_noise(map(), uncut);  // killed after it was put in place
   }
-  if (killed == 12) {
+  if (killed == kills) {
     ASSERT_EQ(run(scan(map(), true, "tracked")), 0) << said();
   }
   EXPECT_GT(killed, 2);
@@ -186,12 +187,12 @@ TEST_F(ResumeTest, KilledAtAnyMomentThereIsTheOldMapOrTheNew) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   int resumed = 0, replaced = 0;
-  for (int killed = 0; killed < (std::getenv("ROOMRADAR_LONG_TESTS") != nullptr ? 100 : 8);) {
+  for (int killed = 0; killed < (is_long_test() ? 100 : 6);) {
     const bool resume = newest() > 0;
     const pid_t child = start(scan(map(), resume));
     std::this_thread::sleep_for(share(random) * whole);
     kill(child, SIGKILL);
-    const int status = status_of(child);
+    const int status = test::status_of(child);
     ASSERT_TRUE(status == 0 || status == 128 + SIGKILL) << said();
     killed += status == 0 ? 0 : 1;
     resumed += resume ? 1 : 0;
@@ -236,7 +237,7 @@ TEST_F(ResumeTest, CtrlCEndsItInWordsAndItGoesOnFromThere) {
   while (newest() == 0 && waitpid(child, nullptr, WNOHANG) == 0)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   kill(child, SIGINT);
-  EXPECT_EQ(status_of(child), 1);
+  EXPECT_EQ(test::status_of(child), 1);
   EXPECT_NE(said().find("--resume continues"), std::string::npos) << said();
   EXPECT_NE(said().find("stops after the next frame"), std::string::npos) << said();
   EXPECT_FALSE(fs::exists(map()));
@@ -247,7 +248,7 @@ TEST_F(ResumeTest, CtrlCEndsItInWordsAndItGoesOnFromThere) {
 
 TEST_F(ResumeTest, CtrlCBeforeTheFirstCheckpointKeepsTheFramesSoFar) {
   std::vector<std::string> words = {"prescan",
-                                    "sim:table?frames=200&width=128",
+                                    "sim:table?frames=100&width=128",
                                     "--map",
                                     map(),
                                     "--resolution",
@@ -262,7 +263,7 @@ TEST_F(ResumeTest, CtrlCBeforeTheFirstCheckpointKeepsTheFramesSoFar) {
   while (said().find("expected:") == std::string::npos && waitpid(child, nullptr, WNOHANG) == 0)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   kill(child, SIGINT);
-  EXPECT_EQ(status_of(child), 1);
+  EXPECT_EQ(test::status_of(child), 1);
   EXPECT_NE(said().find("--resume continues"), std::string::npos) << said();
   EXPECT_EQ(newest(), 1);
   words.emplace_back("--resume");
@@ -311,7 +312,7 @@ TEST_F(ResumeTest, ACalibrationThatCameMeanwhileIsAnotherScan) {
   while (newest() == 0 && waitpid(child, nullptr, WNOHANG) == 0)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   kill(child, SIGKILL);
-  ASSERT_EQ(status_of(child), 128 + SIGKILL);
+  ASSERT_EQ(test::status_of(child), 128 + SIGKILL);
   nlohmann::json calibration = nlohmann::json::parse(text_of(recording / "camera.json"));
   calibration.update({{"format", "roomradar calibration"}, {"version", 1}});
   for (const char* lens : {"depth_lens", "colour_lens"})
@@ -350,12 +351,13 @@ TEST_F(ResumeTest, ASecondScanOfTheMapIsRefusedBeforeTheFirstCheckpointToo) {
   const pid_t first =
       start({"prescan", "sim:table?frames=5000&width=128", "--map", map(), "--checkpoint-every", "1000"});
   while (!fs::exists(unfinished() / "work.json")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  kill(first, SIGSTOP);  // at work, without using the processor
   for (const bool resume : {false, true}) {
     EXPECT_EQ(run(scan(map(), resume)), 1);
     EXPECT_NE(said().find("another roomradar is at work"), std::string::npos) << said();
   }
   kill(first, SIGKILL);
-  status_of(first);
+  test::status_of(first);
   EXPECT_EQ(newest(), 0);
   EXPECT_EQ(run({"prescan", "sim:table?frames=5&width=128", "--map", map(), "--resolution", "0.08"}), 0)
       << said();

@@ -68,7 +68,9 @@ Outcome scan_and_run(const SimOptions& options, const Alter& alter) {
   Outcome outcome;
   test::KeptSource source(std::move(frames));
   StageTimes times;
-  const PrescanResult scan = prescan(source, {}, times);
+  PrescanConfig scan_config;
+  scan_config.resolution_m = 0.02;
+  const PrescanResult scan = prescan(source, scan_config, times);
   // Aligned by the first pose: so short a path would not determine the rotation.
   const Eigen::Isometry3d T_room_map =
       truth.front().T_world_camera * scan.map.trajectory.front().T_world_camera.inverse();

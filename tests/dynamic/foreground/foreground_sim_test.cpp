@@ -26,7 +26,7 @@ TEST(ForegroundInSimulatedRooms, MoversAreFound) {
       if (mover == MoverKind::kBall) {  // it is on the floor, which may be out of view
         with_mover.path = CameraPathKind::kScan;
         with_mover.frames = 1200;
-        step = 150;
+        step = 200;
       }
       const MaskScore score = judge_foreground(with_mover, step, 0.0, 0.0);
       const std::string name = room + " " + std::string(to_string(mover));

@@ -413,7 +413,7 @@ TEST_F(MapFolder, WhatASaveKilledBetweenTwoRenamesSetAsideIsNamedAndBroughtBack)
 }
 
 TEST_F(MapFolder, KilledAtAnyMomentOfSavingItIsTheOldMapOrTheNew) {
-  constexpr int kKills = 100;
+  const int kills = std::getenv("ROOMRADAR_LONG_TESTS") != nullptr ? 100 : 40;
   SavedMap other = a_room();
   other.info.source = "another";
   other.trajectory.pop_back();
@@ -425,7 +425,7 @@ TEST_F(MapFolder, KilledAtAnyMomentOfSavingItIsTheOldMapOrTheNew) {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> moment_us(0, std::max(60'000, 2 * static_cast<int>(both_us.count())));
   int others = 0;
-  for (int i = 0; i < kKills; ++i) {
+  for (int i = 0; i < kills; ++i) {
     const pid_t child = fork();
     if (child == 0) {
       for (;;) {

@@ -166,8 +166,16 @@ TEST_F(KinectReplay, AScanWhoseDeviceIsGoneForGoodBecomesAMap) {
   if (shell("'" ROOMRADAR_PROGRAM "' record kinect:0 '" + (copy_.path() / "real").string() + "' --frames 0:0")
           .status == 0)
     GTEST_SKIP() << "a Kinect is plugged in";
-  pause_before(5, 60.0);
-  const Outcome killed = shell(fakenect(recording_) + "timeout -s KILL 25 " + scan);
+  pause_before(5, 3000.0);
+  const fs::path script = copy_.path() / "script";
+  test::write_text(script, scan +
+                               " & pid=$!\n"
+                               "until test -e '" +
+                               (unfinished / "spool" / "4.colour.png").string() +
+                               "'; do sleep 0.1; done\n"
+                               "sleep 2\n"  // the list follows its images
+                               "kill -KILL $pid; wait $pid\n");
+  const Outcome killed = shell(fakenect(recording_) + "sh '" + script.string() + "'");
   EXPECT_EQ(killed.status, 128 + SIGKILL) << killed.rest;
   ASSERT_TRUE(fs::exists(unfinished / "spool" / "list.bin")) << killed.rest;
   EXPECT_EQ(shell(scan).status, 1) << "without --resume what was scanned would be lost";
