@@ -189,7 +189,7 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   hatch(patches_, camera, T_world_view, real_depth_m_, picture_);
   drawer_.finish(layer_);
   find_feet(*shown_view_);
-  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_, feet_);
+  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_, feet_, &background_);
 }
 
 }  // namespace roomradar

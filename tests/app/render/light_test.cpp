@@ -155,7 +155,7 @@ TEST(Occlusion, WhatAnObjectStandsOnDoesNotHideItsContact) {
   const int foot_y = 49;  // the object's last row, 8 mm above the table's true height
   const auto hidden_at = [&](const Feet& given, const DepthImage& depth_m) {
     Occlusion occlusion;
-    find_occlusion(picture, depth_m, layer, {}, occlusion, given);
+    find_occlusion(picture, picture, depth_m, layer, {}, occlusion, given);
     return occlusion.hidden.at(32 - occlusion.rect.x, foot_y - occlusion.rect.y);
   };
   EXPECT_GT(hidden_at({}, real_m), 0.1F);
