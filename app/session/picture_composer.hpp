@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -80,12 +81,11 @@ class PictureComposer {
   std::vector<HatchedPatch> patches_;
   LightEstimator light_;
   std::vector<LightSample> light_samples_;
-  /// Light that the room leaves for each object, in the order of the objects, smoothed over time. Unset:
-  /// not determined since the object was placed.
-  std::vector<std::optional<LightReach>> reaches_;
-  std::vector<RoomLight> object_lights_;  ///< buffer: light of each drawn object
-  Feet feet_;                             ///< buffer
-  std::size_t last_shadow_ = 0;           ///< index of the object whose shadow was recomputed last
+  std::uint64_t light_position_ = 0;       ///< in the sequence of sampled pixels
+  ObjectReaches reaches_;                  ///< in the order of the objects
+  std::vector<SplitLight> object_lights_;  ///< buffer: light of each drawn object
+  Feet feet_;                              ///< buffer
+  std::size_t last_shadow_ = 0;            ///< index of the object whose shadow was recomputed last
   ColourImage background_;
   ColourImage picture_;
 
@@ -93,9 +93,8 @@ class PictureComposer {
   ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   /// Updates the light at the middle of the objects in the room, from the stored colour image.
   void estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
-  void find_reaches(double dt_s);
   /// Returns an object's shadow, in the light that arrives at it.
-  [[nodiscard]] static ShadowCaster caster_of(const VirtualObject& object, const RoomLight* light);
+  [[nodiscard]] static ShadowCaster caster_of(const VirtualObject& object, const SplitLight* light);
   /// Sets feet_ from the objects in the room.
   void find_feet(const ShownView& view);
   /// Recomputes the contact shadow of one object that has rotated by more than 0.05 rad or has fallen asleep.

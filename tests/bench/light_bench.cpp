@@ -73,6 +73,7 @@ class Stage {
     scene_.mesh_surfaces(frame, T_world_camera, expected, foreground);
     const double start_ms = test::thread_ms();
     composer_.keep_colour(frame, T_world_camera, dt_s);
+    light_ms.push_back(test::thread_ms() - start_ms);
     composer_.compose(frame, T_world_camera, true);
     compose_ms.push_back(test::thread_ms() - start_ms);
     composer_.end_frame(T_world_camera);
@@ -81,7 +82,7 @@ class Stage {
   [[nodiscard]] const PictureComposer& composer() const { return composer_; }
   [[nodiscard]] const Shape& room() const { return room_; }
 
-  std::vector<double> compose_ms;
+  std::vector<double> compose_ms, light_ms;
 
  private:
   GlContext context_;
@@ -207,6 +208,7 @@ nlohmann::json colour_row(const std::string& row, const std::string& room, const
     ++view;
   }
   std::sort(stage.compose_ms.begin(), stage.compose_ms.end());
+  std::sort(stage.light_ms.begin(), stage.light_ms.end());
   const auto& degrees = measured.light_deg;
   return {
       {"row", row},
@@ -218,7 +220,8 @@ nlohmann::json colour_row(const std::string& row, const std::string& room, const
       {"light_max_deg", degrees.empty() ? nlohmann::json()
                                         : nlohmann::json(*std::max_element(degrees.begin(), degrees.end()))},
       {"flicker", measured.flicker},
-      {"compose_ms", view > 0 ? stage.compose_ms[stage.compose_ms.size() / 2] : 0.0}};
+      {"compose_ms", view > 0 ? stage.compose_ms[stage.compose_ms.size() / 2] : 0.0},
+      {"light_ms", view > 0 ? stage.light_ms[stage.light_ms.size() / 2] : 0.0}};
 }
 
 /// Returns the height of the map's highest point under the object's foot, in the world.
