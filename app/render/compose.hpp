@@ -18,6 +18,8 @@ struct ComposeConfig {
   /// black.
   float shadow_strength = 0.75F;
   LightConfig light;
+  /// True: objects get the camera's noise.
+  bool has_grain = true;
 };
 /// Checks that all values are in their ranges.
 /// @throws Error naming the field, its value and the rule

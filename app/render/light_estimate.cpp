@@ -149,8 +149,8 @@ int wanted_samples(bool is_first, double dt_s, const LightConfig& config) {
 void LightEstimator::keep_points(std::span<const LightSample> samples) {
   constexpr float kCorner = 0.3F;  // darker places are lit by their surroundings, in unknown ways
   for (const LightSample& sample : samples) {
-    if (!sample.p_world_m.allFinite() || !sample.normal_world.allFinite() ||
-        !sample.log_colour.allFinite() || !(sample.reach.ambient > kCorner))
+    if (!sample.p_world_m.allFinite() || !sample.normal_world.allFinite() || !sample.log_colour.allFinite() ||
+        !(sample.reach.ambient > kCorner))
       continue;
     const Point point{sample, sample.log_colour.mean(), hue_of(sample.log_colour)};
     if (points_.size() < kMostPoints)
@@ -185,7 +185,9 @@ void LightEstimator::add(std::span<const LightSample> samples, const Eigen::Vect
   if (points_.size() < kFewest) return;
   // While points are few, an estimate from more of them replaces an earlier one sooner.
   const float of_points =
-      std::min(1.0F, static_cast<float>(samples.size()) / static_cast<float>(points_.size()));
+      points_.size() < kMostPoints
+          ? std::min(1.0F, static_cast<float>(samples.size()) / static_cast<float>(points_.size()))
+          : 0.0F;
   const float part = light_ ? std::max(renewed_fraction(dt_s, config), of_points) : 1.0F;
   test_candidates(place_world_m, dt_s, config);
   const std::vector<float> weights = weights_of(scores_);

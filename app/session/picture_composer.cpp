@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/objects/unknown_support.hpp"
+#include "app/render/camera_noise.hpp"
 
 namespace roomradar {
 namespace {
@@ -42,6 +43,8 @@ void PictureComposer::keep_colour(const Frame& frame, const Eigen::Isometry3d& T
   colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
   background_ = frame.colour;
   estimate_light(frame, T_world_camera, dt_s);
+  if (const std::optional<float> noise = config_.picture.has_grain ? noise_of(background_) : std::nullopt)
+    noise_ += (noise_ > 0.0F ? renewed_fraction(dt_s, config_.picture.light) : 1.0F) * (*noise - noise_);
 }
 
 void PictureComposer::estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
@@ -177,6 +180,8 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   drawer_.finish(layer_);
   find_feet(*shown_view_);
   lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_, feet_, &background_);
+  ++pictures_;
+  if (colour_view_ && config_.picture.has_grain) add_grain(layer_, occlusion_, noise_, pictures_, picture_);
 }
 
 }  // namespace roomradar
