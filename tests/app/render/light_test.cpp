@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "app/render/room_light.hpp"
 #include "mapping/types/system/error.hpp"
 #include "radar/geometry/triangle_tree.hpp"
+#include "radar/gl/gl_context.hpp"
 
 namespace roomradar::light_test {
 namespace {
@@ -192,6 +194,34 @@ TEST(ObjectLight, AFloorUnderATableIsInShade) {
   const LightReach above = surface_reach({&table}, {0, 0, 0.4}, {0, 0, 1}, {0, 0, 1});
   EXPECT_EQ(above.lamps[kLampDirections - 1], 1.0F);
   EXPECT_EQ(above.ambient, 1.0F);
+}
+
+TEST(ObjectReaches, MovedObjectsTakeTurns) {
+  GlContext context;
+  TriangleTree table;
+  table.build_by_place(plate(0.8F, 0.7F));
+  std::vector<std::unique_ptr<VirtualObject>> objects;
+  for (int i = 0; i < 3; ++i) {
+    objects.push_back(object_of(context, "plate", plate(0.1F, 0.0F), objects));
+    objects.back()->in_room = true;
+    objects.back()->body.T_world_object.translation() = Eigen::Vector3d(3.0, 0.3 * i, 0.1);
+  }
+  ObjectReaches reaches;
+  const auto shaded_objects = [&] {
+    reaches.update(objects, {&table}, 0.03, 1.0F);
+    int shaded = 0;
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      shaded += reaches.of(i)->lamps[kLampDirections - 1] < 0.5F ? 1 : 0;
+    return shaded;
+  };
+  EXPECT_EQ(shaded_objects(), 0);  // all at once, when they are new
+  for (const auto& object : objects) object->body.T_world_object.translation().x() = 0.0;
+  EXPECT_EQ(shaded_objects(), 1);
+  EXPECT_EQ(shaded_objects(), 2);
+  EXPECT_EQ(shaded_objects(), 3);
+  objects[1]->in_room = false;
+  reaches.update(objects, {&table}, 0.03, 1.0F);
+  EXPECT_EQ(reaches.of(1), nullptr);
 }
 
 TEST(ContactShadow, TheMainLightsShadowFallsAwayFromIt) {
