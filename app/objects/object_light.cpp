@@ -1,52 +1,117 @@
-// object_light.cpp: shadows of the room's surfaces on an object, by rays.
+// object_light.cpp: shadows of the room's surfaces on an object and on points of them, by rays.
 #include "app/objects/object_light.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "radar/exact/ray_hit.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr double kLampReach_m = 3.0, kSkyReach_m = 1.0;
+using Eigen::Vector3d;
 
-double directed_fraction(const TreeInstance& room, const Eigen::Vector3d& middle_world, double radius_m,
-                         const Eigen::Vector3d& to_light_world) {
-  constexpr int kAround = 6;
-  const Eigen::Vector3d u = to_light_world.unitOrthogonal(), v = to_light_world.cross(u);
-  int reaching = 0;
-  for (int i = 0; i <= kAround; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kAround, out_m = i < kAround ? 0.5 * radius_m : 0.0;
-    const Ray ray{middle_world + out_m * (std::cos(angle) * u + std::sin(angle) * v), to_light_world};
-    if (!hit_mesh(room, ray, kLampReach_m)) ++reaching;
-  }
-  return static_cast<double>(reaching) / (kAround + 1);
+/// Returns the fraction of a lamp's light that passes, as the distance of the first surface says.
+float lamp_fraction(const TreeInstance& room, const Vector3d& p_world, const Vector3d& to_lamp) {
+  constexpr double kTakes_m = 0.8, kBehind_m = 1.3;
+  const auto hit = hit_mesh(room, {p_world, to_lamp}, kBehind_m);
+  return hit ? static_cast<float>(std::clamp((hit->distance_m - kTakes_m) / (kBehind_m - kTakes_m), 0.0, 1.0))
+             : 1.0F;
 }
 
-double ambient_fraction(const TreeInstance& room, const Eigen::Vector3d& middle_world) {
+/// Returns the open fraction of the half space above a point, cosine weighted.
+double open_fraction(const TreeInstance& room, const Vector3d& p_world, const Vector3d& up, double reach_m) {
   constexpr int kRays = 16;
   constexpr double kGoldenAngle = 2.39996323;
+  const Vector3d u = up.unitOrthogonal(), v = up.cross(u);
   double open = 0.0;
   for (int i = 0; i < kRays; ++i) {
     const double out2 = (i + 0.5) / kRays, out = std::sqrt(out2), angle = kGoldenAngle * i;
-    const Ray ray{middle_world, {out * std::cos(angle), out * std::sin(angle), std::sqrt(1.0 - out2)}};
-    const auto hit = hit_mesh(room, ray, kSkyReach_m);
-    open += hit ? hit->distance_m / kSkyReach_m : 1.0;
+    const Vector3d direction = out * (std::cos(angle) * u + std::sin(angle) * v) + std::sqrt(1.0 - out2) * up;
+    const auto hit = hit_mesh(room, {p_world, direction}, reach_m);
+    open += hit ? hit->distance_m / reach_m : 1.0;
   }
-  constexpr double kFromAbove = 0.6;  // fraction of the ambient light that comes from the upper half
-  return 1.0 - kFromAbove * (1.0 - open / kRays);
+  return open / kRays;
 }
+
+bool has_surface(const TreeInstance& room) { return room.tree != nullptr && !room.tree->empty(); }
 
 }  // namespace
 
-LightReach light_reach(const TreeInstance& room, const Eigen::Vector3d& middle_world, double radius_m,
-                       const Eigen::Vector3d& to_light_world) {
-  if (room.tree == nullptr || room.tree->empty() || !middle_world.allFinite() ||
-      !to_light_world.allFinite() || !std::isfinite(radius_m))
-    return {};
-  return {static_cast<float>(directed_fraction(room, middle_world, radius_m, to_light_world)),
-          static_cast<float>(ambient_fraction(room, middle_world))};
+LightReach light_reach(const TreeInstance& room, const Vector3d& middle_world, double radius_m) {
+  LightReach reach;
+  if (!has_surface(room) || !middle_world.allFinite() || !std::isfinite(radius_m)) return reach;
+  constexpr double kSkyReach_m = 1.0;
+  constexpr double kFromUpperHalf = 0.6;  // fraction of the ambient light
+  static const std::array<Vector3d, 4> corners{Vector3d(1, 1, 1), {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
+  for (std::size_t i = 0; i < kLampDirections; ++i) {
+    float sum = 0.0F;
+    for (const Vector3d& corner : corners)
+      sum += lamp_fraction(room, middle_world + 0.5 * radius_m * corner.normalized(),
+                           lamp_directions()[i].cast<double>());
+    reach.lamps[i] = sum / static_cast<float>(corners.size());
+  }
+  const double open = open_fraction(room, middle_world, Vector3d::UnitZ(), kSkyReach_m);
+  reach.ambient = static_cast<float>(1.0 - kFromUpperHalf * (1.0 - open));
+  return reach;
+}
+
+LightReach surface_reach(const TreeInstance& room, const Vector3d& p_world, const Vector3d& normal_world,
+                         const Vector3d& place_world) {
+  LightReach reach;
+  if (!has_surface(room) || !p_world.allFinite() || !normal_world.allFinite() || !place_world.allFinite())
+    return reach;
+  constexpr double kSkin_m = 0.02, kSkyReach_m = 0.5, kLamp_m = 3.0;
+  const Vector3d start = p_world + kSkin_m * normal_world;
+  for (std::size_t i = 0; i < kLampDirections; ++i) {
+    const Vector3d way = place_world + kLamp_m * lamp_directions()[i].cast<double>() - start;
+    reach.lamps[i] = way.dot(normal_world) > 0.0 ? lamp_fraction(room, start, way.normalized()) : 0.0F;
+  }
+  reach.ambient = static_cast<float>(open_fraction(room, start, normal_world, kSkyReach_m));
+  return reach;
+}
+
+void ObjectReaches::update(std::span<const std::unique_ptr<VirtualObject>> objects, const TreeInstance& room,
+                           double dt_s, float renewed) {
+  constexpr double kMoved_m = 0.03, kAge_s = 2.0;
+  entries_.resize(objects.size());
+  const auto middle_of = [](const VirtualObject& object) -> Vector3d {
+    return object.body.T_world_object * object.model->middle;
+  };
+  const auto determine = [&](std::size_t i) {
+    Entry& entry = *entries_[i];
+    entry.middle_world = middle_of(*objects[i]);
+    entry.now = light_reach(room, entry.middle_world, radius_m(*objects[i]));
+    entry.age_s = 0.0;
+  };
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (!objects[i]->in_room) {
+      entries_[i].reset();
+    } else if (entries_[i]) {
+      entries_[i]->age_s += dt_s;
+    } else {
+      entries_[i].emplace();
+      determine(i);
+      entries_[i]->smooth = entries_[i]->now;
+    }
+  }
+  for (std::size_t step = 1; step <= objects.size(); ++step) {
+    const std::size_t i = (last_ + step) % objects.size();
+    const auto& entry = entries_[i];
+    if (!entry ||
+        !(entry->age_s > kAge_s || (entry->middle_world - middle_of(*objects[i])).norm() > kMoved_m))
+      continue;
+    determine(i);
+    last_ = i;
+    break;
+  }
+  for (auto& entry : entries_) {
+    if (!entry) continue;
+    entry->smooth.ambient += renewed * (entry->now.ambient - entry->smooth.ambient);
+    for (std::size_t k = 0; k < kLampDirections; ++k)
+      entry->smooth.lamps[k] += renewed * (entry->now.lamps[k] - entry->smooth.lamps[k]);
+  }
 }
 
 }  // namespace roomradar

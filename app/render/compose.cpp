@@ -146,7 +146,8 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
 }
 
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
-                 Occlusion& occlusion, ColourImage& picture, const Feet& feet) {
+                 Occlusion& occlusion, ColourImage& picture, const Feet& feet,
+                 const ColourImage* camera_image) {
   require_size("the real depth", real_depth_m, picture.width, picture.height);
   if (layer.rect.width <= 0 || layer.rect.height <= 0) return;
   if (!(clamped(layer.rect, picture.width, picture.height) == layer.rect))
@@ -155,7 +156,10 @@ void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const
                layer.rect.height * layer.samples);
   require_size("the layer's depth", layer.depth_m, layer.rect.width * layer.samples,
                layer.rect.height * layer.samples);
-  find_occlusion(picture, real_depth_m, layer, config, occlusion, feet);
+  if (camera_image != nullptr)
+    require_size("the camera's image", *camera_image, picture.width, picture.height);
+  find_occlusion(camera_image != nullptr ? *camera_image : picture, picture, real_depth_m, layer, config,
+                 occlusion, feet);
   lay_over(layer, occlusion, picture);
 }
 

@@ -18,6 +18,8 @@ struct ComposeConfig {
   /// black.
   float shadow_strength = 0.75F;
   LightConfig light;
+  /// True: objects get the camera's noise.
+  bool has_grain = true;
 };
 /// Checks that all values are in their ranges.
 /// @throws Error naming the field, its value and the rule
@@ -66,9 +68,11 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
 /// @param[out] occlusion    occlusion of the objects; its buffers are reused
 /// @param[in,out] picture   image that contains the shadows
 /// @param feet          where the objects stand; their contacts are never hidden, see find_occlusion()
+/// @param camera_image  the image without shadows, in which occluders' edges are found; null: `picture`
 /// @throws Error if sizes differ, or the layer exceeds the image
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
-                 Occlusion& occlusion, ColourImage& picture, const Feet& feet = {});
+                 Occlusion& occlusion, ColourImage& picture, const Feet& feet = {},
+                 const ColourImage* camera_image = nullptr);
 
 /// Renders a depth image as a grey image with a light source at the camera, for sources without colour.
 /// Pixels without depth are dark.

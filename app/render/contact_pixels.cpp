@@ -13,13 +13,12 @@ void find_contacts(const Feet& feet, const PixelRect& rect, const DepthImage& re
     for (int y = 0; y < rect.height; ++y) {
       for (int x = 0; x < rect.width; ++x) {
         const float z_m = object_m.at(x, y), real_m = real_depth_m.at(rect.x + x, rect.y + y);
-        if (!(z_m > 0.0F && real_m > 0.0F)) continue;
+        if (!(z_m > 0.0F && real_m > 0.0F) || contact.at(x, y) == kOnSupport) continue;
         const float rise = plane.up_camera.dot(
             back_project(feet.camera, rect.x + x, rect.y + y, 1.0).cast<float>());  // per metre of depth
         const float level_m = tolerance.constant_m + kUneven_m + tolerance.per_m2 * z_m * z_m;
-        if (std::abs(plane.camera_m + rise * z_m) < feet.height_m &&
-            std::abs(plane.camera_m + rise * real_m) < level_m)
-          contact.at(x, y) = 255;
+        if (std::abs(plane.camera_m + rise * z_m) < feet.height_m)
+          contact.at(x, y) = std::abs(plane.camera_m + rise * real_m) < level_m ? kOnSupport : kAtFoot;
       }
     }
   }
@@ -37,7 +36,9 @@ void soften(const Image<float>& hidden, const MaskImage& covered, const MaskImag
       float sum = 4.0F * at(x, y);
       sum += 2.0F * (at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1));
       sum += at(x - 1, y - 1) + at(x + 1, y - 1) + at(x - 1, y + 1) + at(x + 1, y + 1);
-      softened.at(x, y) = contact.at(x, y) != 0 ? 0.0F : sum / 16.0F;
+      const std::uint8_t kind = contact.at(x, y);
+      const bool is_shown = kind == kOnSupport || (kind == kAtFoot && own < 0.5F);
+      softened.at(x, y) = is_shown ? 0.0F : sum / 16.0F;
     }
   }
 }

@@ -1,6 +1,7 @@
 // contact_pixels.hpp: pixels along an object's contact with what it stands on, which is never in front of it.
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "mapping/types/image.hpp"
@@ -28,17 +29,23 @@ struct DepthTolerance {
   float constant_m = 0.0F, per_m2 = 0.0F;
 };
 
-/// Marks the pixels that show a point just above an object's foot where the real surface is level with the
-/// foot within the tolerance and 6 mm. That surface is the support, which lies below the object.
+/// Values of the mask of contacts: a point just above an object's foot, before another surface or before the
+/// support itself.
+inline constexpr std::uint8_t kAtFoot = 128, kOnSupport = 255;
+
+/// Marks the pixels that show a point just above an object's foot: with kOnSupport where the real surface is
+/// level with the foot within the tolerance and 6 mm, else with kAtFoot. A surface at the foot's level is the
+/// support, which lies below the object.
 /// @param rect          rectangle of the image
 /// @param real_depth_m  depth of real surfaces in the whole image
 /// @param object_m      depth of the objects in `rect`
-/// @param[out] contact  255 in pixels of contacts; with the size of `rect`
+/// @param[out] contact  0 elsewhere; with the size of `rect`
 void find_contacts(const Feet& feet, const PixelRect& rect, const DepthImage& real_depth_m,
                    const Image<float>& object_m, const DepthTolerance& tolerance, MaskImage& contact);
 
 /// Averages over 3 x 3 pixels with more weight at the centre. Neighbours that no object covers have a depth
-/// borrowed from elsewhere, so the pixel's own value is used instead. Contacts get 0.
+/// borrowed from elsewhere, so the pixel's own value is used instead. Contacts get 0, and so do pixels at a
+/// foot that are more visible than hidden: an occluder beside them does not blur over the contact.
 void soften(const Image<float>& hidden, const MaskImage& covered, const MaskImage& contact,
             Image<float>& softened);
 

@@ -221,17 +221,25 @@ float ambient_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_ob
 float light_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m,
                       const Eigen::Vector3f& to_light) {
   constexpr int kSteps = 6;
-  constexpr float kSoft = 0.04F;  // clearance at which the outline is looked up, fraction of extent_m
-  constexpr float kWhole = 0.6F;  // occlusion of the sky, this close to the underside, that hides the light
+  constexpr float kSoft = 0.04F;    // clearance at which the outline is looked up, fraction of extent_m
+  constexpr float kBeside = 0.25F;  // around the object where its outline is still seen, fraction of extent_m
+  constexpr float kWhole = 0.6F;    // occlusion of the sky, this close to the underside, that hides the light
   if (shadow.covered.empty() || !(to_light.z() > kLowestLight)) return 0.0F;
   const float clearance_m = shadow.bottom_m - p_object_m.z();
   if (clearance_m > shadow.extent_m || clearance_m < -kAboveBottom_m) return 0.0F;
   const Eigen::Vector2f shift = to_light.head<2>() / to_light.z();  // per metre of height
+  // The way to the light, up to the object's top, must pass near the object.
+  const float first_m = std::max(clearance_m, 0.0F), last_m = first_m + 0.9F * shadow.height_m;
+  const Eigen::Array2f a = p_object_m.head<2>() + first_m * shift, b = p_object_m.head<2>() + last_m * shift;
+  const Eigen::Array2f corner(shadow.x0_m, shadow.y0_m);
+  const Eigen::Array2f size =
+      shadow.cell_m * Eigen::Array2f(static_cast<float>(shadow.columns), static_cast<float>(shadow.rows));
+  const float beside_m = (1.0F - kBeside) * shadow.extent_m;
+  if ((a.max(b) < corner + beside_m).any() || (a.min(b) > corner + size - beside_m).any()) return 0.0F;
   const float lookup_z_m = shadow.bottom_m - kSoft * shadow.extent_m;
   float most = 0.0F;
   for (int i = 0; i <= kSteps; ++i) {
-    const float up_m = std::max(clearance_m, 0.0F) +
-                       0.9F * shadow.height_m * static_cast<float>(i) / static_cast<float>(kSteps);
+    const float up_m = first_m + (last_m - first_m) * static_cast<float>(i) / static_cast<float>(kSteps);
     const Eigen::Vector2f at = p_object_m.head<2>() + up_m * shift;
     most = std::max(most, ambient_occlusion(shadow, {at.x(), at.y(), lookup_z_m}));
   }

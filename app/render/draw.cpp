@@ -150,14 +150,14 @@ struct ObjectDrawer::State {
   }
 
   /// Sets an object's own light, if it has one.
-  static void set_light(const RoomLight* light) {
+  static void set_light(const SplitLight* light) {
     glUniform1i(8, light != nullptr ? 1 : 0);
     if (light == nullptr) return;
-    const Eigen::Matrix<float, 3, 9> coefficients = light->coefficients.transpose();  // a vec3 per column
-    const MainLight main = main_light(*light);
-    const Eigen::Vector3f to_lamp = main.to_light_world.cast<float>();
+    const Eigen::Matrix<float, 3, 9> coefficients =
+        light->whole.coefficients.transpose();  // a vec3 per column
+    const Eigen::Vector3f to_lamp = light->main.to_light_world.cast<float>();
     glUniform3fv(9, 9, coefficients.data());
-    glUniform3fv(18, 1, main.directed.data());
+    glUniform3fv(18, 1, light->main.directed.data());
     glUniform3fv(19, 1, to_lamp.data());
   }
 

@@ -29,7 +29,7 @@ struct DrawnObject {
   /// origin. Empty: the instance's mesh is drawn.
   std::span<const DrawnPart> parts{};
   /// Light at the object; null: that of Lighting.
-  const RoomLight* light = nullptr;
+  const SplitLight* light = nullptr;
 };
 
 /// Light of objects without DrawnObject::light, as in a room with white lamps on the ceiling.
@@ -40,7 +40,7 @@ struct Lighting {
   /// Factor on all light; 1 for a lit room.
   float exposure = 1.0F;
   /// Strength of the specular highlight, of all objects. 0 looks like clay, 1 like glazed ceramics.
-  float gloss = 0.35F;
+  float gloss = 0.1F;
 };
 
 /// Renders virtual objects into an ObjectLayer.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "mapping/types/system/config_check.hpp"
 
@@ -13,12 +12,13 @@ namespace {
 
 constexpr int kHuesAcross = 24;
 constexpr int kHues = kHuesAcross * kHuesAcross;
+constexpr std::size_t kMostPoints = 720;
 constexpr float kHueWidth = 0.22F;  // of log ratios of linear colours
-constexpr float kFromAbove = 0.2F;  // slope of the ambient light, over its mean
-constexpr double kRound_s = 0.5;    // time in which each candidate is tested again
+constexpr double kRound_s = 1.0;    // time in which each candidate is tested again
 
 /// A lamp beside ambient light of mean irradiance 1.
 struct Candidate {
+  std::size_t number;  ///< of its direction
   Eigen::Vector3f direction;
   float distance_m;
   float strength;  ///< irradiance at the place on a surface that faces the lamp
@@ -26,34 +26,32 @@ struct Candidate {
 
 const std::vector<Candidate>& candidates() {
   static const std::vector<Candidate> all = [] {
-    constexpr int kRings = 5;
-    constexpr std::array<int, kRings> kCounts{12, 12, 12, 6, 1};
-    constexpr std::array<float, kRings> kElevations_deg{15.0F, 35.0F, 55.0F, 75.0F, 90.0F};
     std::vector<Candidate> made;
-    for (std::size_t ring = 0; ring < kRings; ++ring)
-      for (int i = 0; i < kCounts[ring]; ++i) {
-        const float up = kElevations_deg[ring] * std::numbers::pi_v<float> / 180.0F;
-        const float around =
-            2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(kCounts[ring]);
-        const Eigen::Vector3f direction(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around),
-                                        std::sin(up));
-        for (const float distance_m : {1.5F, 3.0F, 8.0F})
-          for (const float strength : {0.5F, 1.2F, 2.5F}) made.push_back({direction, distance_m, strength});
-      }
+    for (std::size_t i = 0; i < kLampDirections; ++i)
+      for (const float distance_m : {1.5F, 3.0F, 8.0F})
+        for (const float strength : {0.5F, 1.2F, 2.5F})
+          made.push_back({i, lamp_directions()[i], distance_m, strength});
     return made;
   }();
   return all;
 }
 
-/// Returns the irradiance of a surface point from a candidate and the ambient light.
-float irradiance_of(const Candidate& lamp, const Eigen::Vector3f& from_place_m,
-                    const Eigen::Vector3f& normal) {
+float ambient_of(const LightSample& sample) {
+  return (1.0F + kFromAbove * sample.normal_world.z()) * sample.reach.ambient;
+}
+
+/// Returns the irradiance of a surface point from a candidate that nothing shades.
+float lamplight_of(const Candidate& lamp, const LightSample& sample, const Eigen::Vector3f& place_world_m) {
   constexpr float kNearest_m2 = 0.1F;
-  const Eigen::Vector3f way = lamp.distance_m * lamp.direction - from_place_m;
+  const Eigen::Vector3f way = place_world_m + lamp.distance_m * lamp.direction - sample.p_world_m;
   const float squared_m2 = std::max(way.squaredNorm(), kNearest_m2);
-  const float facing = std::max(0.0F, normal.dot(way)) / std::sqrt(squared_m2);
-  return 1.0F + kFromAbove * normal.z() +
-         lamp.strength * lamp.distance_m * lamp.distance_m / squared_m2 * facing;
+  const float facing = std::max(0.0F, sample.normal_world.dot(way)) / std::sqrt(squared_m2);
+  return lamp.strength * lamp.distance_m * lamp.distance_m / squared_m2 * facing;
+}
+
+float log_irradiance(float irradiance) {
+  constexpr float kDarkest = 0.02F;
+  return std::log(std::max(irradiance, kDarkest));
 }
 
 int hue_of(const Eigen::Vector3f& log_colour) {
@@ -65,13 +63,17 @@ int hue_of(const Eigen::Vector3f& log_colour) {
 
 /// Returns the squared residual of log albedo within the hues, with outliers limited, averaged over points.
 template <typename Points>
-float score_of(const Candidate& lamp, const Points& points, std::vector<float>& residuals) {
+float score_of(const Candidate& lamp, const Points& points, const Eigen::Vector3f& place_world_m,
+               std::vector<float>& residuals) {
   constexpr float kOutlier2 = 0.36F;
   std::array<float, kHues> sums{}, counts{};
   residuals.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& point = points[i];
-    residuals[i] = point.grey - std::log(irradiance_of(lamp, point.from_place_m, point.normal_world));
+    const float lamplight =
+        point.sample.reach.lamps[lamp.number] > 0.0F ? lamplight_of(lamp, point.sample, place_world_m) : 0.0F;
+    residuals[i] = point.grey - log_irradiance(ambient_of(point.sample) +
+                                               point.sample.reach.lamps[lamp.number] * lamplight);
     sums[static_cast<std::size_t>(point.hue)] += residuals[i];
     counts[static_cast<std::size_t>(point.hue)] += 1.0F;
   }
@@ -98,14 +100,21 @@ std::vector<float> weights_of(const std::vector<float>& scores) {
 /// Returns the logarithm of the light's level and colour: the Minkowski norm of the hues' apparent albedos,
 /// compared with that of usual rooms. The colour is drawn towards neutral, since cameras balance white, and
 /// since the things of a room are yellowish on average.
+/// @param mean   the mean lamp
+/// @param lamps  strength in each direction
 template <typename Points>
-Eigen::Vector3f log_level_of(const Candidate& lamp, const Points& points) {
-  constexpr float kNorm = 6.0F, kUsualAlbedo = 0.5F, kTrustInColour = 0.6F;
+Eigen::Vector3f log_level_of(const Candidate& mean, const std::array<float, kLampDirections>& lamps,
+                             const Points& points, const Eigen::Vector3f& place_world_m) {
+  constexpr float kNorm = 6.0F, kUsualAlbedo = 0.65F, kTrustInColour = 0.6F;
   Eigen::Array<float, 3, Eigen::Dynamic> sums = Eigen::Array<float, 3, Eigen::Dynamic>::Zero(3, kHues);
   Eigen::ArrayXf counts = Eigen::ArrayXf::Zero(kHues);
+  const Eigen::Map<const Eigen::Array<float, kLampDirections, 1>> strengths(lamps.data());
+  const float all = std::max(strengths.sum(), 1e-6F);
   for (const auto& point : points) {
-    const float log_light = std::log(irradiance_of(lamp, point.from_place_m, point.normal_world));
-    sums.col(point.hue) += point.log_colour.array() - log_light;
+    const Eigen::Map<const Eigen::Array<float, kLampDirections, 1>> reach(point.sample.reach.lamps.data());
+    const float part = (strengths * reach).sum() / all;
+    const float light = ambient_of(point.sample) + part * lamplight_of(mean, point.sample, place_world_m);
+    sums.col(point.hue) += point.sample.log_colour.array() - log_irradiance(light);
     counts(point.hue) += 1.0F;
   }
   Eigen::Array3f norm = Eigen::Array3f::Zero();
@@ -119,8 +128,8 @@ Eigen::Vector3f log_level_of(const Candidate& lamp, const Points& points) {
 
 void require_valid(const LightConfig& config) {
   const ConfigCheck require{"light"};
-  require(config.samples >= 0 && config.samples <= 100'000, "samples", static_cast<float>(config.samples),
-          "in 0..100000");
+  require(config.samples_per_s >= 0 && config.samples_per_s <= 100'000, "samples_per_s",
+          static_cast<float>(config.samples_per_s), "in 0..100000");
   require(config.memory_s > 0.0 && config.memory_s <= 60.0, "memory_s", static_cast<float>(config.memory_s),
           "in 0..60, not 0");
 }
@@ -129,53 +138,82 @@ float renewed_fraction(double seconds, const LightConfig& config) {
   return static_cast<float>(1.0 - std::exp(-std::max(seconds, 0.0) / config.memory_s));
 }
 
-void LightEstimator::take_points(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m) {
-  points_.clear();
-  for (const LightSample& sample : samples)
-    if (sample.p_world_m.allFinite() && sample.normal_world.allFinite() && sample.log_colour.allFinite())
-      points_.push_back({sample.p_world_m - place_world_m, sample.normal_world, sample.log_colour,
-                         sample.log_colour.mean(), hue_of(sample.log_colour)});
+int wanted_samples(bool is_first, double dt_s, const LightConfig& config) {
+  constexpr int kOfFirst = 120, kMost = 60;
+  if (config.samples_per_s == 0) return 0;
+  if (is_first) return kOfFirst;
+  return std::clamp(static_cast<int>(std::lround(std::clamp(dt_s, 0.0, 1.0) * config.samples_per_s)), 1,
+                    kMost);
+}
+
+void LightEstimator::keep_points(std::span<const LightSample> samples) {
+  constexpr float kCorner = 0.3F;  // darker places are lit by their surroundings, in unknown ways
+  for (const LightSample& sample : samples) {
+    if (!sample.p_world_m.allFinite() || !sample.normal_world.allFinite() || !sample.log_colour.allFinite() ||
+        !(sample.reach.ambient > kCorner))
+      continue;
+    const Point point{sample, sample.log_colour.mean(), hue_of(sample.log_colour)};
+    if (points_.size() < kMostPoints)
+      points_.push_back(point);
+    else
+      points_[next_point_] = point;
+    next_point_ = (next_point_ + 1) % kMostPoints;
+  }
+}
+
+void LightEstimator::test_candidates(const Eigen::Vector3f& place_world_m, double dt_s,
+                                     const LightConfig& config) {
+  const std::vector<Candidate>& lamps = candidates();
+  const bool is_first = scores_.empty();
+  scores_.resize(lamps.size());
+  const double round = is_first ? 1.0 : std::clamp(dt_s / kRound_s, 1.0 / 64.0, 1.0);  // part tested now
+  const auto tested = static_cast<std::size_t>(std::ceil(round * static_cast<double>(lamps.size())));
+  const float part = is_first ? 1.0F : renewed_fraction(dt_s / round, config);
+  std::vector<float> residuals;
+  for (std::size_t i = 0; i < tested; ++i) {
+    float& score = scores_[next_candidate_];
+    score += part * (score_of(lamps[next_candidate_], points_, place_world_m, residuals) - score);
+    next_candidate_ = (next_candidate_ + 1) % lamps.size();
+  }
 }
 
 void LightEstimator::add(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m,
                          double dt_s, const LightConfig& config) {
   constexpr std::size_t kFewest = 30;
   if (!place_world_m.allFinite() || !std::isfinite(dt_s)) return;
-  take_points(samples, place_world_m);
+  keep_points(samples);
   if (points_.size() < kFewest) return;
-  const std::vector<Candidate>& lamps = candidates();
-  const bool is_first = scores_.empty();
-  scores_.resize(lamps.size());
-  const auto part_after = [&](double seconds) { return is_first ? 1.0F : renewed_fraction(seconds, config); };
-  const double round = std::clamp(dt_s / kRound_s, 1.0 / 64.0, 1.0);  // fraction tested in this frame
-  const std::size_t tested =
-      is_first ? lamps.size()
-               : static_cast<std::size_t>(std::ceil(round * static_cast<double>(lamps.size())));
-  const float score_part = part_after(dt_s / round);
-  std::vector<float> residuals;
-  for (std::size_t i = 0; i < tested; ++i) {
-    float& score = scores_[next_candidate_];
-    score += score_part * (score_of(lamps[next_candidate_], points_, residuals) - score);
-    next_candidate_ = (next_candidate_ + 1) % lamps.size();
-  }
-
+  // While points are few, an estimate from more of them replaces an earlier one sooner.
+  const float of_points =
+      points_.size() < kMostPoints
+          ? std::min(1.0F, static_cast<float>(samples.size()) / static_cast<float>(points_.size()))
+          : 0.0F;
+  const float part = light_ ? std::max(renewed_fraction(dt_s, config), of_points) : 1.0F;
+  test_candidates(place_world_m, dt_s, config);
   const std::vector<float> weights = weights_of(scores_);
-  Candidate mean{Eigen::Vector3f::Zero(), 0.0F, 0.0F};
-  LightBasis shape = LightBasis::Zero();
-  shape(0) = 1.0F;
-  shape(3) = kFromAbove;
-  for (std::size_t i = 0; i < lamps.size(); ++i) {
-    mean.direction += weights[i] * lamps[i].direction;
-    mean.distance_m += weights[i] * lamps[i].distance_m;
-    mean.strength += weights[i] * lamps[i].strength;
-    shape += weights[i] * lamps[i].strength * directed_light(lamps[i].direction);
+  Candidate mean{0, Eigen::Vector3f::Zero(), 0.0F, 0.0F};
+  std::array<float, kLampDirections> lamps{};
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const Candidate& lamp = candidates()[i];
+    mean.direction += weights[i] * lamp.direction;
+    mean.distance_m += weights[i] * lamp.distance_m;
+    mean.strength += weights[i] * lamp.strength;
+    lamps[lamp.number] += weights[i] * lamp.strength;
   }
   mean.direction.normalize();
-  log_level_ += part_after(dt_s) * (log_level_of(mean, points_) - log_level_);
-  const Eigen::Matrix<float, 9, 3> coefficients = shape * log_level_.array().exp().matrix().transpose();
-  if (!coefficients.allFinite()) return;
-  if (!light_) light_ = RoomLight{coefficients};
-  light_->coefficients += part_after(dt_s) * (coefficients - light_->coefficients);
+  log_level_ += part * (log_level_of(mean, lamps, points_, place_world_m) - log_level_);
+  for (std::size_t i = 0; i < kLampDirections; ++i) lamps_[i] += part * (lamps[i] - lamps_[i]);
+  light_ = light_at({});
+}
+
+RoomLight LightEstimator::light_at(const LightReach& reach) const {
+  if (scores_.empty()) return {};
+  LightBasis shape = LightBasis::Zero();
+  shape(0) = reach.ambient;
+  shape(3) = kFromAbove * reach.ambient;
+  for (std::size_t i = 0; i < kLampDirections; ++i)
+    shape += reach.lamps[i] * lamps_[i] * directed_light(lamp_directions()[i]);
+  return {shape * log_level_.array().exp().matrix().transpose()};
 }
 
 }  // namespace roomradar

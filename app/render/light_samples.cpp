@@ -1,4 +1,4 @@
-// light_samples.cpp: picks surface points on a grid, with normals from the map's depth.
+// light_samples.cpp: picks surface points evenly over the image, with normals from the map's depth.
 #include "app/render/light_samples.hpp"
 
 #include <algorithm>
@@ -72,35 +72,49 @@ bool sizes_match(const ColourView& colour, const SurfaceView& surface) {
                                            surface.dynamic_mask.height == expected_m.height));
 }
 
+/// Returns the sample at a pixel of the depth image, without its reach.
+std::optional<LightSample> sample_at(const ColourView& colour, const SurfaceView& surface,
+                                     const Eigen::Isometry3d& T_colour_depth, int x, int y) {
+  const float z_m = surface.expected_m.at(x, y);
+  if (!(z_m > 0.0F) || !agrees(surface, x, y)) return std::nullopt;
+  const std::optional<Eigen::Vector3d> normal = normal_at(surface.expected_m, surface.camera, x, y);
+  if (!normal) return std::nullopt;
+  const Eigen::Vector3d p_camera = back_project(surface.camera, x, y, z_m);
+  const Eigen::Vector3d p_colour = T_colour_depth * p_camera;
+  if (!(p_colour.z() > 0.0)) return std::nullopt;
+  const Eigen::Vector2d pixel = project(colour.camera, p_colour);
+  if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() < colour.camera.width_px &&
+        pixel.y() < colour.camera.height_px))
+    return std::nullopt;
+  const auto log_colour =
+      log_colour_at(colour.colour, static_cast<int>(pixel.x() + 0.5), static_cast<int>(pixel.y() + 0.5));
+  if (!log_colour) return std::nullopt;
+  return LightSample{(surface.T_world_camera * p_camera).cast<float>(),
+                     (surface.T_world_camera.linear() * *normal).cast<float>(),
+                     *log_colour,
+                     {}};
+}
+
 }  // namespace
 
-void take_light_samples(const ColourView& colour, const SurfaceView& surface, int max_samples,
-                        std::vector<LightSample>& samples) {
+void take_light_samples(const ColourView& colour, const SurfaceView& surface, int wanted,
+                        std::uint64_t& position, std::vector<LightSample>& samples) {
+  constexpr int kLooks = 4;
+  constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
   samples.clear();
-  if (max_samples <= 0 || !sizes_match(colour, surface)) return;
-  const DepthImage& expected_m = surface.expected_m;
-  const double pixels = static_cast<double>(expected_m.pixels.size());
-  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / max_samples))));
+  if (wanted <= 0 || !sizes_match(colour, surface)) return;
+  const int width = surface.expected_m.width - 2 * kReach_px;
+  const int height = surface.expected_m.height - 2 * kReach_px;
+  if (width <= 0 || height <= 0) return;
   const Eigen::Isometry3d T_colour_depth = colour.T_world_camera.inverse() * surface.T_world_camera;
-  for (int y = kReach_px + step / 2; y + kReach_px < expected_m.height; y += step) {
-    for (int x = kReach_px + step / 2; x + kReach_px < expected_m.width; x += step) {
-      const float z_m = expected_m.at(x, y);
-      if (!(z_m > 0.0F) || !agrees(surface, x, y)) continue;
-      const std::optional<Eigen::Vector3d> normal = normal_at(expected_m, surface.camera, x, y);
-      if (!normal) continue;
-      const Eigen::Vector3d p_camera = back_project(surface.camera, x, y, z_m);
-      const Eigen::Vector3d p_colour = T_colour_depth * p_camera;
-      if (!(p_colour.z() > 0.0)) continue;
-      const Eigen::Vector2d pixel = project(colour.camera, p_colour);
-      if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() < colour.camera.width_px &&
-            pixel.y() < colour.camera.height_px))
-        continue;
-      const auto log_colour =
-          log_colour_at(colour.colour, static_cast<int>(pixel.x() + 0.5), static_cast<int>(pixel.y() + 0.5));
-      if (!log_colour) continue;
-      samples.push_back({(surface.T_world_camera * p_camera).cast<float>(),
-                         (surface.T_world_camera.linear() * *normal).cast<float>(), *log_colour});
-    }
+  for (int look = 0; look < kLooks * wanted && samples.size() < static_cast<std::size_t>(wanted); ++look) {
+    const auto at = static_cast<double>(++position);
+    const auto pixel = [&](double step, int size) {
+      return kReach_px + std::min(static_cast<int>(std::fmod(at * step, 1.0) * size), size - 1);
+    };
+    if (const auto sample =
+            sample_at(colour, surface, T_colour_depth, pixel(kStepX, width), pixel(kStepY, height)))
+      samples.push_back(*sample);
   }
 }
 

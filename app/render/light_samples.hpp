@@ -1,8 +1,10 @@
 // light_samples.hpp: surface points of the map with the colours that the camera sees there.
 #pragma once
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
+#include "app/render/room_light.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 
@@ -16,6 +18,7 @@ struct LightSample {
   /// Natural logarithm of red, green and blue in linear light. A byte b counts as (b / 255)^2, as in
   /// ObjectDrawer.
   Eigen::Vector3f log_colour = Eigen::Vector3f::Zero();
+  LightReach reach;  ///< not set by take_light_samples()
 };
 
 /// A colour image with its camera.
@@ -36,11 +39,13 @@ struct SurfaceView {
   const MaskImage& dynamic_mask;
 };
 
-/// Takes about max_samples points on a regular grid of the depth image. Leaves out points where measured and
-/// expected depth disagree, which are dynamic, whose neighbourhood is not one smooth surface, which the
-/// colour image does not show, or whose colour is saturated or almost black. Deterministic; reuses the
-/// vector's memory. Returns no samples without colour or depth, or if sizes do not match.
-void take_light_samples(const ColourView& colour, const SurfaceView& surface, int max_samples,
-                        std::vector<LightSample>& samples);
+/// Takes up to `wanted` points at the next pixels of a sequence that covers the depth image evenly. Leaves
+/// out points where measured and expected depth disagree, which are dynamic, whose neighbourhood is not one
+/// smooth surface, which the colour image does not show, or whose colour is saturated or almost black. Looks
+/// at no more than four times as many pixels. Reuses the vector's memory. Returns no samples without colour
+/// or depth, or if sizes do not match.
+/// @param[in,out] position  in the sequence; 0 at first. Source of the sequence: see spread_points()
+void take_light_samples(const ColourView& colour, const SurfaceView& surface, int wanted,
+                        std::uint64_t& position, std::vector<LightSample>& samples);
 
 }  // namespace roomradar

@@ -171,7 +171,7 @@ bool find_edges(const DepthImage& real_depth_m, Occlusion& occlusion) {
 }
 
 /// Collects the colours of both sides around a pixel of the rectangle, from pixels away from edges.
-void look_about(const ColourImage& background, const Occlusion& occlusion, int x, int y, int taps,
+void look_about(const ColourImage& camera_image, const Occlusion& occlusion, int x, int y, int taps,
                 SideColours& front, SideColours& behind) {
   front = behind = {};
   for (int v = y - taps * kTapStep_px; v <= y + taps * kTapStep_px; v += kTapStep_px) {
@@ -180,13 +180,13 @@ void look_about(const ColourImage& background, const Occlusion& occlusion, int x
       const std::uint8_t hidden = occlusion.by_depth.at(u, v);
       if (hidden != 0 && hidden != 255) continue;
       (hidden == 255 ? front : behind)
-          .add(as_vector(background.at(occlusion.rect.x + u, occlusion.rect.y + v)));
+          .add(as_vector(camera_image.at(occlusion.rect.x + u, occlusion.rect.y + v)));
     }
   }
 }
 
 /// Lists the pixels near edges, with each pixel's own odds from depth and colour.
-void judge_alone(const ColourImage& background, int reach_px, Occlusion& occlusion) {
+void judge_alone(const ColourImage& camera_image, int reach_px, Occlusion& occlusion) {
   constexpr int kCell_px = 4;  // pixels of a cell share the sides' colours
   constexpr float kDepthWeight = 1.5F;
   constexpr float kFewest = 4.0F;  // min samples to estimate a side's colours
@@ -203,7 +203,7 @@ void judge_alone(const ColourImage& background, int reach_px, Occlusion& occlusi
         for (int x = cell_x; x < std::min(cell_x + kCell_px, rect.width); ++x) {
           if (occlusion.near_edges.at(x, y) == 0) continue;
           if (!has_looked)
-            look_about(background, occlusion, cell_x + kCell_px / 2, cell_y + kCell_px / 2, taps, front,
+            look_about(camera_image, occlusion, cell_x + kCell_px / 2, cell_y + kCell_px / 2, taps, front,
                        behind);
           has_looked = true;
           if (front.count < kFewest || behind.count < kFewest || look_alike(front, behind)) continue;
@@ -212,7 +212,7 @@ void judge_alone(const ColourImage& background, int reach_px, Occlusion& occlusi
           const float near_hidden = std::clamp(
               static_cast<float>(occlusion.near_hidden.at(x, y)) / (255.0F * static_cast<float>(neighbours)),
               0.02F, 0.98F);
-          const Eigen::Vector3f colour = as_vector(background.at(rect.x + x, rect.y + y));
+          const Eigen::Vector3f colour = as_vector(camera_image.at(rect.x + x, rect.y + y));
           occlusion.band.push_back(
               {x, y,
                kDepthWeight * std::log(near_hidden / (1.0F - near_hidden)) + said_by(colour, front, behind),
@@ -224,13 +224,13 @@ void judge_alone(const ColourImage& background, int reach_px, Occlusion& occlusi
 }
 
 /// Assigns adjacent pixels of similar colour to the same side: some rounds of mean field on a Potts model.
-void agree_with_neighbours(const ColourImage& background, Occlusion& occlusion) {
+void agree_with_neighbours(const ColourImage& camera_image, Occlusion& occlusion) {
   constexpr int kRounds = 4;
   constexpr float kPull = 1.5F;             // weight of a neighbour of identical colour
   constexpr float kAlike2 = 2.0F * 144.0F;  // twice the variance of colour differences within a surface
   const PixelRect& rect = occlusion.rect;
   Image<float>& hidden = occlusion.unsoftened;
-  const auto colour_at = [&](int x, int y) { return as_vector(background.at(rect.x + x, rect.y + y)); };
+  const auto colour_at = [&](int x, int y) { return as_vector(camera_image.at(rect.x + x, rect.y + y)); };
   for (const Occlusion::EdgePixel& pixel : occlusion.band)
     hidden.at(pixel.x, pixel.y) = 1.0F / (1.0F + std::exp(-pixel.odds));
   for (int round = 0; round < kRounds; ++round) {
@@ -248,8 +248,8 @@ void agree_with_neighbours(const ColourImage& background, Occlusion& occlusion) 
   }
   for (const Occlusion::EdgePixel& pixel : occlusion.band) {
     const float part = hidden.at(pixel.x, pixel.y);
-    occlusion.front.at(pixel.x, pixel.y) =
-        as_rgb(part * colour_at(pixel.x, pixel.y) + (1.0F - part) * as_vector(pixel.front));
+    Rgb& front = occlusion.front.at(pixel.x, pixel.y);
+    front = as_rgb(part * as_vector(front) + (1.0F - part) * as_vector(pixel.front));
   }
 }
 
@@ -270,8 +270,9 @@ int occlusion_margin_px(const OcclusionConfig& config) {
   return config.edge_reach_px > 0 ? taps_each_way(config.edge_reach_px) * kTapStep_px + 1 : 1;
 }
 
-void find_occlusion(const ColourImage& background, const DepthImage& real_depth_m, const ObjectLayer& layer,
-                    const OcclusionConfig& config, Occlusion& occlusion, const Feet& feet) {
+void find_occlusion(const ColourImage& camera_image, const ColourImage& background,
+                    const DepthImage& real_depth_m, const ObjectLayer& layer, const OcclusionConfig& config,
+                    Occlusion& occlusion, const Feet& feet) {
   const int margin = occlusion_margin_px(config);
   const PixelRect rect = clamped({layer.rect.x - margin, layer.rect.y - margin, layer.rect.width + 2 * margin,
                                   layer.rect.height + 2 * margin},
@@ -283,7 +284,7 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
   find_contacts(feet, rect, real_depth_m, occlusion.object_m, {config.tolerance_m, config.tolerance_per_m2},
                 occlusion.contact);
   for (std::size_t i = 0; i < occlusion.contact.pixels.size(); ++i)
-    if (occlusion.contact.pixels[i] != 0) occlusion.by_depth.pixels[i] = 0;
+    if (occlusion.contact.pixels[i] == kOnSupport) occlusion.by_depth.pixels[i] = 0;
   occlusion.front.resize(rect.width, rect.height);
   occlusion.unsoftened.resize(rect.width, rect.height);
   for (int y = 0; y < rect.height; ++y)
@@ -292,8 +293,8 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
                  occlusion.unsoftened.pixels.begin(),
                  [](std::uint8_t hidden) { return static_cast<float>(hidden) / 255.0F; });
   if (config.edge_reach_px > 0 && find_edges(real_depth_m, occlusion)) {
-    judge_alone(background, config.edge_reach_px, occlusion);
-    agree_with_neighbours(background, occlusion);
+    judge_alone(camera_image, config.edge_reach_px, occlusion);
+    agree_with_neighbours(camera_image, occlusion);
   }
   soften(occlusion.unsoftened, occlusion.covered, occlusion.contact, occlusion.hidden);
 }

@@ -41,7 +41,7 @@ struct Occlusion {
   /// 255 in pixels that are occluded according to depth alone.
   Image<std::uint8_t> by_depth;
   MaskImage edges;
-  /// 255 in pixels of an object's contact with its support.
+  /// Pixels at an object's foot and of its contact with its support, see find_contacts().
   MaskImage contact;
   /// Numbers of edge pixels and of occluded pixels in each pixel's neighbourhood.
   Image<int> near_edges, near_hidden;
@@ -71,8 +71,10 @@ int occlusion_margin_px(const OcclusionConfig& config);
 ///
 /// Contacts of objects with their support are not hidden, see find_contacts().
 ///
-/// @param background    colour image of the camera, with the objects' shadows
-/// @param real_depth_m  depth of real surfaces in the same camera, with the size of `background`; pixels with
+/// @param camera_image  colour image of the camera. Edges are found in it, since an object's shadow makes
+///                      what it stands on look like darker things before it
+/// @param background    the same with the objects' shadows; may be the same image
+/// @param real_depth_m  depth of real surfaces in the same camera, with the size of both images; pixels with
 ///                      depth 0 occlude nothing
 /// @param layer         the rendered objects, within the image
 /// @param[out] occlusion  the result
@@ -80,7 +82,8 @@ int occlusion_margin_px(const OcclusionConfig& config);
 ///
 /// Source of the colour models and the band: Chuang et al., A Bayesian approach to digital matting, CVPR
 /// 2001. Here each side has one Gaussian, and pixels are opaque.
-void find_occlusion(const ColourImage& background, const DepthImage& real_depth_m, const ObjectLayer& layer,
-                    const OcclusionConfig& config, Occlusion& occlusion, const Feet& feet = {});
+void find_occlusion(const ColourImage& camera_image, const ColourImage& background,
+                    const DepthImage& real_depth_m, const ObjectLayer& layer, const OcclusionConfig& config,
+                    Occlusion& occlusion, const Feet& feet = {});
 
 }  // namespace roomradar

@@ -2,8 +2,27 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <span>
 
 namespace roomradar {
+
+/// Slope of the ambient light from above, over its mean: a surface that faces up gets 1 + kFromAbove of it.
+inline constexpr float kFromAbove = 0.1F;
+
+/// Directions in which lamps are looked for: 43 on rings at 15 to 90 degrees above the horizon.
+inline constexpr std::size_t kLampDirections = 43;
+std::span<const Eigen::Vector3f, kLampDirections> lamp_directions();
+
+/// Fractions, 0 to 1, of the light that the room's surfaces leave for a place.
+struct LightReach {
+  float ambient = 1.0F;
+  /// Of a lamp in each of lamp_directions().
+  std::array<float, kLampDirections> lamps = [] {
+    std::array<float, kLampDirections> all{};
+    all.fill(1.0F);
+    return all;
+  }();
+};
 
 /// Polynomials of a unit normal up to order 2: 1; x, y, z; xy, yz, zx, 3z^2 - 1, x^2 - y^2. They are the real
 /// spherical harmonics up to constant factors. Source: Ramamoorthi and Hanrahan, An efficient representation
@@ -36,11 +55,14 @@ struct MainLight {
   Eigen::Vector3f ambient = Eigen::Vector3f::Zero();
 };
 
-/// Separates ambient and directed light: A + D max(0, n.l) has the mean A + D / 4 and the linear coefficient
-/// D / 2. The direction is that of the channels' sum.
+/// Separates ambient and directed light: A (1 + kFromAbove z) + D max(0, n.l) has the mean A + D / 4 and the
+/// linear coefficient kFromAbove A z + D / 2 l. The direction is that of the channels' sum.
 MainLight main_light(const RoomLight& light);
 
-/// Returns the light where only a fraction of the directed light arrives and a fraction of the ambient light.
-RoomLight shaded(const RoomLight& light, float directed_fraction, float ambient_fraction);
+/// Light with its parts.
+struct SplitLight {
+  RoomLight whole;
+  MainLight main;
+};
 
 }  // namespace roomradar

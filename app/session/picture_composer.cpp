@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/objects/unknown_support.hpp"
+#include "app/render/camera_noise.hpp"
 
 namespace roomradar {
 namespace {
@@ -42,6 +43,8 @@ void PictureComposer::keep_colour(const Frame& frame, const Eigen::Isometry3d& T
   colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
   background_ = frame.colour;
   estimate_light(frame, T_world_camera, dt_s);
+  if (const std::optional<float> noise = config_.picture.has_grain ? noise_of(background_) : std::nullopt)
+    noise_ += (noise_ > 0.0F ? renewed_fraction(dt_s, config_.picture.light) : 1.0F) * (*noise - noise_);
 }
 
 void PictureComposer::estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
@@ -58,40 +61,26 @@ void PictureComposer::estimate_light(const Frame& frame, const Eigen::Isometry3d
   }
   if (placed == 0 || expected.depth_m.empty()) return;
   place_world /= placed;
+  const LightConfig& config = config_.picture.light;
   take_light_samples({background_, colour_view_->camera, colour_view_->T_world_view},
                      {expected.depth_m, expected.camera, T_world_camera, frame.depth_m, dynamic_mask},
-                     config_.picture.light.samples, light_samples_);
-  light_.add(light_samples_, place_world.cast<float>(), dt_s, config_.picture.light);
-  if (light_.light()) find_reaches(dt_s);
-}
-
-void PictureComposer::find_reaches(double dt_s) {
-  const Eigen::Vector3d to_light_world = main_light(*light_.light()).to_light_world;
-  const float part = renewed_fraction(dt_s, config_.picture.light);
+                     wanted_samples(!light_.light(), dt_s, config), light_position_, light_samples_);
   TreeInstance room;
   for (const SceneTree& surface : scene_.surfaces())
     if (surface.kind == SurfaceKind::kStatic) room = surface.instance;
-  reaches_.resize(objects_.size());
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    const VirtualObject& object = *objects_[i];
-    if (!object.in_room) {
-      reaches_[i].reset();
-      continue;
-    }
-    const LightReach now = light_reach(room, object.body.T_world_object * object.model->middle,
-                                       radius_m(object), to_light_world);
-    LightReach& smooth = reaches_[i] ? *reaches_[i] : reaches_[i].emplace(now);
-    smooth.directed += part * (now.directed - smooth.directed);
-    smooth.ambient += part * (now.ambient - smooth.ambient);
-  }
+  for (LightSample& sample : light_samples_)
+    sample.reach =
+        surface_reach(room, sample.p_world_m.cast<double>(), sample.normal_world.cast<double>(), place_world);
+  light_.add(light_samples_, place_world.cast<float>(), dt_s, config);
+  if (light_.light()) reaches_.update(objects_, room, dt_s, renewed_fraction(dt_s, config));
 }
 
-ShadowCaster PictureComposer::caster_of(const VirtualObject& object, const RoomLight* light) {
+ShadowCaster PictureComposer::caster_of(const VirtualObject& object, const SplitLight* light) {
   ShadowCaster caster{&object.shadow, object.body.T_world_object};
   if (light == nullptr) return caster;
-  const MainLight main = main_light(*light);
+  const MainLight& main = light->main;
   const float on_level = main.directed.sum() * std::max(0.0F, static_cast<float>(main.to_light_world.z()));
-  const float all = irradiance(*light, Eigen::Vector3f::UnitZ()).sum();
+  const float all = irradiance(light->whole, Eigen::Vector3f::UnitZ()).sum();
   caster.to_light_world = main.to_light_world.cast<float>();
   caster.directed_fraction = all > 0.0F ? std::min(on_level / all, 1.0F) : 0.0F;
   return caster;
@@ -166,8 +155,9 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
     const VirtualObject* object = objects_[i].get();
     if (!object->in_room) continue;
     drawn.push_back(drawn_object(*object, camera, T_world_view, config_.object_error_px));
-    if (colour_view_ && light_.light() && i < reaches_.size() && reaches_[i]) {
-      object_lights_.push_back(shaded(*light_.light(), reaches_[i]->directed, reaches_[i]->ambient));
+    if (const LightReach* reach = reaches_.of(i); colour_view_ && light_.light() && reach != nullptr) {
+      const RoomLight light = light_.light_at(*reach);
+      object_lights_.push_back({light, main_light(light)});
       drawn.back().light = &object_lights_.back();
     }
     if (has_shadows) casters.push_back(caster_of(*object, drawn.back().light));
@@ -189,7 +179,9 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   hatch(patches_, camera, T_world_view, real_depth_m_, picture_);
   drawer_.finish(layer_);
   find_feet(*shown_view_);
-  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_, feet_);
+  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_, feet_, &background_);
+  ++pictures_;
+  if (colour_view_ && config_.picture.has_grain) add_grain(layer_, occlusion_, noise_, pictures_, picture_);
 }
 
 }  // namespace roomradar

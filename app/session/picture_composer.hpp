@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -56,6 +57,8 @@ class PictureComposer {
   [[nodiscard]] const Occlusion& occlusion() const { return occlusion_; }
   /// The room's light as estimated from the colours so far; unset before the first colours.
   [[nodiscard]] const std::optional<RoomLight>& room_light() const { return light_.light(); }
+  /// Standard deviation of the camera's noise in brightness, of 255; 0 before the first colours.
+  [[nodiscard]] float noise() const { return noise_; }
   /// Camera and pose of the picture. Unset before the first localised frame with a picture, and after a frame
   /// that is not localised.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return shown_view_; }
@@ -80,12 +83,13 @@ class PictureComposer {
   std::vector<HatchedPatch> patches_;
   LightEstimator light_;
   std::vector<LightSample> light_samples_;
-  /// Light that the room leaves for each object, in the order of the objects, smoothed over time. Unset:
-  /// not determined since the object was placed.
-  std::vector<std::optional<LightReach>> reaches_;
-  std::vector<RoomLight> object_lights_;  ///< buffer: light of each drawn object
-  Feet feet_;                             ///< buffer
-  std::size_t last_shadow_ = 0;           ///< index of the object whose shadow was recomputed last
+  float noise_ = 0.0F;                     ///< standard deviation of the camera's noise, of 255; smoothed
+  std::uint64_t pictures_ = 0;             ///< number of composed pictures; seed of the grain
+  std::uint64_t light_position_ = 0;       ///< in the sequence of sampled pixels
+  ObjectReaches reaches_;                  ///< in the order of the objects
+  std::vector<SplitLight> object_lights_;  ///< buffer: light of each drawn object
+  Feet feet_;                              ///< buffer
+  std::size_t last_shadow_ = 0;            ///< index of the object whose shadow was recomputed last
   ColourImage background_;
   ColourImage picture_;
 
@@ -93,9 +97,8 @@ class PictureComposer {
   ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   /// Updates the light at the middle of the objects in the room, from the stored colour image.
   void estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
-  void find_reaches(double dt_s);
   /// Returns an object's shadow, in the light that arrives at it.
-  [[nodiscard]] static ShadowCaster caster_of(const VirtualObject& object, const RoomLight* light);
+  [[nodiscard]] static ShadowCaster caster_of(const VirtualObject& object, const SplitLight* light);
   /// Sets feet_ from the objects in the room.
   void find_feet(const ShownView& view);
   /// Recomputes the contact shadow of one object that has rotated by more than 0.05 rad or has fallen asleep.

@@ -145,7 +145,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   std::vector<Departure> departures = objects_.end_departures();
   times.add_ms("contact", ms_since(handed_over));
   begin(FramePart::kCompose);
-  if (config_.make_picture) composer_.keep_colour(whole, T_world_camera, dt_s);
+  if (config_.make_picture) times.timed("light", [&] { composer_.keep_colour(whole, T_world_camera, dt_s); });
   const bool makes_picture = config_.make_picture && is_due_every(config_.picture_every_n_frames);
   if (makes_picture)
     times.timed("compose", [&] {

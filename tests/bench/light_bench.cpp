@@ -2,6 +2,7 @@
 // direction of light, flicker, and pixels lost along the contact with what it rests on.
 //
 // usage: light_bench [--views N] [--maps FOLDER] [--only WORD] [--pictures FOLDER] [--json FILE]
+//                    [--light fixed|estimated]
 //        N: views per room, lamps and place, 9 if not given. FOLDER of --maps: saved scans of simulated
 //        rooms, as where_bench and placement_bench keep them; without it, no contact rows. WORD: part of a
 //        row's name.
@@ -10,7 +11,11 @@
 //     colour      mean difference of the object's pixels from the real object's, of 255
 //     shadow      the same of the pixels outside the object that the real object darkens by 4 or more
 //     light_deg   angle between estimated and true direction of light; null where the lamps give none
-//     flicker     greatest mean change of the object's pixels between frames of a held view, of 255
+//     flicker     greatest mean change of the object's tiles of 16 x 16 pixels between frames of a held view,
+//                 of 255; the grain averages out
+//     noise       standard deviation of brightness within the object, by second differences, of 255; and the
+//                 same of the real object in the camera's image (noise_real)
+//     light_ms    processor time of the light's estimate, per frame of a held view, of the calling thread
 //   ROOM-contact      the map is a scan, depth as measured; the object rests on the highest point under it
 //     lost        pixels within 10 mm of the foot that the picture hides though nothing is before them
 //     lost_all    the same of all the object's pixels
@@ -33,6 +38,7 @@
 #include "app/sim/solids/counter_random.hpp"
 #include "bench_program.hpp"
 #include "bench_times.hpp"
+#include "light_bench_pictures.hpp"
 #include "light_bench_scenes.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "radar/exact/ray_hit.hpp"
@@ -47,6 +53,7 @@ struct Settings {
   std::size_t views = 9;
   std::filesystem::path maps, pictures;
   std::string only, json;
+  bool fixed = false;
 };
 
 constexpr double kHeight_m = 0.27;
@@ -54,8 +61,9 @@ constexpr double kHeight_m = 0.27;
 /// A composer in a room whose map is a mesh, with the object in it.
 class Stage {
  public:
-  explicit Stage(const Mesh& room_world)
+  explicit Stage(const Mesh& room_world, bool fixed_light = false)
       : room_(context_), scene_(context_, room_, {}), composer_(context_, scene_, objects_, config_) {
+    if (fixed_light) config_.picture.light.samples_per_s = 0;
     room_.set(room_world, MeshUsage::kStatic);
     objects_.push_back(object_of(context_, "pot", object_of_solids(), {}));
     objects_.front()->in_room = objects_.front()->body.asleep = true;
@@ -73,15 +81,17 @@ class Stage {
     scene_.mesh_surfaces(frame, T_world_camera, expected, foreground);
     const double start_ms = test::thread_ms();
     composer_.keep_colour(frame, T_world_camera, dt_s);
+    if (dt_s < kHeld_s) light_ms.push_back(test::thread_ms() - start_ms);
     composer_.compose(frame, T_world_camera, true);
-    compose_ms.push_back(test::thread_ms() - start_ms);
+    if (dt_s < kHeld_s) compose_ms.push_back(test::thread_ms() - start_ms);
     composer_.end_frame(T_world_camera);
     return composer_.picture();
   }
   [[nodiscard]] const PictureComposer& composer() const { return composer_; }
   [[nodiscard]] const Shape& room() const { return room_; }
 
-  std::vector<double> compose_ms;
+  static constexpr double kHeld_s = 0.1;     ///< frames of held views come sooner
+  std::vector<double> compose_ms, light_ms;  ///< of held views
 
  private:
   GlContext context_;
@@ -93,31 +103,6 @@ class Stage {
   std::int64_t count_ = 0;
   double stamp_s_ = 0.0;
 };
-
-int difference(const Rgb& a, const Rgb& b) {
-  return std::abs(int{a.r} - int{b.r}) + std::abs(int{a.g} - int{b.g}) + std::abs(int{a.b} - int{b.b});
-}
-
-/// Returns the indices of pixels whose neighbourhood shows only the object.
-std::vector<std::size_t> object_pixels(const ExactView& exact, std::size_t object_begin) {
-  std::vector<std::size_t> pixels;
-  const auto is_object = [&](int x, int y) { return exact.solid.at(x, y) >= static_cast<int>(object_begin); };
-  for (int y = 1; y + 1 < exact.solid.height; ++y)
-    for (int x = 1; x + 1 < exact.solid.width; ++x) {
-      bool whole = true;
-      for (int v = -1; v <= 1 && whole; ++v)
-        for (int u = -1; u <= 1 && whole; ++u) whole = is_object(x + u, y + v);
-      if (whole) pixels.push_back(exact.solid.index(x, y));
-    }
-  return pixels;
-}
-
-/// Returns the mean difference of two pictures in some pixels, per channel.
-double mean_difference(const ColourImage& a, const ColourImage& b, const std::vector<std::size_t>& pixels) {
-  double sum = 0.0;
-  for (const std::size_t i : pixels) sum += difference(a.pixels[i], b.pixels[i]);
-  return pixels.empty() ? 0.0 : sum / (3.0 * static_cast<double>(pixels.size()));
-}
 
 void save(const Settings& settings, const std::string& name, const ColourImage& picture) {
   if (settings.pictures.empty()) return;
@@ -136,7 +121,7 @@ Frame frame_of(const Intrinsics& camera, const ColourImage& colour, const DepthI
 }
 
 struct Measured {
-  std::vector<double> colour, shadow, light_deg;
+  std::vector<double> colour, shadow, light_deg, noise, noise_real;
   double flicker = 0.0;
 };
 
@@ -171,6 +156,11 @@ void compare_view(Stage& stage, const LitRoom& empty, const LitRoom& real, const
                                      ? std::acos(std::clamp(true_world->dot(*found_world), -1.0, 1.0)) *
                                            180.0 / std::numbers::pi
                                      : 180.0);
+  ColourImage as_seen;
+  ExactView same;
+  render_lit(real, camera, T_room_camera, kNoise, hash_of(seed, 9), as_seen, same);
+  measured.noise.push_back(noise_in(picture, pixels));
+  measured.noise_real.push_back(noise_in(as_seen, pixels));
   save(settings, name + "-virtual", picture);
   save(settings, name + "-real", truth);
   for (std::uint64_t i = 0; i < 6; ++i) {  // held, at 30 frames per second, with each frame's own noise
@@ -185,7 +175,7 @@ void compare_view(Stage& stage, const LitRoom& empty, const LitRoom& real, const
     }
     frame.colour = noisy;
     const ColourImage& next = stage.show(frame, T_room_camera, 1.0 / 30.0);
-    measured.flicker = std::max(measured.flicker, mean_difference(picture, next, pixels));
+    measured.flicker = std::max(measured.flicker, tile_change(picture, next, pixels));
     picture = next;
   }
 }
@@ -194,7 +184,7 @@ nlohmann::json colour_row(const std::string& row, const std::string& room, const
                           const Vector3d& foot, const Settings& settings) {
   const auto empty = lit_room(room, lamps, std::nullopt);
   const auto real = lit_room(room, lamps, foot);
-  Stage stage(room_mesh(empty->room));
+  Stage stage(room_mesh(empty->room), settings.fixed);
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   T_world_object.translation() = foot;
   stage.put_object(T_world_object);
@@ -207,6 +197,7 @@ nlohmann::json colour_row(const std::string& row, const std::string& room, const
     ++view;
   }
   std::sort(stage.compose_ms.begin(), stage.compose_ms.end());
+  std::sort(stage.light_ms.begin(), stage.light_ms.end());
   const auto& degrees = measured.light_deg;
   return {
       {"row", row},
@@ -218,7 +209,10 @@ nlohmann::json colour_row(const std::string& row, const std::string& room, const
       {"light_max_deg", degrees.empty() ? nlohmann::json()
                                         : nlohmann::json(*std::max_element(degrees.begin(), degrees.end()))},
       {"flicker", measured.flicker},
-      {"compose_ms", view > 0 ? stage.compose_ms[stage.compose_ms.size() / 2] : 0.0}};
+      {"noise", test::Times{measured.noise}.mean()},
+      {"noise_real", test::Times{measured.noise_real}.mean()},
+      {"compose_ms", view > 0 ? stage.compose_ms[stage.compose_ms.size() / 2] : 0.0},
+      {"light_ms", view > 0 ? stage.light_ms[stage.light_ms.size() / 2] : 0.0}};
 }
 
 /// Returns the height of the map's highest point under the object's foot, in the world.
@@ -310,6 +304,7 @@ Settings parse(int argc, char** argv) {
     if (word == "--only") settings.only = value;
     if (word == "--pictures") settings.pictures = value;
     if (word == "--json") settings.json = value;
+    if (word == "--light") settings.fixed = value == "fixed";
   }
   return settings;
 }

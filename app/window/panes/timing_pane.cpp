@@ -11,7 +11,8 @@ namespace {
 constexpr std::array<ImU32, TimingPane::kStages.size()> kColours = {
     IM_COL32(86, 156, 214, 255),  IM_COL32(64, 196, 172, 255),  IM_COL32(150, 206, 96, 255),
     IM_COL32(214, 214, 110, 255), IM_COL32(240, 178, 74, 255),  IM_COL32(232, 122, 82, 255),
-    IM_COL32(235, 92, 130, 255),  IM_COL32(176, 124, 222, 255), IM_COL32(98, 108, 124, 255)};
+    IM_COL32(235, 92, 130, 255),  IM_COL32(204, 152, 236, 255), IM_COL32(176, 124, 222, 255),
+    IM_COL32(98, 108, 124, 255)};
 
 float median(std::vector<float>& values) {
   if (values.empty()) return 0.0F;

@@ -30,8 +30,8 @@ class TimingPane {
   [[nodiscard]] float frame_ms() const { return frames_.empty() ? 0.0F : frames_.back().whole_ms; }
 
   /// Stages from bottom to top of the chart. "rest" is the time outside all other stages.
-  static constexpr std::array<const char*, 9> kStages = {
-      "locate", "expected", "foreground", "changes", "mesh", "physics", "radar", "compose", "rest"};
+  static constexpr std::array<const char*, 10> kStages = {
+      "locate", "expected", "foreground", "changes", "mesh", "physics", "radar", "light", "compose", "rest"};
 
  private:
   struct Times {
