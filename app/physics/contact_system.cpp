@@ -1,46 +1,17 @@
-// contact_system.cpp: proximity queries of bodies that touch each other, each pair once.
+// contact_system.cpp: contacts of the closest features, and the solver's bodies.
 #include "app/physics/contact_system.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "app/physics/contact_queries.hpp"
+
 namespace roomradar {
 namespace {
 
 using Vec3 = Eigen::Vector3d;
-constexpr double kTouchingBand = 0.5;  // fraction of the margin by which contacts may exceed it
-constexpr double kCarried = 1e6;       // factor of a carried body's mass: other bodies hardly move the hand
-
-std::size_t member_of(const MovingBody& moving, const ClosestPoint& p) {
-  return p.tree < moving.member_of_tree.size() ? moving.member_of_tree[p.tree] : kNoOther;
-}
-
-/// Sets `near` of a body. Returns the kinds of surfaces that intersect the body.
-SurfaceKindMask query_near(MovingBody& moving, double reach_m, const TreeStates& trees) {
-  return moving.probe->near(moving.body->T_world_object, reach_m, moving.left_out, trees, moving.near);
-}
-
-/// Returns true if one of the points is within a margin of the point, with the same normal.
-bool is_among(const std::vector<ClosestPoint>& points, const ClosestPoint& sought, double margin_m) {
-  return std::any_of(points.begin(), points.end(), [&](const ClosestPoint& p) {
-    return (p.point_world - sought.point_world).norm() < margin_m &&
-           p.normal_world.dot(sought.normal_world) > 0.99;
-  });
-}
-
-/// Adds the feature that ended the body's last motion, unless it is among the features found.
-void add_limit(std::span<MovingBody> bodies, MovingBody& moving, double margin_m, double reach_m) {
-  const ClosestPoint& limit = moving.limited_by;
-  if (limit.kind == SurfaceKind::kNothing || limit.gap_m > reach_m) return;
-  if (is_among(moving.near, limit, margin_m)) return;
-  // The pair may have been queried from the other body.
-  const std::size_t other = member_of(moving, limit);
-  ClosestPoint reversed = limit;
-  reversed.point_world += limit.gap_m * limit.normal_world;
-  reversed.normal_world = -limit.normal_world;
-  if (other == kNoOther || !is_among(bodies[other].near, reversed, margin_m)) moving.near.push_back(limit);
-}
+constexpr double kCarried = 1e6;  // factor of a carried body's mass: other bodies hardly move the hand
 
 /// Returns the solver's state of a body; set_masses() sets its mass.
 SolverBody solver_body(const Body& body, const Velocity& velocity) {
@@ -110,56 +81,6 @@ bool is_hit(std::size_t index, const ContactSystem& system) {
   });
 }
 
-/// Makes the contacts of a sleeping body known. Returns false if they are not reliable: its support is not a
-/// surface at rest, or a surface intersects it. Such a body does not move by the weight of others.
-bool know_contacts(MovingBody& sleeper, double reach_m, ContactSystem& system) {
-  if (is_moving_surface(sleeper.body->rests_on)) return false;
-  const Body& body = *sleeper.body;
-  const std::span<const SceneBody> others = sleeper.probe->others;
-  if (sleeper.is_undisturbed && recall_contacts(system.sleepers, body, others, sleeper.near)) return true;
-  if (query_near(sleeper, reach_m, {}) != 0) return false;
-  remember_contacts(system.sleepers, body, others, sleeper.near);
-  return true;
-}
-
-/// Queries the features near all active bodies and near the sleeping ones that they touch, directly or
-/// through others. Returns which sleeping bodies are touched. Queries each pair of active bodies once, from
-/// the lower one.
-std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, double reach_m,
-                                 ContactSystem& system) {
-  std::vector<bool> is_reached(bodies.size()), is_queried(bodies.size());
-  std::vector<std::size_t> reached;
-  const auto reach_others_of = [&](const MovingBody& moving) {
-    for (const ClosestPoint& p : moving.near) {
-      const std::size_t other = member_of(moving, p);
-      if (other == kNoOther || !bodies[other].body->asleep || is_reached[other]) continue;
-      is_reached[other] = true;
-      reached.push_back(other);
-    }
-  };
-  TreeStates trees;
-  for (const std::size_t i : system.upwards) {
-    MovingBody& moving = bodies[i];
-    if (!is_active(moving)) continue;
-    trees.left_out.assign(moving.member_of_tree.size(), false);
-    for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree)
-      trees.left_out[tree] =
-          moving.member_of_tree[tree] != kNoOther && is_queried[moving.member_of_tree[tree]];
-    moving.crosses = query_near(moving, reach_m, trees) != 0;
-    if (moving.crosses) continue;
-    is_queried[i] = true;
-    add_limit(bodies, moving, config.contact_margin_m, reach_m);
-    reach_others_of(moving);
-  }
-  for (std::size_t k = 0; k < reached.size(); ++k) {
-    MovingBody& sleeper = bodies[reached[k]];
-    if (!sleeper.contacts_known && !know_contacts(sleeper, reach_m, system)) continue;
-    sleeper.contacts_known = true;
-    reach_others_of(sleeper);
-  }
-  return is_reached;
-}
-
 }  // namespace
 
 bool is_active(const MovingBody& moving) {
@@ -169,7 +90,6 @@ bool is_active(const MovingBody& moving) {
 
 void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, const Eigen::Vector3d& up_world,
                    ContactSystem& system) {
-  const double reach_m = std::max((1.0 + kTouchingBand) * config.contact_margin_m, 1e-6);
   system.contacts.clear();
   system.gap_m.clear();
   system.kinds.clear();
@@ -183,7 +103,7 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
   std::stable_sort(system.upwards.begin(), system.upwards.end(), [&](std::size_t a, std::size_t b) {
     return centre_world(*bodies[a].body).dot(up_world) < centre_world(*bodies[b].body).dot(up_world);
   });
-  const std::vector<bool> is_reached = query_contacts(bodies, config, reach_m, system);
+  const std::vector<bool> is_reached = query_contacts(bodies, config, system);
   std::vector<bool> is_listed(bodies.size());
   for (const bool lists_sleeping : {false, true})
     for (const std::size_t i : system.upwards) {

@@ -53,6 +53,9 @@ struct MovingBody {
   ClosestPoint limited_by{};         ///< feature that ended the body's last motion
   bool contacts_known = false;       ///< sleeping bodies: contacts are in the system
   std::vector<ClosestPoint> near{};  ///< closest features at its pose
+  std::size_t near_found = 0;        ///< size of `near` without the feature that ended its last motion
+  /// Pose at which its features were queried in this substep; unset: they were not.
+  std::optional<Eigen::Isometry3d> T_world_near{};
 };
 
 /// A body in the scene that is not advanced in this substep.

@@ -103,8 +103,7 @@ bool Substep::bounce() {
   return note_impacts();
 }
 
-/// Takes over the velocities after impacts, and wakes the sleeping bodies that were hit. Returns true if
-/// there are any.
+/// Takes over the velocities after impacts. Returns true if it wakes sleeping bodies that were hit.
 bool Substep::note_impacts() {
   bool woke = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -353,6 +352,7 @@ void Substep::run() {
     moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
     moving.crosses = false;
     moving.limited_by = {};
+    moving.T_world_near.reset();
   }
   const auto is_any_active = [&] { return std::any_of(bodies_.begin(), bodies_.end(), is_active); };
   for (int stop = 0; stop < config_.max_slides && is_any_active(); ++stop) {

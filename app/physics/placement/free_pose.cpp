@@ -1,7 +1,8 @@
-// free_pose.cpp: samples translations in 26 directions, shortest first.
+// free_pose.cpp: samples translations in 98 directions, shortest first.
 #include "app/physics/placement/free_pose.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <vector>
 
 namespace roomradar {
@@ -9,13 +10,15 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-/// Returns the unit directions to the faces, edges and corners of a cube, upward ones first.
+/// Returns the unit directions to the points of a grid of 5 x 5 on each face of a cube, upward ones first.
 std::vector<Vec3> directions() {
+  constexpr int kHalf = 2;
   std::vector<Vec3> all;
-  for (int z = 1; z >= -1; --z)
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x)
-        if (x != 0 || y != 0 || z != 0) all.push_back(Vec3(x, y, z).normalized());
+  for (int z = kHalf; z >= -kHalf; --z)
+    for (int y = -kHalf; y <= kHalf; ++y)
+      for (int x = -kHalf; x <= kHalf; ++x)
+        if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == kHalf)
+          all.push_back(Vec3(x, y, z).normalized());
   std::stable_sort(all.begin(), all.end(), [](const Vec3& a, const Vec3& b) { return a.z() > b.z() + 1e-9; });
   return all;
 }
@@ -78,9 +81,10 @@ std::optional<FreePose> nearest_free_pose(const TreeInstance& object, std::span<
   constexpr int kSteps = 20, kBisections = 5;
   const double step_m = max_m / kSteps;
   ExitSearch search(object, surfaces, gap_m, radar, proximity);
+  const std::vector<Vec3> all = directions();
   std::optional<FreePose> best;
   for (int step = 1; step <= kSteps && !best; ++step) {
-    for (const Vec3& direction : directions()) {
+    for (const Vec3& direction : all) {
       double blocked_m = (step - 1) * step_m, free_m = step * step_m;
       if (!search.is_clear(free_m * direction)) continue;
       for (int i = 0; i < kBisections; ++i) {

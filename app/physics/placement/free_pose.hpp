@@ -20,7 +20,7 @@ struct FreePose {
   double moved_m = 0.0;  ///< length of the translation
 };
 
-/// Returns the pose after the shortest translation, among 26 directions, that leaves the object free of all
+/// Returns the pose after the shortest translation, among 98 directions, that leaves the object free of all
 /// surfaces. The object ends on the front side of the surface that intersected it. For example, an object in
 /// a floor ends above it, not below. During the translation, the object may pass through other surfaces.
 /// @param gap_m       min distance between object and surfaces after the translation, > 0
@@ -29,7 +29,7 @@ struct FreePose {
 /// @param is_allowed  returns false for poses to reject, such as poses in unknown space. Null accepts all
 ///                    poses
 /// @return unset if no such translation is found
-/// Takes 1 to 100 ms: too slow for a call in each frame.
+/// Takes 1 to 400 ms: too slow for a call in each frame.
 std::optional<FreePose> nearest_free_pose(const TreeInstance& object, std::span<const SceneTree> surfaces,
                                           double gap_m, double max_m,
                                           const std::function<bool(const Eigen::Isometry3d&)>& is_allowed,
