@@ -36,7 +36,7 @@ SurfaceKindMask query_moved(MovingBody& moving, double reach_m, const std::vecto
 /// Returns true if the features of the body, and those of it for others, must be queried again: it has moved,
 /// or became active or inactive.
 bool must_be_queried(const MovingBody& moving, double margin_m) {
-  constexpr double kKeptWithin = 0.05;  // of the margin
+  constexpr double kKeptWithin = 0.25;  // of the margin
   if (!is_active(moving)) return moving.T_world_near.has_value();
   return !moving.T_world_near || strayed_m(*moving.body, *moving.T_world_near) > kKeptWithin * margin_m;
 }

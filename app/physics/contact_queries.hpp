@@ -15,8 +15,8 @@ inline std::size_t member_of(const MovingBody& moving, const ClosestPoint& p) {
 
 /// Sets MovingBody::near of all active bodies, and of the sleeping ones that they touch, directly or through
 /// others. Features within 1.5 contact margins are near. A pair of active bodies is queried once, from the
-/// lower one. In a substep's later queries, a body that has moved by at most 5 % of the margin keeps the
-/// features of surfaces and of bodies that have not moved either. Sets `crosses` of active bodies that a
+/// lower one. In a substep's later queries, a body that has moved by at most a quarter of the margin keeps
+/// the features of surfaces and of bodies that have not moved either. Sets `crosses` of active bodies that a
 /// surface intersects. Returns which sleeping bodies are touched.
 /// @param system  ContactSystem::upwards is the order; sleepers' contacts are kept in it
 std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config,

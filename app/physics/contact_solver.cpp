@@ -229,7 +229,7 @@ double ContactSolver::sweep(std::span<SolverContact> contacts, std::span<SolverB
     double x_Ns = before_x - rows.x.effective_mass_kg * slip_along(contact, rows.x);
     double y_Ns = before_y - rows.y.effective_mass_kg * slip_along(contact, rows.y);
     const double most_Ns = contact.friction * impulse_Ns;
-    const double size_Ns = std::hypot(x_Ns, y_Ns);
+    const double size_Ns = std::sqrt(x_Ns * x_Ns + y_Ns * y_Ns);
     if (size_Ns > most_Ns) {
       x_Ns *= most_Ns / size_Ns;
       y_Ns *= most_Ns / size_Ns;

@@ -139,9 +139,10 @@ RelativeMotion relative_motion(const TreeInstance& object, const RigidMotion& mo
   const Eigen::Matrix3d R_frame_world = trees.T_world_frame.linear().transpose();
   const Vec3 angular = R_frame_world * angular_world;
   const double turn_rad_s = angular.norm();
+  const Vec3 squares = angular.cwiseAbs2();
   const Vec3 turning_m_s =
-      reach_m * Vec3(std::hypot(angular.y(), angular.z()), std::hypot(angular.z(), angular.x()),
-                     std::hypot(angular.x(), angular.y()));
+      reach_m *
+      Vec3(squares.y() + squares.z(), squares.z() + squares.x(), squares.x() + squares.y()).cwiseSqrt();
   RelativeMotion relative{R_frame_world * linear_world,
                           angular,
                           trees.T_world_frame.inverse() * centre_world,

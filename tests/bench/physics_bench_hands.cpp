@@ -18,7 +18,7 @@ namespace roomradar::bench {
 namespace {
 
 using Vec3 = Eigen::Vector3d;
-constexpr double kFrame_s = 1.0 / 30.0;
+constexpr double kHandFrame_s = 1.0 / 30.0;
 constexpr double kTable_m = 0.72;
 constexpr Intrinsics kCamera{320, 240, 292.0, 292.0, 159.5, 119.5};
 
@@ -84,7 +84,7 @@ Frame render(std::span<const Solid> table, std::span<const Solid> hand,
   measure_depth(solids, infrared, view, exact, kCamera, T_world_camera, {}, 1.0, 1, index, scratch,
                 frame.depth_m);
   frame.index = index;
-  frame.stamp_s = index * kFrame_s;
+  frame.stamp_s = index * kHandFrame_s;
   frame.depth_camera = kCamera;
   frame.T_world_camera = T_world_camera;
   return frame;
@@ -132,9 +132,9 @@ PassResult sweep(const Pass& pass) {
       test::looking_at({0.0, -1.0, kTable_m + 0.8}, {0.0, 0.0, kTable_m});
   StageTimes times;
   PassResult result;
-  const int moving_frames = static_cast<int>(std::ceil(0.9 / pass.speed_mps / kFrame_s));
+  const int moving_frames = static_cast<int>(std::ceil(0.9 / pass.speed_mps / kHandFrame_s));
   for (int index = 0; index < kSettle_frames + moving_frames; ++index) {
-    const double t_s = (index - kSettle_frames) * kFrame_s;
+    const double t_s = (index - kSettle_frames) * kHandFrame_s;
     const std::vector<Solid> hand = t_s > 0.0 ? hand_solids(pass, t_s) : std::vector<Solid>{};
     static_cast<void>(session.step(render(table, hand, T_world_camera, index), times));
     if (hand.empty()) continue;
@@ -143,7 +143,7 @@ PassResult sweep(const Pass& pass) {
     result.deepest_m = std::max(result.deepest_m, depth_m);
     result.entered |= depth_m >= 0.01;
   }
-  const double end_s = moving_frames * kFrame_s;
+  const double end_s = moving_frames * kHandFrame_s;
   const Vec3 hand_end = pass.palm_world(end_s) + 0.09 * pass.fingers;
   const Vec3 from_hand = object.body.T_world_object.translation() - hand_end;
   // Behind the hand, in its track.
@@ -170,7 +170,7 @@ void measure_hands(int objects, nlohmann::json& rows) {
       // Fingertips first, or the flat of the hand to either side.
       const double turn = std::array{0.0, 0.5 * M_PI, -0.5 * M_PI}[static_cast<std::size_t>(i % 3)];
       const Pass pass{&kObjects[static_cast<std::size_t>(i / 3 % kKinds)], speed_mps, way,
-                      Eigen::AngleAxisd(turn, Vec3::UnitZ()) * way, random.uniform(0.0, kFrame_s)};
+                      Eigen::AngleAxisd(turn, Vec3::UnitZ()) * way, random.uniform(0.0, kHandFrame_s)};
       const PassResult result = sweep(pass);
       touched += result.touched;
       entered += result.entered;
