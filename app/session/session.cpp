@@ -94,12 +94,9 @@ void Session::commit_changes() {
 }
 
 FrameResult Session::step(const Frame& frame, StageTimes& times) {
-  if (const std::string_view fault = fault_of(frame); !fault.empty()) {
-    FrameResult bad;
-    bad.status = FrameStatus::kBadFrame;
-    bad.fault = fault;
-    return bad;
-  }
+  FrameResult bad;
+  bad.status = FrameStatus::kBadFrame;
+  if (bad.fault = fault_of(frame); !bad.fault.empty()) return bad;
   FrameResult result = times.timed("frame", [&] { return pass_through(frame, times); });
   if (config_.watch) static_cast<void>(config_.watch(FramePart::kDone, load()));
   schedule_.take_all([&](const RunQuality& quality) { set_quality(quality); });  // of parts not reached
@@ -133,9 +130,9 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   moved_fraction_ =
       static_cast<double>(foreground.counts.moved) / static_cast<double>(frame.depth_m.pixels.size());
   begin(FramePart::kMesh);
-  const std::vector<FineRegion> near_objects = objects_.fine_regions();
-  times.timed("mesh",
-              [&] { scene_.mesh_surfaces(frame, T_world_camera, expected, foreground, near_objects); });
+  times.timed("mesh", [&] {
+    scene_.mesh_surfaces(frame, T_world_camera, expected, foreground, objects_.fine_regions());
+  });
   objects_.count_fine_cells();
   if (!objects_.waiting_drops().empty())
     times.timed("place",
@@ -147,10 +144,8 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   begin(FramePart::kCompose);
   if (config_.make_picture) times.timed("light", [&] { composer_.keep_colour(whole, T_world_camera, dt_s); });
   const bool makes_picture = config_.make_picture && is_due_every(config_.picture_every_n_frames);
-  if (makes_picture)
-    times.timed("compose", [&] {
-      composer_.compose(whole, T_world_camera, is_due_every(config_.shadow_every_n_frames));
-    });
+  const bool has_shadow = is_due_every(config_.shadow_every_n_frames);
+  if (makes_picture) times.timed("compose", [&] { composer_.compose(whole, T_world_camera, has_shadow); });
   composer_.end_frame(T_world_camera);
   ++frames_;
   FrameResult result;
@@ -181,9 +176,7 @@ FrameResult Session::pass_unlocated(const Frame& frame, TrackStatus tracking) {
 }
 
 double Session::seconds_since_last(double stamp_s) {
-  const double dt_s = last_stamp_s_ ? std::max(0.0, stamp_s - *last_stamp_s_) : 0.0;
-  last_stamp_s_ = stamp_s;
-  return dt_s;
+  return std::max(0.0, stamp_s - std::exchange(last_stamp_s_, stamp_s).value_or(stamp_s));
 }
 
 void Session::begin(FramePart part) {
@@ -210,11 +203,9 @@ const Frame& Session::with_depth_reduced(const Frame& frame) {
 
 Tracking Session::locate_camera(const Frame& frame) {
   if (config_.poses == PoseOrigin::kRecorded) {
-    Tracking tracking;
-    if (!frame.T_world_camera) return tracking;
-    tracking.status = TrackStatus::kTracked;
-    tracking.T_world_camera = map_.info.T_world_recorded * *frame.T_world_camera;
-    return tracking;
+    if (!frame.T_world_camera) return {};
+    return {.status = TrackStatus::kTracked,
+            .T_world_camera = map_.info.T_world_recorded * *frame.T_world_camera};
   }
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
     return scene_.render_expected(frame.depth_camera, T_world_camera).depth_m;
