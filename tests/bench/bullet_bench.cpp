@@ -1,9 +1,9 @@
 // bullet_bench.cpp: heaps and throws, simulated by the project and by Bullet in the same run.
 //
-// usage: bullet_bench [--map FOLDER --at X,Y,Z] [--throws N] [--only heap|throws] [--json FILE]
+// usage: bullet_bench [--map FOLDER --at X,Y,Z] [--objects N] [--throws N] [--only heap|throws] [--json FILE]
 //        FOLDER: a saved map; objects are dropped above the point. Without it: the simulated table room.
 //
-//   heap    50 boxes, balls and teapots of 5 to 15 cm, one every second frame, 300 frames
+//   heap    N (50) boxes, balls and teapots of 5 to 15 cm, one every second frame, 300 frames
 //     asleep  bodies at rest at the end
 //     crossed bodies whose surface another one's or the room's crosses at the end, and the greatest depth
 //     gone    bodies that have fallen through everything
@@ -34,7 +34,7 @@ using Vec3 = Eigen::Vector3d;
 struct Options {
   std::string map, only, json;
   Vec3 at_world = Vec3::Zero();
-  int throws = 600;
+  int objects = 50, throws = 600;
 };
 
 Options parse(int argc, char** argv) {
@@ -48,6 +48,8 @@ Options parse(int argc, char** argv) {
       if (std::sscanf(argv[i + 1], "%lf,%lf,%lf", &options.at_world[0], &options.at_world[1],
                       &options.at_world[2]) != 3)
         throw Error("--at " + std::string(argv[i + 1]) + ": needs three numbers X,Y,Z (m)");
+    } else if (name == "--objects") {
+      options.objects = std::clamp(std::atoi(argv[i + 1]), 1, 1000);
     } else if (name == "--throws") {
       options.throws = std::clamp(std::atoi(argv[i + 1]), 1, 1'000'000);
     } else if (name == "--only") {
@@ -55,7 +57,7 @@ Options parse(int argc, char** argv) {
     } else if (name == "--json") {
       options.json = argv[i + 1];
     } else {
-      throw Error(name + ": not known; there are --map, --at, --throws, --only and --json");
+      throw Error(name + ": not known; there are --map, --at, --objects, --throws, --only and --json");
     }
   }
   return options;
@@ -93,7 +95,7 @@ double overlap_m(const TreeInstance& object, std::span<const SceneTree> scene, C
 }
 
 void measure_heap(const Options& options, nlohmann::json& rows) {
-  constexpr int kObjects = 50, kFrames = 300;
+  constexpr int kFrames = 300;
   const Room table = make_room("table");
   const Mesh room = options.map.empty() ? room_mesh(table) : load_map_mesh(options.map);
   const Vec3 at_world = options.map.empty() ? table.focus_world : options.at_world;
@@ -101,7 +103,7 @@ void measure_heap(const Options& options, nlohmann::json& rows) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::list<Thing> things;
   std::vector<Entry> entries;
-  for (int i = 0; i < kObjects; ++i) {
+  for (int i = 0; i < options.objects; ++i) {
     const double size_m = 0.05 + 0.1 * unit(random);
     const int kind = i % 4;
     things.emplace_back("object", kind == 0   ? box_mesh(Vec3::Constant(size_m))
@@ -110,12 +112,12 @@ void measure_heap(const Options& options, nlohmann::json& rows) {
                                               : utah_teapot(10, size_m));
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.translation() = at_world + Vec3(0.17 * (i % 3 - 1) + 0.03 * (unit(random) - 0.5),
-                                      0.17 * (i / 3 % 3 - 1) + 0.03 * (unit(random) - 0.5), 0.35);
+                                      0.17 * (i / 3 % 3 - 1) + 0.03 * (unit(random) - 0.5), 0.9);
     entries.push_back({&things.back(), kind != 3, 2 * i + 1, T});
   }
   std::printf("heap of %d objects, %d frames, thread time\n%-12s %8s %8s %8s %8s %8s %8s %11s %6s\n",
-              kObjects, kFrames, "", "median", "p95", "p99", "mean ms", "asleep", "crossed", "deepest mm",
-              "gone");
+              options.objects, kFrames, "", "median", "p95", "p99", "mean ms", "asleep", "crossed",
+              "deepest mm", "gone");
   for (const Engine& engine : kEngines) {
     const Simulated result = engine.simulate(room, entries, kFrames);
     TriangleTree room_tree;
