@@ -27,12 +27,19 @@ struct SurfaceSweep {
   PushDirections push{};
 };
 
+/// Returns the centre of the object's bounding box. Computes with local copies: Eigen's sums may depend on
+/// the alignment of their operands, which differs from run to run on the heap.
+Eigen::Vector3d middle_world(const VirtualObject& object) {
+  const Eigen::Isometry3d T_world_object = object.body.T_world_object;
+  const Eigen::Vector3d middle = object.model->middle;
+  return T_world_object * middle;
+}
+
 SurfaceSweep sweep_near(const DueObject& one, const FrameScene& moving) {
   constexpr double kFarthest_m = 0.15;  // 4.5 m/s at 30 frames/s
   const VirtualObject& object = *one.object;
   const auto way = translation_near(moving.last_dynamic_points_world(), moving.dynamic_points_world(),
-                                    object.body.T_world_object * object.model->middle,
-                                    radius_m(object) + kNearbyReach_m, kFarthest_m);
+                                    middle_world(object), radius_m(object) + kNearbyReach_m, kFarthest_m);
   return {way.value_or(Eigen::Vector3d::Zero()), one.scene, {}};
 }
 
@@ -52,9 +59,9 @@ void put_surfaces(SurfaceSweep& sweep, double left, const FrameScene& moving, Du
     one.scene[i].instance.T_world_mesh.pretranslate(back_world);
   }
   const VirtualObject& object = *one.object;
-  sweep.push = depenetration_directions(
-      {&moving.dynamic_world().seen_world, &moving.dynamic_world().inferred_world},
-      object.body.T_world_object * object.model->middle - back_world, radius_m(object) + kNearbyReach_m);
+  sweep.push =
+      depenetration_directions({&moving.dynamic_world().seen_world, &moving.dynamic_world().inferred_world},
+                               middle_world(object) - back_world, radius_m(object) + kNearbyReach_m);
   if (steps_of(sweep) > 1) sweep.push.add(-sweep.way_world.normalized());
   advanced.depenetration_directions_world = sweep.push.span();
 }
@@ -98,7 +105,7 @@ bool grip(const SurfaceSweep& sweep, const Eigen::Vector3d& shift_world, const D
   constexpr double kDeepest_m = 0.03;  // fingers may be this deep in the object
   constexpr double kCentred = 0.3;     // fraction of the way to the middle, per call
   VirtualObject& object = *one.object;
-  const Eigen::Vector3d middle = object.body.T_world_object * object.model->middle - shift_world;
+  const Eigen::Vector3d middle = middle_world(object) - shift_world;
   for (const Eigen::Vector3d& direction : sweep.push.span()) {
     const Mesh ahead = side_of(surfaces, middle, radius_m(object), direction);
     const Mesh behind = side_of(surfaces, middle, radius_m(object), -direction);
