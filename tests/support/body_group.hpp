@@ -21,6 +21,8 @@ class BodyGroup {
     }
     mass_kg.assign(meshes.size(), 1.0);
     is_carried.assign(meshes.size(), false);
+    is_present.assign(meshes.size(), true);
+    is_undisturbed.assign(meshes.size(), false);
   }
   BodyGroup(BodyGroup&&) = default;
 
@@ -35,7 +37,10 @@ class BodyGroup {
   }
 
   void step(const PhysicsConfig& config) {
-    const std::size_t n = bodies.size(), surfaces = surfaces_.size();
+    std::vector<std::size_t> present;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (is_present[i]) present.push_back(i);
+    const std::size_t n = present.size(), surfaces = surfaces_.size();
     std::vector<std::vector<SceneTree>> scenes(n);
     std::vector<std::vector<SceneBody>> others(n);
     std::vector<RadarScene> radar_scenes;
@@ -49,24 +54,27 @@ class BodyGroup {
       others[i].resize(surfaces);
       for (std::size_t j = 0; j < n; ++j) {
         if (j == i) continue;
-        scenes[i].push_back({{&trees_[j], bodies[j].T_world_object}, SurfaceKind::kObject});
-        others[i].push_back({&bodies[j], 1.0});
+        Body& other = bodies[present[j]];
+        scenes[i].push_back({{&trees_[present[j]], other.T_world_object}, SurfaceKind::kObject});
+        others[i].push_back({&other, 1.0});
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t body = present[i];
       radar_scenes.push_back({scenes[i], {}});
-      probes.push_back(make_collision_queries(radar_, field_, trees_[i], radar_scenes[i]));
+      probes.push_back(make_collision_queries(radar_, field_, trees_[body], radar_scenes[i]));
       probes[i].others = others[i];
-      advanced.push_back({.body = &bodies[i],
+      advanced.push_back({.body = &bodies[body],
                           .probe = &probes[i],
-                          .mass_kg = mass_kg[i],
-                          .is_carried = is_carried[i],
+                          .mass_kg = mass_kg[body],
+                          .is_carried = is_carried[body],
                           .dt_s = frame_s,
-                          .moved = [&, i, surfaces] {
-                            for (std::size_t j = 0; j < bodies.size(); ++j)
+                          .is_undisturbed = is_undisturbed[body],
+                          .moved = [&, i, n, body, surfaces] {
+                            for (std::size_t j = 0; j < n; ++j)
                               if (j != i)
                                 scenes[j][surfaces + (i < j ? i : i - 1)].instance.T_world_mesh =
-                                    bodies[i].T_world_object;
+                                    bodies[body].T_world_object;
                           }});
     }
     advance_together(advanced, config, system);
@@ -94,6 +102,8 @@ class BodyGroup {
   std::vector<Body> bodies;
   std::vector<double> mass_kg;
   std::vector<bool> is_carried;
+  std::vector<bool> is_present;      ///< others are neither advanced nor touched
+  std::vector<bool> is_undisturbed;  ///< see AdvancedBody::is_undisturbed
   ContactSystem system;
   double frame_s = 1.0 / 30.0;
   double deepest_m = 0.0;  ///< deepest overlap of a body with anything so far
