@@ -10,7 +10,7 @@ std::optional<Departure> end_departure(VirtualObject& object, double lowest_know
   if (!object.in_room || object.carried_to_world) return std::nullopt;
   Body& body = object.body;
   if (body.asleep) object.T_world_rested = body.T_world_object;
-  const double top_m = (body.T_world_object * object.model->middle).z() + radius_m(object);
+  const double top_m = middle_world(object).z() + radius_m(object);
   if (!(top_m < lowest_known_m - kBelow_m)) return std::nullopt;
   Departure departure{body.name, body.T_world_object.translation(), object.T_world_rested.has_value()};
   ++object.departures;

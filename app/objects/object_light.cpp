@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "radar/exact/ray_hit.hpp"
+#include "radar/geometry/tree_pairs.hpp"
 
 namespace roomradar {
 namespace {
@@ -35,13 +36,11 @@ double open_fraction(const TreeInstance& room, const Vector3d& p_world, const Ve
   return open / kRays;
 }
 
-bool has_surface(const TreeInstance& room) { return room.tree != nullptr && !room.tree->empty(); }
-
 }  // namespace
 
 LightReach light_reach(const TreeInstance& room, const Vector3d& middle_world, double radius_m) {
   LightReach reach;
-  if (!has_surface(room) || !middle_world.allFinite() || !std::isfinite(radius_m)) return reach;
+  if (!is_usable(room) || !middle_world.allFinite() || !std::isfinite(radius_m)) return reach;
   constexpr double kSkyReach_m = 1.0;
   constexpr double kFromUpperHalf = 0.6;  // fraction of the ambient light
   static const std::array<Vector3d, 4> corners{Vector3d(1, 1, 1), {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
@@ -60,7 +59,7 @@ LightReach light_reach(const TreeInstance& room, const Vector3d& middle_world, d
 LightReach surface_reach(const TreeInstance& room, const Vector3d& p_world, const Vector3d& normal_world,
                          const Vector3d& place_world) {
   LightReach reach;
-  if (!has_surface(room) || !p_world.allFinite() || !normal_world.allFinite() || !place_world.allFinite())
+  if (!is_usable(room) || !p_world.allFinite() || !normal_world.allFinite() || !place_world.allFinite())
     return reach;
   constexpr double kSkin_m = 0.02, kSkyReach_m = 0.5, kLamp_m = 3.0;
   const Vector3d start = p_world + kSkin_m * normal_world;
@@ -76,12 +75,9 @@ void ObjectReaches::update(std::span<const std::unique_ptr<VirtualObject>> objec
                            double dt_s, float renewed) {
   constexpr double kMoved_m = 0.03, kAge_s = 2.0;
   entries_.resize(objects.size());
-  const auto middle_of = [](const VirtualObject& object) -> Vector3d {
-    return object.body.T_world_object * object.model->middle;
-  };
   const auto determine = [&](std::size_t i) {
     Entry& entry = *entries_[i];
-    entry.middle_world = middle_of(*objects[i]);
+    entry.middle_world = middle_world(*objects[i]);
     entry.now = light_reach(room, entry.middle_world, radius_m(*objects[i]));
     entry.age_s = 0.0;
   };
@@ -100,7 +96,7 @@ void ObjectReaches::update(std::span<const std::unique_ptr<VirtualObject>> objec
     const std::size_t i = (last_ + step) % objects.size();
     const auto& entry = entries_[i];
     if (!entry ||
-        !(entry->age_s > kAge_s || (entry->middle_world - middle_of(*objects[i])).norm() > kMoved_m))
+        !(entry->age_s > kAge_s || (entry->middle_world - middle_world(*objects[i])).norm() > kMoved_m))
       continue;
     determine(i);
     last_ = i;

@@ -31,7 +31,7 @@ bool rests_on_unknown(const VirtualObject& object) {
 }
 
 Eigen::Vector3d support_point_world(const VirtualObject& object) {
-  Eigen::Vector3d point = object.body.T_world_object * object.model->middle;
+  Eigen::Vector3d point = middle_world(object);
   point.z() = object.body.T_world_object.translation().z() + lowest_m(object);
   return point;
 }

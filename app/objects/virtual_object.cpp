@@ -65,8 +65,7 @@ void change_material(VirtualObject& object, const BodyMaterial& change) {
 DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
                          const Eigen::Isometry3d& T_world_camera, double error_px) {
   const ObjectModel& model = *object.model;
-  const Eigen::Vector3d middle_camera =
-      T_world_camera.inverse() * (object.body.T_world_object * model.middle);
+  const Eigen::Vector3d middle_camera = T_world_camera.inverse() * middle_world(object);
   const double nearest_m = middle_camera.z() - radius_m(object);
   const double pixel_m = nearest_m / std::max(camera.fx_px, camera.fy_px);
   DrawnObject drawn{.instance = {&model.shape.drawn, object.body.T_world_object},
@@ -106,6 +105,12 @@ double lowest_m(const VirtualObject& object) { return lowest_m(object, object.bo
 
 double highest_m(const VirtualObject& object) {
   return farthest_m(object, object.body.T_world_object.linear().row(2));
+}
+
+Eigen::Vector3d middle_world(const VirtualObject& object) {
+  const Eigen::Isometry3d T_world_object = object.body.T_world_object;
+  const Eigen::Vector3d middle = object.model->middle;
+  return T_world_object * middle;
 }
 
 double radius_m(const VirtualObject& object) {

@@ -72,6 +72,9 @@ double highest_m(const VirtualObject& object);
 /// Returns the height of the object's lowest vertex above its origin in the given orientation, m.
 double lowest_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
+/// Returns the centre of the object's bounding box in the world. Computes with local copies: Eigen's sums may
+/// depend on the alignment of their operands, which differs from run to run on the heap.
+Eigen::Vector3d middle_world(const VirtualObject& object);
 /// Returns the radius of the circumscribed sphere of the object's bounding box, m.
 double radius_m(const VirtualObject& object);
 /// Returns the max horizontal distance (m) of the object's vertices from the centre of its bounding box, in

@@ -63,7 +63,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                        {"began_in_unknown", object->began_in_unknown},
                        {"left_the_map", object->departures},
                        {"position_m", to_json(object->body.T_world_object.translation())},
-                       {"middle_m", to_json(object->body.T_world_object * object->model->middle)},
+                       {"middle_m", to_json(middle_world(*object))},
                        {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
                        {"turned_deg", turned_deg}});
   }

@@ -106,7 +106,7 @@ void print_object(const VirtualObject& object, const Session& session) {
     std::printf("%s: not in the room%s\n", body.name.c_str(), why_not_in_room(object, session).c_str());
     return;
   }
-  const Eigen::Vector3d p = body.T_world_object * object.model->middle;  // its origin may be far outside
+  const Eigen::Vector3d p = middle_world(object);  // its origin may be far outside
   std::string state = "moving";
   if (object.stuck)
     state = "stuck in a surface";

@@ -23,24 +23,15 @@ constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this f
 /// How the dynamic surfaces near an object move in this frame.
 struct SurfaceSweep {
   Eigen::Vector3d way_world = Eigen::Vector3d::Zero();  // from the last frame to this one, m
-  std::vector<SceneTree> at_end{};                      // the object's scene with this frame's surfaces
   PushDirections push{};
 };
-
-/// Returns the centre of the object's bounding box. Computes with local copies: Eigen's sums may depend on
-/// the alignment of their operands, which differs from run to run on the heap.
-Eigen::Vector3d middle_world(const VirtualObject& object) {
-  const Eigen::Isometry3d T_world_object = object.body.T_world_object;
-  const Eigen::Vector3d middle = object.model->middle;
-  return T_world_object * middle;
-}
 
 SurfaceSweep sweep_near(const DueObject& one, const FrameScene& moving) {
   constexpr double kFarthest_m = 0.15;  // 4.5 m/s at 30 frames/s
   const VirtualObject& object = *one.object;
   const auto way = translation_near(moving.last_dynamic_points_world(), moving.dynamic_points_world(),
                                     middle_world(object), radius_m(object) + kNearbyReach_m, kFarthest_m);
-  return {way.value_or(Eigen::Vector3d::Zero()), one.scene, {}};
+  return {way.value_or(Eigen::Vector3d::Zero()), {}};
 }
 
 /// Returns in how many steps the surfaces move; 1 if slow: then only this frame's surfaces count.
@@ -50,12 +41,13 @@ int steps_of(const SurfaceSweep& sweep) {
 }
 
 /// Moves the dynamic surfaces in the object's scene to where they are when a part of their way is left.
-void put_surfaces(SurfaceSweep& sweep, double left, const FrameScene& moving, DueObject& one,
-                  AdvancedBody& advanced) {
+/// @param surfaces  this frame's surfaces, with which the object's scene begins
+void put_surfaces(SurfaceSweep& sweep, double left, const FrameScene& moving,
+                  std::span<const SceneTree> surfaces, DueObject& one, AdvancedBody& advanced) {
   const Eigen::Vector3d back_world = -left * sweep.way_world;
-  for (std::size_t i = 0; i < one.scene.size(); ++i) {
-    if (!is_moving_surface(one.scene[i].kind)) continue;
-    one.scene[i] = sweep.at_end[i];
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (!is_moving_surface(surfaces[i].kind)) continue;
+    one.scene[i] = surfaces[i];
     one.scene[i].instance.T_world_mesh.pretranslate(back_world);
   }
   const VirtualObject& object = *one.object;
@@ -66,24 +58,33 @@ void put_surfaces(SurfaceSweep& sweep, double left, const FrameScene& moving, Du
   advanced.depenetration_directions_world = sweep.push.span();
 }
 
-/// Returns the triangles of the dynamic surfaces within reach_m of a point and on one side of it.
-Mesh side_of(const DynamicSurface& surfaces, const Eigen::Vector3d& point_world, double reach_m,
-             const Eigen::Vector3d& direction) {
-  Mesh side;
-  side.origin = surfaces.seen_world.origin;
+/// Returns the middle of a triangle, relative to a point.
+Eigen::Vector3f middle_from(const Eigen::Vector3d& point_world, const Mesh& mesh, const Triangle& t) {
+  return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0F -
+         (point_world - mesh.origin).cast<float>();
+}
+
+/// Returns the triangles of the dynamic surfaces within reach_m of a point.
+Mesh triangles_near(const DynamicSurface& surfaces, const Eigen::Vector3d& point_world, double reach_m) {
+  Mesh near;
+  near.origin = surfaces.seen_world.origin;  // also that of the inferred backs
   for (const Mesh* mesh : {&surfaces.seen_world, &surfaces.inferred_world}) {
-    const Eigen::Vector3f point = (point_world - mesh->origin).cast<float>();
     for (const Triangle& t : mesh->triangles) {
-      const std::array<Eigen::Vector3f, 3> corners = {mesh->vertices[t[0]], mesh->vertices[t[1]],
-                                                      mesh->vertices[t[2]]};
-      const Eigen::Vector3f offset = (corners[0] + corners[1] + corners[2]) / 3.0F - point;
-      if (offset.norm() > static_cast<float>(reach_m) || offset.dot(direction.cast<float>()) < 0.0F) continue;
-      const auto first = static_cast<std::uint32_t>(side.vertices.size());
-      side.vertices.insert(side.vertices.end(), corners.begin(), corners.end());
-      side.triangles.push_back({first, first + 1, first + 2});
+      if (middle_from(point_world, *mesh, t).norm() > static_cast<float>(reach_m)) continue;
+      const auto first = static_cast<std::uint32_t>(near.vertices.size());
+      for (const std::uint32_t v : t) near.vertices.push_back(mesh->vertices[v]);
+      near.triangles.push_back({first, first + 1, first + 2});
     }
   }
-  return side;
+  return near;
+}
+
+/// Returns the mesh with only the triangles on one side of a point.
+Mesh side_of(Mesh mesh, const Eigen::Vector3d& point_world, const Eigen::Vector3d& direction) {
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return middle_from(point_world, mesh, t).dot(direction.cast<float>()) < 0.0F;
+  });
+  return mesh;
 }
 
 /// Returns how deep the surfaces on one side of the object's middle overlap it; 0: not.
@@ -106,9 +107,10 @@ bool grip(const SurfaceSweep& sweep, const Eigen::Vector3d& shift_world, const D
   constexpr double kCentred = 0.3;     // fraction of the way to the middle, per call
   VirtualObject& object = *one.object;
   const Eigen::Vector3d middle = middle_world(object) - shift_world;
+  const Mesh near = triangles_near(surfaces, middle, radius_m(object));
+  if (near.triangles.empty()) return false;
   for (const Eigen::Vector3d& direction : sweep.push.span()) {
-    const Mesh ahead = side_of(surfaces, middle, radius_m(object), direction);
-    const Mesh behind = side_of(surfaces, middle, radius_m(object), -direction);
+    const Mesh ahead = side_of(near, middle, direction), behind = side_of(near, middle, -direction);
     if (ahead.triangles.empty() || behind.triangles.empty()) continue;
     const double ahead_m = depth_m(ahead, shift_world, object, direction, radar);
     const double behind_m = depth_m(behind, shift_world, object, -direction, radar);
@@ -189,6 +191,7 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
   std::vector<CollisionQueries> probes;
   std::vector<AdvancedBody> advanced;
   std::vector<SurfaceSweep> sweeps;
+  const std::vector<SceneTree> surfaces = moving != nullptr ? moving->surfaces() : std::vector<SceneTree>{};
   scenes.reserve(due.size());  // the queries refer to them
   probes.reserve(due.size());
   int pieces = 1;
@@ -220,7 +223,7 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
       if (due[i].object->carried_to_world) set_in_hand(*due[i].object, left * advanced[i].dt_s);
       if (moving == nullptr || due[i].is_undisturbed) continue;
       const double left_part = static_cast<double>(left - 1) / pieces;
-      put_surfaces(sweeps[i], left_part, *moving, due[i], advanced[i]);
+      put_surfaces(sweeps[i], left_part, *moving, surfaces, due[i], advanced[i]);
       advanced[i].is_gripped =
           !due[i].object->carried_to_world && grip(sweeps[i], -left_part * sweeps[i].way_world,
                                                    moving->dynamic_world(), due[i], advanced[i].dt_s, radar);
@@ -242,8 +245,7 @@ std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObje
   constexpr double kAbout_m = 0.02;  // an object's travel per frame at 0.6 m/s
   std::vector<FineRegion> regions;
   for (const auto& object : objects) {
-    if (object->in_room)
-      regions.push_back({object->body.T_world_object * object->model->middle, radius_m(*object) + kAbout_m});
+    if (object->in_room) regions.push_back({middle_world(*object), radius_m(*object) + kAbout_m});
   }
   return regions;
 }

@@ -56,7 +56,7 @@ void PictureComposer::estimate_light(const Frame& frame, const Eigen::Isometry3d
   int placed = 0;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
-    place_world += object->body.T_world_object * object->model->middle;
+    place_world += middle_world(*object);
     ++placed;
   }
   if (placed == 0 || expected.depth_m.empty()) return;

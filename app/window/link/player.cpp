@@ -201,8 +201,7 @@ void Player::grab(const UserCommand& command, const Session& session) {
   if (!pointed.object) return;
   chosen_ = pointed.name;
   const VirtualObject& object = *find_object(session.objects(), chosen_);
-  grabbed_ = {chosen_, pointed.object->distance_m,
-              object.body.T_world_object * object.model->middle - pointed.object->point_world, false};
+  grabbed_ = {chosen_, pointed.object->distance_m, middle_world(object) - pointed.object->point_world, false};
 }
 
 void Player::drag(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
