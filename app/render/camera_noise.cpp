@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
+#include "mapping/types/system/counter_random.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -30,18 +32,6 @@ std::optional<float> roughness(const ColourImage& image, int x0, int y0) {
     }
   }
   return static_cast<float>(sum) / static_cast<float>(count);
-}
-
-/// Returns a number with mean 0 and standard deviation 1, nearly Gaussian, from a hash (splitmix64).
-float grain_of(std::uint64_t number) {
-  number += 0x9e3779b97f4a7c15U;
-  number = (number ^ (number >> 30U)) * 0xbf58476d1ce4e5b9U;
-  number = (number ^ (number >> 27U)) * 0x94d049bb133111ebU;
-  number ^= number >> 31U;
-  constexpr float kDeviation = 37'837.2F;  // of the sum of four uniform numbers below 65,536
-  constexpr float kMean = 131'070.0F;
-  const auto part = [number](unsigned shift) { return (number >> shift) & 0xffffU; };
-  return (static_cast<float>(part(0) + part(16) + part(32) + part(48)) - kMean) / kDeviation;
 }
 
 }  // namespace
@@ -75,7 +65,7 @@ void add_grain(const ObjectLayer& layer, const Occlusion& occlusion, float devia
       const float visible =
           covered * (1.0F - occlusion.hidden.at(u - occlusion.rect.x, v - occlusion.rect.y));
       if (visible == 0.0F) continue;
-      const float grain = visible * deviation * grain_of((seed << 32U) ^ picture.index(u, v));
+      const float grain = visible * deviation * gaussian(mixed((seed << 32U) ^ picture.index(u, v)));
       const auto grainy = [grain](std::uint8_t of) {
         return static_cast<std::uint8_t>(
             std::clamp(std::floor(static_cast<float>(of) + grain + 0.5F), 0.0F, 255.0F));

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/sim/solids/counter_random.hpp"
 #include "dynamic/foreground/change_tracker.hpp"
 #include "dynamic/foreground/foreground.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/bench/dynamic_bench_foreground.hpp"

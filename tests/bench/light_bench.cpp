@@ -35,12 +35,12 @@
 #include "app/media/picture_file.hpp"
 #include "app/session/picture_composer.hpp"
 #include "app/sim/room/room_mesh.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "bench_program.hpp"
 #include "bench_times.hpp"
 #include "light_bench_pictures.hpp"
 #include "light_bench_scenes.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "radar/exact/ray_hit.hpp"
 #include "where_bench_rooms.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "app/sim/room/furniture.hpp"
 #include "app/sim/room/room_mesh.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/view_caster.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

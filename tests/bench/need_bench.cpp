@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "app/sim/solids/counter_random.hpp"
 #include "dynamic/surface/dynamic_surface.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "radar/depth/depth_pass.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/geometry/triangle_tree.hpp"

@@ -9,8 +9,8 @@
 
 #include "app/session/session.hpp"
 #include "app/sim/sensor/kinect_depth.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/solid_distance.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "physics_bench_scenes.hpp"
 #include "tests/support/exact_depth.hpp"
 

@@ -30,7 +30,7 @@
 #include "app/cli/open_source.hpp"
 #include "app/media/picture_file.hpp"
 #include "app/session/session.hpp"
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/system/error.hpp"
 #include "radar/exact/ray_hit.hpp"
 #include "tests/bench/bench_program.hpp"

@@ -7,10 +7,10 @@
 
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/camera_path.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "bench_times.hpp"
 #include "mapping/map/surface_points.hpp"
 #include "mapping/mesh/mesh_distance.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

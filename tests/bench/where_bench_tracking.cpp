@@ -7,9 +7,9 @@
 
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/camera_path.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "bench_times.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/trajectory.hpp"
 
 namespace roomradar {

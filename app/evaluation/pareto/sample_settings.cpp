@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

@@ -5,9 +5,9 @@
 
 #include "app/evaluation/fallthrough/totals.hpp"
 #include "app/sim/room/room_mesh.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/swept_travel.hpp"
 #include "app/sim/solids/view_caster.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

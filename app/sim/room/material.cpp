@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

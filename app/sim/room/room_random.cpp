@@ -9,8 +9,8 @@
 
 #include "app/sim/room/furniture.hpp"
 #include "app/sim/solids/angles.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/solid_distance.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/sim/sensor/kinect_depth.hpp"
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/solid.hpp"
 #include "mapping/types/mesh.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 

@@ -10,9 +10,9 @@
 #include "app/sim/scenarios/scenario_hiding.hpp"
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/solids/angles.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/solid_distance.hpp"
 #include "app/sim/solids/swept_travel.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "app/sim/solids/angles.hpp"
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/sim/solids/counter_random.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

@@ -10,8 +10,8 @@
 #include "app/sim/sensor/kinect_depth.hpp"
 #include "app/sim/sensor/mover_shadow.hpp"
 #include "app/sim/sensor/movers.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/view_caster.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "tests/radar/shapes.hpp"
 #include "tests/support/body_group.hpp"
 

@@ -24,7 +24,7 @@
 #include "app/evaluation/trade/trade_page.hpp"
 #include "app/evaluation/trade/trade_presets.hpp"
 #include "app/sim/simulate.hpp"
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/temporary_folder.hpp"

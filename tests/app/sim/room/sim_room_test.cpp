@@ -5,7 +5,7 @@
 #include "app/sim/room/room.hpp"
 #include "app/sim/room/room_mesh.hpp"
 #include "app/sim/sensor/camera_path.hpp"
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar::sim_room_test {

@@ -7,9 +7,9 @@
 
 #include "app/sim/scenarios/scenarios.hpp"
 #include "app/sim/sensor/kinect_depth.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/solid_distance.hpp"
 #include "app/sim/solids/swept_travel.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar::sim_scenarios_test {

@@ -6,7 +6,7 @@
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/sensor/movers.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
-#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar::sim_source_test {
 namespace {

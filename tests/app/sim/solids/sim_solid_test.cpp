@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "app/sim/room/room_mesh.hpp"
-#include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/solid.hpp"
 #include "app/sim/solids/solid_tree.hpp"
+#include "mapping/types/system/counter_random.hpp"
 
 namespace roomradar::sim_solid_test {
 namespace {
