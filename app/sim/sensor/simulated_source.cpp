@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 #include "app/sim/room/room.hpp"
 #include "app/sim/room/surface_appearance.hpp"
@@ -104,6 +105,8 @@ struct SimulatedSource::State {
     return options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
   }
   void fill_truth();
+  void fill_depth(std::int64_t index, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
+  void fill_picture(std::int64_t index, const Eigen::Isometry3d& T_world_camera, ColourImage& picture);
   void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key, ColourImage& picture);
 
   /// Rays of the colour camera, and its pose relative to the depth camera.
@@ -210,6 +213,33 @@ void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView
     }
 }
 
+void SimulatedSource::State::fill_depth(std::int64_t index, const Eigen::Isometry3d& T_world_camera,
+                                        DepthImage& depth_m) {
+  if (options.noise_scale > 0.0) {
+    measure_depth(solids, infrared, views.depth, views.depth_exact, options.depth_camera, T_world_camera,
+                  depth_faults, options.noise_scale, options.seed, index, views.scratch, depth_m);
+    return;
+  }
+  depth_m = truth.depth_m;
+  for (int y = 0; y < depth_m.height; ++y)
+    for (int x = 0; x < depth_m.width; ++x) {
+      float& z_m = depth_m.at(x, y);
+      if (z_m > 0.0F) z_m = static_cast<float>(reported_m(depth_faults, x, y, z_m));
+    }
+}
+
+void SimulatedSource::State::fill_picture(std::int64_t index, const Eigen::Isometry3d& T_world_camera,
+                                          ColourImage& picture) {
+  const std::uint64_t key = hash_of(options.seed, static_cast<std::uint64_t>(index), 0x636f6c);
+  if (options.registered_colour) {
+    fill_colour(views.depth, views.depth_exact, key, picture);
+    return;
+  }
+  views.colour.prepare(solids, colour.camera, T_world_camera * colour.T_colour_depth_true.inverse());
+  render_exact(solids, views.colour, colour.camera, colour.rays, views.colour_exact);
+  fill_colour(views.colour, views.colour_exact, key, picture);
+}
+
 SimulatedSource::SimulatedSource(const SimOptions& options) {
   require_valid(options);
   state_ = std::make_unique<State>(options);
@@ -229,34 +259,23 @@ void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_
   State& s = *state_;
   const double t_s = static_cast<double>(index) / s.options.rate_hz;
   s.place_solids(index);
-  s.views.depth.prepare(s.solids, s.options.depth_camera, T_world_camera);
-  render_exact(s.solids, s.views.depth, s.options.depth_camera, s.depth_faults.rays, s.views.depth_exact);
+  // Depth and colour are rendered side by side. A registered picture shows what the depth camera sees.
+  const auto see = [&] {
+    s.views.depth.prepare(s.solids, s.options.depth_camera, T_world_camera);
+    render_exact(s.solids, s.views.depth, s.options.depth_camera, s.depth_faults.rays, s.views.depth_exact);
+  };
+  const bool sees_first = s.options.registered_colour || !s.options.with_colour;
+  if (sees_first) see();
+  auto picture =
+      s.options.with_colour
+          ? std::async(std::launch::async, [&] { s.fill_picture(index, T_world_camera, frame.colour); })
+          : std::future<void>();
+  if (!sees_first) see();
   s.truth.T_world_camera = T_world_camera;
   s.fill_truth();
-  if (s.options.noise_scale > 0.0) {
-    measure_depth(s.solids, s.infrared, s.views.depth, s.views.depth_exact, s.options.depth_camera,
-                  T_world_camera, s.depth_faults, s.options.noise_scale, s.options.seed, index,
-                  s.views.scratch, frame.depth_m);
-  } else {
-    frame.depth_m = s.truth.depth_m;
-    for (int y = 0; y < frame.depth_m.height; ++y)
-      for (int x = 0; x < frame.depth_m.width; ++x) {
-        float& z_m = frame.depth_m.at(x, y);
-        if (z_m > 0.0F) z_m = static_cast<float>(reported_m(s.depth_faults, x, y, z_m));
-      }
-  }
-
-  const std::uint64_t colour_key = hash_of(s.options.seed, static_cast<std::uint64_t>(index), 0x636f6c);
-  if (!s.options.with_colour) {
-    frame.colour = {};
-  } else if (s.options.registered_colour) {
-    s.fill_colour(s.views.depth, s.views.depth_exact, colour_key, frame.colour);
-  } else {
-    s.views.colour.prepare(s.solids, s.colour.camera,
-                           T_world_camera * s.colour.T_colour_depth_true.inverse());
-    render_exact(s.solids, s.views.colour, s.colour.camera, s.colour.rays, s.views.colour_exact);
-    s.fill_colour(s.views.colour, s.views.colour_exact, colour_key, frame.colour);
-  }
+  s.fill_depth(index, T_world_camera, frame.depth_m);
+  if (picture.valid()) picture.get();
+  if (!s.options.with_colour) frame.colour = {};
 
   frame.index = index;
   frame.stamp_s = t_s;
