@@ -14,6 +14,7 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
+constexpr double kTouching_m = 1e-6;
 constexpr double kDoubtful_m = 0.003;  // deeper overlap along gravity: sideways exits are tested too
 
 bool is_finite(const Body& body) {
@@ -74,6 +75,8 @@ class Stepper {
   Contact ask(const Vec3& direction, double distance_m) {
     return query_travel(body_, direction, distance_m, probe_, report_);
   }
+  /// Returns the kinds of surfaces that crossed the body before any motion.
+  SurfaceKindMask crossed_before();
   /// Returns true if the overlap is only a surface between the body's parts, as in a handle, that crosses
   /// none of them.
   [[nodiscard]] bool is_in_a_hollow(const Way& way);
@@ -107,11 +110,14 @@ Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) 
 }
 
 bool Stepper::is_in_a_hollow(const Way& way) {
-  constexpr double kTouching_m = 1e-6;
   const SurfaceKind kind = way.contact.touched;
   if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind)) return false;
+  return (crossed_before() & bit_of(kind)) == 0;
+}
+
+SurfaceKindMask Stepper::crossed_before() {
   if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, {}, near_);
-  return (*crossed_ & bit_of(kind)) == 0;
+  return *crossed_;
 }
 
 void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_directions_world) {
@@ -160,7 +166,13 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_di
   if (behind.status == ContactStatus::kContact)
     free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
   if (behind.status == ContactStatus::kOverlap && behind.touched == SurfaceKind::kStatic) free_m = 0.0;
-  body_.T_world_object.translation() -= std::min(push_m, free_m) * way.direction;
+  Eigen::Isometry3d T_world_pushed = body_.T_world_object;
+  T_world_pushed.translation() -= std::min(push_m, free_m) * way.direction;
+  // An overlap behind hides what comes after it: the push may not end in another kind of surface.
+  if (behind.status == ContactStatus::kOverlap &&
+      (probe_.near(T_world_pushed, kTouching_m, 0, {}, near_) & ~crossed_before()) != 0)
+    return;
+  body_.T_world_object = T_world_pushed;
   tell_moved();
   const double inward_mps = body_.velocity_world_mps.dot(way.direction);
   if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction;

@@ -417,6 +417,35 @@ TEST(Physics, HoldsStillAndSaysSoWhereTheRadarAnswersNonsense) {
   }
 }
 
+TEST(Physics, AnOverlapIsNotLeftIntoASurfaceThatAnotherOverlapHides) {
+  // Unknown space overlaps the cube below and above. The ceiling comes after it, 2 mm above the cube.
+  const auto overlap = [](const Eigen::Isometry3d&, const Vec3& direction, double) {
+    Contact contact;
+    contact.status = ContactStatus::kOverlap;
+    contact.touched = SurfaceKind::kUnknownFrontier;
+    contact.contact_distance_m = contact.lower_m = direction.z() < 0.0 ? -0.01 : -0.05;
+    return contact;
+  };
+  bool has_ceiling = true;
+  const auto near = [&](const Eigen::Isometry3d& T_world_object, double, SurfaceKindMask, const TreeStates&,
+                        std::vector<ClosestPoint>& points) {
+    points.clear();
+    const bool is_in_ceiling = has_ceiling && T_world_object.translation().z() > 1.002;
+    return static_cast<SurfaceKindMask>(bit_of(SurfaceKind::kUnknownFrontier) |
+                                        (is_in_ceiling ? bit_of(SurfaceKind::kStatic) : 0));
+  };
+  const auto free_time = [](const auto&...) { return FreeTime{}; };
+  for (const bool with_ceiling : {true, false}) {
+    has_ceiling = with_ceiling;
+    Body body = body_at({0, 0, 1});
+    (void)advance(body, kFrame_s, {overlap, near, free_time}, {});
+    if (with_ceiling)
+      EXPECT_LE(body.T_world_object.translation().z(), 1.002);
+    else
+      EXPECT_GT(body.T_world_object.translation().z(), 1.005);
+  }
+}
+
 TEST(Physics, AVelocityWakesABodyAtRest) {
   Body body = body_at({0, 0, kHalf_m + 0.001});
   body.asleep = true;
