@@ -260,22 +260,21 @@ void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_
   const double t_s = static_cast<double>(index) / s.options.rate_hz;
   s.place_solids(index);
   // Depth and colour are rendered side by side. A registered picture shows what the depth camera sees.
-  const auto see = [&] {
-    s.views.depth.prepare(s.solids, s.options.depth_camera, T_world_camera);
-    render_exact(s.solids, s.views.depth, s.options.depth_camera, s.depth_faults.rays, s.views.depth_exact);
+  std::future<void> picture;
+  const auto take_picture = [&] {
+    picture = std::async(std::launch::async, [&] { s.fill_picture(index, T_world_camera, frame.colour); });
   };
-  const bool sees_first = s.options.registered_colour || !s.options.with_colour;
-  if (sees_first) see();
-  auto picture =
-      s.options.with_colour
-          ? std::async(std::launch::async, [&] { s.fill_picture(index, T_world_camera, frame.colour); })
-          : std::future<void>();
-  if (!sees_first) see();
+  if (s.options.with_colour && !s.options.registered_colour) take_picture();
+  s.views.depth.prepare(s.solids, s.options.depth_camera, T_world_camera);
+  render_exact(s.solids, s.views.depth, s.options.depth_camera, s.depth_faults.rays, s.views.depth_exact);
+  if (s.options.with_colour && s.options.registered_colour) take_picture();
   s.truth.T_world_camera = T_world_camera;
   s.fill_truth();
   s.fill_depth(index, T_world_camera, frame.depth_m);
-  if (picture.valid()) picture.get();
-  if (!s.options.with_colour) frame.colour = {};
+  if (s.options.with_colour)
+    picture.get();
+  else
+    frame.colour = {};
 
   frame.index = index;
   frame.stamp_s = t_s;
