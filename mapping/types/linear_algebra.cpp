@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <cmath>
 
 namespace roomradar {
 namespace {
@@ -32,8 +33,26 @@ Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& A) {
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
+// Eigen's FromTwoVectors() decomposes a matrix for the axis of a half turn, which compiles for 7 s, and loses
+// half of the digits near it.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to);
+  constexpr double kNearHalfTurn = -0.99, kHalfTurn_rad = 1e-12;
+  const Eigen::Vector3d from_unit = from.normalized(), to_unit = to.normalized();
+  const double cosine = to_unit.dot(from_unit);
+  const Eigen::Vector3d axis = from_unit.cross(to_unit);
+  Eigen::Quaterniond rotation;
+  if (cosine > kNearHalfTurn) {
+    const double twice_w = std::sqrt(2.0 * (1.0 + cosine));
+    rotation.w() = 0.5 * twice_w;
+    rotation.vec() = axis * (1.0 / twice_w);
+  } else if (axis.norm() > kHalfTurn_rad) {
+    rotation.w() = 0.5 * (from_unit + to_unit).norm();
+    rotation.vec() = axis.normalized() * (0.5 * (to_unit - from_unit).norm());
+  } else {
+    rotation.w() = 0.0;
+    rotation.vec() = from_unit.unitOrthogonal();
+  }
+  return rotation;
 }
 
 Eigen::Isometry3d fit_rigid(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {

@@ -8,6 +8,7 @@
 
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/intrinsics.hpp"
+#include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/config_check.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -87,6 +88,17 @@ TEST(Frame, ImagesThatDoNotFitTheirCamerasAreNamed) {
   frame.colour_camera = kKinect;
   EXPECT_EQ(fault_of(frame), "its colour image and its colour camera differ in size");
   EXPECT_EQ(depth_fault_of(frame), "");
+}
+
+TEST(RotationBetween, TurnsOneDirectionToTheOtherByTheSmallestAngle) {
+  const Eigen::Vector3d from(0.3, -2.0, 0.7), side = from.unitOrthogonal() * from.norm();
+  for (const double angle_rad : {0.0, 1e-9, 0.5, 2.0, 3.0, 3.14159, M_PI - 1e-7, M_PI - 1e-11, M_PI}) {
+    const Eigen::Vector3d to = 4.0 * (std::cos(angle_rad) * from + std::sin(angle_rad) * side);
+    const Eigen::Quaterniond rotation = rotation_between(from, to);
+    EXPECT_NEAR(rotation.norm(), 1.0, 1e-14) << angle_rad;
+    EXPECT_NEAR((rotation * from.normalized() - to.normalized()).norm(), 0.0, 1e-6) << angle_rad;
+    EXPECT_NEAR(2.0 * std::atan2(rotation.vec().norm(), rotation.w()), angle_rad, 1e-10) << angle_rad;
+  }
 }
 
 TEST(DepthNoise, FollowsNguyenAndStaysFiniteAtTheEnds) {
