@@ -11,6 +11,7 @@
 #include "app/sources/formats/camera_rig.hpp"
 #include "app/sources/kinect/fakenect_replay.hpp"
 #include "app/sources/kinect/kinect_source.hpp"
+#include "app/sources/recordings/cached_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
 #include "app/sources/recordings/read_ahead.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -97,6 +98,7 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
   if (!frames && !opened->frame_count() && !replayed_folder())
     options.say(opened->name() + ": continues until Ctrl-C is pressed once");
   if (frames) opened = limit_frames(std::move(opened), frames->first, frames->last);
+  if (options.cache_simulated && source.starts_with(kSim)) opened = cache_frames(std::move(opened));
   return source.starts_with(kKinect) ? std::move(opened) : read_ahead(std::move(opened));
 }
 

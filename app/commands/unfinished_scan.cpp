@@ -81,6 +81,7 @@ void open_or_say(const PrescanOptions& options, const fs::path& folder, ScanStar
   if (SpooledSource::has_end(folder / kSpool)) return;
   SourceOptions source_options;
   source_options.keep_all = true;
+  source_options.cache_simulated = true;
   try {
     start.source = open_source(options.source, options.frames, options.calibration, source_options);
   } catch (const Error& fault) {

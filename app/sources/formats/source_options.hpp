@@ -34,6 +34,8 @@ struct SourceOptions {
   /// True: up to 120 frames of a live device are queued, for scans. Scans need every frame. False: only the
   /// newest frame is kept, for live display.
   bool keep_all = false;
+  /// True: simulated frames are cached on disk, for callers that read each frame several times.
+  bool cache_simulated = false;
   /// True: a calibration.json beside a recording is ignored. Frames are then delivered as recorded.
   bool as_recorded = false;
   /// Max time without depth images from a live device, despite restarts, before next() throws Error, s.
