@@ -46,10 +46,11 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 /// cancels approach velocity, with restitution for impacts faster than bounce_mps. A second solve adds
 /// gravity, support and friction, without restitution. Both solve each connected component of bodies in
 /// contact as one system. A body thus bears the weight of everything on it. Each body then moves with the
-/// mean of its velocities before and after the second solve, all bodies at the same time, until the first
-/// time of impact of any of them (CollisionQueries::free_time). Bodies whose paths cannot meet are
-/// independent. The remaining time of the substep is simulated in the same way from the new poses. Hence
-/// neither translation nor rotation tunnels, at any step size. No body enters another. Between contacts, the
+/// mean of its velocities before and after the second solve, all bodies at the same time, each until its
+/// first time of impact (CollisionQueries::free_time). Two bodies that meet stop together; the others move
+/// on, past the two at rest. Bodies whose paths cannot meet are independent. The remaining time of a stopped
+/// body's substep is simulated in the same way from the new poses. Hence neither translation nor rotation
+/// tunnels, at any step size. No body enters another. Between contacts, the
 /// path is a parabola and angular momentum is conserved.
 ///
 /// Bodies in the scene of AdvancedBody::probe that are not advanced in this call receive the opposite

@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/physics/set_motion.hpp"
 #include "app/physics/sliding.hpp"
-#include "radar/motion/joint_motion.hpp"
 
 namespace roomradar {
 namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr double kKept = 0.5;  // fraction of the margin at which approaching surfaces stop the motion
 /// Fraction of gravity's acceleration below which a body counts as balanced. A body whose support is 5 %
 /// short of its load starts with more; rounding and the solver's tolerance with less.
 constexpr double kUnbalanced = 0.004;
@@ -48,7 +47,6 @@ class Substep {
   ContactSystem& system_;
   std::vector<SubstepResult>& results_;
   const Vec3 up_ = -config_.gravity_world_mps2.stableNormalized();  // zero without gravity
-  TreeStates trees_;                                                // scratch
 
   [[nodiscard]] bool is_member(std::size_t solver_index) const { return solver_index < bodies_.size(); }
   void solve(double rolling) { system_.solver.solve(system_.contacts, system_.bodies, rolling); }
@@ -60,12 +58,6 @@ class Substep {
   void find_balanced();
   void move();
   [[nodiscard]] std::vector<RigidMotion> motions();
-  [[nodiscard]] std::vector<std::vector<std::size_t>> meeting_sets(
-      const std::vector<RigidMotion>& motions) const;
-  [[nodiscard]] FreeTime free_time(std::size_t body, double duration_s,
-                                   const std::vector<RigidMotion>& motions,
-                                   const std::vector<bool>& is_in_set);
-  [[nodiscard]] double move_set(const std::vector<std::size_t>& set, const std::vector<RigidMotion>& motions);
   [[nodiscard]] std::vector<Velocity> corrections();
   [[nodiscard]] std::vector<Velocity> mean_velocities();
 };
@@ -264,82 +256,25 @@ std::vector<RigidMotion> Substep::motions() {
   return motions;
 }
 
-/// Returns sets of active bodies whose paths may meet: indices, in order.
-std::vector<std::vector<std::size_t>> Substep::meeting_sets(const std::vector<RigidMotion>& motions) const {
-  std::vector<PathBall> paths(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (!is_active(bodies_[i])) continue;
-    const double radius_m = bodies_[i].body->mass.radius_m;
-    const double speed_mps = motions[i].linear_m_s.norm() + motions[i].angular_rad_s.norm() * radius_m;
-    paths[i] = {centre_world(*bodies_[i].body),
-                radius_m + speed_mps * bodies_[i].left_s + config_.contact_margin_m};
-  }
-  return sets_that_meet(paths);
-}
-
-/// Returns how long a body moves free of contact with surfaces, resting bodies, and members of its set.
-/// Each pair of members is tested once, from the body that spins faster: the bounds are tighter relative to
-/// the slower one.
-FreeTime Substep::free_time(std::size_t body, double duration_s, const std::vector<RigidMotion>& motions,
-                            const std::vector<bool>& is_in_set) {
-  MovingBody& moving = bodies_[body];
-  const RigidMotion motion = motions[body];  // a copy: the same alignment in every run
-  const double spins = motion.angular_rad_s.squaredNorm();
-  trees_.left_out.assign(moving.member_of_tree.size(), false);
-  trees_.motions.assign(moving.member_of_tree.size(), {});
-  for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree) {
-    const std::size_t other = moving.member_of_tree[tree];
-    if (other == kNoOther || !is_active(bodies_[other])) continue;
-    const double other_spins = motions[other].angular_rad_s.squaredNorm();
-    const bool is_others_turn = other_spins > spins || (other_spins == spins && other < body);
-    trees_.left_out[tree] = is_others_turn || !is_in_set[other];
-    trees_.motions[tree] = motions[other];
-  }
-  return moving.probe->free_time(moving.body->T_world_object, motion, duration_s,
-                                 kKept * config_.contact_margin_m, moving.left_out, trees_);
-}
-
-/// Moves a set of bodies at the same time, until the first contact of any of them. Returns the time moved.
-double Substep::move_set(const std::vector<std::size_t>& set, const std::vector<RigidMotion>& motions) {
-  double left_s = bodies_[set.front()].left_s;
-  std::vector<bool> is_in_set(bodies_.size(), false);
-  for (const std::size_t i : set) {
-    left_s = std::min(left_s, bodies_[i].left_s);
-    is_in_set[i] = true;
-  }
-  std::vector<JointMover> movers;
-  for (const std::size_t i : set)
-    movers.push_back(
-        {.T_world_object = &bodies_[i].body->T_world_object,
-         .motion = motions[i],
-         .free_time = [&, i](double duration_s) { return free_time(i, duration_s, motions, is_in_set); },
-         .moved = bodies_[i].moved,
-         .limited_by = {}});
-  const double gone_s = move_to_contact(movers, left_s);
-  for (std::size_t k = 0; k < set.size(); ++k) bodies_[set[k]].limited_by = movers[k].limited_by;
-  return gone_s;
-}
-
 /// Moves the active bodies, and changes their velocities by the fraction of the time that they moved.
 void Substep::move() {
   const std::vector<RigidMotion> planned = motions();
   std::vector<Eigen::Matrix3d> inertias_m2;
   for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(*moving.body));
-  for (const std::vector<std::size_t>& set : meeting_sets(planned)) {
-    const double gone_s = move_set(set, planned);
-    for (const std::size_t i : set) {
-      MovingBody& moving = bodies_[i];
-      const Eigen::Matrix3d inertia_m2 = inertias_m2[i];  // a copy: the same alignment in every run
-      const double part = gone_s / moving.left_s;
-      Velocity& velocity = moving.velocity;
-      velocity.linear_mps += part * (moving.after.linear_mps - velocity.linear_mps);
-      const Vec3 momentum_after = inertia_m2 * (velocity.angular_rad_s +
-                                                part * (moving.after.angular_rad_s - velocity.angular_rad_s));
-      velocity.angular_rad_s = inertia_world_m2(*moving.body).inverse() * momentum_after;
-      limit(velocity.linear_mps, config_.max_speed_mps);
-      limit(velocity.angular_rad_s, config_.max_angular_rad_s);
-      moving.left_s -= gone_s;
-    }
+  const std::vector<double> gone_s = move_active(bodies_, planned, config_.contact_margin_m);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    MovingBody& moving = bodies_[i];
+    if (!is_active(moving)) continue;
+    const Eigen::Matrix3d inertia_m2 = inertias_m2[i];  // a copy: the same alignment in every run
+    const double part = gone_s[i] / moving.left_s;
+    Velocity& velocity = moving.velocity;
+    velocity.linear_mps += part * (moving.after.linear_mps - velocity.linear_mps);
+    const Vec3 momentum_after =
+        inertia_m2 * (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
+    velocity.angular_rad_s = inertia_world_m2(*moving.body).inverse() * momentum_after;
+    limit(velocity.linear_mps, config_.max_speed_mps);
+    limit(velocity.angular_rad_s, config_.max_angular_rad_s);
+    moving.left_s -= gone_s[i];
   }
 }
 

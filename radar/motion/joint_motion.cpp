@@ -2,6 +2,7 @@
 #include "radar/motion/joint_motion.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,8 @@ namespace {
 struct Progress {
   Eigen::Isometry3d T_world_start;
   double free_until_s = 0.0;
+  bool stops = false;  ///< at free_until_s
+  std::size_t meets = kNoMover;
   int queries = 0;
 };
 
@@ -32,47 +35,87 @@ void move_to(JointMover& mover, const Progress& progress, double time_s) {
   if (mover.moved != nullptr && *mover.moved) (*mover.moved)();
 }
 
-}  // namespace
-
-double move_to_contact(std::span<JointMover> movers, double duration_s) {
+/// Queries until when a mover is free of contact, and whether its motion ends then.
+void bound_free_time(JointMover& mover, double now_s, Progress& progress) {
   constexpr double kGained = 0.02;  // fraction of the duration
   constexpr int kMaxQueries = 12;   // per body
+  const double left_s = mover.duration_s - now_s;
+  const JointMover::Free free = mover.free_time(left_s);
+  const double gained_s = std::clamp(free.time.free_s, 0.0, left_s);
+  const bool gains_little = gained_s < kGained * mover.duration_s && (now_s > 0.0 || gained_s == 0.0);
+  const bool is_all_free = gained_s == left_s;
+  progress.free_until_s = is_all_free ? mover.duration_s : now_s + gained_s;
+  progress.stops = is_all_free || gains_little || ++progress.queries > kMaxQueries;
+  if (is_all_free || !progress.stops) return;
+  mover.limited_by = free.time.limit;
+  progress.meets = free.limited_by;
+}
+
+/// Stops the movers whose motion ends now, and those that they meet. Returns the indices of all of them.
+std::vector<std::size_t> stop_at(double now_s, std::span<JointMover> movers,
+                                 std::span<const Progress> progress) {
+  std::vector<std::size_t> stopped;
+  const auto stop = [&](std::size_t i) {
+    if (movers[i].has_stopped) return;
+    movers[i].has_stopped = true;
+    stopped.push_back(i);
+  };
+  for (std::size_t i = 0; i < movers.size(); ++i) {
+    if (movers[i].has_stopped || !progress[i].stops || progress[i].free_until_s > now_s) continue;
+    stop(i);
+    if (progress[i].meets != kNoMover) stop(progress[i].meets);
+  }
+  return stopped;
+}
+
+bool overlap(const PathBall& a, const PathBall& b) {
+  return (a.centre_world - b.centre_world).norm() < a.radius_m + b.radius_m;
+}
+
+}  // namespace
+
+void move_to_contact(std::span<JointMover> movers) {
   std::vector<Progress> progress;
   for (JointMover& mover : movers) {
     progress.push_back({.T_world_start = *mover.T_world_object});
+    mover.gone_s = 0.0;
+    mover.has_stopped = false;
     mover.limited_by = {};
   }
-  double now_s = 0.0;
-  for (bool is_stopped = false; !is_stopped && now_s < duration_s;) {
-    double next_s = duration_s;
+  for (double now_s = 0.0;;) {
+    double next_s = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < movers.size(); ++i) {
-      auto& [T_world_start, free_until_s, queries] = progress[i];
-      if (free_until_s <= now_s) {
-        const FreeTime free = movers[i].free_time(duration_s - now_s);
-        const double gained_s = std::clamp(free.free_s, 0.0, duration_s - now_s);
-        free_until_s = now_s + gained_s;
-        const bool gains_little = gained_s < kGained * duration_s && (now_s > 0.0 || gained_s == 0.0);
-        if (free_until_s < duration_s && (gains_little || ++queries > kMaxQueries)) {
-          movers[i].limited_by = free.limit;
-          is_stopped = true;
-        }
-      }
-      next_s = std::min(next_s, free_until_s);
+      if (movers[i].has_stopped) continue;
+      if (progress[i].free_until_s <= now_s) bound_free_time(movers[i], now_s, progress[i]);
+      next_s = std::min(next_s, progress[i].free_until_s);
     }
+    if (next_s == std::numeric_limits<double>::infinity()) return;  // all have stopped
     now_s = next_s;
-    if (now_s > 0.0)
-      for (std::size_t i = 0; i < movers.size(); ++i) move_to(movers[i], progress[i], now_s);
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+      if (movers[i].has_stopped) continue;
+      movers[i].gone_s = now_s;
+      if (now_s > 0.0) move_to(movers[i], progress[i], now_s);
+    }
+    for (const std::size_t at_rest : stop_at(now_s, movers, progress))
+      for (std::size_t i = 0; i < movers.size(); ++i) {
+        if (movers[i].has_stopped || !overlap(movers[i].path, movers[at_rest].path)) continue;
+        const double free_s = movers[i].free_time_beside(at_rest, movers[i].duration_s - now_s);
+        const double until_s = now_s + std::max(free_s, 0.0);
+        if (until_s >= progress[i].free_until_s) continue;
+        progress[i].free_until_s = until_s;
+        progress[i].stops = false;
+        progress[i].meets = kNoMover;
+        movers[i].limited_by = {};
+      }
   }
-  return now_s;
 }
 
 std::vector<std::vector<std::size_t>> sets_that_meet(std::span<const PathBall> paths) {
   DisjointSets<std::size_t> meeting(paths.size());
   for (std::size_t i = 0; i < paths.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {
-      if (!(paths[i].radius_m > 0.0 && paths[k].radius_m > 0.0)) continue;
-      const double apart_m = (paths[i].centre_world - paths[k].centre_world).norm();
-      if (apart_m < paths[i].radius_m + paths[k].radius_m) meeting.join(i, k);
+      if (paths[i].radius_m > 0.0 && paths[k].radius_m > 0.0 && overlap(paths[i], paths[k]))
+        meeting.join(i, k);
     }
   std::vector<std::vector<std::size_t>> of_root(paths.size()), sets;
   for (std::size_t i = 0; i < paths.size(); ++i)

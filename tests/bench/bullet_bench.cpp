@@ -1,6 +1,7 @@
 // bullet_bench.cpp: heaps and throws, simulated by the project and by Bullet in the same run.
 //
-// usage: bullet_bench [--map FOLDER --at X,Y,Z] [--objects N] [--throws N] [--only heap|throws] [--json FILE]
+// usage: bullet_bench [--map FOLDER --at X,Y,Z] [--objects N] [--throws N] [--only heap|throws]
+//                     [--engines ours|all] [--json FILE]
 //        FOLDER: a saved map; objects are dropped above the point. Without it: the simulated table room.
 //
 //   heap    N (50) boxes, balls and teapots of 5 to 15 cm, one every second frame, 300 frames
@@ -18,6 +19,7 @@
 #include <list>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <span>
 #include <string>
 
 #include "app/objects/teapot.hpp"
@@ -32,7 +34,7 @@ namespace {
 using Vec3 = Eigen::Vector3d;
 
 struct Options {
-  std::string map, only, json;
+  std::string map, only, engines = "all", json;
   Vec3 at_world = Vec3::Zero();
   int objects = 50, throws = 600;
 };
@@ -54,10 +56,15 @@ Options parse(int argc, char** argv) {
       options.throws = std::clamp(std::atoi(argv[i + 1]), 1, 1'000'000);
     } else if (name == "--only") {
       options.only = argv[i + 1];
+    } else if (name == "--engines") {
+      options.engines = argv[i + 1];
+      if (options.engines != "ours" && options.engines != "all")
+        throw Error("--engines " + options.engines + ": must be ours or all");
     } else if (name == "--json") {
       options.json = argv[i + 1];
     } else {
-      throw Error(name + ": not known; there are --map, --at, --objects, --throws, --only and --json");
+      throw Error(name +
+                  ": not known; there are --map, --at, --objects, --throws, --only, --engines and --json");
     }
   }
   return options;
@@ -79,6 +86,11 @@ const std::array<Engine, 3> kEngines = {{
        return simulate_with_bullet(room, entries, frames, BulletMotion::kContinuous);
      }},
 }};
+
+/// Returns the engines to run: ours is the first.
+std::span<const Engine> engines_of(const Options& options) {
+  return std::span(kEngines).first(options.engines == "ours" ? 1 : kEngines.size());
+}
 
 /// Returns how deep a tree overlaps a scene: the least over the directions of the axes; 0 if none crosses it.
 double overlap_m(const TreeInstance& object, std::span<const SceneTree> scene, CyberRadar& radar,
@@ -118,7 +130,7 @@ void measure_heap(const Options& options, nlohmann::json& rows) {
   std::printf("heap of %d objects, %d frames, thread time\n%-12s %8s %8s %8s %8s %8s %8s %11s %6s\n",
               options.objects, kFrames, "", "median", "p95", "p99", "mean ms", "asleep", "crossed",
               "deepest mm", "gone");
-  for (const Engine& engine : kEngines) {
+  for (const Engine& engine : engines_of(options)) {
     const Simulated result = engine.simulate(room, entries, kFrames);
     TriangleTree room_tree;
     room_tree.build_by_place(room);
@@ -155,14 +167,15 @@ void measure_heap(const Options& options, nlohmann::json& rows) {
   }
 }
 
-void measure_throws(int throws, nlohmann::json& rows) {
+void measure_throws(const Options& options, nlohmann::json& rows) {
+  const int throws = options.throws;
   constexpr int kFrames = 120;
   const Thing cube("cube", box_mesh({0.1, 0.1, 0.1})), plate("plate", box_mesh({0.2, 0.2, 0.004})),
       needle("needle", box_mesh({0.002, 0.002, 0.2})), ball("ball", ball_mesh(0.05, 8));
   const std::array<const Thing*, 4> things = {&cube, &plate, &needle, &ball};
   std::printf("%d throws at up to 10 m/s, 4 s each\n%-12s %-7s %8s %8s %8s\n", throws, "", "thing", "throws",
               "outside", "mean ms");
-  for (const Engine& engine : kEngines) {
+  for (const Engine& engine : engines_of(options)) {
     std::array<int, 4> outside{}, count{};
     std::array<test::Times, 4> times;
     std::mt19937 random(1);
@@ -208,7 +221,7 @@ int run(int argc, char** argv) {
   std::printf("%s\n", test::processor().c_str());
   nlohmann::json rows = nlohmann::json::array();
   if (options.only.empty() || options.only == "heap") measure_heap(options, rows);
-  if (options.only.empty() || options.only == "throws") measure_throws(options.throws, rows);
+  if (options.only.empty() || options.only == "throws") measure_throws(options, rows);
   test::write_rows(options.json, rows);
   return 0;
 }

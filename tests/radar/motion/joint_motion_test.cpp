@@ -98,36 +98,101 @@ TEST(JointMotion, ASpinningCubeHitsWhatRestsBesideItsFace) {
   }
 }
 
-/// Two boxes 0.3 m apart that approach each other along x.
+/// Boxes of 0.1 m along x that move along it; the least index of a pair tests it.
+struct Row {
+  std::vector<Mesh> meshes;
+  std::vector<TriangleTree> trees;
+  std::vector<Eigen::Isometry3d> T;
+  std::vector<JointMover> movers;
+  ProximityQuery field;
+  int queries = 0;
+
+  /// @param x_m, speed_mps  per box
+  Row(const std::vector<double>& x_m, const std::vector<double>& speed_mps, double duration_s)
+      : meshes(x_m.size(), shapes::box({0.1F, 0.1F, 0.1F})), trees(x_m.size()), T(x_m.size()) {
+    for (std::size_t i = 0; i < x_m.size(); ++i) {
+      trees[i].build_by_place(meshes[i]);
+      T[i] = Eigen::Isometry3d(Eigen::Translation3d(x_m[i], 0.0, 0.0));
+      RigidMotion motion;
+      motion.linear_m_s = {speed_mps[i], 0.0, 0.0};
+      movers.push_back(
+          {.T_world_object = &T[i],
+           .motion = motion,
+           .duration_s = duration_s,
+           .path = {T[i].translation(), 0.1 + std::abs(speed_mps[i]) * duration_s},
+           .free_time = [this, i](double left_s) { return free_time(i, left_s, kNoMover); },
+           .free_time_beside = [this, i](std::size_t stopped,
+                                         double left_s) { return free_time(i, left_s, stopped).time.free_s; },
+           .limited_by = {}});
+    }
+  }
+  /// @param only  the other box to test; kNoMover: all whose turn it is
+  JointMover::Free free_time(std::size_t i, double duration_s, std::size_t only) {
+    ++queries;
+    std::vector<SceneTree> scene;
+    TreeStates states{std::vector<bool>(T.size()), std::vector<RigidMotion>(T.size())};
+    for (std::size_t k = 0; k < T.size(); ++k) {
+      scene.push_back({{&trees[k], T[k]}, SurfaceKind::kObject});
+      const bool is_moving = !movers[k].has_stopped;
+      states.left_out[k] = k == i || (only == kNoMover ? is_moving && k < i : k != only);
+      if (is_moving) states.motions[k] = movers[k].motion;
+    }
+    const FreeTime free =
+        field.free_time({&trees[i], T[i]}, movers[i].motion, duration_s, kKeep_m, {scene, {}}, 0, states);
+    return {free, free.limit.kind == SurfaceKind::kNothing ? kNoMover : free.limit.tree};
+  }
+  [[nodiscard]] double gap_m(std::size_t i) const {
+    return T[i + 1].translation().x() - T[i].translation().x() - 0.1;
+  }
+};
+
 TEST(JointMotion, TwoThatMeetStopTogetherWhereTheyMeet) {
-  Two two(shapes::box({0.1F, 0.1F, 0.1F}), shapes::box({0.1F, 0.1F, 0.1F}));
-  two.T[0] = Eigen::Isometry3d(Eigen::Translation3d(-0.2, 0.0, 0.0));
-  two.T[1] = Eigen::Isometry3d(Eigen::Translation3d(0.2, 0.0, 0.0));
-  two.motions[0].linear_m_s = {2.0, 0.0, 0.0};
-  two.motions[1].linear_m_s = {-1.0, 0.0, 0.0};
+  Row row({-0.2, 0.2}, {2.0, -1.0}, 1.0);
   int moves = 0;
   const std::function<void()> count = [&] { ++moves; };
-  std::vector<JointMover> movers;
-  movers.push_back({.T_world_object = &two.T[0],
-                    .motion = two.motions[0],
-                    .free_time = [&](double duration_s) { return two.free_time(duration_s); },
-                    .moved = &count,
-                    .limited_by = {}});
-  movers.push_back({.T_world_object = &two.T[1],
-                    .motion = two.motions[1],
-                    .free_time =
-                        [](double duration_s) {
-                          return FreeTime{duration_s, {}};
-                        },
-                    .moved = nullptr,
-                    .limited_by = {}});
-  const double gone_s = move_to_contact(movers, 1.0);
-  EXPECT_NEAR(gone_s, (0.3 - kKeep_m) / 3.0, 1e-3);
+  row.movers[0].moved = &count;
+  move_to_contact(row.movers);
+  EXPECT_NEAR(row.movers[0].gone_s, (0.3 - kKeep_m) / 3.0, 1e-3);
+  EXPECT_EQ(row.movers[1].gone_s, row.movers[0].gone_s);
   EXPECT_GT(moves, 0);
-  EXPECT_NEAR(two.T[0].translation().x(), -0.2 + 2.0 * gone_s, 1e-12);
-  EXPECT_NEAR(two.T[1].translation().x(), 0.2 - gone_s, 1e-12);
-  EXPECT_EQ(movers[0].limited_by.kind, SurfaceKind::kObject);
-  EXPECT_EQ(movers[1].limited_by.kind, SurfaceKind::kNothing);
+  EXPECT_NEAR(row.T[0].translation().x(), -0.2 + 2.0 * row.movers[0].gone_s, 1e-12);
+  EXPECT_NEAR(row.T[1].translation().x(), 0.2 - row.movers[1].gone_s, 1e-12);
+  EXPECT_EQ(row.movers[0].limited_by.kind, SurfaceKind::kObject);
+  EXPECT_EQ(row.movers[1].limited_by.kind, SurfaceKind::kNothing);
+}
+
+TEST(JointMotion, OthersMoveOnUntilTheyReachTheTwoThatMet) {
+  // The first two meet at x = 0; the third follows and reaches them at rest; the fourth leaves.
+  Row row({-0.2, 0.2, 0.5, 1.0}, {2.0, -2.0, -1.0, 1.0}, 1.0);
+  move_to_contact(row.movers);
+  EXPECT_NEAR(row.movers[0].gone_s, (0.3 - kKeep_m) / 4.0, 1e-3);
+  EXPECT_EQ(row.movers[1].gone_s, row.movers[0].gone_s);
+  EXPECT_NEAR(row.movers[2].gone_s, 0.35, 5e-3);
+  EXPECT_EQ(row.movers[2].limited_by.kind, SurfaceKind::kObject);
+  EXPECT_EQ(row.movers[3].gone_s, 1.0);
+  for (const std::size_t i : {0, 1}) {
+    EXPECT_GE(row.gap_m(i), 0.5 * kKeep_m) << i;  // the second stop began within 2 keep_m
+    EXPECT_LT(row.gap_m(i), 5e-3) << i;
+  }
+}
+
+TEST(JointMotion, ABodyWhoseTimeHasEndedIsAnObstacleAtRest) {
+  Row row({0.0, 0.3}, {1.0, 1.0}, 1.0);
+  row.movers[1].duration_s = 0.25;
+  move_to_contact(row.movers);
+  EXPECT_EQ(row.movers[1].gone_s, 0.25);
+  EXPECT_NEAR(row.movers[0].gone_s, 0.45, 5e-3);
+  EXPECT_GE(row.gap_m(0), 0.5 * kKeep_m);
+}
+
+TEST(JointMotion, WhatIsFarFromThoseThatMetIsNotQueriedAgain) {
+  Row row({-0.2, 0.2, 5.0}, {2.0, -2.0, -1.0}, 0.2);
+  move_to_contact(row.movers);
+  EXPECT_EQ(row.movers[2].gone_s, 0.2);
+  const int before = row.queries;
+  Row two({-0.2, 0.2}, {2.0, -2.0}, 0.2);
+  move_to_contact(two.movers);
+  EXPECT_EQ(before, two.queries + 1);
 }
 
 TEST(JointMotion, PathsThatOverlapAreOneSet) {
