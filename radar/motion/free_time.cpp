@@ -2,6 +2,7 @@
 #include "radar/motion/free_time.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "radar/geometry/infinity.hpp"
@@ -18,12 +19,18 @@ using Vec3 = Eigen::Vector3d;
 /// adds at most quadratic_m_s2 t^2.
 double time_for(double allowed_m, double closing_m_s, double quadratic_m_s2) {
   const double root = std::sqrt(closing_m_s * closing_m_s + 4.0 * quadratic_m_s2 * allowed_m);
+  if (closing_m_s < 0.0)
+    return quadratic_m_s2 > 0.0 ? (root - closing_m_s) / (2.0 * quadratic_m_s2) : kInfinity<double>;
   const double denominator = closing_m_s + root;
   return denominator > 0.0 ? 2.0 * allowed_m / denominator : kInfinity<double>;
 }
 
+/// Returns by how much a pair may approach. Never nearer than a hundredth of keep_m: rounding would hide the
+/// plane between them.
 double allowed_m(double distance_m, double keep_m) {
-  return distance_m > 2.0 * keep_m ? distance_m - keep_m : 0.5 * distance_m;
+  constexpr double kNearest = 0.01;  // fraction of keep_m
+  if (distance_m > 2.0 * keep_m) return distance_m - keep_m;
+  return std::max(0.0, 0.5 * (distance_m - kNearest * keep_m));
 }
 
 /// The object's motion relative to a tree of the scene, in the tree's frame, with bounds of its approach.
@@ -37,6 +44,7 @@ struct RelativeMotion {
   /// Displacement by rotation along each axis of the frame: at most quadratic_m_s2 t^2 beyond the present
   /// velocity, and at most fastest_m_s t.
   Vec3 quadratic_m_s2, fastest_m_s;
+  double speed_m_s;  ///< of the object's points: at most this, within the duration
 
   [[nodiscard]] Vec3 velocity_at(const Vec3& p) const { return linear + angular.cross(p - centre); }
   /// Returns the time until two boxes separated along an axis can reach their minimum distance; 0 if no axis
@@ -90,6 +98,49 @@ struct RelativeMotion {
       free_s = std::min(free_s, tree_moves ? now : std::max(now, time_for(allowed, fastest, 0.0)));
     }
     return free_s;
+  }
+
+  /// Returns the time for two triangles and a plane between them that turns: its normal changes at
+  /// turning_1_s. Such a plane follows a body that rocks on an edge or a corner. Negative if the plane does
+  /// not separate them.
+  /// @param duration_s  upper bound of the time
+  [[nodiscard]] double free_s(const Vec3& direction, const Vec3& turning_1_s, const FrameTriangle& o,
+                              const FrameTriangle& s, double duration_s) const {
+    double farthest_m = 0.0;
+    for (const Vec3& on_object : o.corners)
+      for (const Vec3& on_scene : s.corners) farthest_m = std::max(farthest_m, (on_object - on_scene).norm());
+    farthest_m += speed_m_s * duration_s;
+    const double turning = turning_1_s.norm();
+    const double quadratic = 0.5 * turning * (turning * farthest_m + 2.0 * speed_m_s) +
+                             0.5 * turn_rad_s * turn_rad_s * reach_m + tree_quadratic_m_s2;
+    double free_s = kInfinity<double>;
+    for (const Vec3& on_object : o.corners) {
+      const double away_m_s = direction.dot(velocity_at(on_object));
+      for (const Vec3& on_scene : s.corners) {
+        const Vec3 between = on_object - on_scene;
+        const double apart_m = direction.dot(between);
+        if (!(apart_m > 0.0)) return -1.0;
+        const double closing_m_s = -(away_m_s + turning_1_s.dot(between));
+        free_s = std::min(free_s, time_for(allowed_m(apart_m, keep_m), closing_m_s, quadratic));
+      }
+    }
+    return free_s;
+  }
+  /// Returns the longest time for planes through `direction` that turn: with the object, and so that they
+  /// keep containing the edges of both triangles that are nearest to each other.
+  [[nodiscard]] double free_s_turning(const Vec3& direction, const FrameTriangle& o, const FrameTriangle& s,
+                                      double duration_s) const {
+    const double with_object = free_s(direction, angular.cross(direction), o, s, duration_s);
+    const auto is_lower = [&](const Vec3& a, const Vec3& b) { return direction.dot(a) < direction.dot(b); };
+    std::array<Vec3, 3> lowest = o.corners, highest = s.corners;
+    std::sort(lowest.begin(), lowest.end(), is_lower);
+    std::sort(highest.begin(), highest.end(), [&](const Vec3& a, const Vec3& b) { return is_lower(b, a); });
+    const Vec3 edge = lowest[1] - lowest[0], across = direction.cross(highest[1] - highest[0]);
+    const double meet = across.dot(edge);
+    constexpr double kParallel = 1e-3;
+    if (!(std::abs(meet) > kParallel * across.norm() * edge.norm())) return with_object;
+    const Vec3 turning_1_s = -direction.dot(angular.cross(edge)) / meet * across;
+    return std::max(with_object, free_s(direction, turning_1_s, o, s, duration_s));
   }
 };
 
@@ -152,7 +203,8 @@ RelativeMotion relative_motion(const TreeInstance& object, const RigidMotion& mo
                           0.5 * accelerates_m_s2,
                           !is_tree_still,
                           0.5 * turn_rad_s * turning_m_s,
-                          turning_m_s};
+                          turning_m_s,
+                          linear_world.norm() + turn_rad_s * reach_m + accelerates_m_s2 * duration_s};
   relative.quadratic_m_s2.array() += 0.5 * accelerates_m_s2;
   return relative;
 }
@@ -202,6 +254,9 @@ struct TreeFreedom {
     const auto [from, way] = shortest_way(o, s, 0.0);
     const double distance_m = way.norm();
     if (distance_m > 0.0 && is_long_enough(-way / distance_m)) return;
+    if (free_s >= 0.0 && distance_m > 0.0)
+      free_s = std::max(free_s, course.free_s_turning(-way / distance_m, o, s, result.free_s));
+    if (free_s >= result.free_s) return;
     if (free_s < 0.0) {
       if (!(distance_m > 0.0) || cross(face_of(o), face_of(s))) return;
       free_s = 0.0;  // so near that rounding hides the plane between them

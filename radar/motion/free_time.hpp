@@ -32,10 +32,12 @@ struct TreeStates {
 /// Returns a lower bound of the duration for which rigid motions of the object and of the scene's trees stay
 /// free of contact between the object and the trees. Ignores surfaces that intersect the object now. Each
 /// pair of triangles is separated by a plane. It is the plane of one triangle, or perpendicular to the
-/// segment between their nearest points. The approach speed of a vertex to the plane is at most its present
-/// speed plus a bound of the change by rotation. A pair's minimum distance is keep_m, or half its present
-/// distance if the present distance is less than 2 * keep_m. Sources: Mirtich, PhD thesis, Berkeley 1996,
-/// section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
+/// segment between their nearest points; the latter may turn, as when an edge rocks on another. The approach
+/// speed of a vertex to the plane is at most its present speed plus a bound of the change by rotation. A
+/// pair's minimum distance is keep_m, or half its present distance if the present distance is less than 2 *
+/// keep_m, but at least keep_m / 100 (or its present distance, if that is less). Sources: Mirtich, PhD
+/// thesis, Berkeley 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA
+/// 2009.
 ///
 /// @param keep_m    minimum distance to keep, m
 /// @param left_out  kinds of surfaces to ignore

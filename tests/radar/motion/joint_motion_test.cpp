@@ -74,6 +74,57 @@ TEST(JointMotion, NoFreeTimeOfTwoMovingBodiesIsTooLong) {
   EXPECT_GT(stopped, 40);
 }
 
+TEST(JointMotion, NoFreeTimeOfTwoThatNearlyTouchIsTooLong) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const auto vector = [&](double size) {
+    return Vec3(size * unit(random), size * unit(random), size * unit(random));
+  };
+  int stopped = 0;
+  for (const Mesh& mesh : {shapes::box({0.2F, 0.1F, 0.05F}), shapes::box({0.4F, 0.02F, 0.004F})}) {
+    Two two(mesh, shapes::box({0.3F, 0.2F, 0.1F}));
+    for (int i = 0; i < 60; ++i) {
+      for (int k = 0; k < 2; ++k) {
+        two.T[k].setIdentity();
+        two.T[k].rotate(Eigen::AngleAxisd(3.0 * unit(random), vector(1.0).normalized()));
+        two.motions[k] = {vector(0.3), vector((i + k) % 3 == 0 ? 0.0 : 15.0), vector(0.05)};
+      }
+      const Vec3 way = vector(1.0).normalized();
+      const double gap_m = std::pow(10.0, -3.0 - 1.5 * (1.0 + unit(random)));  // 1 mm to 1 um
+      double apart_m = 0.5, step_m = 0.25;
+      for (; step_m > 1e-8; step_m *= 0.5) {
+        two.T[0].translation() = apart_m * way;
+        apart_m += two.distance_m(0.0) > gap_m ? -step_m : step_m;
+      }
+      const double from_m = two.distance_m(0.0);
+      if (!(from_m > 0.0)) continue;
+      const FreeTime free = two.free_time(0.1);
+      stopped += free.free_s < 0.1;
+      for (int k = 1; k <= 24; ++k)
+        ASSERT_GE(two.distance_m(free.free_s * k / 24.0), std::min(kKeep_m, 0.5 * from_m) - 1e-9) << i;
+    }
+  }
+  EXPECT_GT(stopped, 60);
+}
+
+TEST(JointMotion, AnEdgeMayRockOnAnother) {
+  // Two boxes stand on edges, one on the other, crosswise. The upper one turns about the lower one's edge.
+  Two two(shapes::box({0.1F, 0.1F, 0.1F}), shapes::box({0.1F, 0.1F, 0.1F}));
+  constexpr double kGap_m = 1e-5, kSpin_rad_s = 10.0;
+  const double half_diagonal_m = 0.05 * std::sqrt(2.0);
+  two.T[1] = Eigen::AngleAxisd(M_PI / 4, Vec3::UnitX());
+  two.T[0] = Eigen::Translation3d(0.0, 0.0, 2.0 * half_diagonal_m + kGap_m) *
+             Eigen::AngleAxisd(M_PI / 4, Vec3::UnitY());
+  two.motions[0] = {kSpin_rad_s * Vec3::UnitX().cross(Vec3(0.0, 0.0, half_diagonal_m)),
+                    kSpin_rad_s * Vec3::UnitX(), Vec3::Zero()};
+  two.motions[1] = {};
+  ASSERT_NEAR(two.distance_m(0.0), kGap_m, 1e-8);
+  const FreeTime free = two.free_time(0.1);
+  const double by_corners_s = 0.5 * kGap_m / (kSpin_rad_s * 0.05);
+  EXPECT_GT(free.free_s, 20.0 * by_corners_s) << "the ends of its edge pass the level of the other edge";
+  EXPECT_GE(two.distance_m(free.free_s), 0.5 * kGap_m - 1e-9);
+}
+
 TEST(JointMotion, BodiesThatMoveAlikeAreFreeForAllOfTheTime) {
   Two two(shapes::box({0.1F, 0.1F, 0.1F}), shapes::box({0.1F, 0.1F, 0.1F}));
   two.T[0] = Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 0.101));
