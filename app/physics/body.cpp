@@ -2,6 +2,8 @@
 #include "app/physics/body.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 namespace roomradar {
 
@@ -18,13 +20,43 @@ Eigen::Matrix3d inertia_world_m2(const Body& body) {
   return R * body.mass.inertia_m2 * R.transpose();
 }
 
+namespace {
+
+/// A freely rotating body: its angular momentum does not change.
+struct FreeSpin {
+  Eigen::Matrix3d inverse_inertia;  ///< in the body's axes, 1/m2
+  Eigen::Vector3d momentum_world;
+
+  [[nodiscard]] Eigen::Vector3d angular_rad_s(const Eigen::Quaterniond& q_world_body) const {
+    return q_world_body * (inverse_inertia * (q_world_body.conjugate() * momentum_world));
+  }
+  /// Returns the derivative of the orientation by time.
+  [[nodiscard]] Eigen::Vector4d rate(const Eigen::Vector4d& q_world_body) const {
+    const Eigen::Quaterniond q(q_world_body);
+    const Eigen::Vector3d spin = angular_rad_s(q.normalized());
+    return 0.5 * (Eigen::Quaterniond(0.0, spin.x(), spin.y(), spin.z()) * q).coeffs();
+  }
+};
+
+}  // namespace
+
 Eigen::Vector3d mean_free_spin(const Body& body, const Eigen::Vector3d& angular_rad_s, double time_s) {
-  const double speed_rad_s = angular_rad_s.norm();
-  if (!(speed_rad_s > 0.0)) return angular_rad_s;
-  const Eigen::Matrix3d R_half = Eigen::AngleAxisd(0.5 * time_s * speed_rad_s, angular_rad_s / speed_rad_s) *
-                                 body.T_world_object.linear();
-  const Eigen::Matrix3d inertia_half = R_half * body.mass.inertia_m2 * R_half.transpose();
-  return inertia_half.inverse() * (inertia_world_m2(body) * angular_rad_s);
+  constexpr double kStep_rad = 0.02;
+  constexpr int kMaxSteps = 64;
+  const double turn_rad = time_s * angular_rad_s.norm();
+  if (!(turn_rad > 0.0)) return angular_rad_s;
+  const FreeSpin spin{body.mass.inertia_m2.inverse(), inertia_world_m2(body) * angular_rad_s};
+  const Eigen::Quaterniond q_before(body.T_world_object.linear());
+  const int steps = std::clamp(static_cast<int>(std::ceil(turn_rad / kStep_rad)), 1, kMaxSteps);
+  const double h = time_s / steps;
+  Eigen::Vector4d q = q_before.coeffs();
+  for (int i = 0; i < steps; ++i) {  // Runge-Kutta, fourth order
+    const Eigen::Vector4d k1 = spin.rate(q), k2 = spin.rate(q + 0.5 * h * k1);
+    const Eigen::Vector4d k3 = spin.rate(q + 0.5 * h * k2), k4 = spin.rate(q + h * k3);
+    q = (q + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)).normalized();
+  }
+  const Eigen::AngleAxisd turned(Eigen::Quaterniond(q) * q_before.conjugate());
+  return turned.angle() / time_s * turned.axis();
 }
 
 void note_contact(SurfaceKind touched, StepReport& report) {

@@ -69,8 +69,8 @@ Eigen::Vector3d centre_world(const Body& body);
 /// Returns the inertia about the centre of mass, in world axes.
 Eigen::Matrix3d inertia_world_m2(const Body& body);
 
-/// Returns the mean angular velocity of a body that rotates freely for time_s from the given one. Free
-/// rotation conserves angular momentum, not angular velocity. Second order in time_s.
+/// Returns the constant angular velocity that turns the body in time_s as far as free rotation from the given
+/// one does. Free rotation conserves angular momentum, not angular velocity. Fourth order in time_s.
 Eigen::Vector3d mean_free_spin(const Body& body, const Eigen::Vector3d& angular_rad_s, double time_s);
 
 }  // namespace roomradar

@@ -51,6 +51,7 @@ struct MovingBody {
   bool crosses = false;
   Velocity velocity{}, after{};      ///< before and after the second solve
   ClosestPoint limited_by{};         ///< feature that ended the body's last motion
+  int stops_in_place = 0;            ///< motions in this substep that hardly moved the body
   bool contacts_known = false;       ///< sleeping bodies: contacts are in the system
   std::vector<ClosestPoint> near{};  ///< closest features at its pose
   std::size_t near_found = 0;        ///< size of `near` without the feature that ended its last motion

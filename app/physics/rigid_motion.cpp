@@ -233,11 +233,6 @@ std::vector<Velocity> Substep::mean_velocities() {
 std::vector<RigidMotion> Substep::motions() {
   const std::vector<Velocity> means = mean_velocities();
   const std::vector<Velocity> lifts = corrections();
-  std::vector<bool> is_free(bodies_.size(), true);  // without contacts
-  for (const SolverContact& contact : system_.contacts) {
-    is_free[contact.body] = false;
-    if (is_member(contact.other)) is_free[contact.other] = false;
-  }
   std::vector<RigidMotion> motions(bodies_.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const MovingBody& moving = bodies_[i];
@@ -246,9 +241,7 @@ std::vector<RigidMotion> Substep::motions() {
     RigidMotion motion;
     motion.centre_object = body.mass.centre_object;
     motion.linear_m_s = means[i].linear_mps;
-    motion.angular_rad_s = means[i].angular_rad_s;
-    if (is_free[i]) motion.angular_rad_s = mean_free_spin(body, motion.angular_rad_s, moving.left_s);
-    limit(motion.angular_rad_s, config_.max_angular_rad_s);
+    motion.angular_rad_s = mean_free_spin(body, means[i].angular_rad_s, moving.left_s);
     motion.linear_m_s += lifts[i].linear_mps;
     motion.angular_rad_s += lifts[i].angular_rad_s;
     motions[i] = motion;
@@ -258,6 +251,8 @@ std::vector<RigidMotion> Substep::motions() {
 
 /// Moves the active bodies, and changes their velocities by the fraction of the time that they moved.
 void Substep::move() {
+  constexpr double kProgress = 1e-3;  // fraction of the substep
+  constexpr int kMaxStopsInPlace = 4;
   const std::vector<RigidMotion> planned = motions();
   std::vector<Eigen::Matrix3d> inertias_m2;
   for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(*moving.body));
@@ -272,9 +267,10 @@ void Substep::move() {
     const Vec3 momentum_after =
         inertia_m2 * (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
     velocity.angular_rad_s = inertia_world_m2(*moving.body).inverse() * momentum_after;
-    limit(velocity.linear_mps, config_.max_speed_mps);
-    limit(velocity.angular_rad_s, config_.max_angular_rad_s);
     moving.left_s -= gone_s[i];
+    // A body that gets no further, jammed between others, stays for the rest of the substep.
+    if (gone_s[i] > kProgress * moving.dt_s) continue;
+    if (++moving.stops_in_place == kMaxStopsInPlace) moving.left_s = 0.0;
   }
 }
 
@@ -282,10 +278,12 @@ void Substep::run() {
   results_.assign(bodies_.size(), {});
   for (MovingBody& moving : bodies_) {
     moving.velocity = {moving.body->velocity_world_mps, moving.body->angular_velocity_world_rad_s};
+    // Only here: a limit after a solve would undo what the solve did at contacts.
     limit(moving.velocity.linear_mps, config_.max_speed_mps);
     limit(moving.velocity.angular_rad_s, config_.max_angular_rad_s);
     moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
     moving.crosses = false;
+    moving.stops_in_place = 0;
     moving.limited_by = {};
     moving.T_world_near.reset();
   }

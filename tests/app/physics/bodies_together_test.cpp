@@ -9,6 +9,7 @@
 #include "app/objects/teapot.hpp"
 #include "app/physics/physics.hpp"
 #include "app/physics/rigid_motion.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "tests/radar/shapes.hpp"
 #include "tests/support/body_group.hpp"
@@ -92,6 +93,52 @@ TEST(BodiesTogether, KeepMomentumAndTheirTurningWhenTheyMeetOffCentre) {
     EXPECT_LT((pair.angular_momentum() - turning_before).norm(), 0.02 * turning_before.norm());
     EXPECT_EQ(pair.deepest_m, 0.0);
   }
+}
+
+double energy_J(const Pair& pair) {
+  double sum_J = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Body& body = pair.bodies[i];
+    const Vec3& spin = body.angular_velocity_world_rad_s;
+    sum_J += 0.5 * pair.mass_kg[i] *
+             (body.velocity_world_mps.squaredNorm() + spin.dot(inertia_world_m2(body) * spin));
+  }
+  return sum_J;
+}
+
+TEST(BodiesTogether, RandomImpactsKeepMomentumAndNeverAddEnergy) {
+  const std::array<Mesh, 4> shapes = {box(0.1, 0.1, 0.1), box(0.3, 0.1, 0.05), shapes::ball(0.06F, 10, 14),
+                                      box(0.4, 0.02, 0.02)};
+  CounterRandom random(3, 0);
+  const auto vector = [&](double size) {
+    return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+  };
+  int met = 0;
+  for (int i = 0; i < 200; ++i) {
+    Pair pair(shapes[static_cast<std::size_t>(i) % 4], shapes[static_cast<std::size_t>(i) / 4 % 4]);
+    pair.weigh();
+    PhysicsConfig config = weightless(random.uniform(0.0, 1.0));
+    config.friction = random.uniform(0.0, 1.0);
+    pair.put({-0.4, 0.0, 0.0}, Vec3(0.4, 0.0, 0.0) + vector(0.05));
+    for (std::size_t k = 0; k < 2; ++k) {
+      Body& body = pair.bodies[k];
+      body.T_world_object.rotate(Eigen::AngleAxisd(random.uniform(0.0, 3.0), vector(1.0).normalized()));
+      body.velocity_world_mps = Vec3(k == 0 ? 3.0 : -1.0, 0.0, 0.0) + vector(0.2);
+      body.angular_velocity_world_rad_s = vector(5.0);
+    }
+    const Vec3 momentum = pair.momentum();
+    double energy = energy_J(pair);
+    const double speed_before = pair.bodies[1].velocity_world_mps.x();
+    for (int frame = 0; frame < 12; ++frame) {
+      pair.step(config);
+      EXPECT_LE(energy_J(pair) / energy - 1.0, 1e-4) << i << " frame " << frame;  // rotation while in touch
+      energy = energy_J(pair);
+    }
+    met += std::abs(pair.bodies[1].velocity_world_mps.x() - speed_before) > 1e-3;
+    EXPECT_LT((pair.momentum() - momentum).norm(), 1e-9 * momentum.norm()) << i;
+    EXPECT_EQ(pair.deepest_m, 0.0) << i;
+  }
+  EXPECT_GT(met, 150);
 }
 
 TEST(BodiesTogether, AThrownOneShovesARestingOneAlongTheFloorAndBothComeToRest) {
