@@ -1,7 +1,7 @@
 // bullet_bench.cpp: heaps and throws, simulated by the project and by Bullet in the same run.
 //
 // usage: bullet_bench [--map FOLDER --at X,Y,Z] [--objects N] [--throws N] [--only heap|throws]
-//                     [--engines ours|all] [--json FILE]
+//                     [--engines ours|all] [--seed N] [--json FILE]
 //        FOLDER: a saved map; objects are dropped above the point. Without it: the simulated table room.
 //
 //   heap    N (50) boxes, balls and teapots of 5 to 15 cm, one every second frame, 300 frames
@@ -37,6 +37,7 @@ struct Options {
   std::string map, only, engines = "all", json;
   Vec3 at_world = Vec3::Zero();
   int objects = 50, throws = 600;
+  unsigned seed = 5;  ///< of the heap
 };
 
 Options parse(int argc, char** argv) {
@@ -60,11 +61,14 @@ Options parse(int argc, char** argv) {
       options.engines = argv[i + 1];
       if (options.engines != "ours" && options.engines != "all")
         throw Error("--engines " + options.engines + ": must be ours or all");
+    } else if (name == "--seed") {
+      options.seed = static_cast<unsigned>(std::clamp(std::atoi(argv[i + 1]), 0, 1'000'000));
     } else if (name == "--json") {
       options.json = argv[i + 1];
     } else {
       throw Error(name +
-                  ": not known; there are --map, --at, --objects, --throws, --only, --engines and --json");
+                  ": not known; there are --map, --at, --objects, --throws, --only, --engines, --seed and "
+                  "--json");
     }
   }
   return options;
@@ -111,7 +115,7 @@ void measure_heap(const Options& options, nlohmann::json& rows) {
   const Room table = make_room("table");
   const Mesh room = options.map.empty() ? room_mesh(table) : load_map_mesh(options.map);
   const Vec3 at_world = options.map.empty() ? table.focus_world : options.at_world;
-  std::mt19937 random(5);
+  std::mt19937 random(options.seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::list<Thing> things;
   std::vector<Entry> entries;

@@ -143,7 +143,7 @@ PassResult sweep(const Pass& pass) {
     result.deepest_m = std::max(result.deepest_m, depth_m);
     result.entered |= depth_m >= 0.01;
   }
-  const double end_s = moving_frames * kHandFrame_s;
+  const double end_s = (moving_frames - 1) * kHandFrame_s;  // of the last frame
   const Vec3 hand_end = pass.palm_world(end_s) + 0.09 * pass.fingers;
   const Vec3 from_hand = object.body.T_world_object.translation() - hand_end;
   // Behind the hand, in its track.

@@ -31,6 +31,7 @@ class BodyGroup {
   }
   /// Adds a static surface.
   void add_surface(const Mesh& mesh) { surfaces_.emplace_back().build_by_place(mesh); }
+  void remove_surfaces() { surfaces_.clear(); }
   /// Gives each body the mass of its mesh; before, each has 1 kg.
   void weigh() {
     for (std::size_t i = 0; i < bodies.size(); ++i) mass_kg[i] = bodies[i].mass.mass_kg;

@@ -247,6 +247,72 @@ TEST(Statics, ABallBouncesByItsOwnRestitution) {
   }
 }
 
+/// A column of cubes of 10 cm, asleep, of which nothing but its own bodies can disturb any.
+BodyGroup sleeping_column(std::size_t cubes) {
+  BodyGroup group = on_floor(std::vector<Mesh>(cubes, box(0.1, 0.1, 0.1)));
+  for (std::size_t i = 0; i < cubes; ++i) group.put(i, {0.0, 0.0, 0.051 + 0.101 * static_cast<double>(i)});
+  group.run(4.0, {});
+  EXPECT_TRUE(group.all_asleep());
+  group.is_undisturbed.assign(cubes, true);
+  return group;
+}
+
+TEST(Statics, AllThatStoodOnWhatIsTakenAwayWakesWithinTwoFramesAndFalls) {
+  constexpr std::size_t kCubes = 6, kTaken = 2;
+  for (const bool is_carried_off : {false, true}) {
+    BodyGroup group = sleeping_column(kCubes);
+    if (is_carried_off) {
+      group.is_carried[kTaken] = true;
+      group.bodies[kTaken].asleep = false;
+      group.bodies[kTaken].velocity_world_mps = {6.0, 0.0, 0.0};  // out from under the others in a frame
+    } else {
+      group.is_present[kTaken] = false;
+    }
+    group.run(2.0 * group.frame_s, {});
+    for (std::size_t i = kTaken + 1; i < kCubes; ++i)
+      EXPECT_FALSE(group.bodies[i].asleep) << i << " " << is_carried_off;
+    group.run(2.0, {});
+    for (std::size_t i = kTaken + 1; i < kCubes; ++i)
+      EXPECT_LT(group.bodies[i].T_world_object.translation().z(),
+                0.051 + 0.101 * (static_cast<double>(i) - 0.5))
+          << i << " " << is_carried_off;
+    EXPECT_EQ(group.deepest_m, 0.0);
+  }
+}
+
+TEST(Statics, AColumnWakesWhenTheSurfaceUnderItIsCarvedAway) {
+  BodyGroup group = sleeping_column(5);
+  group.remove_surfaces();
+  group.add_surface(shapes::floor(4.0F, -0.5F));
+  group.is_undisturbed.assign(5, false);  // as after a change of the map
+  group.run(2.0 * group.frame_s, {});
+  for (const Body& body : group.bodies) EXPECT_FALSE(body.asleep);
+  group.run(2.0, {});
+  EXPECT_NEAR(group.bodies[0].T_world_object.translation().z(), -0.449, 1e-3);
+  EXPECT_EQ(group.deepest_m, 0.0);
+}
+
+TEST(Statics, ABoardThatLosesOneOfTwoSupportsTipsIfItsCentreIsNotOverTheOther) {
+  // The support that stays ends at x = 0.
+  for (const double centre_m : {-0.0105, 0.0105}) {  // 5 % of the board's half length to either side
+    BodyGroup group = on_floor({box(0.42, 0.1, 0.02), box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1)});
+    group.put(1, {-0.05, 0.0, 0.051});
+    group.put(2, {0.1, 0.0, 0.051});
+    group.put(0, {centre_m, 0.0, 0.112});
+    group.run(2.0, {});
+    ASSERT_TRUE(group.all_asleep());
+    group.is_undisturbed.assign(3, true);
+    group.is_present[2] = false;
+    const double level = group.bodies[0].T_world_object.linear()(2, 2);
+    EXPECT_GT(level, 1.0 - 1e-6);
+    group.run(2.0 * group.frame_s, {});
+    EXPECT_FALSE(group.bodies[0].asleep) << centre_m;
+    group.run(1.5, {});
+    EXPECT_EQ(group.bodies[0].T_world_object.linear()(2, 2) < 0.99, centre_m > 0.0) << centre_m;
+    EXPECT_EQ(group.deepest_m, 0.0);
+  }
+}
+
 TEST(Statics, WeightWakesWhatSleepsAndBearsThroughSeveralBodies) {
   // A column of three on the end of a board over an edge, put there one after the other: two are too light.
   BodyGroup group = on_floor({box(0.4, 0.2, 0.02), box(0.2, 0.2, 0.1), box(0.06, 0.06, 0.06),
