@@ -240,8 +240,12 @@ std::vector<RigidMotion> Substep::motions() {
     const Body& body = *moving.body;
     RigidMotion motion;
     motion.centre_object = body.mass.centre_object;
-    motion.linear_m_s = means[i].linear_mps;
-    motion.angular_rad_s = mean_free_spin(body, means[i].angular_rad_s, moving.left_s);
+    // A body that spins too fast moves slower as a whole: a contact that does not close then does not,
+    // either.
+    const double slower =
+        std::min(1.0, config_.max_angular_rad_s / std::max(means[i].angular_rad_s.norm(), 1e-300));
+    motion.linear_m_s = slower * means[i].linear_mps;
+    motion.angular_rad_s = mean_free_spin(body, slower * means[i].angular_rad_s, moving.left_s);
     motion.linear_m_s += lifts[i].linear_mps;
     motion.angular_rad_s += lifts[i].angular_rad_s;
     motions[i] = motion;
@@ -267,6 +271,8 @@ void Substep::move() {
     const Vec3 momentum_after =
         inertia_m2 * (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
     velocity.angular_rad_s = inertia_world_m2(*moving.body).inverse() * momentum_after;
+    limit(velocity.linear_mps, config_.max_speed_mps);
+    limit(velocity.angular_rad_s, config_.max_angular_rad_s);
     moving.left_s -= gone_s[i];
     // A body that gets no further, jammed between others, stays for the rest of the substep.
     if (gone_s[i] > kProgress * moving.dt_s) continue;
@@ -278,7 +284,6 @@ void Substep::run() {
   results_.assign(bodies_.size(), {});
   for (MovingBody& moving : bodies_) {
     moving.velocity = {moving.body->velocity_world_mps, moving.body->angular_velocity_world_rad_s};
-    // Only here: a limit after a solve would undo what the solve did at contacts.
     limit(moving.velocity.linear_mps, config_.max_speed_mps);
     limit(moving.velocity.angular_rad_s, config_.max_angular_rad_s);
     moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
