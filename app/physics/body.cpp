@@ -6,20 +6,6 @@
 #include <cmath>
 
 namespace roomradar {
-
-double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before) {
-  const Eigen::Matrix3d turned = T_world_before.linear().transpose() * body.T_world_object.linear();
-  return (centre_world(body) - T_world_before * body.mass.centre_object).norm() +
-         Eigen::AngleAxisd(turned).angle() * body.mass.radius_m;
-}
-
-Eigen::Vector3d centre_world(const Body& body) { return body.T_world_object * body.mass.centre_object; }
-
-Eigen::Matrix3d inertia_world_m2(const Body& body) {
-  const Eigen::Matrix3d R = body.T_world_object.linear();
-  return R * body.mass.inertia_m2 * R.transpose();
-}
-
 namespace {
 
 /// A freely rotating body: its angular momentum does not change.
@@ -40,14 +26,27 @@ struct FreeSpin {
 
 }  // namespace
 
+double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before) {
+  const Eigen::Matrix3d turned = T_world_before.linear().transpose() * body.T_world_object.linear();
+  return (centre_world(body) - T_world_before * body.mass.centre_object).norm() +
+         Eigen::AngleAxisd(turned).angle() * body.mass.radius_m;
+}
+
+Eigen::Vector3d centre_world(const Body& body) { return body.T_world_object * body.mass.centre_object; }
+
+Eigen::Matrix3d inertia_world_m2(const Body& body) {
+  const Eigen::Matrix3d R = body.T_world_object.linear();
+  return R * body.mass.inertia_m2 * R.transpose();
+}
+
 Eigen::Vector3d mean_free_spin(const Body& body, const Eigen::Vector3d& angular_rad_s, double time_s) {
   constexpr double kStep_rad = 0.02;
-  constexpr int kMaxSteps = 64;
+  constexpr double kMaxSteps = 64.0;
   const double turn_rad = time_s * angular_rad_s.norm();
   if (!(turn_rad > 0.0)) return angular_rad_s;
   const FreeSpin spin{body.mass.inertia_m2.inverse(), inertia_world_m2(body) * angular_rad_s};
   const Eigen::Quaterniond q_before(body.T_world_object.linear());
-  const int steps = std::clamp(static_cast<int>(std::ceil(turn_rad / kStep_rad)), 1, kMaxSteps);
+  const int steps = static_cast<int>(std::clamp(std::ceil(turn_rad / kStep_rad), 1.0, kMaxSteps));
   const double h = time_s / steps;
   Eigen::Vector4d q = q_before.coeffs();
   for (int i = 0; i < steps; ++i) {  // Runge-Kutta, fourth order

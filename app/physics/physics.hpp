@@ -50,8 +50,9 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 /// first time of impact (CollisionQueries::free_time). Two bodies that meet stop together; the others move
 /// on, past the two at rest. Bodies whose paths cannot meet are independent. The remaining time of a stopped
 /// body's substep is simulated in the same way from the new poses. Hence neither translation nor rotation
-/// tunnels, at any step size. No body enters another. Between contacts, the
-/// path is a parabola and angular momentum is conserved.
+/// tunnels, at any step size. No body enters another. A body that four stops hardly move, jammed between
+/// others, stays for the rest of the substep. Between contacts, the path is a parabola and angular momentum
+/// is conserved.
 ///
 /// Bodies in the scene of AdvancedBody::probe that are not advanced in this call receive the opposite
 /// impulses. Their velocity changes at once, their pose when they are advanced.

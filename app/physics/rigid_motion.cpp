@@ -21,6 +21,11 @@ void limit(Vec3& v, double most) {
   if (const double size = v.norm(); size > most) v *= most / size;
 }
 
+void limit(Velocity& velocity, const PhysicsConfig& config) {
+  limit(velocity.linear_mps, config.max_speed_mps);
+  limit(velocity.angular_rad_s, config.max_angular_rad_s);
+}
+
 /// Upper bound of the speed of the body's points.
 double speed_of(const Body& body, const Velocity& velocity) {
   return velocity.linear_mps.norm() + velocity.angular_rad_s.norm() * body.mass.radius_m;
@@ -242,8 +247,9 @@ std::vector<RigidMotion> Substep::motions() {
     motion.centre_object = body.mass.centre_object;
     // A body that spins too fast moves slower as a whole: a contact that does not close then does not,
     // either.
+    const double spin_rad_s = means[i].angular_rad_s.norm();
     const double slower =
-        std::min(1.0, config_.max_angular_rad_s / std::max(means[i].angular_rad_s.norm(), 1e-300));
+        spin_rad_s > config_.max_angular_rad_s ? config_.max_angular_rad_s / spin_rad_s : 1.0;
     motion.linear_m_s = slower * means[i].linear_mps;
     motion.angular_rad_s = mean_free_spin(body, slower * means[i].angular_rad_s, moving.left_s);
     motion.linear_m_s += lifts[i].linear_mps;
@@ -271,8 +277,7 @@ void Substep::move() {
     const Vec3 momentum_after =
         inertia_m2 * (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
     velocity.angular_rad_s = inertia_world_m2(*moving.body).inverse() * momentum_after;
-    limit(velocity.linear_mps, config_.max_speed_mps);
-    limit(velocity.angular_rad_s, config_.max_angular_rad_s);
+    limit(velocity, config_);
     moving.left_s -= gone_s[i];
     // A body that gets no further, jammed between others, stays for the rest of the substep.
     if (gone_s[i] > kProgress * moving.dt_s) continue;
@@ -284,8 +289,7 @@ void Substep::run() {
   results_.assign(bodies_.size(), {});
   for (MovingBody& moving : bodies_) {
     moving.velocity = {moving.body->velocity_world_mps, moving.body->angular_velocity_world_rad_s};
-    limit(moving.velocity.linear_mps, config_.max_speed_mps);
-    limit(moving.velocity.angular_rad_s, config_.max_angular_rad_s);
+    limit(moving.velocity, config_);
     moving.left_s = moving.body->asleep ? 0.0 : moving.dt_s;
     moving.crosses = false;
     moving.stops_in_place = 0;

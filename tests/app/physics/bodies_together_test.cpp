@@ -99,9 +99,8 @@ double energy_J(const Pair& pair) {
   double sum_J = 0.0;
   for (std::size_t i = 0; i < 2; ++i) {
     const Body& body = pair.bodies[i];
-    const Vec3& spin = body.angular_velocity_world_rad_s;
-    sum_J += 0.5 * pair.mass_kg[i] *
-             (body.velocity_world_mps.squaredNorm() + spin.dot(inertia_world_m2(body) * spin));
+    sum_J += pair.mass_kg[i] *
+             energy({body.velocity_world_mps, body.angular_velocity_world_rad_s}, inertia_world_m2(body));
   }
   return sum_J;
 }
