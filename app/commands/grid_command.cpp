@@ -115,6 +115,7 @@ int run_grid(const FallthroughOptions& options) {
       policy[hidden_only ? "hidden" : "all"] = {{"cells", totals.cells},
                                                 {"passed", totals.passed},
                                                 {"false_stops", totals.false_stops},
+                                                {"false_stops_at_unknown", totals.false_stops_at_unknown},
                                                 {"rested_on", rested_on}};
     }
   }

@@ -168,8 +168,11 @@ GridTotals totals_of(const Grid& grid, std::size_t policy, bool hidden_only) {
     ++totals.cells;
     const Outcome outcome = outcome_of(cell, policy);
     totals.passed += outcome == Outcome::kPassedThrough;
+    const SurfaceKind rested_on = cell.drops[policy].rested_on;
     totals.false_stops += outcome == Outcome::kStoppedFalse;
-    ++totals.rested_on.at(static_cast<std::size_t>(cell.drops[policy].rested_on));
+    totals.false_stops_at_unknown +=
+        outcome == Outcome::kStoppedFalse && rested_on == SurfaceKind::kUnknownFrontier;
+    ++totals.rested_on.at(static_cast<std::size_t>(rested_on));
   }
   return totals;
 }
@@ -177,13 +180,13 @@ GridTotals totals_of(const Grid& grid, std::size_t policy, bool hidden_only) {
 std::string table_of(const Grid& grid) {
   std::string table =
       "surfaces     cells hidden now: number, passed, stopped before   all cells: number, passed, stopped "
-      "before   rest on\n";
+      "before, of these at unknown space   rest on\n";
   char line[200];
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const GridTotals hidden = totals_of(grid, i, true), all = totals_of(grid, i, false);
-    std::snprintf(line, sizeof line, "%-12s %23d %8d %8d %27d %8d %8d   ",
+    std::snprintf(line, sizeof line, "%-12s %23d %8d %8d %27d %8d %8d %24d   ",
                   std::string(kFallthroughPolicies[i].name).c_str(), hidden.cells, hidden.passed,
-                  hidden.false_stops, all.cells, all.passed, all.false_stops);
+                  hidden.false_stops, all.cells, all.passed, all.false_stops, all.false_stops_at_unknown);
     table += line;
     for (std::size_t kind = 0; kind < all.rested_on.size(); ++kind) {
       if (all.rested_on[kind] == 0) continue;
@@ -196,9 +199,9 @@ std::string table_of(const Grid& grid) {
 }
 
 ColourImage draw_plan(const Grid& grid) {
-  constexpr int kSquare_px = 6, kMargin_px = 16, kTitle_px = 26, kLegend_px = 26;
+  constexpr int kSquare_px = 6, kMargin_px = 16, kTitle_px = 26, kLegend_px = 46, kLegendWidth_px = 700;
   const int panel_px = grid.columns * kSquare_px + kMargin_px;
-  ColourImage picture(panel_px * static_cast<int>(kPolicyCount) + kMargin_px,
+  ColourImage picture(std::max(kLegendWidth_px, panel_px * static_cast<int>(kPolicyCount) + kMargin_px),
                       grid.rows * kSquare_px + kTitle_px + kLegend_px + kMargin_px, Rgb{250, 249, 246});
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const int left = kMargin_px + static_cast<int>(i) * panel_px;
@@ -217,7 +220,7 @@ ColourImage draw_plan(const Grid& grid) {
     }
   }
   int x = kMargin_px;
-  const int y = picture.height - 14;
+  const int y = picture.height - 34;
   for (const SurfaceKind kind : {SurfaceKind::kStatic, SurfaceKind::kDynamic, SurfaceKind::kInferredBack,
                                  SurfaceKind::kUnknownFrontier, SurfaceKind::kNothing}) {
     for (int dy = 0; dy < 12; ++dy)
@@ -226,7 +229,8 @@ ColourImage draw_plan(const Grid& grid) {
     draw_text(picture, name, x + 18, y, 0.45, {30, 30, 30});
     x += 30 + 9 * static_cast<int>(name.size());
   }
-  draw_text(picture, "pale: in view now; dark rim: went through the reference", x, y, 0.45, {30, 30, 30});
+  draw_text(picture, "pale: in view now; dark rim: went through the reference", kMargin_px, y + 20, 0.45,
+            {30, 30, 30});
   return picture;
 }
 

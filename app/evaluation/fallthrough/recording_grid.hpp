@@ -49,6 +49,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
 /// thresholds are those of judge().
 struct GridTotals {
   int cells = 0, passed = 0, false_stops = 0;
+  int false_stops_at_unknown = 0;  ///< those of false_stops that rest on the border of unknown space
   std::array<int, 6> rested_on{};  ///< number of balls, indexed by SurfaceKind
 };
 GridTotals totals_of(const Grid& grid, std::size_t policy, bool hidden_only);

@@ -12,6 +12,7 @@
 #include "app/commands/grid_command.hpp"
 #include "app/evaluation/fallthrough/mapped_room.hpp"
 #include "app/evaluation/fallthrough/page.hpp"
+#include "app/evaluation/fallthrough/recording_grid.hpp"
 #include "app/evaluation/fallthrough/totals.hpp"
 #include "app/evaluation/fallthrough/trial.hpp"
 #include "app/evaluation/fallthrough/trial_pictures.hpp"
@@ -90,6 +91,34 @@ ScenarioRow row_with(double error_m, SurfaceKind rested_on, double frame_ms) {
   for (Trial& trial : row.trials)
     trial = {0.3 + error_m, judge(scenario, 0.3 + error_m), rested_on, frame_ms};
   return row;
+}
+
+/// A cell whose ball falls travelled_m onto a surface of this kind with every policy; the truth is 1 m.
+GridCell cell_with(double travelled_m, SurfaceKind rested_on) {
+  GridCell cell;
+  cell.has_truth = true;
+  cell.true_travel_m = 1.0;
+  for (GridDrop& drop : cell.drops) drop = {travelled_m, rested_on};
+  return cell;
+}
+
+TEST(RecordingGrid, StopsAtUnknownSpaceAreCountedByThemselvesToo) {
+  Grid grid;
+  grid.columns = 5;
+  grid.rows = 1;
+  grid.cells = {cell_with(1.0, SurfaceKind::kStatic), cell_with(0.5, SurfaceKind::kUnknownFrontier),
+                cell_with(0.5, SurfaceKind::kStatic), cell_with(5.0, SurfaceKind::kNothing), GridCell{}};
+  const GridTotals totals = totals_of(grid, 0, false);
+  EXPECT_EQ(totals.cells, 4) << "a cell without truth does not count";
+  EXPECT_EQ(totals.passed, 1);
+  EXPECT_EQ(totals.false_stops, 2);
+  EXPECT_EQ(totals.false_stops_at_unknown, 1);
+
+  const ColourImage plan = draw_plan(grid);
+  for (int y = plan.height - 45; y < plan.height; ++y) {
+    const Rgb at_border = plan.at(plan.width - 1, y);
+    EXPECT_EQ(at_border.r, 250) << "the legend's text reaches the right border in row " << y;
+  }
 }
 
 TEST(FallthroughTotals, CountOutcomesAndLeaveErrorsOfWhatNothingStoppedOut) {
