@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/system/config_check.hpp"
 #include "mapping/types/voxel_key.hpp"
 
@@ -55,11 +56,19 @@ class ObjectFinder {
     return (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * has_.resolution_m();
   }
 
+  /// Returns whether so few frames measured the voxel's surface that the mesh omits it.
+  [[nodiscard]] bool is_hardly_measured(const VoxelIndex& voxel) const {
+    const auto sample = has_.sample_at(centre(voxel));
+    return sample && sample->weight < SurfaceConfig{}.min_weight;
+  }
+
   void collect() {
     static const std::array<Eigen::Vector3d, 14> kAround = directions();
     has_.visit_leaves([&](const MapLeaf& leaf) {
       if (leaf.log_odds <= 0.0F) return;
       const int last = leaf.edge_voxels - 1;
+      // A coarse cell is occupied as a whole, wherever the surface is in it.
+      const double clearance_m = leaf.edge_voxels == 1 ? clearance_m_ : 2.0 * clearance_m_;
       const auto is_rim = [&](int i) { return i == 0 || i == last; };
       for (int z = 0; z <= last; ++z)
         for (int y = 0; y <= last; ++y)
@@ -70,9 +79,10 @@ class ObjectFinder {
             if (lacks_.occupancy_at(p) != Occupancy::kFree) continue;
             Suspect suspect;
             suspect.clear =
+                !is_hardly_measured(voxel) &&
                 std::all_of(kAround.begin(), kAround.end(), [&](const Eigen::Vector3d& direction) {
-                  return lacks_.occupancy_at(p + clearance_m_ * direction) == Occupancy::kFree &&
-                         lacks_.occupancy_at(p + 0.5 * clearance_m_ * direction) == Occupancy::kFree;
+                  return lacks_.occupancy_at(p + clearance_m * direction) == Occupancy::kFree &&
+                         lacks_.occupancy_at(p + 0.5 * clearance_m * direction) == Occupancy::kFree;
                 });
             suspects_.emplace(voxel_key(voxel), suspect);
             order_.push_back(voxel);

@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-inline constexpr int kMapFormatVersion = 1;
+inline constexpr int kMapFormatVersion = 2;
 
 // Keys of MapInfo::settings that are read back.
 inline constexpr const char* kDeviationSetting = "deviation_m";       ///< SurfaceConfig::max_deviation_m

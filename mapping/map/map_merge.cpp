@@ -72,7 +72,7 @@ class Cover {
 };
 
 bool same_grid(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T) {
-  return T.matrix().isIdentity(1e-12) && std::abs(a.resolution_m() - b.resolution_m()) < 1e-12;
+  return T.matrix().isIdentity(1e-12) && a.resolution_m() == b.resolution_m();
 }
 
 // Extrapolates the distance at a point in a sample's own voxel, linearly along each axis from the adjacent
@@ -97,11 +97,7 @@ std::optional<double> distance_beside(const StaticMap& map, const SurfaceSample&
 }  // namespace
 
 void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, StaticMap& into) {
-  if (same_grid(from, into, T_into_from)) {
-    from.visit_leaves([&](const MapLeaf& leaf) { into.add_evidence(leaf); });
-    from.visit_samples([&](const SurfaceSample& sample) { into.add_evidence(sample); });
-    return;
-  }
+  if (same_grid(from, into, T_into_from)) return into.add_evidence(from);
   const double voxel_m = from.resolution_m();
   const Cover cover(T_into_from, into.resolution_m());
   const auto box_of = [&](const VoxelIndex& low, int edge) {

@@ -4,17 +4,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/depth_pyramid.hpp"
 
 namespace roomradar {
 
 BlockUnits::BlockUnits(double resolution_m, const FusionConfig& config)
     : log_odds(std::max(std::abs(config.min_log_odds), config.max_log_odds) / 32767.0F),
-      distance_m(half_layer_m(config.max_range_m, resolution_m, config) / 32767.0F),
+      distance_m(TruncationBand(resolution_m, config).widest_m(config.max_range_m) / 32767.0F),
       weight(config.max_weight / 65535.0F) {}
 
 BlockOctree::BlockOctree(double resolution_m, const FusionConfig& config)
-    : resolution_m_(resolution_m), units_(resolution_m, config) {}
+    : resolution_m_(resolution_m),
+      units_(resolution_m, config),
+      voxel_band_(static_cast<int>(
+          TruncationBand(resolution_m, config)
+              .half_width_m(std::min(coarse_from_m(resolution_m, config), config.max_range_m),
+                            static_cast<float>(resolution_m)) /
+          units_.distance_m)) {}
 
 KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m) {
   if (box_world.isEmpty()) return {.first = Eigen::Array3i::Constant(1), .last = Eigen::Array3i::Zero()};
@@ -30,7 +37,7 @@ SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth) {
   if (node.is_unknown()) return {};
   SubtreeSize size{.nodes = 1};
   if (!node.is_block()) return size;
-  if (depth < kLeafDepth - 1) {
+  if (node.is_inner_block()) {
     size.bytes += sizeof(InnerBlock);
     for (const Slot child : tree.inner(node).slots) {
       const SubtreeSize below = size_of(tree, child, depth + 1);

@@ -15,35 +15,38 @@
 
 namespace roomradar {
 
-inline constexpr unsigned kLeafDepth = 16;  // depth of the voxels, as in OctoMap, whose keys have 16 bits
-inline constexpr int kKeyOrigin = 32768;    // key of the voxel whose lower corner is at the world's origin
+inline constexpr unsigned kLeafDepth = 16;    // depth of the voxels, as in OctoMap, whose keys have 16 bits
+inline constexpr unsigned kCoarseDepth = 14;  // depth of nodes whose leaf block has coarse cells
+inline constexpr int kKeyOrigin = 32768;      // key of the voxel whose lower corner is at the world's origin
 
 /// Log-odds in units of BlockUnits::log_odds; 0 means unknown. A known voxel whose log-odds round to 0 stores
 /// 1, since OctoMap treats a probability of one half as occupied.
 using LogOdds = std::int16_t;
 
-/// State of a node. It is unknown, a cube (a node of uniform log-odds without children), or a block of eight
-/// children.
+/// State of a node. It is unknown, a cube (a node of uniform log-odds without children), an inner block
+/// (eight child nodes), or a leaf block (eight cells).
 class Slot {
  public:
   Slot() = default;
   static Slot cube(LogOdds log_odds) {
     return log_odds == 0 ? Slot() : Slot(kCube | static_cast<std::uint16_t>(log_odds));
   }
-  static Slot block(std::uint32_t number) { return Slot(number); }
+  static Slot inner_block(std::uint32_t number) { return Slot(number); }
+  static Slot leaf_block(std::uint32_t number) { return Slot(kLeaf | number); }
 
   [[nodiscard]] bool is_unknown() const { return bits_ == 0; }
   [[nodiscard]] bool is_cube() const { return (bits_ & kCube) != 0; }
   [[nodiscard]] bool is_block() const { return bits_ != 0 && !is_cube(); }
+  [[nodiscard]] bool is_leaf_block() const { return (bits_ & (kCube | kLeaf)) == kLeaf; }
+  [[nodiscard]] bool is_inner_block() const { return bits_ != 0 && (bits_ & (kCube | kLeaf)) == 0; }
   /// Returns the log-odds of a cube; 0 if unknown.
   [[nodiscard]] LogOdds log_odds() const { return static_cast<LogOdds>(static_cast<std::uint16_t>(bits_)); }
-  /// Returns the block's number. It is in the pool of inner blocks for a node above depth 15, and in the pool
-  /// of leaf blocks for a node at depth 15.
-  [[nodiscard]] std::uint32_t number() const { return bits_; }
+  /// Returns the number of a leaf block in the pool of leaf blocks, or of an inner block in its pool.
+  [[nodiscard]] std::uint32_t number() const { return bits_ & ~kLeaf; }
   friend bool operator==(const Slot&, const Slot&) = default;
 
  private:
-  static constexpr std::uint32_t kCube = 1U << 31U;
+  static constexpr std::uint32_t kCube = 1U << 31U, kLeaf = 1U << 30U;
   explicit Slot(std::uint32_t bits) : bits_(bits) {}
   std::uint32_t bits_ = 0;
 };
@@ -54,20 +57,25 @@ struct alignas(32) InnerBlock {
 };
 static_assert(sizeof(InnerBlock) == 32);
 
-/// The eight voxels of a node at depth 15. A voxel behind a surface may have a signed distance although its
-/// occupancy is unknown.
+/// The eight cells of a node. At depth 15, they are voxels. At depth 14, they have an edge of two voxels
+/// (coarse cells, see cell_levels.hpp); there, at least one has a signed distance. A cell behind a surface
+/// may have a signed distance although its occupancy is unknown.
 struct alignas(64) LeafBlock {
   std::array<LogOdds, 8> log_odds{};
   std::array<std::int16_t, 8> distance{};  ///< signed distance, in units of BlockUnits::distance_m
   std::array<std::uint16_t, 8> weight{};   ///< weight, in units of BlockUnits::weight; 0: no signed distance
-  std::uint32_t colours = 0;               ///< number of the voxels' ColourBlock; 0: none
-  std::uint8_t coloured = 0;               ///< bit i: voxel i has a colour
+  std::uint32_t colours = 0;               ///< number of the cells' ColourBlock; 0: none
+  std::uint8_t coloured = 0;               ///< bit i: cell i has a colour
 
   [[nodiscard]] bool holds(unsigned i) const { return log_odds[i] != 0 || weight[i] != 0; }
+  [[nodiscard]] bool has_samples() const {
+    const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(weight);
+    return (words[0] | words[1]) != 0;
+  }
 };
 static_assert(sizeof(LeafBlock) == 64);
 
-/// Colours of a leaf block's voxels, stored separately because most blocks have none or rarely update them.
+/// Colours of a leaf block's cells, stored separately because most blocks have none or rarely update them.
 struct ColourBlock {
   std::array<Rgb, 8> colours;
 };
@@ -122,6 +130,9 @@ class BlockOctree {
 
   [[nodiscard]] double resolution_m() const { return resolution_m_; }
   [[nodiscard]] const BlockUnits& units() const { return units_; }
+  /// Returns the truncation distance of voxels at the least depth at which cells are coarse, in units of
+  /// BlockUnits::distance_m.
+  [[nodiscard]] int voxel_band() const { return voxel_band_; }
   [[nodiscard]] std::size_t memory_bytes() const {
     return inner_.memory_bytes() + leaves_.memory_bytes() + colours_.memory_bytes();
   }
@@ -150,22 +161,29 @@ class BlockOctree {
       return block.slots[0];
     }
     if (node.is_block()) return node;
-    const Slot kept = Slot::block(inner_.take());
+    const Slot kept = Slot::inner_block(inner_.take());
     inner(kept) = block;
     return kept;
   }
   Slot prune(Slot node, const LeafBlock& block) {
     if (alike(block)) {
       const Slot merged = Slot::cube(block.log_odds[0]);
-      if (block.colours != 0) colours_.give_back(block.colours);
-      if (node.is_block()) leaves_.give_back(node.number());
+      free_leaves(node, block);
       return merged;
     }
     if (node.is_block()) return node;
-    const Slot kept = Slot::block(leaves_.take());
+    const Slot kept = Slot::leaf_block(leaves_.take());
     leaves(kept) = block;
     return kept;
   }
+
+  /// Frees the colours of `block`, and the leaf block of `node` if it has one.
+  void free_leaves(Slot node, const LeafBlock& block) {
+    if (block.colours != 0) colours_.give_back(block.colours);
+    if (node.is_leaf_block()) leaves_.give_back(node.number());
+  }
+  /// Frees the inner block of `node`, whose children must not be blocks.
+  void free_inner(Slot node) { inner_.give_back(node.number()); }
 
  private:
   // Returns true if all children are unknown, or all are equal cubes. Children that are blocks never compare
@@ -184,6 +202,7 @@ class BlockOctree {
 
   double resolution_m_;
   BlockUnits units_;
+  int voxel_band_;
   BlockPool<InnerBlock> inner_;
   BlockPool<LeafBlock> leaves_;
   BlockPool<ColourBlock> colours_;
@@ -196,7 +215,7 @@ struct SubtreeSize {
 /// Returns the size of a node with all its descendants.
 SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth);
 
-/// Erases the signed distance and colour of voxel i.
+/// Erases the signed distance and colour of cell i.
 inline void erase_sample(LeafBlock& block, unsigned i) {
   block.weight[i] = 0;
   block.distance[i] = 0;
@@ -216,13 +235,13 @@ inline LeafBlock opened_leaves(Slot node) {
 }
 
 /// Visits a node's subtree in Morton order. Calls on_cube(place, log-odds) for each cube, and
-/// on_leaves(place, LeafBlock) for each leaf block.
+/// on_leaves(place, LeafBlock) for each leaf block; cell i of the block is the node place.child(i).
 template <typename OnCube, typename OnLeaves>
 void for_each_part(const BlockOctree& tree, Slot node, const NodePlace& place, const OnCube& on_cube,
                    const OnLeaves& on_leaves) {
   if (node.is_unknown()) return;
   if (node.is_cube()) return on_cube(place, node.log_odds());
-  if (place.depth == kLeafDepth - 1) return on_leaves(place, tree.leaves(node));
+  if (node.is_leaf_block()) return on_leaves(place, tree.leaves(node));
   const InnerBlock& block = tree.inner(node);
   for (unsigned i = 0; i < 8; ++i) for_each_part(tree, block.slots[i], place.child(i), on_cube, on_leaves);
 }
@@ -234,32 +253,6 @@ void for_each_leaf(const BlockOctree& tree, const Visit& visit) {
     for (unsigned i = 0; i < 8; ++i)
       if (block.log_odds[i] != 0) visit(place.child(i), block.log_odds[i]);
   });
-}
-
-/// Calls change(LeafBlock&) on the eight voxels of a node at depth 15. Splits the node first if it is not a
-/// block. Returns the node's new state after pruning.
-template <typename Change>
-Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
-  LeafBlock made;
-  if (!node.is_block()) made = opened_leaves(node);
-  LeafBlock& block = node.is_block() ? tree.leaves(node) : made;
-  change(block);
-  return tree.prune(node, block);
-}
-
-/// Replaces the state of the node at `target` by change(state), and creates the nodes between `node` and
-/// `target`. `place` is the location of `node`; `target` must be in its subtree. Returns the new state of
-/// `node` after pruning.
-template <typename Change>
-Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const NodePlace& target,
-                 const Change& change) {
-  if (place.depth == target.depth) return change(node);
-  InnerBlock made;
-  if (!node.is_block()) made = opened(node);
-  InnerBlock& block = node.is_block() ? tree.inner(node) : made;
-  const unsigned i = place.towards(target.key);
-  block.slots[i] = change_node(tree, block.slots[i], place.child(i), target, change);
-  return tree.prune(node, block);
 }
 
 }  // namespace roomradar

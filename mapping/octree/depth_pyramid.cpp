@@ -5,7 +5,7 @@
 #include <bit>
 #include <limits>
 
-#include "mapping/types/depth_noise.hpp"
+#include "mapping/octree/cell_levels.hpp"
 
 namespace roomradar {
 namespace {
@@ -22,12 +22,11 @@ DepthBounds merged(const DepthBounds& a, const DepthBounds& b) {
 }
 
 // Computes the row of level-1 cells that two image rows give.
-void bound_rows(const float* upper, const float* lower, int width, double resolution_m,
-                const FusionConfig& config, DepthPyramid& pyramid, DepthBounds* cells) {
+void bound_rows(const float* upper, const float* lower, int width, const TruncationBand& band,
+                float max_range_m, DepthPyramid& pyramid, DepthBounds* cells) {
   float* nearest = pyramid.row_nearest_m.data();    // min over the measured pixels
   float* farthest = pyramid.row_farthest_m.data();  // max over the pixels within max_range_m
   float* deepest = pyramid.row_deepest_m.data();    // max over all pixels
-  const float max_range_m = config.max_range_m;
   for (int x = 0; x < width; ++x) {
     const float a = upper[x], b = lower[x];
     nearest[x] = std::min(a > 0.0F ? a : kNothing_m, b > 0.0F ? b : kNothing_m);
@@ -40,9 +39,8 @@ void bound_rows(const float* upper, const float* lower, int width, double resolu
     const float far_m = std::max(farthest[2 * x], farthest[2 * x + 1]);
     const bool past_range = std::max(deepest[2 * x], deepest[2 * x + 1]) > max_range_m;
     const float in_range_m = std::min(near_m, max_range_m);
-    const float front_m =
-        near_m > max_range_m ? max_range_m : in_range_m - half_layer_m(in_range_m, resolution_m, config);
-    const float layer_end_m = far_m > 0.0F ? far_m + half_layer_m(far_m, resolution_m, config) : 0.0F;
+    const float front_m = near_m > max_range_m ? max_range_m : in_range_m - band.widest_m(in_range_m);
+    const float layer_end_m = far_m > 0.0F ? far_m + band.widest_m(far_m) : 0.0F;
     const float behind_m = std::max(layer_end_m, past_range ? max_range_m : 0.0F);
     const int front =
         near_m == kNothing_m ? kNoWord : static_cast<int>(std::max(front_m, 0.0F) * steps_per_m);
@@ -89,19 +87,21 @@ void resize(int width_px, int height_px, DepthPyramid& pyramid) {
 
 }  // namespace
 
-float half_layer_m(float depth_m, double resolution_m, const FusionConfig& config) {
-  return std::max(config.truncation_voxels * static_cast<float>(resolution_m),
-                  config.truncation_sigmas * depth_sigma_m(depth_m));
-}
+TruncationBand::TruncationBand(double resolution_m, const FusionConfig& config)
+    : voxels_(config.truncation_voxels),
+      sigmas_(config.truncation_sigmas),
+      voxel_m_(static_cast<float>(resolution_m)),
+      // A surface that is nearer by the band's half-width may be in a coarse cell's band.
+      coarse_from_m_(coarse_from_m(resolution_m, config) - 2.0F * voxels_ * voxel_m_) {}
 
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid) {
-  pyramid.steps_per_m =
-      kFarthestStep / (config.max_range_m + half_layer_m(config.max_range_m, resolution_m, config));
+  const TruncationBand band(resolution_m, config);
+  pyramid.steps_per_m = kFarthestStep / (config.max_range_m + band.widest_m(config.max_range_m));
   resize(depth_m.width, depth_m.height, pyramid);
   for (int y = 0; y < pyramid.cells_down(1); ++y)
-    bound_rows(depth_m.row(2 * y), depth_m.row(std::min(2 * y + 1, depth_m.height - 1)), depth_m.width,
-               resolution_m, config, pyramid, pyramid.row(1, y));
+    bound_rows(depth_m.row(2 * y), depth_m.row(std::min(2 * y + 1, depth_m.height - 1)), depth_m.width, band,
+               config.max_range_m, pyramid, pyramid.row(1, y));
   for (int level = 2; level <= pyramid.levels; ++level) {
     halve(pyramid, level);
     if (level <= kHoleLevel) block_holes(pyramid, level - 1);

@@ -9,13 +9,27 @@
 #include <vector>
 
 #include "mapping/octree/fusion_config.hpp"
+#include "mapping/types/depth_noise.hpp"
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
 
-/// Returns the half-width of the truncation band at depth_m, m. Signed distances are fused within this
-/// distance in front of and behind a measured surface.
-float half_layer_m(float depth_m, double resolution_m, const FusionConfig& config);
+/// Half-widths of the truncation band. Signed distances are fused within this distance in front of and behind
+/// a measured surface.
+struct TruncationBand {
+  TruncationBand(double resolution_m, const FusionConfig& config);
+  /// Returns the half-width in which cells with an edge of cell_m are updated, m.
+  [[nodiscard]] float half_width_m(float depth_m, float cell_m) const {
+    return std::max(voxels_ * cell_m, sigmas_ * depth_sigma_m(depth_m));
+  }
+  /// Returns the half-width of the widest band of cells at depth_m or near it, m.
+  [[nodiscard]] float widest_m(float depth_m) const {
+    return half_width_m(depth_m, depth_m < coarse_from_m_ ? voxel_m_ : 2.0F * voxel_m_);
+  }
+
+ private:
+  float voxels_, sigmas_, voxel_m_, coarse_from_m_;
+};
 
 /// Bounds of the depth, along the optical axis, over all pixels of a rectangle. Space nearer than `front` is
 /// free along every pixel's ray. Space nearer than `nearest` is free along the rays of all pixels with depth.

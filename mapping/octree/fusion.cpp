@@ -45,7 +45,9 @@ class Descent {
         pyramid_(pyramid),
         camera_(frame.depth_camera),
         offsets_(T_camera_world.linear(), tree.resolution_m()),
-        leaves_(tree, frame, config),
+        voxels_(tree, frame, config, CellSize::kVoxel),
+        coarse_cells_(tree, frame, config, CellSize::kCoarse),
+        coarse_from_m_(coarse_from_m(tree.resolution_m(), config)),
         frame_index_(static_cast<std::uint64_t>(frame.index)) {}
 
   /// @param root_centre  centre of the whole tree in the camera frame, m
@@ -82,15 +84,13 @@ class Descent {
         (0xFFU & ~(cell.children.nothing | cell.children.free | (cell.children.part_free & settled)));
     if ((free | split) == 0) return node;
 
-    const bool children_hold_leaves = depth + 1 == kLeafDepth - 1;
-    prefetch_children(block, free | split, children_hold_leaves);
+    prefetch_children(block, free | split);
     unsigned clear = free;
     if (const unsigned in_doubt = free == 0 ? 0 : free & blocks_in(block); in_doubt != 0) {
       clear &= ~in_doubt | judge_children(depth, cell.centre, kClearance).free;
-      if (!children_hold_leaves) {
-        split |= free & ~clear;
-        free &= clear;
-      }
+      const unsigned inner = free & ~clear & ~leaf_blocks_in(block);
+      split |= inner;
+      free &= ~inner;
     }
     for (unsigned open = free; open != 0; open &= open - 1) {
       const auto i = static_cast<unsigned>(std::countr_zero(open));
@@ -98,11 +98,31 @@ class Descent {
       const float weight = weight_at(static_cast<float>(z_m));
       block.slots[i] = mark_free(block.slots[i], depth + 1, weight, (clear >> i & 1U) != 0);
     }
-    if (children_hold_leaves)
-      update_leaves(block, split, cell, hits);
-    else
-      update_children(block, split, depth, cell, hits);
+    if (depth + 1 == kLeafDepth - 1) {
+      update_leaves(voxels_, block, split, depth, cell, hits);
+    } else {
+      const unsigned coarse = depth + 1 == kCoarseDepth ? coarse_of(block, split, cell) : 0;
+      update_leaves(coarse_cells_, block, coarse, depth, cell, hits);
+      update_children(block, split & ~coarse, depth, cell, hits);
+    }
     return tree_.prune(node, block);
+  }
+
+  // Returns those children in `split`, at kCoarseDepth, whose cells are coarse. Refines coarse cells that are
+  // near now.
+  unsigned coarse_of(InnerBlock& block, unsigned split, const Cell& cell) {
+    unsigned coarse = 0;
+    for (unsigned open = split; open != 0; open &= open - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(open));
+      Slot& child = block.slots[i];
+      const double z_m = cell.centre.z() + offsets_.to_child(kCoarseDepth - 1, i).z();
+      const bool is_far = z_m >= static_cast<double>(coarse_from_m_);
+      if (is_far && may_be_coarse(tree_, child))
+        coarse |= 1U << i;
+      else if (child.is_leaf_block())
+        child = refined(tree_, child);
+    }
+    return coarse;
   }
 
   // All children are classified before the first is changed, so the CPU overlaps their memory accesses.
@@ -119,26 +139,37 @@ class Descent {
       block.slots[i] = update(block.slots[i], depth + 1, cells[i]);
     }
   }
-  void update_leaves(InnerBlock& block, unsigned split, const Cell& cell, const ChildHits& hits) {
+  // Updates the children in `split` as leaf blocks. `depth` is that of their parent.
+  void update_leaves(LeafUpdate<Float8>& leaves, InnerBlock& block, unsigned split, unsigned depth,
+                     const Cell& cell, const ChildHits& hits) {
     std::array<Observed<Float8>, 8> observed;
     for (unsigned open = split; open != 0; open &= open - 1) {
       const auto i = static_cast<unsigned>(std::countr_zero(open));
-      const Eigen::Vector3d centre = cell.centre + offsets_.to_child(kLeafDepth - 2, i);
-      observed[i] = leaves_.observe(offsets_.centres<Float8>(kLeafDepth - 1, centre));
+      const Eigen::Vector3d centre = cell.centre + offsets_.to_child(depth, i);
+      observed[i] = leaves.observe(offsets_.centres<Float8>(depth + 1, centre));
     }
     for (unsigned open = split; open != 0; open &= open - 1) {
       const auto i = static_cast<unsigned>(std::countr_zero(open));
-      const unsigned hit = hits.in[i].empty() ? 0 : hits.in[i].front().voxels();
-      block.slots[i] = leaves_.update(block.slots[i], observed[i], hit, is_colours_turn(cell.code << 3U | i));
+      const unsigned hit = hit_cells(hits.in[i], depth + 1);
+      block.slots[i] = leaves.update(block.slots[i], observed[i], hit, is_colours_turn(cell.code << 3U | i));
     }
+  }
+
+  // Returns the cells (bit i: cell i) of a leaf block at `depth` in which rays end.
+  static unsigned hit_cells(HitRange hits, unsigned depth) {
+    if (depth == kLeafDepth - 1) return hits.empty() ? 0 : hits.front().voxels();
+    unsigned cells = 0;
+    for (const BlockHits& hit : hits) cells |= 1U << hit.child(depth + 1);
+    return cells;
   }
 
   // Marks a node that is wholly seen through; clear: the space around it is seen through, too.
   Slot mark_free(Slot node, unsigned depth, float weight, bool clear) {
-    if (!node.is_block()) return leaves_.missed(node);
-    if (depth == kLeafDepth - 1) return leaves_.mark_free(node, weight, clear);
+    if (!node.is_block()) return voxels_.missed(node);
+    if (node.is_leaf_block())
+      return (depth == kCoarseDepth ? coarse_cells_ : voxels_).mark_free(node, weight, clear);
     InnerBlock& block = tree_.inner(node);
-    prefetch_children(block, 0xFFU, depth + 1 == kLeafDepth - 1);
+    prefetch_children(block, 0xFFU);
     for (Slot& slot : block.slots) slot = mark_free(slot, depth + 1, weight, clear);
     return tree_.prune(node, block);
   }
@@ -148,8 +179,13 @@ class Descent {
     for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i].is_block()) << i;
     return bits;
   }
+  static unsigned leaf_blocks_in(const InnerBlock& block) {
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i].is_leaf_block()) << i;
+    return bits;
+  }
   [[nodiscard]] unsigned saturated_free(const InnerBlock& block) const {
-    const Slot settled = leaves_.saturated_free();
+    const Slot settled = voxels_.saturated_free();
     unsigned bits = 0;
     for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i] == settled) << i;
     return bits;
@@ -161,11 +197,11 @@ class Descent {
     return (((code * 0x9E37'79B9'7F4A'7C15U) >> 60U) + frame_index_) % 16 == 0;
   }
 
-  void prefetch_children(const InnerBlock& block, unsigned which, bool hold_leaves) const {
+  void prefetch_children(const InnerBlock& block, unsigned which) const {
     for (; which != 0; which &= which - 1) {
       const Slot child = block.slots[static_cast<unsigned>(std::countr_zero(which))];
       if (!child.is_block()) continue;
-      if (hold_leaves)
+      if (child.is_leaf_block())
         __builtin_prefetch(&tree_.leaves(child), 1);
       else
         __builtin_prefetch(&tree_.inner(child), 1);
@@ -177,7 +213,8 @@ class Descent {
   const DepthPyramid& pyramid_;
   Pinhole camera_;
   ChildOffsets offsets_;
-  LeafUpdate<Float8> leaves_;
+  LeafUpdate<Float8> voxels_, coarse_cells_;
+  float coarse_from_m_;
   std::uint64_t frame_index_;
 };
 

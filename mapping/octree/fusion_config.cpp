@@ -13,6 +13,8 @@ void require_valid(const FusionConfig& c) {
           c.truncation_voxels, "in 1.5..100, or the surface falls between samples");
   require(c.truncation_sigmas >= 0.0F && c.truncation_sigmas <= 10.0F, "truncation_sigmas",
           c.truncation_sigmas, "in 0..10");
+  require(c.max_cell_sigmas >= 0.0F && c.max_cell_sigmas <= 100.0F, "max_cell_sigmas", c.max_cell_sigmas,
+          "in 0..100");
   require(c.max_weight > 0.0F && std::isfinite(c.max_weight), "max_weight", c.max_weight, "> 0");
   require(c.seen_through_gain > 0.0F && std::isfinite(c.seen_through_gain), "seen_through_gain",
           c.seen_through_gain, "> 0");

@@ -1,4 +1,4 @@
-// leaf_update.hpp: updates the eight voxels of a leaf block with a depth frame. Private to the fusion.
+// leaf_update.hpp: updates the eight cells of a leaf block with a depth frame. Private to the fusion.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mapping/octree/block_octree.hpp"
+#include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/node_visibility.hpp"
 #include "mapping/octree/simd8f.hpp"
 #include "mapping/types/depth_noise.hpp"
@@ -19,30 +20,36 @@ inline float weight_at(float depth_m) {
   return std::min(ratio * ratio, 1.0F);
 }
 
-/// Measurements of eight voxels. Each comes from the pixel to which the voxel's centre projects.
+/// Edge of the cells that an update changes.
+enum class CellSize { kVoxel, kCoarse };
+
+/// Measurements of eight cells. Each comes from the pixel to which the cell's centre projects.
 template <typename Float8>
 struct Observed {
-  EightPoints<Float8> p_camera;  ///< voxel centres, m
-  Float8 distance_m;             ///< measured depth minus depth of the voxel's centre
+  EightPoints<Float8> p_camera;  ///< centres of the cells, m
+  Float8 distance_m;             ///< measured depth minus depth of the cell's centre
   Float8 sigma_m;                ///< standard deviation of the measured depth
-  unsigned free = 0;             ///< bit i: the frame sees through the centre of voxel i
-  unsigned sampled = 0;          ///< bit i: the centre of voxel i is within the truncation band
+  unsigned free = 0;             ///< bit i: the frame sees through the centre of cell i
+  unsigned sampled = 0;          ///< bit i: the centre of cell i is within the truncation band
 };
 
-/// Updates leaf blocks with one frame. The sample of a voxel is its signed distance, weight and colour.
+/// Updates leaf blocks of one cell size with one frame. The sample of a cell is its signed distance, weight
+/// and colour.
 template <typename Float8>
 class LeafUpdate {
  public:
-  LeafUpdate(BlockOctree& tree, const Frame& frame, const FusionConfig& config)
+  LeafUpdate(BlockOctree& tree, const Frame& frame, const FusionConfig& config, CellSize size)
       : tree_(tree),
         frame_(frame),
         config_(config),
+        size_(size),
+        cell_m_(static_cast<float>(tree.resolution_m()) * (size == CellSize::kCoarse ? 2.0F : 1.0F)),
         camera_(frame.depth_camera),
         colour_camera_(frame.colour_camera),
         T_colour_depth_(frame.T_colour_depth.cast<float>().matrix()),
-        truncation_m_(config.truncation_voxels * static_cast<float>(tree.resolution_m())),
-        colour_distance_m_(kColourVoxels * static_cast<float>(tree.resolution_m())),
-        behind_(-kBehind_voxels * static_cast<float>(tree.resolution_m()) / tree.units().distance_m),
+        truncation_m_(config.truncation_voxels * cell_m_),
+        colour_distance_m_(kColourCells * cell_m_),
+        behind_(-kBehind_cells * cell_m_ / tree.units().distance_m),
         hit_(in_steps(config.hit_log_odds)),
         miss_(in_steps(config.miss_log_odds)),
         min_(in_steps(config.min_log_odds)),
@@ -77,9 +84,10 @@ class LeafUpdate {
     return {p_camera, distance_m, sigma_m, free.bits(), sampled.bits()};
   }
 
-  /// Updates the eight voxels of `node`, and returns the node's new state.
-  /// @param hit  bit i: a ray ends in voxel i
-  /// @param refresh_colour  true: also updates colours of voxels for which this frame's part of the weight is
+  /// Updates the eight cells of `node`, and returns the node's new state. With coarse cells, may_be_coarse()
+  /// must hold for the node.
+  /// @param hit  bit i: a ray ends in cell i
+  /// @param refresh_colour  true: also updates colours of cells for which this frame's part of the weight is
   ///                        below kSettledPart
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
@@ -87,13 +95,13 @@ class LeafUpdate {
     if ((hit | missed | sampled) == 0) return node;
     if ((hit | sampled) == 0 && node == saturated_free()) return node;
     LeafBlock made;
-    if (!node.is_block()) made = opened_leaves(node);
-    LeafBlock& block = node.is_block() ? tree_.leaves(node) : made;
+    if (!node.is_leaf_block()) made = opened(node);
+    LeafBlock& block = node.is_leaf_block() ? tree_.leaves(node) : made;
     if ((hit | missed) != 0) add_log_odds(block, hit, missed);
     if (const unsigned gone = missed & seen_through(block, observed); gone != 0)
       sampled &= ~cancel_samples(block, weight_of(observed.sigma_m), gone);
     if (sampled != 0) add_samples(block, observed, sampled, refresh_colour);
-    return tree_.prune(node, block);
+    return pruned(node, block);
   }
 
   /// Adds a miss to all voxels of a block. A frame of this weight must see through all of them. `clear` means
@@ -114,13 +122,20 @@ class LeafUpdate {
       fade_samples(block, weight);
     else if (const unsigned gone = behind_surface(block); gone != 0)
       cancel_samples(block, weight, gone);
-    return tree_.prune(node, block);
+    return pruned(node, block);
   }
 
  private:
+  [[nodiscard]] LeafBlock opened(Slot node) const {
+    return size_ == CellSize::kCoarse ? opened_coarse(tree_, node) : opened_leaves(node);
+  }
+  [[nodiscard]] Slot pruned(Slot node, const LeafBlock& block) const {
+    return size_ == CellSize::kCoarse ? prune_coarse(tree_, node, block) : tree_.prune(node, block);
+  }
+
   // Max distance from the surface, in voxels, of samples that take the surface's colour. The colours of mesh
   // vertices are interpolated from these samples only.
-  static constexpr float kColourVoxels = 1.5F;
+  static constexpr float kColourCells = 1.5F;
   // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
   // refresh. On a refresh, the measurement is weighted with this fraction. Smaller changes would be lost in
   // rounding to 8 bits.
@@ -128,7 +143,7 @@ class LeafUpdate {
 
   // Min distance, in voxels, at which a sample counts as behind a surface. Frames see past samples nearer to
   // the surface too often, because of noise and pose errors.
-  static constexpr float kBehind_voxels = 0.5F;
+  static constexpr float kBehind_cells = 0.5F;
   // A frame that sees through a sample subtracts this many times its own weight from the sample's weight. It
   // is above 1, since the first such frames only make the voxel free. Also, an object that was present in
   // half of the frames should disappear.
@@ -252,10 +267,12 @@ class LeafUpdate {
   BlockOctree& tree_;
   const Frame& frame_;
   const FusionConfig& config_;
+  CellSize size_;
+  float cell_m_;
   Pinhole camera_, colour_camera_;
   Eigen::Matrix4f T_colour_depth_;
   float truncation_m_, colour_distance_m_;
-  float behind_;                  // -kBehind_voxels as distance, in units of BlockUnits::distance_m
+  float behind_;                  // -kBehind_cells as distance, in units of BlockUnits::distance_m
   float hit_, miss_, min_, max_;  // in units of BlockUnits::log_odds
   bool has_colour_ = false;
 };

@@ -14,9 +14,9 @@
 
 namespace roomradar {
 
-/// Node with log-odds. Nodes at the finest depth may have a signed distance, too (if weight > 0). Log-odds of
-/// exactly 0 (probability one half) mean unknown. Leaves behind a surface may have a signed distance although
-/// their occupancy is unknown. Unknown leaves without signed distance are not stored.
+/// Node with log-odds. Leaves at the two finest depths may have a signed distance, too (if weight > 0).
+/// Log-odds of exactly 0 (probability one half) mean unknown. Leaves behind a surface may have a signed
+/// distance although their occupancy is unknown. Unknown leaves without signed distance are not stored.
 class OctoMapNode : public octomap::OcTreeNode {
  public:
   float distance_m = 0.0F;

@@ -106,6 +106,10 @@ class StaticMap {
   /// weight is not finite, or the weight is not > 0.
   void add_evidence(const SurfaceSample& sample);
 
+  /// Adds all log-odds and samples of another map of the same resolution, in the same world frame. Coarse
+  /// cells stay coarse where this map has no fine samples. Throws Error if the resolutions differ.
+  void add_evidence(const StaticMap& other);
+
   /// Calls `decide` in Morton order for each voxel that has a signed distance or is occupied, and applies the
   /// returned action. The weight is 0 without a signed distance. Pruned nodes have no samples and are not
   /// visited.
@@ -135,7 +139,7 @@ class StaticMap {
   static StaticMap read_ot(const std::filesystem::path& path, const FusionConfig& config = {});
 
  private:
-  struct Octree;  // defined in static_map_octree.hpp
+  struct Octree;
   explicit StaticMap(std::unique_ptr<Octree> octree);
   std::unique_ptr<Octree> octree_;
 };

@@ -11,6 +11,7 @@
 #include <string>
 #include <type_traits>
 
+#include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/octomap_tree.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
@@ -44,7 +45,7 @@ class NodeWriter {
     if (!node.is_block()) return put(leaf(node.log_odds()), 0);
     OctoMapNode inner;  // OctoMap convention: log-odds of an inner node are the maximum of its leaves
     inner.setLogOdds(greatest(node, depth));
-    if (depth == kLeafDepth - 1) return write_voxels(inner, tree_.leaves(node));
+    if (node.is_leaf_block()) return write_cells(inner, tree_.leaves(node));
     const InnerBlock& block = tree_.inner(node);
     unsigned children = 0;
     for (unsigned i = 0; i < 8; ++i) children |= block.slots[i].is_unknown() ? 0 : 1U << i;
@@ -63,7 +64,7 @@ class NodeWriter {
     node.setLogOdds(static_cast<float>(log_odds) * tree_.units().log_odds);
     return node;
   }
-  void write_voxels(const OctoMapNode& parent, const LeafBlock& block) {
+  void write_cells(const OctoMapNode& parent, const LeafBlock& block) {
     unsigned children = 0;
     for (unsigned i = 0; i < 8; ++i) children |= block.holds(i) ? 1U << i : 0;
     put(parent, children);
@@ -101,7 +102,7 @@ class PlainWriter {
   enum Kind : unsigned { kUnknown = 0, kFree = 1, kOccupied = 2, kMixed = 3 };
 
   explicit PlainWriter(const BlockOctree& tree) : tree_(tree) {
-    const Kind kind = write(tree.root, 0);
+    const Kind kind = write(tree.root);
     if (kind == kUnknown) return;
     ++nodes_;
     if (kind != kMixed) {  // the format cannot express a root without children
@@ -118,15 +119,15 @@ class PlainWriter {
   }
 
   // Appends a node's subtree unless it is uniform; returns the node's kind.
-  Kind write(Slot node, unsigned depth) {
+  Kind write(Slot node) {
     if (!node.is_block()) return kind_of(node.log_odds());
     const std::size_t start = bytes_.size();
     bytes_.append(2, '\0');
     unsigned kinds = 0;
     std::size_t children = 0;
     for (unsigned i = 0; i < 8; ++i) {
-      const Kind kind = depth == kLeafDepth - 1 ? kind_of(tree_.leaves(node).log_odds[i])
-                                                : write(tree_.inner(node).slots[i], depth + 1);
+      const Kind kind =
+          node.is_leaf_block() ? kind_of(tree_.leaves(node).log_odds[i]) : write(tree_.inner(node).slots[i]);
       kinds |= kind << 2 * i;
       children += kind != kUnknown ? 1 : 0;
     }
@@ -216,18 +217,7 @@ class NodeReader {
   /// children.
   Slot read(unsigned depth) {
     const Leaf node = read_fields();
-    if (node.sample || depth >= kLeafDepth) fault();
-    const auto children = bytes_.get<std::uint8_t>();
-    if (children == 0) {
-      if (!is_cube_of_a_room(node.log_odds, depth)) fault();
-      return Slot::cube(node.log_odds);
-    }
-    if (depth == kLeafDepth - 1)
-      return change_leaves(tree_, Slot(), [&](LeafBlock& block) { read_voxels(children, block); });
-    InnerBlock block;
-    for (unsigned i = 0; i < 8; ++i)
-      if ((children >> i & 1U) != 0) block.slots[i] = read(depth + 1);
-    return tree_.prune(Slot(), block);
+    return read_subtree(node, bytes_.get<std::uint8_t>(), depth);
   }
   [[nodiscard]] std::uint64_t nodes() const { return nodes_; }
 
@@ -261,23 +251,66 @@ class NodeReader {
     return leaf;
   }
 
+  /// @param node  the node's own fields
+  /// @param children  bit i: child i follows
+  Slot read_subtree(const Leaf& node, unsigned children, unsigned depth) {
+    if (node.sample || depth >= kLeafDepth) fault();
+    if (children == 0) {
+      if (!is_cube_of_a_room(node.log_odds, depth)) fault();
+      return Slot::cube(node.log_odds);
+    }
+    if (depth == kLeafDepth - 1)
+      return change_leaves(tree_, Slot(), [&](LeafBlock& block) { read_voxels(children, block); });
+    if (depth == kCoarseDepth) return read_coarse_or_fine(children);
+    InnerBlock block;
+    for (unsigned i = 0; i < 8; ++i)
+      if ((children >> i & 1U) != 0) block.slots[i] = read(depth + 1);
+    return tree_.prune(Slot(), block);
+  }
+
+  // Reads the children of a node at kCoarseDepth. They are coarse cells if at least one has a sample.
+  Slot read_coarse_or_fine(unsigned children) {
+    LeafBlock cells;
+    InnerBlock block;
+    for (unsigned i = 0; i < 8; ++i) {
+      if ((children >> i & 1U) == 0) continue;
+      const Leaf child = read_fields();
+      const auto its_children = bytes_.get<std::uint8_t>();
+      if (child.sample && its_children != 0) fault();
+      if (child.sample)
+        store(child, cells, i);
+      else
+        block.slots[i] = read_subtree(child, its_children, kCoarseDepth + 1);
+    }
+    if (!cells.has_samples()) return tree_.prune(Slot(), block);
+    for (unsigned i = 0; i < 8; ++i) {
+      if (block.slots[i].is_block()) fault();
+      if (!block.slots[i].is_unknown()) cells.log_odds[i] = block.slots[i].log_odds();
+    }
+    return tree_.prune(Slot(), cells);
+  }
+
   void read_voxels(unsigned children, LeafBlock& block) {
-    const BlockUnits& units = tree_.units();
     for (unsigned i = 0; i < 8; ++i) {
       if ((children >> i & 1U) == 0) continue;
       const Leaf leaf = read_fields();
       if (bytes_.get<std::uint8_t>() != 0) fault();
       if (leaf.log_odds == 0 && !leaf.sample) fault();
-      block.log_odds[i] = leaf.log_odds;
-      if (!leaf.sample) continue;
-      block.distance[i] =
-          static_cast<std::int16_t>(in_steps(leaf.sample->distance_m, units.distance_m, -32767.0F, 32767.0F));
-      block.weight[i] =
-          static_cast<std::uint16_t>(in_steps(leaf.sample->weight, units.weight, 1.0F, 65535.0F));
-      if (!leaf.sample->has_colour) continue;
-      tree_.colours(block).colours[i] = leaf.sample->colour;
-      block.coloured |= static_cast<std::uint8_t>(1U << i);
+      store(leaf, block, i);
     }
+  }
+
+  // Stores a leaf as cell i of a block.
+  void store(const Leaf& leaf, LeafBlock& block, unsigned i) {
+    const BlockUnits& units = tree_.units();
+    block.log_odds[i] = leaf.log_odds;
+    if (!leaf.sample) return;
+    block.distance[i] =
+        static_cast<std::int16_t>(in_steps(leaf.sample->distance_m, units.distance_m, -32767.0F, 32767.0F));
+    block.weight[i] = static_cast<std::uint16_t>(in_steps(leaf.sample->weight, units.weight, 1.0F, 65535.0F));
+    if (!leaf.sample->has_colour) return;
+    tree_.colours(block).colours[i] = leaf.sample->colour;
+    block.coloured |= static_cast<std::uint8_t>(1U << i);
   }
 
   // A sensor observes free space in small cubes and only the surface of solids, so larger cubes mean a

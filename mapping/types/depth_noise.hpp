@@ -14,6 +14,11 @@ inline float depth_sigma_m(float depth_m) {
   return 0.0012F + 0.0019F * beyond_m * beyond_m;
 }
 
+/// Returns the depth, m, of at least 0.4 m, at which depth_sigma_m() is sigma_m.
+inline float depth_of_sigma_m(float sigma_m) {
+  return 0.4F + std::sqrt(std::max(sigma_m - 0.0012F, 0.0F) / 0.0019F);
+}
+
 /// Returns depth_sigma_m(depth_m) plus the term for the angle theta between viewing ray and surface normal.
 /// sigma(z, theta) = sigma(z) + 0.0001 / sqrt(z) * theta^2 / (pi/2 - theta)^2. The term matters beyond 60
 /// degrees. theta is clamped to 85 degrees, and z in the added term to at least 0.1 m.

@@ -1,6 +1,7 @@
 // map_bench.cpp: accuracy of a prescan's map, on simulated rooms whose surface is known exactly.
 //
 // usage: map_bench [--resolution M] [--json FILE] [poses SOURCE]...
+//        map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] whole SOURCE
 //        poses: recorded (the true ones) or tracked; SOURCE: sim:ROOM?...
 // Default: recorded and tracked on sim:table, 700 frames, once around the room and back.
 //
@@ -9,6 +10,9 @@
 //              within 2 cm
 //   precision  fraction of the mesh within 2 cm of the surface; F-score: its harmonic mean with cover
 //   gap        error of the last pose relative to the first
+//
+// `whole` fuses a recording with its own poses, with coarse cells and with voxels only, see
+// map_bench_whole.hpp.
 //
 // Settings are the defaults of PrescanConfig: changing them breaks the comparison with earlier results.
 #include <algorithm>
@@ -23,6 +27,7 @@
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/prescan.hpp"
 #include "tests/bench/bench_program.hpp"
+#include "tests/bench/map_bench_whole.hpp"
 
 namespace roomradar {
 namespace {
@@ -100,6 +105,7 @@ int main(int argc, char** argv) {
     double resolution_m = 0.01;
     std::string json;
     std::vector<Cell> cells;
+    roomradar::test::WholeCell whole;
     for (int i = 1; i < argc; ++i) {
       const std::string word = argv[i];
       const std::string value = i + 1 < argc ? argv[++i] : "";
@@ -107,13 +113,28 @@ int main(int argc, char** argv) {
         resolution_m = std::atof(value.c_str());
       } else if (word == "--json") {
         json = value;
+      } else if (word == "--sigmas") {
+        whole.max_cell_sigmas = std::atof(value.c_str());
+      } else if (word == "--truth") {
+        whole.truth = value;
+      } else if (word == "whole" && !value.empty()) {
+        whole.source = value;
       } else if ((word == "recorded" || word == "tracked") && value.starts_with("sim:")) {
         cells.push_back({word, value});
       } else {
-        std::fprintf(stderr,
-                     "usage: map_bench [--resolution M] [--json FILE] [recorded|tracked sim:ROOM?...]...\n");
+        std::fprintf(
+            stderr,
+            "usage: map_bench [--resolution M] [--json FILE] [recorded|tracked sim:ROOM?...]...\n"
+            "       map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] whole SOURCE\n");
         return 2;
       }
+    }
+    if (!whole.source.empty()) {
+      whole.resolution_m = resolution_m;
+      const nlohmann::json rows = roomradar::test::whole_rows(whole);
+      roomradar::test::print_whole(rows);
+      roomradar::test::write_rows(json, rows);
+      return 0;
     }
     if (cells.empty()) cells = {{"recorded", "sim:table?frames=700"}, {"tracked", "sim:table?frames=700"}};
     nlohmann::json rows = nlohmann::json::array();

@@ -175,7 +175,7 @@ TEST_F(DeferredErrors, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
         "0.01"};
   };
   ASSERT_EQ(run(words(at("reference"))), 0) << said();
-  mount_disk(6000);  // enough for a checkpoint, not for the map beside it
+  mount_disk(4400);  // enough for a checkpoint, not for the map beside it
   EXPECT_EQ(run(words(disk() / "map")), 1);
   EXPECT_NE(said().find("with --resume continues from there"), std::string::npos) << said();
   EXPECT_FALSE(fs::exists(disk() / "map"));

@@ -310,8 +310,10 @@ TEST_F(MapFolder, VerifyListsEveryFaultAtOnce) {
   EXPECT_EQ(verify_map(map_).size(), 3U);
 }
 
-TEST_F(MapFolder, ALaterFormatIsRefusedWithAdvice) {
-  edit_info("\"format_version\": 1", "\"format_version\": 2");
+TEST_F(MapFolder, ALaterFormatIsRefusedWithAdviceAndAnEarlierOneIsRead) {
+  edit_info("\"format_version\": 2", "\"format_version\": 1");
+  EXPECT_EQ(load_map(map_).info.format_version, 1);
+  edit_info("\"format_version\": 1", "\"format_version\": 3");
   expect_fault("map.json", "use a later roomradar");
 }
 

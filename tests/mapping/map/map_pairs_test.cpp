@@ -229,6 +229,7 @@ TEST_F(MapPairs, InOneWorldAddingIsExact) {
   add_map(a().octree, Isometry3d::Identity(), sum);
   EXPECT_EQ(sum.counts().occupied_leaves, a().octree.counts().occupied_leaves);
   EXPECT_EQ(sum.counts().free_leaves, a().octree.counts().free_leaves);
+  EXPECT_EQ(sum.counts().memory_bytes, a().octree.counts().memory_bytes) << "coarse cells stay coarse";
   sum.visit_samples([](const SurfaceSample& sample) {
     const auto before =
         a().octree.sample_at((sample.voxel.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m);

@@ -151,7 +151,7 @@ TEST(DepthPyramid, BoundsHoldForEveryRectangle) {
       for (int x = left; x <= right; ++x) {
         const float z = depth_m.at(x, y);
         if (z == 0.0F) continue;
-        const float half_m = half_layer_m(z, 0.01, config);
+        const float half_m = TruncationBand(0.01, config).widest_m(z);
         ASSERT_LE(static_cast<float>(bounds.front), (z - half_m) * pyramid.steps_per_m);
         ASSERT_LE(static_cast<float>(bounds.nearest), (z - half_m) * pyramid.steps_per_m);
         ASSERT_GE(static_cast<float>(-bounds.behind), (z + half_m) * pyramid.steps_per_m);

@@ -1,0 +1,28 @@
+// map_samples.hpp: reads, revises and adds samples, voxel by voxel, whatever the size of their cells. Private
+// to StaticMap, whose functions of the same names call these.
+#pragma once
+#include <Eigen/Geometry>
+#include <functional>
+#include <optional>
+
+#include "mapping/octree/block_octree.hpp"
+#include "mapping/octree/fusion_config.hpp"
+#include "mapping/octree/static_map.hpp"
+
+namespace roomradar {
+
+Occupancy occupancy_at(const BlockOctree& tree, const Eigen::Vector3d& p_world);
+std::optional<SurfaceSample> sample_at(const BlockOctree& tree, const Eigen::Vector3d& p_world);
+void visit_samples(const BlockOctree& tree, const KeyRange& range,
+                   const std::function<void(const SurfaceSample&)>& visit);
+
+/// Refines coarse cells in which an action other than kKeep is returned for a voxel.
+void revise_samples(BlockOctree& tree, const FusionConfig& config, const KeyRange& range,
+                    const std::function<SampleAction(const SurfaceSample&)>& decide);
+
+/// Adds a leaf's log-odds, averages in a sample, or adds a whole map.
+void add_evidence(BlockOctree& tree, const FusionConfig& config, const MapLeaf& leaf);
+void add_evidence(BlockOctree& tree, const SurfaceSample& sample);
+void add_evidence(BlockOctree& tree, const FusionConfig& config, const BlockOctree& other);
+
+}  // namespace roomradar

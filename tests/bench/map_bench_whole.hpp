@@ -1,0 +1,27 @@
+// map_bench_whole.hpp: cost and accuracy of fusing a whole recording, with coarse cells and with voxels only.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "mapping/octree/fusion_config.hpp"
+
+namespace roomradar::test {
+
+struct WholeCell {
+  std::string source;  ///< recording with poses, or sim:ROOM
+  std::string truth;   ///< the same frames without noise; empty: the held-out frames of `source`
+  double resolution_m = 0.01;
+  double max_cell_sigmas = FusionConfig{}.max_cell_sigmas;  ///< of the map compared with voxels only
+};
+
+/// Fuses all frames with a pose but every 20th into two maps, one with voxels only, frame by frame in turn.
+/// Then intersects rays of the held-out frames with the zero crossing of each map's signed distance. Times
+/// are CPU times of this thread. Returns one row per map: ms per frame (median, p95), megabytes of the
+/// octree, and per 0.5 m of depth the rays, the median of the absolute error, the bias and the share of rays
+/// without a crossing within 15 cm.
+nlohmann::json whole_rows(const WholeCell& cell);
+
+/// Prints the rows as a table.
+void print_whole(const nlohmann::json& rows);
+
+}  // namespace roomradar::test
