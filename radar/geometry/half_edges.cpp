@@ -1,6 +1,7 @@
 // half_edges.cpp: matches half-edges by position, and sums the volumes of connected components.
 #include "radar/geometry/half_edges.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <numeric>
