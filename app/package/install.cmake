@@ -24,6 +24,9 @@ set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/roomradar)
 install(DIRECTORY mapping radar dynamic app DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
 install(FILES ${PROJECT_BINARY_DIR}/generated/mapping/types/system/version.hpp
   DESTINATION ${header_dir}/mapping/types/system COMPONENT development)
+# Static libraries fit the OpenCV that they were built with: installed, they look for its libraries by name and version.
+get_target_property(opencv_soname opencv_core IMPORTED_SONAME_RELEASE)
+string(REGEX REPLACE ".*\\.so\\." "" opencv_abi "${opencv_soname}")
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/roomradar)
 install(EXPORT roomradar NAMESPACE roomradar:: FILE roomradar-targets.cmake DESTINATION ${config_dir} COMPONENT development)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/roomradar-config.cmake.in ${PROJECT_BINARY_DIR}/roomradar-config.cmake
