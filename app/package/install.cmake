@@ -54,8 +54,14 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
   "Keeps a scanned room as an octree on disk with a mesh, and lets virtual objects rest on, slide along and be stopped by its\n surfaces, also by those that the camera cannot see now.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroomradar-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+# zlib1g-dev: assimp's targets link it, libassimp-dev does not depend on it.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libassimp-dev, libceres-dev, libegl-dev, libeigen3-dev, libfreenect-dev, liboctomap-dev, libopencv-dev, libopengl-dev, libssl-dev, nlohmann-json3-dev, pkg-config")
+  "libassimp-dev, libceres-dev, libegl-dev, libeigen3-dev, liboctomap-dev, libopengl-dev, libssl-dev, nlohmann-json3-dev, zlib1g-dev")
+foreach(module ${opencv_modules})
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopencv-${module}${opencv_abi}")
+endforeach()
+# Component sources only.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, pkg-config")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, what moved, and frame sources.")
 include(CPack)
