@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "app/sources/recordings/folder_source.hpp"
+#include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/types/system/error.hpp"
@@ -15,7 +16,6 @@
 #include "tests/support/painted_frame.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
 
 namespace roomradar::keyframe_database_test {
 namespace {
