@@ -17,8 +17,10 @@ struct PrescanCounts {
   std::int64_t frames_lost = 0;  ///< readable, but without a trusted pose; not fused
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
-  std::int64_t ghost_voxels = 0;    ///< surface voxels removed by ghost removal
-  std::int64_t frames_resumed = 0;  ///< frames of the interrupted pass that the checkpoint contained
+  std::int64_t ghost_voxels = 0;  ///< surface voxels removed by ghost removal
+  /// Frames of the interrupted pass (tracking or fusion) that were finished at the checkpoint. They are not
+  /// processed again.
+  std::int64_t frames_resumed = 0;
   bool stopped_for_memory = false;  ///< memory cap reached: part of the source is not in the map
   std::string last_fault;           ///< reason why the last skipped frame was unreadable
   /// Set if the poses were tracked and at least 3 tracked frames have recorded poses.

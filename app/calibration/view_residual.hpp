@@ -5,7 +5,7 @@
 
 namespace roomradar {
 
-/// Residuals of one view.
+/// See residual_of().
 struct ViewResidual {
   double colour_rms_px = 0.0;
   double depth_bias_m = 0.0;  ///< median of corrected depth minus depth of the checkerboard's plane
@@ -13,8 +13,8 @@ struct ViewResidual {
   double distance_m = 0.0;  ///< depth of the checkerboard's centre
 };
 
-/// Computes a view's residuals. Estimates the checkerboard's pose from its corners, then compares the
-/// measured depth with the checkerboard's plane.
+/// Estimates the checkerboard's pose from its corners, then compares the measured depth with the
+/// checkerboard's plane.
 ViewResidual residual_of(const BoardView& view, const Board& board, const Calibration& calibration);
 
 }  // namespace roomradar

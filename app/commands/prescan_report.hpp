@@ -22,7 +22,9 @@ nlohmann::json held_out_json(const HeldOutScore& score);
 void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
                    const std::optional<HeldOutScore>& held_out);
 
-/// Prints to stdout the largest holes that further views could close.
+/// Prints to stdout the number of holes, and the first five that are inside the scan (not kOuterBorder) with
+/// their numbers.
+/// @param holes  sorted as by find_holes()
 void print_holes(const std::vector<Hole>& holes);
 
 }  // namespace roomradar

@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Blends a colour into pixel (x, y) with opacity `part`. Does nothing outside the picture.
+/// Blends a colour into pixel (x, y) with alpha `part` (0..1). Does nothing outside the picture.
 void blend(ColourImage& picture, int x, int y, Rgb colour, double part = 1.0);
 
 /// Draws an antialiased line from pixel a to pixel b, clipped to the picture.
@@ -21,7 +21,7 @@ void draw_text(ColourImage& picture, const std::string& text, int x, int y, doub
 void fill_triangle(MaskImage& mask, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                    const Eigen::Vector2d& c);
 
-/// Blends a colour into the masked pixels with opacity `part`, and draws the mask's outline.
+/// Blends a colour into the masked pixels with alpha `part` (0..1), and draws the mask's outline.
 void tint(ColourImage& picture, const MaskImage& mask, Rgb colour, double part);
 
 /// Copies the picture `part` into `picture` with its upper left corner at (x, y), clipped to `picture`.

@@ -16,8 +16,8 @@ enum class TextureWrap : std::uint8_t { kRepeat, kMirror, kClamp };
 /// A base-colour texture.
 struct Texture {
   ColourImage colour;                ///< sRGB
-  MaskImage opacity;                 ///< 0..255, same size as colour; empty: opaque everywhere
-  std::uint8_t least_opacity = 128;  ///< pixels with a lower opacity are not drawn
+  MaskImage opacity;                 ///< alpha, 0..255, same size as colour; empty: opaque everywhere
+  std::uint8_t least_opacity = 128;  ///< alpha cutoff: pixels with a lower alpha are not drawn
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
   friend bool operator==(const Texture& a, const Texture& b) {
     return a.colour.width == b.colour.width && a.colour.pixels == b.colour.pixels &&

@@ -36,7 +36,7 @@ struct TextureName {
   std::string name;
   unsigned channel = 0;  ///< set of texture coordinates
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
-  std::uint8_t least_opacity = 128;  ///< 0: opacity is ignored
+  std::uint8_t least_opacity = 128;  ///< alpha cutoff; 0: alpha is ignored
 };
 
 /// Look of a material.

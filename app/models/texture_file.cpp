@@ -25,7 +25,7 @@ struct Decoded {
   std::size_t row_bytes = 0;
   bool is_16_bit = false;
 
-  /// Returns red, green, blue and opacity.
+  /// Returns red, green, blue and alpha.
   [[nodiscard]] std::array<unsigned, 4> at(int x, int y) const {
     const auto channel = [&](int c) -> unsigned {
       const std::size_t index = static_cast<std::size_t>(x * channels + c);

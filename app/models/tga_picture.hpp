@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Pixels of 4 bytes (blue, green, red, opacity), rows from the top.
+/// Pixels of 4 bytes (blue, green, red, alpha), rows from the top.
 struct TgaPicture {
   int width = 0, height = 0;
   std::string bgra;

@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// Contacts of a sleeping body. They hold as long as neither it nor a body that it touches has moved.
+/// Valid as long as neither the sleeping body nor a body that it touches has moved.
 struct SleeperContacts {
   struct Touched {
     const Body* body;  ///< null: static surface
@@ -22,13 +22,14 @@ struct SleeperContacts {
 };
 
 /// Returns the body that a point of the scene lies on; null: a surface.
-/// @param others  bodies of the scene's trees
+/// @param others  per triangle tree of the scene, the body to which it belongs; later trees are surfaces
 inline const Body* body_of(std::span<const SceneBody> others, const ClosestPoint& p) {
   return p.tree < others.size() ? others[p.tree].body : nullptr;
 }
 
-/// Copies a body's known contacts to `near` if they still hold. Returns false if they do not.
-/// @param others  bodies of the scene's trees; ClosestPoint::tree is set to their order
+/// Copies a body's known contacts to `near` if they are still valid. Returns false if they are not.
+/// ClosestPoint::tree is set to the other body's index in `others`, which may have changed.
+/// @param others  per triangle tree of the scene, the body to which it belongs
 bool recall_contacts(std::span<const SleeperContacts> known, const Body& body,
                      std::span<const SceneBody> others, std::vector<ClosestPoint>& near);
 

@@ -22,12 +22,13 @@ struct Preset {
   Figures figures;
 };
 
-/// Pareto-optimal quality of a run. No other measured quality is both faster and more accurate.
+/// Pareto-optimal settings of a run. No other measured settings are both faster and more accurate.
 struct FrontStep {
   RunQuality run;
   /// Median time of each FramePart divided by its time at the default quality in the same measurement; > 0.
   std::array<double, kFrameParts> part_ratios{1.0, 1.0, 1.0, 1.0};
-  /// Number of objects in the room during the measurement. Needed if move_every_n_frames > 1. 0: unknown.
+  /// Number of objects in the room during the measurement. Corrects the physics ratio for the current number
+  /// of objects, if move_every_n_frames > 1. 0: unknown, no correction.
   int objects = 0;
   Figures figures;
 };
@@ -59,7 +60,7 @@ void write_presets(const Presets& presets, const std::filesystem::path& path);
 /// executable or in its installed location. Throws Error if there is none.
 std::filesystem::path presets_file(const std::string& given);
 
-/// Returns the preset of this name. Throws Error with a list of the existing names if there is none.
+/// Returns the preset of this name. If no preset has the name, throws Error that lists the existing names.
 const Preset& preset_named(const Presets& presets, const std::string& name, const std::string& where);
 
 }  // namespace roomradar

@@ -18,7 +18,7 @@ class GpuTexture {
 
   /// Returns the texture's GL name.
   [[nodiscard]] unsigned name() const { return name_; }
-  /// Returns the opacity, 0..1, below which a pixel is not drawn; 0 for an opaque texture.
+  /// Returns the alpha cutoff, 0..1, below which a pixel is not drawn; 0 for an opaque texture.
   [[nodiscard]] float least_opacity() const { return least_opacity_; }
 
  private:

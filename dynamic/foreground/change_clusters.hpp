@@ -19,7 +19,7 @@ enum class LastingKind : std::uint8_t {
 /// Returns the kind's name in reports.
 std::string_view to_string(LastingKind kind);
 
-/// An object that came or went, given as points of its surface. The points are about
+/// An object that appeared or disappeared, given as points of its surface. The points are about
 /// ChangeTrackerConfig::spacing_m apart.
 struct LastingChange {
   LastingKind kind = LastingKind::kCame;
@@ -28,11 +28,11 @@ struct LastingChange {
   [[nodiscard]] Eigen::AlignedBox3d box_world() const;
 };
 
-/// A point on a surface that came or went, with its observation times.
+/// A point on a surface that appeared or disappeared, with its observation times.
 struct ChangePoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the tracker's origin, world axes
-  float steady_s = 0.0F;                               ///< total time in frames that confirmed the point
-  float unseen_s = 0.0F;                               ///< time since a frame last showed its position
+  float steady_s = 0.0F;  ///< total duration of the frames that confirmed the point
+  float unseen_s = 0.0F;  ///< time since a frame last showed its position
   std::uint32_t id = 0;
   std::uint16_t sightings = 1;     ///< number of frames averaged into position
   std::uint8_t contradiction = 0;  ///< +2 per contradicting frame, -1 per confirming one; dropped above 7

@@ -15,17 +15,21 @@ namespace roomradar {
 /// per block of 4 x 4 pixels. Depths are in metres along the optical axis.
 struct ExpectedBounds {
   BlockGrid grid;
-  std::vector<float> nearest_m, farthest_m;  ///< of the block's expected depths; kNoDepth_m, 0: none
+  /// Extremes of the block's expected depths; kNoDepth_m and 0 if the block has none.
+  std::vector<float> nearest_m, farthest_m;
   /// Standard deviation of measured minus expected depth, from all errors combined.
   std::vector<float> sigma_m;
   /// Range of the expected depths within `reach` of the block. Pose and map errors could shift the edges of
-  /// these surfaces into the block. The nearest depth is kNoDepth_m if no surface within reach is nearer than
-  /// the continuation of the block's own surface. The farthest depth is 0 if none is farther. For these two
-  /// values, only the pixel's own expected depth counts. The farthest depth is kNoDepth_m if a hole of the
-  /// model (pixels without expected depth) is within reach.
+  /// these surfaces into the block. nearest_in_reach_m is kNoDepth_m if everything nearer within reach is
+  /// only the block's own surface, continued as a plane. farthest_in_reach_m is 0 if the same holds for
+  /// everything farther. With kNoDepth_m or 0, a pixel is compared only with its own expected depth.
+  /// farthest_in_reach_m is kNoDepth_m if a hole of the model (pixels without expected depth) is within
+  /// reach.
   std::vector<float> nearest_in_reach_m, farthest_in_reach_m;
-  std::vector<float> nearest_around_hole_m;  ///< nearest within hole_reach_px; kNoDepth_m: none
-  std::vector<int> reach;                    ///< max shift of an edge, in blocks to each side
+  /// Nearest expected depth within hole_reach_px of the block, for pixels in the model's holes. kNoDepth_m:
+  /// none.
+  std::vector<float> nearest_around_hole_m;
+  std::vector<int> reach;  ///< max shift of an edge, in blocks to each side
 
   // Scratch.
   std::vector<float> nearest_level_m, farthest_level_m, along_rows_m;
@@ -44,7 +48,7 @@ inline float facing_sigma_m(float depth_m, float model_sigma_m, float misfit_per
   return std::sqrt(sensor * sensor + model_sigma_m * model_sigma_m + misfit * misfit);
 }
 
-/// Computes all values of `bounds`.
+/// Computes the bounds of each block.
 /// @param expected_m  depth of the static model in the camera's view, 0 = no surface; must not be an empty
 ///                    image
 void find_bounds(const DepthImage& expected_m, const Intrinsics& camera, const ForegroundConfig& config,

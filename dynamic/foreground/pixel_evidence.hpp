@@ -15,7 +15,7 @@ enum class PixelLabel : std::uint8_t {
   kNotKnown,  ///< no measured or expected depth, or a region too small or too new to decide
   kStatic,    ///< agrees with the static model within noise and pose error
   kMoved,     ///< nearer than the static model, as for an object in front of it
-  kRevealed,  ///< farther than the static model, as after an object's removal
+  kRevealed,  ///< uncovered background: farther than the static model, as after an object's removal
 };
 using LabelImage = Image<PixelLabel>;
 
@@ -31,8 +31,8 @@ inline constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kAmbiguousMoved 
 /// with kAmbiguousRevealed, since no pixel is farther than the model in a hole.
 inline constexpr std::uint8_t kInHole = kAmbiguousRevealed;
 
-/// Set on revealed pixels by mark_revealed_cores(). Shares a bit with kAmbiguousMoved, since a revealed pixel
-/// is never nearer than the model.
+/// Set on pixels of uncovered background by mark_revealed_cores(). Shares a bit with kAmbiguousMoved, since
+/// such a pixel is never nearer than the model.
 inline constexpr std::uint8_t kRevealedCore = kAmbiguousMoved;
 
 /// Thresholds, depth bounds and scratch for one row of pixels. Each vector has one value per pixel.

@@ -8,7 +8,7 @@ namespace roomradar {
 
 enum class HoleKind {
   kUnknownSpace,   ///< space inside the scan that no ray crossed, e.g. occluded space
-  kSurfaceBorder,  ///< the surface ends although the space on both sides was observed
+  kSurfaceBorder,  ///< border of the mesh that is not near a hole of the other kinds
   kOuterBorder,    ///< end of the scan as a whole
 };
 std::string_view to_string(HoleKind kind);

@@ -165,7 +165,7 @@ class ObjectFinder {
 
   /// Returns whether the other map's scan ends at this surface: most of the space just behind it is unknown
   /// there, because rays that grazed the surface freed voxels in front of it and saw nothing of it. The space
-  /// behind the surface of an object that came or went is known in the map without it.
+  /// behind the surface of an object that appeared or disappeared is known in the map without it.
   [[nodiscard]] bool ends_the_scan(const std::vector<VoxelIndex>& thing) const {
     static const std::array<Eigen::Vector3d, 14> kAround = directions();
     const double behind_m = clearance_m_;

@@ -23,18 +23,19 @@ inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size 
 /// Collapses edges in order of quadric error, and moves each new vertex to the least-squares intersection of
 /// the planes around it. Flat areas become few large triangles. Curved areas keep small ones.
 ///
-/// Bound: during collapses, every vertex of `mesh` stays within max_deviation_m (> 0) of the triangles that
-/// replace its adjacent ones. Afterwards the distance between both surfaces is measured at points spacing_m
+/// Bound: during collapses, every original vertex stays within max_deviation_m (> 0) of the triangles that
+/// replace those around it. Afterwards the distance between both surfaces is measured at points spacing_m
 /// apart. Where the distance exceeds the bound, the tolerances of nearby vertices are lowered and the block
 /// is simplified again. A block that fails in all rounds is left unchanged.
 ///
-/// Two threads process meshes above block_triangles (>= 1) in blocks of at most that many. Vertices on seams
-/// between blocks stay fixed, so no cracks appear. Small blocks fit the cache, and rounds are repeated per
-/// block. Large blocks have fewer seam vertices. Components, holes and handles are preserved, and an edge
-/// shared by two triangles stays shared by two. Colours and normals are averaged over merged vertices.
-/// Collapses that would create triangles less than 0.1 mm high are rejected. Source: Garland and Heckbert,
-/// Surface Simplification Using Quadric Error Metrics, SIGGRAPH 1997; bound: Klein, Liebich, Strasser, Mesh
-/// reduction with error control, IEEE Visualization 1996.
+/// A mesh of more than block_triangles (>= 1) triangles is split into blocks of at most block_triangles,
+/// which two threads process. Vertices on seams between blocks stay fixed, so no cracks appear. Small blocks
+/// fit the cache, and only the blocks that exceeded the bound are repeated. Large blocks have fewer fixed
+/// seam vertices. Components, holes and handles are preserved, and an edge shared by two triangles stays
+/// shared by two. Colours and normals are averaged over merged vertices. Collapses that would create
+/// triangles less than 0.1 mm high are rejected. Source: Garland and Heckbert, Surface Simplification Using
+/// Quadric Error Metrics, SIGGRAPH 1997; bound: Klein, Liebich, Strasser, Mesh reduction with error control,
+/// IEEE Visualization 1996.
 SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m,
                           std::size_t block_triangles = kBlockTriangles);
 

@@ -9,7 +9,7 @@
 namespace roomradar {
 namespace {
 
-// Surface revealed behind a removed object is part of the change up to this distance from the region; a wall
+// Background uncovered by a removed object is part of the change up to this distance from the region; a wall
 // far behind is left to a later scan.
 constexpr double kNewSurface_m = 1.0;
 

@@ -9,10 +9,10 @@
 
 namespace roomradar {
 
-/// One frame of a sensor. In names, `camera` alone means the depth camera.
+/// In names, `camera` alone means the depth camera.
 struct Frame {
   std::int64_t index = 0;  ///< index in the recording from 0, skipped frames included
-  double stamp_s = 0.0;    ///< sensor time; index / 30 in a recording without timestamps
+  double stamp_s = 0.0;    ///< sensor time; number in the file name / 30 if the recording has no times
 
   DepthImage depth_m;  ///< same size as depth_camera
   Intrinsics depth_camera;

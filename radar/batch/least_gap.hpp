@@ -13,7 +13,8 @@ namespace roomradar {
 
 /// Result of one query. A distance of at least kNothingMet means that nothing was found.
 struct TileResult {
-  /// Number of the call that wrote this result.
+  /// Number of the begin() after which this result was written. Distinguishes it from results of earlier
+  /// calls.
   std::uint32_t stamp = 0;
   float lower_m = 0.0F, upper_m = 0.0F, contact_distance_m = 0.0F;
   /// Nearest pixel, relative to the tile's corner; -1 if nothing was found.

@@ -7,9 +7,9 @@ namespace roomradar {
 // For every triangle, the geometry shader emits the rectangle of its tile's pixels that the triangle may
 // touch. The fragment shader computes coverage and depth of each pixel from the triangle's three vertices.
 // The results do not depend on the driver's vertex snapping or depth interpolation. All renderers thus agree
-// within the guaranteed bounds. The bounds include all float errors, from the product of matrix and vertex
-// on. GL_MIN blending combines the fragments of a pixel. The passes thus need no depth buffer and no drawing
-// order.
+// within the guaranteed bounds. The bounds include all float errors, beginning with that of the
+// matrix-vertex product. GL_MIN blending combines the fragments of a pixel. The passes thus need no depth
+// buffer and no drawing order.
 //
 // A tile's coordinates are its query's outline coordinates (RadarOutline): x and y in pixels, z in metres
 // along the motion. The sample line of a pixel is the line along z through its sample position (kSample).
@@ -19,9 +19,9 @@ namespace roomradar {
 //   r: -z, where z is an upper bound of the object's foremost point in the pixel's square
 //   g: -z, where z is a lower bound of the foremost surface on the sample line
 //   b:  z, a lower bound of the rearmost point in the square
-//   a: -z, where z is an upper bound of the foremost rear surface (facing against the motion) that may be
-//      near the sample line. g and a enclose the front slab: the object's solid between its front and that
-//      rear surface.
+//   a: -z, where z is an upper bound of the foremost surface that faces against the motion (or is edge-on)
+//      and may be within two rounding errors of the sample line. g and a enclose the front slab: the object's
+//      solid between its front and that rear surface.
 // Scene tiles, by colour channel:
 //   r: lower bound of the distance to contact with any surface in the square
 //   g: upper bound of the distance to contact with a surface that certainly crosses the sample line
@@ -30,20 +30,20 @@ namespace roomradar {
 /// First piece of every shader in this file.
 inline constexpr const char* kTilePreamble = R"(#version 450 core
 const float kNothing = 3e38, kAnything = 1e38;  // kNothing: clear value; values below kAnything are results
-const vec2 kSample = vec2(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // sample position in a pixel; edges often pass through its exact middle
-// Data passed from the vertices to the triangles.
+const vec2 kSample = vec2(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // sample position in a pixel; off centre, because edges often pass through the exact centre
+// Data passed from the vertex shader to the geometry shader.
 #define TILE_VERTEX Vertex { vec3 p; vec3 error; ivec4 corners; ivec4 item; vec4 limits_m; float margin; }
 )";
 
 /// Transforms vertices to outline coordinates, and computes bounds of their rounding errors.
 inline constexpr const char* kTileVertexShader = R"(layout(location = 0) in vec3 p_local;
-layout(location = 1) in vec4 outline_x;  // rows: pixels, pixels, m
+layout(location = 1) in vec4 outline_x;  // rows of the matrix from mesh to outline coordinates: x and y in pixels, z in m
 layout(location = 2) in vec4 outline_y;
 layout(location = 3) in vec4 outline_z;
 layout(location = 4) in ivec4 corners;  // tile corners: x, y in the object atlas, x, y in the scene's
 layout(location = 5) in ivec4 item;     // width_px, height_px, query, first key
-layout(location = 6) in vec4 limits_m;  // far, touching, overlap tolerance, object's length
-layout(location = 7) in vec4 margin_px;  // x: max distance of the object's front from the sample line
+layout(location = 6) in vec4 limits_m;  // TileQuery::far_m, touching_m, tolerance_m, length_m
+layout(location = 7) in vec4 margin_px;  // x: TileQuery::margin_px; y, z, w: unused
 out TILE_VERTEX to;
 void main() {
   const float kRounding = 4.2e-7;  // 7 x 2^-24: rounded rows, three products, three sums
@@ -65,7 +65,7 @@ void main() {
 inline constexpr const char* kSpanSource = R"(
 struct Span {
   bool in_square;  // may touch the pixel's square
-  bool is_near;    // may touch the sample line; if drawn there, it has a point within 2 errors of it
+  bool is_near;    // may touch the sample line; if true, a point of the triangle is within 2 errors of the line
   bool is_around;  // may touch a line within 2 errors of the sample line
   bool is_across;  // certainly crosses every line within `margin` of the sample line
   int facing;      // 1: along the motion, -1: against it, 0: edge-on or unknown
@@ -74,8 +74,8 @@ struct Span {
   float line;                    // z on the sample line
 };
 
-/// a, b, c: vertices; error: of each vertex, per axis; p: sample position. One function: all bounds share the
-/// edges and the plane.
+/// a, b, c: vertices; error: of each vertex, per axis; p: sample position. Not split up, because all bounds
+/// are computed from the same edges and plane.
 Span span_of(vec3 a, vec3 b, vec3 c, vec3 error, float margin, vec2 p) {
   const float kRounding = 6e-7;  // 10 x 2^-24, more than any sum of products here needs
   Span s;
@@ -107,7 +107,7 @@ Span span_of(vec3 a, vec3 b, vec3 c, vec3 error, float margin, vec2 p) {
     vec2 edge = i == 0 ? ab.xy : i == 1 ? bc.xy : -ac.xy;
     vec2 start = p - (i == 0 ? a.xy : i == 1 ? b.xy : c.xy);
     vec2 across = vec2(-edge.y, edge.x);
-    float at = dot(across, start);  // sample's position across the edge, which is at 0
+    float at = dot(across, start);  // signed distance of the sample from the edge, times the edge's length
     float slack = kRounding * dot(abs(across), abs(start)) + n_error.z;
     float near_reach = dot(abs(across), error.xy) + slack;
     float around_reach = 3.0 * near_reach;

@@ -36,7 +36,7 @@ struct ProjectedVertices {
 /// Indices of a triangle's projected vertices.
 using PieceTriangle = std::array<std::uint16_t, 3>;
 
-/// Scratch buffers of draw_triangles(). Each Lane holds one value per triangle.
+/// Scratch buffers of draw_triangles(), a structure of arrays. Each array has one value per triangle.
 struct TriangleSetup {
   /// Number of triangles processed together.
   static constexpr std::size_t kMost = 256;

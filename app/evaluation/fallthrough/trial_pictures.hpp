@@ -22,7 +22,7 @@ class SideView {
   /// Adds the lines in which surfaces intersect the plane. Static surfaces are black, dynamic ones blue,
   /// inferred backs violet, and the frontier of unknown space red.
   void add_surfaces(std::span<const SceneTree> surfaces, ColourImage& picture) const;
-  /// Adds the section of the object after travelling travelled_m, with opacity `part`.
+  /// Adds the section of the object after travelling travelled_m, with alpha `part`.
   void add_object(double travelled_m, Rgb colour, double part, ColourImage& picture) const;
 
  private:

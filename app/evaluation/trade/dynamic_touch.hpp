@@ -12,7 +12,8 @@
 
 namespace roomradar {
 
-/// A ball that flies against a scenario's occluder, a dynamic object that was absent from the prescan.
+/// A ball that moves straight towards a scenario's occluder. The occluder is a dynamic object that was absent
+/// from the prescan.
 struct DynamicTouch {
   std::size_t scenario = 0;                               ///< index in the scenarios
   Eigen::Vector3d start_world = Eigen::Vector3d::Zero();  ///< centre of the ball
@@ -33,14 +34,15 @@ std::vector<DynamicTouch> draw_dynamic_touches(
 
 /// Errors of the radar's contacts; NaN if there are no balls.
 struct DynamicTouchFacts {
-  /// Over balls for which the radar found a contact.
+  /// Over balls whose contact the radar found at most kTooFar_m (2 cm) late.
   double error_median_m = std::numeric_limits<double>::quiet_NaN();
   double error_p95_m = error_median_m;
-  double missed = error_median_m;  ///< fraction of balls without contact
+  double missed = error_median_m;  ///< fraction of balls without such a contact
 };
 /// Measures the contacts of all balls with the radar.
 /// @param touches  balls, sorted by scenario
-/// @param how      its policy must be kMap; fine_mesh applies around the true contacts
+/// @param how      its policy must be kMap. With fine_mesh, the mesh is fine within 2 cm of the ball at each
+///                 true contact
 DynamicTouchFacts judge_dynamic_touches(const std::vector<DynamicTouch>& touches,
                                         const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
                                         FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar);

@@ -199,7 +199,7 @@ Room make_random_room(std::uint64_t seed) {
 
   room.walk_centre_world = {0.0, 0.0, 1.5};
   room.walk_half_m = {half.x() - 1.05, half.y() - 1.0};
-  // A free lane between the centre and one wall, for a walking person and a rolling ball.
+  // A free strip of floor between the centre and one wall, for a walking person and a rolling ball.
   const double lane_y = (f.random.uniform() < 0.5 ? -1.0 : 1.0) * (half.y() - 0.95);
   room.person_from_world = {-0.35 * half.x(), lane_y, 0.0};
   room.person_to_world = {0.35 * half.x(), lane_y, 0.0};
