@@ -29,10 +29,12 @@ void print_times(const OpenedRun& run) {
   std::printf("%lld frames in %.1f s, %.1f per second", static_cast<long long>(frames), wall_s,
               wall_s > 0.0 ? static_cast<double>(frames) / wall_s : 0.0);
   if (frame != stages.end()) {
-    // Stages of every frame; `frame` is their sum, and `read` is the source's.
+    // `frame` is the sum of a frame's stages, `contact` that of the stages until contact, `read` is the
+    // source's and `unknown` is computed once.
     const auto dearest = std::max_element(stages.begin(), stages.end(), [&](const auto& a, const auto& b) {
       const auto cost = [&](const auto& stage) {
-        const bool is_part = stage.first != "frame" && stage.first != "read";
+        const bool is_part = stage.first != "frame" && stage.first != "contact" && stage.first != "read" &&
+                             stage.first != "unknown";
         return is_part ? static_cast<double>(stage.second.count) * stage.second.median_ms : -1.0;
       };
       return cost(a) < cost(b);
