@@ -126,11 +126,12 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
       const std::string fault = unknown_option(*command, std::span(arguments).subspan(at));
       if (!fault.empty()) return name + ": " + fault + see_help;
     }
-    const std::string fault = at == arguments.size()
-                                  ? " needs a command:\n"
-                                  : ": there is no command '" + arguments[at] + "'" +
-                                        did_you_mean(arguments[at], names) + " The commands are\n";
-    return name + fault + command_list(*command) + see_help.substr(1);
+    if (at == arguments.size())
+      return name + " needs a command:\n" + command_list(*command) + see_help.substr(1);
+    const std::string hint = did_you_mean(arguments[at], names);
+    return name + ": there is no command '" + arguments[at] + "'" +
+           (hint.empty() ? "; the commands are\n" : hint + " The commands are\n") + command_list(*command) +
+           see_help.substr(1);
   }
   std::string fault = unknown_option(*command, std::span(arguments).subspan(at));
   if (fault.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError))

@@ -59,10 +59,15 @@ std::string help_on(CLI::App& app, const std::vector<std::string>& words) {
     std::vector<std::string> known;
     for (const CLI::App* part : commands_of(*command)) known.push_back(part->get_name());
     if (command == &app)
-      for (const HelpTopic& topic : help_topics()) known.emplace_back(topic.name);
+      for (const HelpTopic& topic : help_topics())
+        if (std::find(known.begin(), known.end(), topic.name) == known.end()) known.emplace_back(topic.name);
     CLI::App* part = command_named(*command, word);
-    if (part == nullptr)
-      throw CLI::ValidationError("there is no command or topic '" + word + "'" + did_you_mean(word, known));
+    if (part == nullptr) {
+      std::string hint = did_you_mean(word, known);
+      if (hint.empty())
+        for (const std::string& name : known) hint += (hint.empty() ? "; known are " : ", ") + name;
+      throw CLI::ValidationError("there is no command or topic '" + word + "'" + hint);
+    }
     parents += (parents.empty() ? "" : " ") + command->get_name();
     command = part;
   }

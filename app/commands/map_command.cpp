@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -37,13 +38,14 @@ std::string describe(std::vector<LevelSurface> surfaces) {
   std::sort(surfaces.begin(), surfaces.end(),
             [](const auto& a, const auto& b) { return a.height_m < b.height_m; });
   const std::optional<std::size_t> floor = floor_among(surfaces);
+  const auto cm = [](double m) { return std::round(100.0 * m) / 100.0 + 0.0; };  // no -0.00
   std::string text;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const Eigen::Vector3d& p = surfaces[i].middle_world;
     std::array<char, 120> line{};
     std::snprintf(line.data(), line.size(), "%-16sz %.2f m, %.2f m2, middle at %.2f %.2f %.2f%s\n",
-                  i == 0 ? "level surfaces" : "", surfaces[i].height_m, surfaces[i].area_m2, p.x(), p.y(),
-                  p.z(), i == floor ? " (floor)" : "");
+                  i == 0 ? "level surfaces" : "", cm(surfaces[i].height_m), surfaces[i].area_m2, cm(p.x()),
+                  cm(p.y()), cm(p.z()), i == floor ? " (floor)" : "");
     text += line.data();
   }
   return text;

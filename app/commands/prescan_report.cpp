@@ -89,7 +89,7 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
   if (scanned.map.info.up_source == to_string(UpSource::kNone))
     std::printf(
         "the up direction is not known: no gravity was recorded and no level surface was found; up is taken "
-        "from the first camera\n");
+        "from the first camera. If that is wrong, scan again with --up X,Y,Z or --up camera\n");
   if (counts.trajectory_error)
     std::printf("trajectory against the recorded poses: RMSE %.1f mm, max %.1f mm\n",
                 1e3 * counts.trajectory_error->rmse_m, 1e3 * counts.trajectory_error->max_m);

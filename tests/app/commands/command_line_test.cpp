@@ -612,7 +612,7 @@ TEST_F(CommandLine, AMisspeltWordIsAnsweredWithTheNearestOne) {
   expect_fault(roomradar("run x --map y --vid z"), 2, "did you mean --video?");
   expect_fault(roomradar("--versoin"), 2, "did you mean --version?");
   const Outcome unlike = roomradar("qwertyuiop");
-  expect_fault(unlike, 2, "there is no command 'qwertyuiop'");
+  expect_fault(unlike, 2, "there is no command 'qwertyuiop'; the commands are\n");
   EXPECT_EQ(unlike.out.find("did you mean"), std::string::npos) << unlike.out;
 }
 
@@ -637,6 +637,7 @@ TEST_F(CommandLine, HelpExplainsCommandsAndTopics) {
   EXPECT_EQ(roomradar("help run").out, roomradar("run --help").out);
   EXPECT_EQ(roomradar("help map export").out, roomradar("map export --help").out);
   expect_fault(roomradar("help scirpt"), 2, "did you mean script?");
+  expect_fault(roomradar("help kinect"), 2, "no command or topic 'kinect'; known are prescan, run, ");
 }
 
 TEST_F(CommandLine, EveryHelpHasGroupsOfKnownOptionsAndTwoExamples) {
