@@ -38,7 +38,8 @@ constexpr const char* kFirstSteps =
     "  roomradar prescan kinect:0 --map maps/kitchen       # or a recording, or 'sim:table'\n"
     "  roomradar run kinect:0 --map maps/kitchen --window\n"
     "`roomradar COMMAND --help` explains a command, `roomradar help TOPIC` a topic: script, models,\n"
-    "sources, units, calibrate, files.\n";
+    "sources, units, calibrate, files. `source <(roomradar --completion bash)` completes commands and\n"
+    "options in this shell (zsh: --completion zsh).\n";
 
 /// Completes the options of `roomradar run`, which may come from a recorded session.
 void complete_options(const CLI::App& command, RunOptions& options) {

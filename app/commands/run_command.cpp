@@ -38,13 +38,19 @@ nlohmann::json report_replay(const ReplayCheck& check) {
   return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
 }
 
-/// Returns true, with a message, if a run that was only to drop its object could not do so.
+/// Returns true, with a message, if all objects that a run was to drop or place are still out of the room.
 bool says_nothing_dropped(const OpenedRun& run) {
-  if (!run.options.script.empty() || run.options.window || run.check) return false;
+  if (run.options.window || run.check) return false;
+  for (const ScriptEvent& event : run.script.events)
+    if (event.action == Action::kRemove) return false;  // an object may have been in the room
   const std::vector<WaitingDrop>& waiting = run.session->waiting_drops();
   for (const auto& object : run.session->objects())
     if (object->in_room || object->departures > 0) return false;
-  if (waiting.empty()) return false;
+  if (waiting.empty() && run.totals.places_refused == 0) return false;
+  if (waiting.empty()) {
+    std::fprintf(stderr, "roomradar: %s: no object could be placed\n", run.options.source.c_str());
+    return true;
+  }
   std::fprintf(
       stderr,
       "roomradar: %s: no object could be dropped: %s. Choose a place with --script and drop NAME at X Y Z; "

@@ -123,8 +123,12 @@ Model read_by_assimp(const std::filesystem::path& path) {
 Model read_sandboxed(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end())
-    fail_for_file(path,
-                  "the extension \"" + extension + "\" is no model format known here; use " + kModelFormats);
+    fail_for_file(path, extension.find('=') != std::string::npos
+                            ? "\"" + extension +
+                                  "\" is no extension of a model; what may follow a comma is named in "
+                                  "`roomradar help models`"
+                            : "the extension \"" + extension + "\" is no model format known here; use " +
+                                  kModelFormats + ", or the built-in teapot");
   require_plausible_size(path);
   const std::uintmax_t bytes = std::filesystem::file_size(path);
   const auto most_s = static_cast<unsigned>(30 + (bytes >> 20U));  // for textures, too

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -63,8 +64,12 @@ class RunLoop {
       if (next == Next::kEnd) break;
       if (next == Next::kSkipped) continue;
       perform_due();
-      if (!run_.was_quit) step();
+      if (run_.was_quit)
+        --run_.totals.read;  // the frame is not used
+      else
+        step();
     }
+    say_what_never_came();
     // a default event quits
     if (run_.recorder && !run_.was_quit) run_.recorder->write(ScriptEvent{}, run_frame_);
   }
@@ -76,8 +81,10 @@ class RunLoop {
   std::size_t next_event_ = 0;
   std::int64_t run_frame_ = 0;
   double run_time_s_ = 0.0;
-  std::set<std::string> on_unknown_;      ///< objects that rest on the border of unknown space
-  std::set<std::string> departed_;        ///< objects that were reported to have fallen out of the map
+  /// Where objects rested on the border of unknown space when that was last said, world, m.
+  std::map<std::string, Eigen::Vector3d> on_unknown_;
+  /// Objects reported to have fallen out of the map; second: true if the object was set back.
+  std::set<std::pair<std::string, bool>> departed_;
   double last_event_s_ = 0.0;             ///< run time of the last event
   std::optional<double> repeats_from_s_;  ///< run time since which the source repeats itself
   std::int64_t last_picture_ = -1;        ///< highest index of the source's frames that has a picture
@@ -91,6 +98,7 @@ class RunLoop {
   void report(const Departure& departure);
   void say(const std::string& sentence);
   void say_what_rests_on_unknown();
+  void say_what_never_came();
   void end_budget();
   void count_skipped(const std::string& fault);
   void keep(const FrameResult& result);
@@ -210,9 +218,9 @@ void RunLoop::step() {
   progress_.step(is_located ? "located" : "not located");
 }
 
-/// Says once per object that it fell out of the map, and what to do.
+/// Says that an object fell out of the map, and what to do: once if it is set back, once if it is not.
 void RunLoop::report(const Departure& departure) {
-  if (!departed_.insert(departure.name).second) return;
+  if (!departed_.emplace(departure.name, departure.is_back).second) return;
   say(sentence_of(departure, *run_.session));
 }
 
@@ -222,16 +230,31 @@ void RunLoop::say(const std::string& sentence) {
 }
 
 /// Says of each object that came to rest on the border of unknown space, from where to scan what is there.
+/// Says it again only if the object moved on.
 void RunLoop::say_what_rests_on_unknown() {
+  constexpr double kMovedOn_m = 0.1;
   const Session& session = *run_.session;
   for (const auto& object : session.objects()) {
-    if (!rests_on_unknown(*object)) {
-      on_unknown_.erase(object->body.name);
-    } else if (on_unknown_.insert(object->body.name).second) {
-      say(object->body.name +
-          unknown_support_text(*object, session.scene_without(object.get()), camera_position_world(session)));
-    }
+    if (!rests_on_unknown(*object)) continue;
+    const Eigen::Vector3d position_world = support_point_world(*object);
+    const auto [said, is_new] = on_unknown_.try_emplace(object->body.name, position_world);
+    if (!is_new && (said->second - position_world).norm() < kMovedOn_m) continue;
+    said->second = position_world;
+    say(object->body.name +
+        unknown_support_text(*object, session.scene_without(object.get()), camera_position_world(session)));
   }
+}
+
+/// Says which events of the script were due after the last frame.
+void RunLoop::say_what_never_came() {
+  const std::vector<ScriptEvent>& events = run_.script.events;
+  if (run_.was_quit || run_.host || run_.check || next_event_ >= events.size()) return;
+  const ScriptEvent& first = events[next_event_];
+  std::string sentence = std::to_string(events.size() - next_event_) + " of " +
+                         std::to_string(events.size()) +
+                         " events of the script were due after the last frame and did nothing";
+  if (first.line > 0) sentence += "; the first is in line " + std::to_string(first.line);
+  say(sentence);
 }
 
 /// Records the qualities that the frame used, so a replay uses the same without a clock.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -26,7 +27,8 @@ void print_times(const OpenedRun& run) {
   const auto frame = stages.find("frame");
   const std::int64_t frames = run.totals.read - run.totals.skipped;
   const double wall_s = run.report.seconds();
-  std::printf("%lld frames in %.1f s, %.1f per second", static_cast<long long>(frames), wall_s,
+  std::printf("%lld %s in %.1f s, %.1f per second", static_cast<long long>(frames),
+              frames == 1 ? "frame" : "frames", wall_s,
               wall_s > 0.0 ? static_cast<double>(frames) / wall_s : 0.0);
   if (frame != stages.end()) {
     // `frame` is the sum of a frame's stages, `contact` that of the stages until contact, `read` is the
@@ -71,9 +73,10 @@ void print_located(const RunTotals& totals) {
 void print_changes(const RunTotals& totals, const Session& session) {
   for (const CommittedChange& change : session.committed_changes()) {
     const Eigen::Vector3d p = change.box_world.center(), size = change.box_world.sizes();
-    std::printf("adopted at %.1f s: an object that %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
-                change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
-                p.x(), p.y(), p.z(), size.x(), size.y(), size.z());
+    std::printf("change committed at %.1f s: an object that %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
+                change.stamp_s - totals.first_stamp_s,
+                change.kind == LastingKind::kCame ? "appeared" : "vanished", p.x(), p.y(), p.z(), size.x(),
+                size.y(), size.z());
   }
 }
 
@@ -99,7 +102,7 @@ std::string why_not_in_room(const VirtualObject& object, const Session& session)
   for (const WaitingDrop& waiting : session.waiting_drops())
     if (waiting.drop.name == object.body.name)
       return "; its drop waits: " + (waiting.why.empty() ? "no frame was located since" : waiting.why);
-  return object.departures > 0 ? "; it fell out of the map" : "";
+  return object.departures > 0 ? "; it fell out of the map" : "; nothing placed or dropped it";
 }
 
 void print_object(const VirtualObject& object, const Session& session) {
@@ -120,9 +123,13 @@ void print_object(const VirtualObject& object, const Session& session) {
 
 void print_files(const RunOptions& options) {
   std::string files;
-  const auto add = [&](const std::string& path) {
-    if (!path.empty()) files += (files.empty() ? "" : ", ") + path;
-  };
+  const auto add =
+      [&](const std::string& path) {  // a device, or a file that could not be written, is no result
+        std::error_code unknown;
+        const std::filesystem::file_status status = std::filesystem::status(path, unknown);
+        if (std::filesystem::is_regular_file(status) || std::filesystem::is_directory(status))
+          files += (files.empty() ? "" : ", ") + path;
+      };
   add(options.video);
   add(options.pictures.empty() ? "" : options.pictures + "/");
   add(options.record_session.empty() ? "" : options.record_session + "/");

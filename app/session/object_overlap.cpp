@@ -66,7 +66,7 @@ TreeInstance instance_of(const VirtualObject& object) {
 
 std::optional<FreePose> free_pose_near(const VirtualObject& object, double max_m, const WayOut& way) {
   const auto is_known = [&](const Eigen::Isometry3d& T_world_object) {
-    return !is_middle_unknown(way.room, object, T_world_object);
+    return !is_in_solid_unknown(way.room, object, T_world_object);
   };
   return nearest_free_pose(instance_of(object), way.all, way.gap_m, max_m, is_known, way.radar,
                            way.proximity);
@@ -74,19 +74,22 @@ std::optional<FreePose> free_pose_near(const VirtualObject& object, double max_m
 
 }  // namespace
 
-std::string leave_surfaces(VirtualObject& object, const WayOut& way) {
+std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thrown) {
   constexpr double kSaid_m = 0.005;  // less is a surface's noise
   const bool crosses = is_crossed(instance_of(object), way.surfaces, way.proximity);
   if (!crosses && !is_middle_unknown(way.room, object, object.body.T_world_object)) return {};
   if (const auto free = free_pose_near(object, kWayOut_m, way)) {
     object.body.T_world_object = free->T_world_object;
     if (free->moved_m < kSaid_m) return {};
-    return " would begin in a surface, and is moved out by " + millimetres(free->moved_m);
+    return crosses ? " would begin in a surface, and is moved out by " + millimetres(free->moved_m)
+                   : " would begin in space that was not scanned, and is moved out by " +
+                         millimetres(free->moved_m);
   }
-  if (!crosses) return {};  // all of it is in unknown space, which it can leave
+  if (!crosses && is_thrown) return " begins in space that was not scanned, where nothing stops it";
   std::string text = object.body.name + ": cannot begin at " +
-                     coordinates(object.body.T_world_object.translation()) +
-                     ": a surface is in the way, and there is no free place within 10 cm";
+                     coordinates(object.body.T_world_object.translation()) + ": " +
+                     (crosses ? "a surface is in the way" : "that space was not scanned") +
+                     ", and there is no free place within 10 cm";
   if (const auto far = free_pose_near(object, kSearched_m, way))
     text += "; the nearest found is " + coordinates(far->T_world_object.translation());
   throw PlaceRefused(text);

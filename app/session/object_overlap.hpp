@@ -38,11 +38,11 @@ struct WayOut {
 };
 
 /// Moves an object to the nearest free pose within 10 cm. Does nothing unless a surface intersects the object
-/// or its centre is in solid unknown space. Other objects do not count as surfaces. Throws PlaceRefused if a
-/// surface intersects the object and no free pose is within 10 cm. The error message names the nearest free
-/// position found within 1 m.
+/// or its centre is in solid unknown space. Other objects do not count as surfaces. Throws PlaceRefused if no
+/// free pose is within 10 cm, unless the object is thrown from unknown space, where nothing stops it. The
+/// error message names the nearest free position found within 1 m.
 /// @return notice text without the object's name. Empty if the object was moved by less than 5 mm
-std::string leave_surfaces(VirtualObject& object, const WayOut& way);
+std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thrown);
 
 /// Adds waited_s to VirtualObject::still_s, the time for which the object has been awake and has moved by at
 /// most 2 mm. Returns true when still_s reaches 1 s, and resets still_s to 0.

@@ -62,7 +62,7 @@ void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
   try {
     raise_over_others(object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_,
                       proximity_);
-    const std::string moved = leave_surfaces(object, way_out_of(object));
+    const std::string moved = leave_surfaces(object, way_out_of(object), !state.velocity_world_mps.isZero());
     if (!moved.empty()) notices_.push_back({object.body.name, moved});
   } catch (const PlaceRefused&) {
     object.body.T_world_object = T_world_before;

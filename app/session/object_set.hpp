@@ -48,8 +48,8 @@ class ObjectSet {
   /// Puts an object into the room. An object that would overlap other objects is placed on top of them if no
   /// surface of the room is in the way. If a surface intersects the object, or its centre is in solid unknown
   /// space, it is placed at the nearest free pose within 10 cm. A notice is then created. Throws PlaceRefused
-  /// if a surface intersects the object and no free pose is within 10 cm; the object's pose is then
-  /// unchanged.
+  /// if no free pose is within 10 cm; the object's pose is then unchanged. An object with a velocity may
+  /// begin in unknown space; a notice says that nothing stops it there.
   void place(const std::string& name, const ObjectState& state);
   /// Drops an object. With drop.position_world, places it above that position as place() does. Without it,
   /// the drop waits for release_waiting(), and require_small_enough() may throw Error.

@@ -56,10 +56,11 @@ class ObjectFinder {
     return (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * has_.resolution_m();
   }
 
-  /// Returns whether so few frames measured the voxel's surface that the mesh omits it.
-  [[nodiscard]] bool is_hardly_measured(const VoxelIndex& voxel) const {
+  /// Returns whether no frame, or too few frames for the mesh, measured the surface of a voxel in a leaf.
+  /// Larger leaves than coarse cells have no signed distance.
+  [[nodiscard]] bool is_hardly_measured(const VoxelIndex& voxel, const MapLeaf& leaf) const {
     const auto sample = has_.sample_at(centre(voxel));
-    return sample && sample->weight < SurfaceConfig{}.min_weight;
+    return sample ? sample->weight < SurfaceConfig{}.min_weight : leaf.edge_voxels <= 2;
   }
 
   void collect() {
@@ -79,7 +80,7 @@ class ObjectFinder {
             if (lacks_.occupancy_at(p) != Occupancy::kFree) continue;
             Suspect suspect;
             suspect.clear =
-                !is_hardly_measured(voxel) &&
+                !is_hardly_measured(voxel, leaf) &&
                 std::all_of(kAround.begin(), kAround.end(), [&](const Eigen::Vector3d& direction) {
                   return lacks_.occupancy_at(p + clearance_m * direction) == Occupancy::kFree &&
                          lacks_.occupancy_at(p + 0.5 * clearance_m * direction) == Occupancy::kFree;

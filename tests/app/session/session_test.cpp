@@ -939,6 +939,39 @@ TEST(Session, WhatIsPutOnTheBorderOfUnknownSpaceComesOutAndStaysOnIt) {
   EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
 }
 
+TEST(Session, NothingIsPutIntoUnscannedSpaceUnlessItIsThrown) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.make_unknown_solid(times);
+  apply(session, event(Action::kAdd));
+  VirtualObject& pot = *session.objects().front();
+  const std::string name = pot.body.name;
+  // Deep below the floor nothing near is free; beyond the map there is nothing at all.
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(1.0, 0.0, -0.5), Eigen::Vector3d(20.0, 1.0, 1.0)}) {
+    const std::string refusal = test::error_of([&] { session.place(name, {.position_world = p}); });
+    EXPECT_NE(refusal.find("that space was not scanned"), std::string::npos) << refusal;
+    EXPECT_NE(test::error_of([&] { session.drop({.name = name, .position_world = p}); }), "");
+    EXPECT_NE(test::error_of([&] { session.carry(name, p); }), "");
+    EXPECT_FALSE(pot.in_room);
+  }
+  EXPECT_NE(test::error_of([&] {
+              session.place(name, {.position_world = {1.0, 0.0, -0.5}});
+            }).find("the nearest"),
+            std::string::npos);
+  session.place(name, {.position_world = {1.0, 0.0, -0.5}, .velocity_world_mps = {0.0, 0.0, 4.0}});
+  EXPECT_TRUE(pot.in_room);
+  const FrameResult result = session.step(depth_only(0, kAtTheSky), times);
+  ASSERT_EQ(result.notices.size(), 1U);
+  EXPECT_NE(result.notices[0].text.find("nothing stops it"), std::string::npos) << result.notices[0].text;
+
+  // Where unknown space is free, an object may be put anywhere.
+  session.remove(name);
+  session.make_unknown_free();
+  session.place(name, {.position_world = {20.0, 1.0, 1.0}});
+  EXPECT_TRUE(pot.in_room);
+}
+
 TEST(Session, UnknownSpaceIsNotSolidWithoutTheMapsSurfaces) {
   const SavedMap map = half_floor_map();
   SessionConfig config = by_recorded_poses();
