@@ -26,6 +26,7 @@ std::string readable_number(double value, int digits) {
   const std::string rounded = format_general(value, digits);  // may have an exponent
   double parsed = 0.0;
   std::from_chars(rounded.data(), rounded.data() + rounded.size(), parsed);
+  if (parsed == 0.0) parsed = 0.0;  // without a sign
   std::array<char, 400> text{};
   std::string plain(
       text.data(),

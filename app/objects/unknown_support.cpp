@@ -26,6 +26,24 @@ bool is_free(const Eigen::Vector3d& from_world, const Eigen::Vector3d& to_world,
 
 }  // namespace
 
+std::string_view support_words(SurfaceKind kind) {
+  switch (kind) {
+    case SurfaceKind::kStatic:
+      return " on the room's surface";
+    case SurfaceKind::kDynamic:
+      return " on something that moved";
+    case SurfaceKind::kObject:
+      return " on another object";
+    case SurfaceKind::kUnknownFrontier:
+      return " on the border of unknown space";
+    case SurfaceKind::kInferredBack:
+      return " on the inferred back of something that moved";
+    case SurfaceKind::kNothing:
+      break;
+  }
+  return "";
+}
+
 bool rests_on_unknown(const VirtualObject& object) {
   return object.in_room && object.body.asleep && object.body.rests_on == SurfaceKind::kUnknownFrontier;
 }

@@ -1,15 +1,18 @@
-// unknown_support.hpp: finds objects that rest on the frontier of unknown space, and viewpoints for scanning
-// their supports.
+// unknown_support.hpp: what objects rest on; viewpoints for scanning supports in unknown space.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "app/objects/virtual_object.hpp"
 #include "radar/geometry/radar_scene.hpp"
 
 namespace roomradar {
+
+/// Returns words for the support of a resting object, such as " on the room's surface"; empty for kNothing.
+std::string_view support_words(SurfaceKind kind);
 
 /// Returns true if the object is asleep on the frontier, the boundary between observed free space and
 /// unobserved space.

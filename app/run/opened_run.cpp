@@ -177,7 +177,8 @@ void make_unknown_solid(Session& session, StageTimes& times) {
 }
 
 /// Adds an object. A large model is announced, because preparing its levels of detail takes up to minutes.
-void add_object(Session& session, const ScriptEvent& add) {
+/// @param script  file in which errors are located; unused if the event is not from a file
+void add_object(Session& session, const ScriptEvent& add, const std::string& script) {
   constexpr double kLarge_mb = 10.0;  // a model of this size is prepared in about 5 s
   std::error_code failed;
   const double size_mb = static_cast<double>(std::filesystem::file_size(add.mesh, failed)) / 1e6;
@@ -185,7 +186,12 @@ void add_object(Session& session, const ScriptEvent& add) {
   if (is_announced)
     std::fprintf(stderr, "%s: %.0f MB, preparing its levels of detail ...\n", add.mesh.c_str(), size_mb);
   const auto start = std::chrono::steady_clock::now();
-  apply(session, add);
+  try {
+    apply(session, add);
+  } catch (const Error& fault) {
+    if (add.line == 0) throw;
+    throw Error(script + ":" + std::to_string(add.line) + ": " + fault.what());
+  }
   if (is_announced)
     std::fprintf(stderr, "%s: %zu triangles, prepared in %.0f s\n", add.mesh.c_str(),
                  find_object(session.objects(), add.name)->model->source.mesh.triangles.size(),
@@ -199,7 +205,7 @@ void open_session(OpenedRun& run, bool has_picture) {
   if (run.options.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   // Objects are loaded now, so an unreadable mesh is reported before the first frame.
   for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kAdd) add_object(*run.session, event);
+    if (event.action == Action::kAdd) add_object(*run.session, event, run.options.script);
   for (const ObjectNotice& notice : run.session->take_notices())
     std::fprintf(stderr, "roomradar: %s%s\n", notice.name.c_str(), notice.text.c_str());
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/objects/unknown_support.hpp"
 #include "app/run/opened_run.hpp"
 
 namespace roomradar {
@@ -80,24 +81,6 @@ void print_changes(const RunTotals& totals, const Session& session) {
   }
 }
 
-std::string_view support_of(SurfaceKind kind) {
-  switch (kind) {
-    case SurfaceKind::kStatic:
-      return " on the room's surface";
-    case SurfaceKind::kDynamic:
-      return " on something that moved";
-    case SurfaceKind::kObject:
-      return " on another object";
-    case SurfaceKind::kUnknownFrontier:
-      return " on the border of unknown space";
-    case SurfaceKind::kInferredBack:
-      return " on the inferred back of something that moved";
-    case SurfaceKind::kNothing:
-      break;
-  }
-  return "";
-}
-
 std::string why_not_in_room(const VirtualObject& object, const Session& session) {
   for (const WaitingDrop& waiting : session.waiting_drops())
     if (waiting.drop.name == object.body.name)
@@ -116,7 +99,7 @@ void print_object(const VirtualObject& object, const Session& session) {
   if (object.stuck)
     state = "stuck in a surface";
   else if (body.asleep)
-    state = "at rest" + std::string(support_of(body.rests_on));
+    state = "at rest" + std::string(support_words(body.rests_on));
   std::printf("%s: %s at %.3f %.3f %.3f m%s\n", body.name.c_str(), state.c_str(), p.x(), p.y(), p.z(),
               note_on(object));
 }

@@ -85,7 +85,7 @@ void require_small_enough(const VirtualObject& object, const DropRequest& drop) 
   std::snprintf(
       text.data(), text.size(),
       ": reaches %.3g m sideways from its middle, and only what reaches at most %.0f m is dropped in view. "
-      "Meshes are in metres: give it a size (--object FILE,size=0.2; add NAME FILE size 0.2) or a place "
+      "Make it smaller, in metres (--object FILE,size=0.2; add NAME FILE size 0.2), or say the place "
       "(at=X,Y,Z; drop NAME at X Y Z)",
       reach_m, kMostFootprint_m);
   throw Error(object.body.name + text.data());

@@ -2,6 +2,7 @@
 #include "mapping/coverage/holes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "mapping/coverage/frontier.hpp"
@@ -53,7 +54,9 @@ std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Fr
 std::string describe(const Hole& hole) {
   char text[512];  // room for five numbers of up to 42 digits, and words
   const auto& p = hole.position_world;
-  const auto& look = hole.look_direction_world;
+  constexpr double kSmallest = 0.005;  // prints no "-0.00"
+  const Eigen::Vector3d look = hole.look_direction_world.unaryExpr(
+      [](double coordinate) { return std::abs(coordinate) < kSmallest ? 0.0 : coordinate; });
   int length = std::snprintf(
       text, sizeof(text), "%s at (%.2f, %.2f, %.2f) m, %.2f m wide, %.2f m2; look along (%.2f, %.2f, %.2f)",
       std::string(to_string(hole.kind)).c_str(), p.x(), p.y(), p.z(), hole.size_m, hole.area_m2, look.x(),

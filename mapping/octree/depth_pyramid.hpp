@@ -16,7 +16,8 @@ namespace roomradar {
 
 /// Half-widths of the truncation band. Signed distances are fused within this distance in front of and behind
 /// a measured surface.
-struct TruncationBand {
+class TruncationBand {
+ public:
   TruncationBand(double resolution_m, const FusionConfig& config);
   /// Returns the half-width in which cells with an edge of cell_m are updated, m.
   [[nodiscard]] float half_width_m(float depth_m, float cell_m) const {

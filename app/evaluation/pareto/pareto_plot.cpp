@@ -10,7 +10,7 @@
 namespace roomradar {
 namespace {
 
-constexpr double kWidth = 640.0, kHeight = 400.0, kLeft = 62.0, kTop = 34.0, kRight = 16.0, kBottom = 48.0;
+constexpr double kWidth = 640.0, kHeight = 380.0, kLeft = 62.0, kTop = 14.0, kRight = 16.0, kBottom = 48.0;
 
 template <typename... Numbers>
 std::string format(const char* text, Numbers... numbers) {
@@ -79,7 +79,7 @@ std::string grid(const ParetoPlot& plot, const Axis& x, const Axis& y) {
                   x.at(tick), y.from_px, y.to_px, tick == 1.0 ? "grid one" : "grid") +
            format("<text x=\"%.1f\" y=\"%.1f\" class=\"tick middle\">%s</text>", x.at(tick), y.from_px + 16.0,
                   readable_number(tick).c_str());
-  return svg + format("<text x=\"%.1f\" y=\"18\" class=\"title\">", kLeft) + escaped(plot.title) + "</text>" +
+  return svg +
          format("<text x=\"%.1f\" y=\"%.1f\" class=\"tick middle\">", 0.5 * (x.from_px + x.to_px),
                 kHeight - 10.0) +
          escaped(plot.x_name) + "</text>" +
@@ -141,7 +141,9 @@ std::string pareto_plot(const ParetoPlot& plot) {
   if (dots.empty()) return "<p>" + escaped(plot.title) + ": nothing was measured.</p>\n";
   const Axis x = axis_over(std::move(xs), kLeft, kWidth - kRight);
   const Axis y = axis_over(std::move(ys), kHeight - kBottom, kTop);
-  std::string svg = format("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", kWidth, kHeight) +
+  // As text of the page, which a narrow screen wraps.
+  std::string svg = "<p class=\"title\">" + escaped(plot.title) + "</p>\n" +
+                    format("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", kWidth, kHeight) +
                     escaped(plot.title) + "\">";
   svg += grid(plot, x, y) + steps(dots, x, y);
   // Important dots last, so they are drawn on top.

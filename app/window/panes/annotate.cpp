@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdio>
 
+#include "app/objects/unknown_support.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -22,7 +24,9 @@ void draw_label(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colo
   ImGui::PopFont();
   const float beside = look::px(5.0F), above = look::px(3.0F);
   const ImVec2 low = draw.GetClipRectMin(), high = draw.GetClipRectMax();
-  if (at.x >= low.x && at.x <= high.x && at.y >= low.y && at.y <= high.y)
+  const bool is_in_view =
+      at.x + size.x >= low.x && at.x <= high.x && at.y + size.y >= low.y && at.y <= high.y;
+  if (is_in_view)
     at = {shifted_inside(at.x, size.x, low.x + beside, high.x - beside),
           shifted_inside(at.y, size.y, low.y + above, high.y - above)};
   draw.AddRectFilled({at.x - beside, at.y - above}, {at.x + size.x + beside, at.y + size.y + above},
@@ -36,7 +40,7 @@ std::string what_it_does(const ShownObject& object) {
   if (!object.in_room) return "not in the room";
   if (object.is_carried) return "carried";
   if (object.stuck) return "stuck in a surface";
-  if (object.asleep) return "at rest on " + std::string(to_string(object.rests_on));
+  if (object.asleep) return "at rest" + std::string(support_words(object.rests_on));
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "moves at %.1f m/s", object.velocity_world_mps.norm());
   return text.data();

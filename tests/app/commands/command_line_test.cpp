@@ -987,7 +987,7 @@ TEST_F(CommandLine, SeveralObjectsEachWithASizeAPlaceAndAnAxis) {
   const std::string report = " --report " + (folder_ / "objects.json").string();
   const Outcome two =
       roomradar(run + " --object " + box.string() +
-                ",size=0.3,at=0.4,-0.1,0.75,friction=0.2 --object teapot,mass=2.5,at=0,-0.2,1" + report);
+                ",size=0.3,at=0.4,1.2,1.0,friction=0.2 --object teapot,mass=2.5,at=-0.3,1.2,1.1" + report);
   ASSERT_EQ(two.status, 0) << two.out;
   const auto objects = nlohmann::json::parse(read_text(folder_ / "objects.json"))["objects"];
   ASSERT_EQ(objects.size(), 2U);
@@ -999,6 +999,13 @@ TEST_F(CommandLine, SeveralObjectsEachWithASizeAPlaceAndAnAxis) {
   EXPECT_NEAR(objects[0]["position_m"][0].get<double>(), 0.4, 0.1);
   EXPECT_NEAR(objects[0]["middle_m"][2].get<double>() - objects[0]["position_m"][2].get<double>(), 0.05,
               0.02);
+
+  // Where nobody scanned, nothing is put; what came into the room counts.
+  expect_fault(roomradar(run + " --object teapot,at=0,-0.2,1"), 1, "that space was not scanned");
+  const Outcome one =
+      roomradar(run + " --object teapot,at=0,-0.2,1 --object " + box.string() + ",size=0.3,at=0.4,1.2,1.0");
+  EXPECT_EQ(one.status, 0) << one.out;
+  EXPECT_NE(one.out.find("teapot: not in the room"), std::string::npos) << one.out;
 
   expect_fault(roomradar(run + " --object " + box.string()), 1, "millimetres, use --object-size 0.3");
   expect_fault(roomradar(run + " --object " + box.string() + " --object teapot"), 1, "box,1.obj,size=0.3");
@@ -1029,9 +1036,9 @@ TEST_F(CommandLine, ATexturedObjectIsReplayedToTheBit) {
       62);
   std::ofstream(folder_ / "tile.bmp", std::ios::binary) << bmp;
   const std::string session = (folder_ / "textured").string();
-  const Outcome run = roomradar("run 'sim:table?frames=8&width=160' --map " + map() + " --object " +
-                                obj.string() + ",at=0.4,-0.1,0.75 --record-session " + session +
-                                " --pictures " + (folder_ / "tile").string());
+  const Outcome run =
+      roomradar("run 'sim:table?frames=8&width=160' --map " + map() + " --object " + obj.string() +
+                ",at=0.4,1.2,1.0 --record-session " + session + " --pictures " + (folder_ / "tile").string());
   ASSERT_EQ(run.status, 0) << run.out;
   EXPECT_EQ(run.out.find("texture "), std::string::npos) << run.out;  // no note on the texture
   for (const char* name : {"tile.obj", "tile.mtl", "tile.bmp"}) fs::remove(folder_ / name);

@@ -10,6 +10,7 @@ namespace {
 
 TEST(ReadableNumber, IsWrittenAsPeopleWriteIt) {
   EXPECT_EQ(readable_number(2250.0), "2,250");
+  EXPECT_EQ(readable_number(-0.0), "0");
   EXPECT_EQ(readable_number(2260.0, 2), "2,300");
   EXPECT_EQ(readable_number(1234567.0), "1,230,000");
   EXPECT_EQ(readable_number(-987654.0), "-988,000");
