@@ -26,9 +26,9 @@ struct Change {
 
 struct DiffConfig {
   /// A surface voxel is clear if the other map is free around the voxel, up to the larger of clearance_m and
-  /// clearance_voxels; twice that for the voxels of coarse cells. Surface that too few frames measured for the
-  /// mesh is never clear. An object needs enough clear surface. The rest of its surface, down to its support,
-  /// only has to be in the other map's free space.
+  /// clearance_voxels; twice that for the voxels of coarse cells. Surface that too few frames measured for
+  /// the mesh is never clear. An object needs enough clear surface. The rest of its surface, down to its
+  /// support, only has to be in the other map's free space.
   double clearance_m = 0.045;
   double clearance_voxels = 3.0;
   double min_area_m2 = 3.6e-3;  ///< min clear surface of an object: 6 x 6 cm
