@@ -584,7 +584,7 @@ TEST(Session, WhatIsTooLargeForAnyPlaceInViewIsRefusedInWords) {
   session.add_object("pot", shapes::box({85.0F, 90.0F, 120.0F}));
   const std::string fault = test::error_of([&] { apply(session, event(Action::kDrop)); });
   EXPECT_NE(fault.find("pot: reaches 61.9 m sideways"), std::string::npos) << fault;
-  EXPECT_NE(fault.find("Meshes are in metres"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("Make it smaller, in metres"), std::string::npos) << fault;
   // A rejected drop changes nothing.
   ScriptEvent carry = event(Action::kCarry);
   carry.position_world = Eigen::Vector3d(0, 0, 100);
