@@ -69,22 +69,6 @@ std::array<std::int16_t, 8> voxel_distances(const BlockOctree& tree, const LeafB
   return distances;
 }
 
-namespace {
-
-// Returns true if a surface passes through cell i or between the cell and a neighbour in its block.
-bool is_at_surface(const LeafBlock& coarse, unsigned i, const LeafBlock& voxels) {
-  const bool is_behind = coarse.distance[i] < 0;
-  for (const std::int16_t distance : voxels.distance)
-    if ((distance < 0) != is_behind) return true;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    const unsigned other = i ^ 1U << axis;
-    if (coarse.weight[other] != 0 && (coarse.distance[other] < 0) != is_behind) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
 Slot refined(BlockOctree& tree, Slot node) {
   const LeafBlock coarse = tree.leaves(node);
   InnerBlock children;
@@ -99,8 +83,8 @@ Slot refined(BlockOctree& tree, Slot node) {
       tree.colours(voxels).colours.fill(colour);
       voxels.coloured = 0xFFU;
     }
-    for (unsigned j = 0; j < 8 && !is_at_surface(coarse, i, voxels); ++j)
-      if (std::abs(voxels.distance[j]) > tree.voxel_band()) erase_sample(voxels, j);
+    for (unsigned j = 0; j < 8; ++j)
+      if (voxels.distance[j] > tree.voxel_band()) erase_sample(voxels, j);
     children.slots[i] = tree.prune(Slot(), voxels);
   }
   tree.free_leaves(node, coarse);

@@ -27,10 +27,10 @@ std::array<std::int16_t, 8> voxel_distances(const BlockOctree& tree, const LeafB
                                             const Sides& sides, unsigned i);
 
 /// Replaces a coarse leaf block by the voxels that it stands for. Each takes its cell's log-odds, weight and
-/// colour. Distances are interpolated within the block. Samples outside the truncation band of voxels are
-/// dropped unless they are next to a surface: the band of coarse cells is wider, and close frames would have
-/// to correct what is in it. On a surface seen obliquely, even the samples next to it are outside of the
-/// band. Returns the node's new state.
+/// colour. Distances are interpolated within the block. Samples in front of a surface and outside the
+/// truncation band of voxels are dropped: the band of coarse cells is wider, and close frames would have to
+/// correct what is in it. Those behind the surface are kept: on a surface seen obliquely, even the samples
+/// next to it are outside of the band. Returns the node's new state.
 Slot refined(BlockOctree& tree, Slot node);
 
 /// Returns true if a node at kCoarseDepth has no fine samples, so that its cells may be coarse: it is not an

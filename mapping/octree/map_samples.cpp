@@ -43,7 +43,7 @@ void visit_cell(const BlockOctree& tree, const NodePlace& place, const LeafBlock
 // block.
 struct Found {
   Eigen::Array3i key = Eigen::Array3i::Zero();
-  Slot node;
+  Slot node{};
   NodePlace place{};  // of the node
   const LeafBlock* block = nullptr;
   unsigned i = 0;
@@ -51,15 +51,22 @@ struct Found {
   [[nodiscard]] LogOdds log_odds() const { return block ? block->log_odds[i] : node.log_odds(); }
 };
 
+// Returns the deepest node that contains a voxel, down to max_depth, and sets its place.
+Slot node_at(const BlockOctree& tree, const Eigen::Array3i& key, unsigned max_depth, NodePlace& place) {
+  Slot node = tree.root;
+  for (place = {}; node.is_inner_block() && place.depth < max_depth;) {
+    const unsigned i = place.towards(key);
+    node = tree.inner(node).slots[i];
+    place = place.child(i);
+  }
+  return node;
+}
+
 Found find(const BlockOctree& tree, const Eigen::Vector3d& p_world) {
   const Eigen::Array3d voxel = (p_world / tree.resolution_m()).array().floor() + kKeyOrigin;
   if (!(voxel >= 0.0).all() || !(voxel <= 65535.0).all()) return {};
-  Found found{.key = voxel.cast<int>(), .node = tree.root};
-  while (found.node.is_inner_block()) {
-    const unsigned i = found.place.towards(found.key);
-    found.node = tree.inner(found.node).slots[i];
-    found.place = found.place.child(i);
-  }
+  Found found{.key = voxel.cast<int>()};
+  found.node = node_at(tree, found.key, kLeafDepth, found.place);
   if (!found.node.is_block()) return found;
   found.block = &tree.leaves(found.node);
   found.i = found.place.towards(found.key);
@@ -146,10 +153,8 @@ Sides sides_of(const BlockOctree& tree, const NodePlace& place) {
     Eigen::Array3i key = place.key;
     key[k / 2] += k % 2 == 0 ? -place.edge_voxels() : place.edge_voxels();
     if ((key < 0).any() || (key > 65535).any()) continue;
-    Slot node = tree.root;
     NodePlace at;
-    for (; node.is_inner_block() && at.depth < place.depth; at = at.child(at.towards(key)))
-      node = tree.inner(node).slots[at.towards(key)];
+    const Slot node = node_at(tree, key, place.depth, at);
     if (at.depth == place.depth) sides[k] = node;
   }
   return sides;

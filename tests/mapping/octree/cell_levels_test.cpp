@@ -16,6 +16,7 @@
 #include "tests/support/edge_counts.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/map_content.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::cell_levels_test {
@@ -23,7 +24,9 @@ namespace {
 
 using test::error_of;
 using test::exact_frame;
+using test::expect_equal;
 using test::looking_at;
+using test::samples_of;
 
 constexpr Intrinsics kCamera{160, 120, 145.0, 145.0, 79.5, 59.5};
 constexpr double kVoxel_m = 0.01;
@@ -45,11 +48,6 @@ void fuse(StaticMap& map, double x_m) {
   ASSERT_EQ(map.fuse(wall_from(x_m), camera_at(x_m)), FuseStatus::kFused);
 }
 
-std::vector<SurfaceSample> samples_of(const StaticMap& map) {
-  std::vector<SurfaceSample> samples;
-  map.visit_samples([&](const SurfaceSample& sample) { samples.push_back(sample); });
-  return samples;
-}
 double error_m(const SurfaceSample& sample) {
   return std::abs(static_cast<double>(sample.distance_m) - (kWall_m - (sample.voxel.x() + 0.5) * kVoxel_m));
 }
@@ -247,14 +245,7 @@ TEST(CellLevels, AMapOfBothSizesIsTheSameAfterAFile) {
   };
   EXPECT_EQ(bytes("a.ot"), bytes("b.ot"));
   EXPECT_EQ(read.counts().memory_bytes, map.counts().memory_bytes) << "coarse cells stay coarse";
-  const std::vector<SurfaceSample> before = samples_of(map), after = samples_of(read);
-  ASSERT_EQ(before.size(), after.size());
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    ASSERT_EQ(before[i].voxel, after[i].voxel);
-    ASSERT_EQ(before[i].distance_m, after[i].distance_m);
-    ASSERT_EQ(before[i].weight, after[i].weight);
-    ASSERT_EQ(before[i].occupancy, after[i].occupancy);
-  }
+  expect_equal(map, read);
   // The next frame changes both alike.
   StaticMap copy = StaticMap::read_ot(folder.path() / "a.ot");
   fuse(map, 0.1);

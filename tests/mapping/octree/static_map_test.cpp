@@ -14,6 +14,7 @@
 #include "mapping/types/system/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/map_content.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::static_map_test {
@@ -21,36 +22,15 @@ namespace {
 
 using test::error_of;
 using test::exact_frame;
+using test::expect_equal;
 using test::looking_at;
+using test::samples_of;
 
 constexpr Intrinsics kCamera{320, 240, 290.0, 290.0, 159.5, 119.5};
 const Eigen::Isometry3d kAtOrigin = looking_at({0, 0, 0}, {1, 0, 0});  // along +x
 
 Frame wall_at(double x_m) {
   return exact_frame(test::plane(Eigen::Vector3d::UnitX(), x_m), kCamera, kAtOrigin, Rgb{200, 100, 50});
-}
-
-std::vector<SurfaceSample> samples_of(const StaticMap& map) {
-  std::vector<SurfaceSample> samples;
-  map.visit_samples([&](const SurfaceSample& sample) { samples.push_back(sample); });
-  return samples;
-}
-
-void expect_equal(const StaticMap& a, const StaticMap& b) {
-  const std::vector<SurfaceSample> in_a = samples_of(a), in_b = samples_of(b);
-  ASSERT_EQ(in_a.size(), in_b.size());
-  for (std::size_t i = 0; i < in_a.size(); ++i) {
-    ASSERT_EQ(in_a[i].voxel, in_b[i].voxel);
-    ASSERT_EQ(in_a[i].distance_m, in_b[i].distance_m);
-    ASSERT_EQ(in_a[i].weight, in_b[i].weight);
-    ASSERT_EQ(in_a[i].colour, in_b[i].colour);
-    ASSERT_EQ(in_a[i].occupancy, in_b[i].occupancy);
-  }
-  const MapCounts counts_a = a.counts(), counts_b = b.counts();
-  EXPECT_EQ(counts_a.nodes, counts_b.nodes);
-  EXPECT_EQ(counts_a.free_leaves, counts_b.free_leaves);
-  EXPECT_EQ(counts_a.occupied_leaves, counts_b.occupied_leaves);
-  EXPECT_EQ(counts_a.memory_bytes, counts_b.memory_bytes);
 }
 
 TEST(StaticMap, BeforeAWallIsFreeTheWallOccupiedTheRestUnknown) {
