@@ -73,8 +73,9 @@ constexpr std::string_view kSources =
   kinect:N         a Kinect v1, numbered from 0. It continues until Ctrl-C is pressed once. kinect:0?depth=mm
                    and kinect:0?depth=registered let libfreenect convert or register the depth.
   sim:ROOM[?KEY=VALUE&...]
-                   a simulated Kinect in the room table, shelf, wall, random or board. Keys:
-                     seed=N      the camera's path, the noise, the furniture of `random` (1)
+                   a simulated Kinect in the room table, shelf, wall, random, flat (four
+                   rooms) or board. Keys:
+                     seed=N      the camera's path, the noise, the furniture of `random` and `flat` (1)
                      frames=N    number of frames (300)
                      rate=HZ     frames per second (30)
                      path=KIND   scan (round the room), view (looking at its focus), swing (a board) (scan)

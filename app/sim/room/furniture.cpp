@@ -50,27 +50,37 @@ void add(Room& room, const Isometry3d& T_world_piece, Solid solid_piece, const M
   room.materials.push_back(material);
 }
 
-void add_shell(Room& room, const Material& floor, const Material& wall, const Material& ceiling) {
+void add_shell(Room& room, const Material& floor, const Material& wall, const Material& ceiling,
+               unsigned doorways) {
   const Vector3d low = room.interior_min_world;
   const Vector3d high = room.interior_max_world;
   const Vector3d middle = 0.5 * (low + high);
   const Vector3d size = high - low;
-  constexpr double kThick_m = 0.1;
+  constexpr double kThick_m = kShellThickness_m;
   const Isometry3d world = Isometry3d::Identity();
   const Vector3d slab(size.x() + 2 * kThick_m, size.y() + 2 * kThick_m, kThick_m);
   add(room, world, box({middle.x(), middle.y(), low.z() - 0.5 * kThick_m}, slab), floor);
   add(room, world, box({middle.x(), middle.y(), high.z() + 0.5 * kThick_m}, slab), ceiling);
   // Each wall's frame has -y into the room, so patterns are upright and not mirrored.
-  const auto add_wall = [&](double x_m, double y_m, double yaw_rad, double length_m, std::uint32_t seed) {
+  const auto add_wall = [&](double x_m, double y_m, double yaw_rad, double length_m, unsigned number) {
     Material paint = wall;
-    paint.seed += seed;
+    paint.seed += number + 1;
     const Isometry3d T_world_wall = standing_at(x_m, y_m, low.z(), yaw_rad);
-    add(room, T_world_wall, box({0, 0.5 * kThick_m, 0.5 * size.z()}, {length_m, kThick_m, size.z()}), paint);
+    const auto add_part = [&](double from_x, double to_x, double from_z) {
+      add(room, T_world_wall,
+          box({0.5 * (from_x + to_x), 0.5 * kThick_m, 0.5 * (from_z + size.z())},
+              {to_x - from_x, kThick_m, size.z() - from_z}),
+          paint);
+    };
+    if ((doorways >> number & 1U) == 0) return add_part(-0.5 * length_m, 0.5 * length_m, 0.0);
+    add_part(-0.5 * length_m, -0.5 * kDoorwayWidth_m, 0.0);
+    add_part(-0.5 * kDoorwayWidth_m, 0.5 * kDoorwayWidth_m, kDoorwayHeight_m);
+    add_part(0.5 * kDoorwayWidth_m, 0.5 * length_m, 0.0);
   };
-  add_wall(middle.x(), high.y(), 0.0, size.x() + 2 * kThick_m, 1);
-  add_wall(middle.x(), low.y(), std::numbers::pi, size.x() + 2 * kThick_m, 2);
-  add_wall(low.x(), middle.y(), 0.5 * std::numbers::pi, size.y(), 3);
-  add_wall(high.x(), middle.y(), -0.5 * std::numbers::pi, size.y(), 4);
+  add_wall(middle.x(), high.y(), 0.0, size.x() + 2 * kThick_m, 0);
+  add_wall(middle.x(), low.y(), std::numbers::pi, size.x() + 2 * kThick_m, 1);
+  add_wall(low.x(), middle.y(), 0.5 * std::numbers::pi, size.y(), 2);
+  add_wall(high.x(), middle.y(), -0.5 * std::numbers::pi, size.y(), 3);
 }
 
 void add_picture(Room& room, const Isometry3d& T_world_picture, double width_m, double height_m,

@@ -13,9 +13,14 @@ Eigen::Isometry3d standing_at(double x_m, double y_m, double z_m, double yaw_rad
 /// Adds a solid whose pose is given in the frame of a piece of furniture.
 void add(Room& room, const Eigen::Isometry3d& T_world_piece, Solid solid_piece, const Material& material);
 
-/// Adds floor, ceiling, four walls and skirting boards around the room's interior. Floor, ceiling and walls
-/// are 10 cm thick.
-void add_shell(Room& room, const Material& floor, const Material& wall, const Material& ceiling);
+/// Size of a doorway, m.
+inline constexpr double kDoorwayWidth_m = 1.3, kDoorwayHeight_m = 2.1;
+/// Thickness of floor, ceiling and walls, m.
+inline constexpr double kShellThickness_m = 0.1;
+/// Adds floor, ceiling and four walls around the room's interior.
+/// @param doorways  bit i: wall i has a doorway in its middle; walls 0 to 3 are at +y, -y, -x and +x
+void add_shell(Room& room, const Material& floor, const Material& wall, const Material& ceiling,
+               unsigned doorways = 0);
 
 /// Adds a thin framed picture to a wall. The origin of T_world_picture is the centre of the picture's back; x
 /// points to the viewer's right, z up, and -y into the room.

@@ -22,6 +22,12 @@ struct Lamp {
   double radius_m = 0.2;
 };
 
+/// A point of a walk through several rooms.
+struct WalkPoint {
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< x and y in the world
+  double yaw_rad = 0.0;  ///< azimuth of the view, counter-clockwise from +x; not wrapped along the walk
+};
+
 /// A simulated room. z is up, the floor is at z = 0, units are metres. Solids may touch but not overlap. The
 /// room's surface is the solids' surfaces without the areas where two solids touch. Solids must not change
 /// after make_room().
@@ -45,6 +51,11 @@ struct Room {
   Eigen::Vector3d walk_centre_world = Eigen::Vector3d::Zero();
   /// Semi-axes of the ellipse along x and y, m.
   Eigen::Vector2d walk_half_m = Eigen::Vector2d::Ones();
+  /// Control points, about 0.7 m apart, of a closed walk through several rooms, which replaces the ellipse.
+  /// Empty: the ellipse.
+  std::vector<WalkPoint> walk;
+  /// Number of full turns of the view on the closed walk.
+  int walk_turns = 0;
   /// Surface point at which a ball's path begins.
   Eigen::Vector3d ball_from_world = Eigen::Vector3d::Zero();
   /// Surface point at which a ball's path ends.
@@ -61,11 +72,14 @@ const std::vector<std::string>& room_names();
 inline constexpr std::string_view kRandomRoom = "random";
 /// Another name for make_room(): a room with a checkerboard on a stand, for camera calibration.
 inline constexpr std::string_view kBoardRoom = "board";
+/// Another name for make_room(): a flat of four rooms in a ring, with doorways between them and furniture
+/// drawn at random from the seed.
+inline constexpr std::string_view kFlat = "flat";
 /// Throws Error listing the known names if `name` is none of them.
 void require_room(std::string_view name);
 /// Makes the room of this name.
 /// @param crate  true: adds a crate on the ball's path
-/// @param seed   selects the furniture of kRandomRoom; other rooms do not depend on it
+/// @param seed   selects the furniture of kRandomRoom and kFlat; other rooms do not depend on it
 /// @throws Error listing the known names if `name` is none of them
 Room make_room(std::string_view name, bool crate = false, std::uint64_t seed = 1);
 

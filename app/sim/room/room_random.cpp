@@ -180,22 +180,37 @@ void furnish_wall(Furnishing& f, int wall) {
   }
 }
 
+void keep_doorways_free(Furnishing& f, const Vector3d& half, unsigned doorways) {
+  constexpr double kDeep_m = 1.0, kAside_m = 0.1;
+  const std::array<Vector3d, 4> outwards{Vector3d::UnitY(), -Vector3d::UnitY(), -Vector3d::UnitX(),
+                                         Vector3d::UnitX()};
+  for (unsigned wall = 0; wall < 4; ++wall) {
+    if ((doorways >> wall & 1U) == 0) continue;
+    const Vector3d out = outwards[wall], aside = Vector3d(out.y(), out.x(), 0.0).cwiseAbs();
+    const double away_m = std::abs(out.dot(half)) - 0.5 * kDeep_m;
+    const Vector3d size = kDeep_m * out.cwiseAbs() + (kDoorwayWidth_m + 2.0 * kAside_m) * aside;
+    f.kept_free.push_back(box(away_m * out + Vector3d(0, 0, 1.0), size + Vector3d(0, 0, 1.99)));
+  }
+}
+
 }  // namespace
 
 // Every random value is drawn into a variable of its own statement: the evaluation order of function
 // arguments depends on the compiler.
-Room make_random_room(std::uint64_t seed) {
+Room make_random_room(std::uint64_t seed, const RandomRoomShape& shape) {
   Furnishing f{{}, {}, CounterRandom(seed, 0x726f6f6d)};
   Room& room = f.room;
   room.name = kRandomRoom;
   const double half_y = f.random.uniform(2.3, 2.8), half_x = f.random.uniform(2.5, 3.2);
-  const Vector3d half(half_x, half_y, 0.0);
+  const Eigen::Vector2d size = shape.half_m.value_or(Eigen::Vector2d(half_x, half_y));
+  const Vector3d half(size.x(), size.y(), 0.0);
   room.interior_min_world = -half;
   room.interior_max_world = half + Vector3d(0, 0, f.random.uniform(2.4, 2.8));
   const std::array floors{Pattern::kPlanks, Pattern::kTiles, Pattern::kStone};
   const Material ceiling = f.material(Pattern::kPlaster, 0.7), walls = f.material(Pattern::kPlaster, 0.6),
                  floor = f.material(floors[static_cast<std::size_t>(3.0 * f.random.uniform())]);
-  add_shell(room, floor, walls, ceiling);
+  add_shell(room, floor, walls, ceiling, shape.doorways);
+  keep_doorways_free(f, half, shape.doorways);
 
   room.walk_centre_world = {0.0, 0.0, 1.5};
   room.walk_half_m = {half.x() - 1.05, half.y() - 1.0};

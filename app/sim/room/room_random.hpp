@@ -1,12 +1,21 @@
 // room_random.hpp: a room of random size and furniture.
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
 #include "app/sim/room/room.hpp"
 
 namespace roomradar {
 
-/// Makes a room with a random arrangement of furniture, determined by the seed.
-Room make_random_room(std::uint64_t seed);
+/// What is not drawn at random in a random room.
+struct RandomRoomShape {
+  std::optional<Eigen::Vector2d> half_m;  ///< half the size of the interior along x and y; unset: random
+  unsigned doorways = 0;                  ///< walls with a doorway, as in add_shell()
+};
+
+/// Makes a room with a random arrangement of furniture, determined by the seed. The room's middle is at x = y
+/// = 0. The floor in front of doorways is free.
+Room make_random_room(std::uint64_t seed, const RandomRoomShape& shape = {});
 
 }  // namespace roomradar

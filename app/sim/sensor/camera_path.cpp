@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "app/sim/solids/angles.hpp"
 #include "mapping/types/system/counter_random.hpp"
@@ -42,6 +43,33 @@ double loop_time_s(double length_m, double duration_s) {
   return speed_m_s <= kFastest_m_s ? duration_s / rounds : length_m / kSpeed_m_s;
 }
 
+/// Returns the point of the walk at `phase_rad`, where a full turn is the whole walk.
+WalkPoint walk_at(const CameraPath& path, double phase_rad) {
+  const auto count = static_cast<std::int64_t>(path.walk.size());
+  const double steps = phase_rad / kFullTurn_rad * static_cast<double>(count);
+  const double first = std::floor(steps), t = steps - first;
+  const std::array<double, 4> weights{
+      (1.0 - t) * (1.0 - t) * (1.0 - t) / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
+      (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) / 6.0, t * t * t / 6.0};
+  WalkPoint point;
+  for (std::int64_t i = 0; i < 4; ++i) {
+    const std::int64_t at = static_cast<std::int64_t>(first) + i - 1;
+    const std::int64_t round = at >= 0 ? at / count : (at + 1) / count - 1;
+    const WalkPoint& control = path.walk[static_cast<std::size_t>(at - round * count)];
+    const double turned_rad = kFullTurn_rad * static_cast<double>(round * path.walk_turns);
+    point.position_m += weights[static_cast<std::size_t>(i)] * control.position_m;
+    point.yaw_rad += weights[static_cast<std::size_t>(i)] * (control.yaw_rad + turned_rad);
+  }
+  return point;
+}
+
+double walk_length_m(const std::vector<WalkPoint>& walk) {
+  double length_m = 0.0;
+  for (std::size_t i = 0; i < walk.size(); ++i)
+    length_m += (walk[(i + 1) % walk.size()].position_m - walk[i].position_m).norm();
+  return length_m;
+}
+
 CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, std::uint64_t draw,
                      double duration_s) {
   CounterRandom random(hash_of(seed, 0x70617468), draw);
@@ -56,8 +84,10 @@ CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, 
     path.centre_world = room.walk_centre_world + Vector3d(0, 0, random.uniform(-0.05, 0.1));
     path.half_m = room.walk_half_m * random.uniform(0.92, 1.0);
     path.start_rad = random.uniform(0.0, kFullTurn_rad);
-    path.loop_s =
-        loop_time_s(ellipse_length_m(path.half_m), duration_s) * (random.uniform() < 0.5 ? -1.0 : 1.0);
+    path.walk = room.walk;
+    path.walk_turns = room.walk_turns;
+    const double length_m = path.walk.empty() ? ellipse_length_m(path.half_m) : walk_length_m(path.walk);
+    path.loop_s = loop_time_s(length_m, duration_s) * (random.uniform() < 0.5 ? -1.0 : 1.0);
     path.target_world = {room.walk_centre_world.x(), room.walk_centre_world.y(), 0.8};
     path.target_sway = {sway(0.35, 0.07, 0.09), sway(0.3, 0.06, 0.08), sway(0.4, 0.09, 0.11)};
     for (std::size_t axis = 0; axis < 2; ++axis)
@@ -145,6 +175,13 @@ Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s) {
   Vector3d position_world =
       path.centre_world + Vector3d(a * std::cos(angle_rad), b * std::sin(angle_rad), 0.0);
   Vector3d target_world = path.target_world;
+  if (!path.walk.empty()) {
+    constexpr double kAhead_m = 1.5;
+    const WalkPoint walker = walk_at(path, phase_rad);
+    position_world.head<2>() = walker.position_m;
+    target_world.head<2>() =
+        walker.position_m + kAhead_m * Eigen::Vector2d(std::cos(walker.yaw_rad), std::sin(walker.yaw_rad));
+  }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     position_world[static_cast<Eigen::Index>(axis)] += at(path.position_sway[axis], t_s);
     target_world[static_cast<Eigen::Index>(axis)] += at(path.target_sway[axis], t_s);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/sim_options.hpp"
@@ -28,7 +29,12 @@ struct CameraPath {
   double start_rad = 0.0;
   /// Time per round of the ellipse; negative for clockwise motion.
   double loop_s = 1.0;
-  /// Point at which the camera looks.
+  /// Closed walk through several rooms, which replaces the ellipse; see Room::walk. A uniform cubic B-spline
+  /// with these control points. `start_rad` and `loop_s` apply to it as to an ellipse.
+  std::vector<WalkPoint> walk;
+  /// Number of full turns of the view on the closed walk.
+  int walk_turns = 0;
+  /// Point at which the camera looks. On a walk, that point is 1.5 m ahead of the camera, at this height.
   Eigen::Vector3d target_world = Eigen::Vector3d::Zero();
   /// Sway of the position, m. First index: world axis x, y or z. Second index: terms of the sum.
   std::array<std::array<Sway, 3>, 3> position_sway{};

@@ -119,6 +119,33 @@ TEST(SimRandomRoom, SolidsDoNotOverlapAndThereIsRoomToWalkAndScan) {
   EXPECT_EQ(make_room(kRandomRoom, false, 3).solids.size(), make_room(kRandomRoom, false, 3).solids.size());
 }
 
+// The walk comes back to where it began, with the view, through all four rooms.
+TEST(SimFlat, SolidsDoNotOverlapAndTheWalkGoesThroughAllRoomsClearOfThem) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(seed);
+    const Room flat = make_room(kFlat, /*crate=*/false, seed);
+    const Mesh mesh = room_mesh(flat);
+    for (const Eigen::Vector3f& vertex : mesh.vertices)
+      ASSERT_GT(signed_distance_m(flat, mesh.origin + vertex.cast<double>()), -1e-6);
+    constexpr double kRound_s = 180.0;
+    const CameraPath path = plan_camera_path(flat, CameraPathKind::kScan, seed, kRound_s);
+    constexpr double kStep_s = 0.05;
+    unsigned rooms = 0;
+    for (double t_s = 0.0; t_s < kRound_s; t_s += kStep_s) {
+      const Eigen::Isometry3d a = T_world_camera_at(path, t_s), b = T_world_camera_at(path, t_s + kStep_s);
+      ASSERT_GT(signed_distance_m(flat, a.translation()), 0.4) << t_s;
+      ASSERT_LT((b.translation() - a.translation()).norm(), 0.6 * kStep_s) << t_s;
+      const double turn_deg = Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() * 57.2958;
+      EXPECT_LT(turn_deg, 45.0 * kStep_s) << t_s;
+      rooms |= 1U << ((a.translation().x() > 0.0 ? 1 : 0) + (a.translation().y() > 0.0 ? 2 : 0));
+    }
+    EXPECT_EQ(rooms, 0b1111U);
+    EXPECT_LT(
+        (T_world_camera_at(path, 0.0).translation() - T_world_camera_at(path, kRound_s).translation()).norm(),
+        0.4);
+  }
+}
+
 TEST(SimRoomNames, AnUnknownNameIsRefusedWithTheKnownOnes) {
   try {
     make_room("attic");

@@ -1,0 +1,13 @@
+// room_flat.hpp: a flat of four rooms.
+#pragma once
+#include <cstdint>
+
+#include "app/sim/room/room.hpp"
+
+namespace roomradar {
+
+/// Makes a flat of four random rooms in a ring, with a doorway between each two neighbours. The walk goes
+/// along most of an ellipse in each room, facing its middle, and through the doorways.
+Room make_flat(std::uint64_t seed);
+
+}  // namespace roomradar
