@@ -128,17 +128,16 @@ Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, 
   return tree.prune(node, block);
 }
 
-// Visits the samples of the subtree that are in the range.
+// Calls visit(place, block, sides, i) for the cells of the subtree that have a sample and a voxel in the
+// range.
+template <typename Visit>
 void visit_in(const BlockOctree& tree, Slot node, const Sides& sides, const NodePlace& place,
-              const KeyRange& range, const std::function<void(const SurfaceSample&)>& visit) {
+              const KeyRange& range, const Visit& visit) {
   if (!node.is_block() || !range.meets(place)) return;
   if (node.is_leaf_block()) {
     const LeafBlock& block = tree.leaves(node);
     for (unsigned i = 0; i < 8; ++i)
-      if (block.weight[i] != 0)
-        visit_cell(tree, place, block, sides, i, [&](const SurfaceSample& sample) {
-          if (range.holds(sample.voxel.array() + kKeyOrigin)) visit(sample);
-        });
+      if (block.weight[i] != 0 && range.meets(place.child(i))) visit(place, block, sides, i);
     return;
   }
   const InnerBlock& block = tree.inner(node);
@@ -319,7 +318,22 @@ std::optional<SurfaceSample> sample_at(const BlockOctree& tree, const Eigen::Vec
 
 void visit_samples(const BlockOctree& tree, const KeyRange& range,
                    const std::function<void(const SurfaceSample&)>& visit) {
-  visit_in(tree, tree.root, {}, {}, range, visit);
+  const auto in_range = [&](const SurfaceSample& sample) {
+    if (range.holds(sample.voxel.array() + kKeyOrigin)) visit(sample);
+  };
+  visit_in(tree, tree.root, {}, {}, range,
+           [&](const NodePlace& place, const LeafBlock& block, const Sides& sides, unsigned i) {
+             visit_cell(tree, place, block, sides, i, in_range);
+           });
+}
+
+void visit_cells(const BlockOctree& tree, const KeyRange& range,
+                 const std::function<void(const SurfaceSample&, int)>& visit) {
+  visit_in(tree, tree.root, {}, {}, range,
+           [&](const NodePlace& place, const LeafBlock& block, const Sides&, unsigned i) {
+             const NodePlace cell = place.child(i);
+             visit(sample_of(tree, block, i, cell.key, block.distance[i]), cell.edge_voxels());
+           });
 }
 
 void revise_samples(BlockOctree& tree, const FusionConfig& config, const KeyRange& range,

@@ -15,6 +15,8 @@ Occupancy occupancy_at(const BlockOctree& tree, const Eigen::Vector3d& p_world);
 std::optional<SurfaceSample> sample_at(const BlockOctree& tree, const Eigen::Vector3d& p_world);
 void visit_samples(const BlockOctree& tree, const KeyRange& range,
                    const std::function<void(const SurfaceSample&)>& visit);
+void visit_cells(const BlockOctree& tree, const KeyRange& range,
+                 const std::function<void(const SurfaceSample&, int)>& visit);
 
 /// Refines coarse cells in which an action other than kKeep is returned for a voxel.
 void revise_samples(BlockOctree& tree, const FusionConfig& config, const KeyRange& range,

@@ -78,6 +78,11 @@ void StaticMap::visit_samples(const Eigen::AlignedBox3d& box_world,
   roomradar::visit_samples(octree_->tree, keys_in(box_world, resolution_m()), visit);
 }
 
+void StaticMap::visit_cells(const Eigen::AlignedBox3d& box_world,
+                            const std::function<void(const SurfaceSample&, int)>& visit) const {
+  roomradar::visit_cells(octree_->tree, keys_in(box_world, resolution_m()), visit);
+}
+
 void StaticMap::visit_leaves(const std::function<void(const MapLeaf&)>& visit) const {
   const BlockOctree& tree = octree_->tree;
   for_each_leaf(tree, [&](const NodePlace& place, LogOdds log_odds) {

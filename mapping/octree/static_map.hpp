@@ -94,6 +94,12 @@ class StaticMap {
   void visit_samples(const Eigen::AlignedBox3d& box_world,
                      const std::function<void(const SurfaceSample&)>& visit) const;
 
+  /// Calls visit(sample, edge_voxels) for each cell with a signed distance that has a voxel in the box, in
+  /// Morton order. The edge of a cell is 1 or 2 voxels. The sample's voxel is the cell's lowest, its distance
+  /// that of the cell's centre.
+  void visit_cells(const Eigen::AlignedBox3d& box_world,
+                   const std::function<void(const SurfaceSample&, int)>& visit) const;
+
   /// Calls `visit` for each free or occupied leaf, at its stored size, in Morton order (deterministic).
   void visit_leaves(const std::function<void(const MapLeaf&)>& visit) const;
 

@@ -47,6 +47,14 @@ TsdfBricks::TsdfBricks(const VisitSamples& visit_samples, float min_weight) {
   });
 }
 
+TsdfBricks::TsdfBricks(const std::vector<VoxelIndex>& firsts) : bricks_(firsts.size()) {
+  by_code_.reserve(firsts.size());
+  for (std::size_t b = 0; b < firsts.size(); ++b) {
+    bricks_[b].first = firsts[b];
+    by_code_.emplace(voxel_key(firsts[b]), b);
+  }
+}
+
 std::size_t TsdfBricks::find(const VoxelIndex& first) const {
   const auto found = by_code_.find(voxel_key(first));
   return found == by_code_.end() ? kNone : found->second;

@@ -19,6 +19,7 @@ struct TsdfSample {
   Rgb colour;
   bool has_colour : 1 = false;
   bool extrapolated : 1 = false;  ///< extrapolated from neighbouring samples, not measured
+  bool mirrored : 1 = false;      ///< the place belongs to another grid of bricks; see tsdf_levels.hpp
 
   [[nodiscard]] bool known() const { return weight > 0.0F; }
 };
@@ -38,6 +39,8 @@ class TsdfBricks {
   TsdfBricks(const StaticMap& map, float min_weight);
   /// Uses only samples whose voxel centre is in the box.
   TsdfBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world);
+  /// Bricks of unknown samples, with these lowest voxels. None may repeat.
+  explicit TsdfBricks(const std::vector<VoxelIndex>& firsts);
 
   [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
   /// Returns the bricks. Callers may change samples, but must not add, remove or move bricks.

@@ -1,12 +1,14 @@
-// dual_marching_cubes.cpp: dual marching cubes over bricks of samples.
+// dual_marching_cubes.cpp: dual marching cubes over bricks of samples, in one grid or two.
 #include "mapping/surface/dual_marching_cubes.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <utility>
 #include <vector>
+
+#include "mapping/surface/cell_sheets.hpp"
 
 namespace roomradar {
 namespace {
@@ -16,95 +18,11 @@ constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
 // measured crossing get distinct vertices along the surface.
 constexpr float kOfGuess = 0.05F;
 
-// Corner i of a cell is at its lowest voxel + (bit 0, bit 1, bit 2); edge 4 a + k runs along axis a.
-constexpr std::array<std::array<unsigned, 2>, 12> kCellEdges{
-    {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
-
-unsigned edge_between(unsigned a, unsigned b) {
-  for (unsigned e = 0; e < kCellEdges.size(); ++e)
-    if (kCellEdges[e] == std::array{a, b} || kCellEdges[e] == std::array{b, a}) return e;
-  return 12;
-}
-
-// The four corners of a face, in cyclic order. Face 2 a + s is side s of axis a.
-std::array<unsigned, 4> face_corners(unsigned face) {
-  const unsigned axis = face / 2;
-  const unsigned second = 1U << (axis + 1) % 3;
-  const unsigned third = 1U << (axis + 2) % 3;
-  const unsigned base = (face & 1U) << axis;
-  return {base, base | second, base | second | third, base | third};
-}
-
-bool is_inside(unsigned signs, unsigned corner) { return (signs >> corner & 1U) != 0; }
-
-// Maps each crossed edge of a cell to its surface sheet.
-struct Sheets {
-  std::array<std::uint8_t, 12> of_edge{};
-  int count = 0;
-  unsigned joined_faces = 0;  // bit mask: ambiguous faces whose four crossings are one sheet
+// The eight samples of a dual cell. A mirrored corner of the voxels' grid has the sample of its coarse cell.
+struct CellCorners {
+  std::array<const TsdfSample*, 8> samples;
+  std::array<Eigen::Vector3f, 8> positions;  // in the cell, 0..1; those of coarse samples are beside it
 };
-
-// @param signs  bit i: corner i is inside
-// @param outsides_parted  bit mask of faces that, if ambiguous, separate their outside corners
-Sheets sheets_of(unsigned signs, unsigned outsides_parted) {
-  std::array<unsigned, 12> parent{};
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](unsigned e) {
-    while (parent[e] != e) e = parent[e];
-    return e;
-  };
-  const auto is_diagonal = [&](const std::array<unsigned, 4>& c) {
-    return is_inside(signs, c[0]) != is_inside(signs, c[1]) &&
-           is_inside(signs, c[0]) == is_inside(signs, c[2]) &&
-           is_inside(signs, c[1]) == is_inside(signs, c[3]);
-  };
-  for (unsigned face = 0; face < 6; ++face) {
-    const std::array<unsigned, 4> corner = face_corners(face);
-    const auto edge = [&](unsigned i) { return edge_between(corner[i % 4], corner[(i + 1) % 4]); };
-    if (is_diagonal(corner)) {
-      const bool part_inside = (outsides_parted >> face & 1U) == 0;
-      for (unsigned i = 0; i < 4; ++i)
-        if (is_inside(signs, corner[i]) == part_inside) parent[root(edge(i + 3))] = root(edge(i));
-    } else {
-      unsigned first = 12;
-      for (unsigned i = 0; i < 4; ++i) {
-        if (is_inside(signs, corner[i]) == is_inside(signs, corner[(i + 1) % 4])) continue;
-        if (first == 12) first = edge(i);
-        parent[root(edge(i))] = root(first);
-      }
-    }
-  }
-  Sheets sheets;
-  std::array<int, 12> number{};
-  number.fill(-1);
-  for (unsigned e = 0; e < 12; ++e) {
-    if (is_inside(signs, kCellEdges[e][0]) == is_inside(signs, kCellEdges[e][1])) continue;
-    int& own = number[root(e)];
-    if (own < 0) own = sheets.count++;
-    sheets.of_edge[e] = static_cast<std::uint8_t>(own);
-  }
-  for (unsigned face = 0; face < 6; ++face) {
-    const std::array<unsigned, 4> corner = face_corners(face);
-    if (!is_diagonal(corner)) continue;
-    bool joined = true;
-    for (unsigned i = 0; i < 4; ++i)
-      joined &=
-          root(edge_between(corner[i], corner[(i + 1) % 4])) == root(edge_between(corner[0], corner[1]));
-    if (joined) sheets.joined_faces |= 1U << face;
-  }
-  return sheets;
-}
-
-const std::array<Sheets, 256>& sheet_table() {
-  static const std::array<Sheets, 256> table = [] {
-    std::array<Sheets, 256> made;
-    for (unsigned signs = 0; signs < 256; ++signs) made[signs] = sheets_of(signs, 0);
-    return made;
-  }();
-  return table;
-}
-
-using CellCorners = std::array<const TsdfSample*, 8>;
 
 Eigen::Vector3f corner_position(unsigned corner) {
   return {static_cast<float>(corner & 1U), static_cast<float>(corner >> 1U & 1U),
@@ -112,7 +30,7 @@ Eigen::Vector3f corner_position(unsigned corner) {
 }
 
 // Unit gradient of the trilinear distance at a position in the cell (0..1).
-Eigen::Vector3f normal_at(const CellCorners& corners, const Eigen::Vector3f& position) {
+Eigen::Vector3f normal_at(const std::array<const TsdfSample*, 8>& corners, const Eigen::Vector3f& position) {
   Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
   for (unsigned corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3f towards = corner_position(corner);
@@ -142,12 +60,12 @@ SheetVertex place_vertex(const CellCorners& corners, const Sheets& sheets, int s
   float crossings = 0.0F;
   for (unsigned e = 0; e < 12; ++e) {
     const auto [a, b] = kCellEdges[e];
-    const TsdfSample& from = *corners[a];
-    const TsdfSample& to = *corners[b];
+    const TsdfSample& from = *corners.samples[a];
+    const TsdfSample& to = *corners.samples[b];
     if ((from.distance_m < 0.0F) == (to.distance_m < 0.0F) || sheets.of_edge[e] != sheet) continue;
     const float weight = is_measured_crossing(from, to) ? 1.0F : kOfGuess;
     const float t = from.distance_m / (from.distance_m - to.distance_m);
-    vertex.position += weight * (corner_position(a) + t * (corner_position(b) - corner_position(a)));
+    vertex.position += weight * (corners.positions[a] + t * (corners.positions[b] - corners.positions[a]));
     crossings += weight;
     for (const auto& [sample, share] : {std::pair{&from, 1.0F - t}, std::pair{&to, t}}) {
       if (!sample->has_colour) continue;
@@ -166,68 +84,104 @@ SheetVertex place_vertex(const CellCorners& corners, const Sheets& sheets, int s
 
 class Net {
  public:
-  Net(const TsdfBricks& bricks, double resolution_m)
-      : bricks_(bricks), resolution_m_(resolution_m), cells_(bricks.bricks().size()) {
-    if (bricks.bricks().empty()) return;
-    mesh_.origin = bricks.bricks().front().first.cast<double>() * resolution_m;
-    for (std::size_t b = 0; b < cells_.size(); ++b) find_signs(b);
+  Net(const TsdfBricks& voxels, const TsdfBricks& coarse, double resolution_m)
+      : grids_{Grid{voxels, 1, {}}, Grid{coarse, kCoarseEdge, {}}}, resolution_m_(resolution_m) {
+    for (Grid& grid : grids_) grid.cells.resize(grid.bricks.bricks().size());
+    for (const Grid& grid : grids_)
+      if (!grid.cells.empty()) {
+        mesh_.origin = grid.edge * grid.bricks.bricks().front().first.cast<double>() * resolution_m;
+        break;
+      }
+    for_each_brick([this](Grid& grid, std::size_t b) { find_signs(grid, b); });
     reserve();
-    for (std::size_t b = 0; b < cells_.size(); ++b) place_vertices(b);
-    for (std::size_t b = 0; b < cells_.size(); ++b) span_quads(b);
+    for_each_brick([this](Grid& grid, std::size_t b) { place_vertices(grid, b); });
+    for_each_brick([this](Grid& grid, std::size_t b) { span_polygons(grid, b); });
   }
   Mesh take() { return std::move(mesh_); }
 
  private:
-  // The cells whose lowest voxel is in one brick.
+  // The dual cells whose lowest sample is in one brick.
   struct BrickCells {
     std::array<std::uint8_t, kBrickSize> signs{};    // 0: not crossed, or a corner is unknown
     std::array<std::uint16_t, kBrickSize> vertex{};  // the cell's first vertex, relative to first_vertex
     std::uint32_t first_vertex = 0;
     [[nodiscard]] std::uint32_t first_of(std::size_t offset) const { return first_vertex + vertex[offset]; }
   };
-  // Samples (or cells) of a brick plus one voxel on one side of each axis.
+  struct Grid {
+    const TsdfBricks& bricks;
+    int edge;                       // of its cells, in voxels
+    std::vector<BrickCells> cells;  // one per brick
+  };
+  // A sample of the window around a brick. `value` and `near` differ for a mirrored voxel: `value` is its
+  // coarse cell's sample, `near` the distance interpolated at the voxel.
+  struct WindowSample {
+    const TsdfSample* value = nullptr;  // null: unknown
+    const TsdfSample* near = nullptr;
+    bool mirrored = false;
+  };
+  // Samples of a brick plus one on the upper side of each axis.
   static constexpr int kWindow = kBrickEdge + 1;
-  using SampleWindow = std::array<const TsdfSample*, kWindow * kWindow * kWindow>;
 
-  static std::size_t in_window(int x, int y, int z) {
-    return static_cast<std::size_t>((z * kWindow + y) * kWindow + x);
+  static std::size_t in_window(const Eigen::Vector3i& at) {
+    return static_cast<std::size_t>((at.z() * kWindow + at.y()) * kWindow + at.x());
   }
   template <typename Visit>
-  static void for_each_voxel(const Visit& visit) {
+  static void for_each_cell(const Visit& visit) {
     for (int z = 0; z < kBrickEdge; ++z)
       for (int y = 0; y < kBrickEdge; ++y)
-        for (int x = 0; x < kBrickEdge; ++x) visit(x, y, z);
+        for (int x = 0; x < kBrickEdge; ++x) visit(Eigen::Vector3i(x, y, z));
   }
+  template <typename Visit>
+  void for_each_brick(const Visit& visit) {
+    for (Grid& grid : grids_)
+      for (std::size_t b = 0; b < grid.cells.size(); ++b) visit(grid, b);
+  }
+  [[nodiscard]] bool is_of_voxels(const Grid& grid) const { return &grid == &grids_.front(); }
 
-  // Collects the brick's samples and those one voxel beyond its upper sides; null if unknown.
-  void fill_window(std::size_t b, SampleWindow& window) const {
-    const BrickNeighbourhood around(bricks_, b);
+  void fill_window(const Grid& grid, std::size_t b) {
+    const BrickNeighbourhood around(grid.bricks, b);
+    const VoxelIndex& first = grid.bricks.bricks()[b].first;
     for (int z = 0; z < kWindow; ++z)
       for (int y = 0; y < kWindow; ++y)
         for (int x = 0; x < kWindow; ++x) {
-          const auto [brick, offset] = around.place({x, y, z});
+          const Eigen::Vector3i at(x, y, z);
+          const auto [brick, offset] = around.place(at);
           const TsdfSample* sample =
-              brick == TsdfBricks::kNone ? nullptr : &bricks_.bricks()[brick].samples[offset];
-          window[in_window(x, y, z)] = sample && sample->known() ? sample : nullptr;
+              brick == TsdfBricks::kNone ? nullptr : &grid.bricks.bricks()[brick].samples[offset];
+          WindowSample& own = window_[in_window(at)];
+          own = {};
+          if (!sample || !sample->known()) continue;
+          own = {sample, sample, sample->mirrored};
+          if (!sample->mirrored || !is_of_voxels(grid)) continue;
+          const VoxelIndex coarse = (first + at).unaryExpr([](int v) { return v >> 1; });
+          static_assert(kCoarseEdge == 2);
+          own.value = sample_in(grids_.back().bricks, coarse);
         }
   }
-  static bool corners_of(const SampleWindow& window, int x, int y, int z, CellCorners& corners) {
+
+  // Returns whether the cell exists in this grid: in the voxels' if it has a corner that belongs to them, in
+  // the coarse cells' if all its corners belong to those. All its samples must be known.
+  [[nodiscard]] bool is_cell(const Grid& grid, const Eigen::Vector3i& at) const {
+    unsigned mirrored = 0;
     for (unsigned i = 0; i < 8; ++i) {
-      corners[i] = window[in_window(x + static_cast<int>(i & 1U), y + static_cast<int>(i >> 1U & 1U),
-                                    z + static_cast<int>(i >> 2U & 1U))];
-      if (!corners[i]) return false;
+      const WindowSample& sample = window_[in_window(at + corner_offset(i))];
+      if (!sample.value) return false;
+      mirrored += sample.mirrored ? 1U : 0U;
     }
-    return true;
+    return is_of_voxels(grid) ? mirrored < 8 : mirrored == 0;
+  }
+  static Eigen::Vector3i corner_offset(unsigned i) {
+    return {static_cast<int>(i & 1U), static_cast<int>(i >> 1U & 1U), static_cast<int>(i >> 2U & 1U)};
   }
 
-  void find_signs(std::size_t b) {
-    fill_window(b, window_);
-    for_each_voxel([&](int x, int y, int z) {
-      CellCorners corners;
-      if (!corners_of(window_, x, y, z, corners)) return;
+  void find_signs(Grid& grid, std::size_t b) {
+    fill_window(grid, b);
+    for_each_cell([&](const Eigen::Vector3i& at) {
+      if (!is_cell(grid, at)) return;
       unsigned signs = 0;
-      for (unsigned i = 0; i < 8; ++i) signs |= (corners[i]->distance_m < 0.0F ? 1U : 0U) << i;
-      cells_[b].signs[brick_offset({x, y, z})] = static_cast<std::uint8_t>(signs == 255 ? 0 : signs);
+      for (unsigned i = 0; i < 8; ++i)
+        signs |= (window_[in_window(at + corner_offset(i))].value->distance_m < 0.0F ? 1U : 0U) << i;
+      grid.cells[b].signs[brick_offset(at)] = static_cast<std::uint8_t>(signs == 255 ? 0 : signs);
     });
   }
 
@@ -235,124 +189,168 @@ class Net {
   // hold its content twice.
   void reserve() {
     std::size_t crossed = 0;
-    for (const BrickCells& brick : cells_)
-      crossed += kBrickSize - static_cast<std::size_t>(std::count(brick.signs.begin(), brick.signs.end(), 0));
+    for (const Grid& grid : grids_)
+      for (const BrickCells& brick : grid.cells)
+        crossed +=
+            kBrickSize - static_cast<std::size_t>(std::count(brick.signs.begin(), brick.signs.end(), 0));
     mesh_.vertices.reserve(crossed);
     mesh_.normals.reserve(crossed);
     mesh_.colours.reserve(crossed);
     mesh_.triangles.reserve(2 * crossed);
   }
 
-  [[nodiscard]] unsigned signs_at(const BrickNeighbourhood& around, const Eigen::Vector3i& cell) const {
+  static unsigned signs_at(const Grid& grid, const BrickNeighbourhood& around, const Eigen::Vector3i& cell) {
     const auto [brick, offset] = around.place(cell);
-    return brick == TsdfBricks::kNone ? 0U : cells_[brick].signs[offset];
+    return brick == TsdfBricks::kNone ? 0U : grid.cells[brick].signs[offset];
   }
 
-  // Sheets of a cell, with those faces switched that would otherwise give an edge four quads. `cell` is
-  // relative to the brick's lowest voxel.
-  [[nodiscard]] Sheets sheets_at(const BrickNeighbourhood& around, const Eigen::Vector3i& cell,
-                                 unsigned signs) const {
-    const Sheets& defaults = sheet_table()[signs];
+  // Sheets of a cell, with those faces switched that would otherwise give an edge four polygons. `cell` is
+  // relative to the brick's lowest sample.
+  static Sheets sheets_at(const Grid& grid, const BrickNeighbourhood& around, const Eigen::Vector3i& cell,
+                          unsigned signs) {
+    const Sheets& defaults = default_sheets(signs);
     unsigned turned = 0;
     for (unsigned face = 0; face < 6 && defaults.joined_faces != 0; ++face) {
       if ((defaults.joined_faces >> face & 1U) == 0) continue;
       const Eigen::Vector3i step = Eigen::Vector3i::Unit(face / 2) * ((face & 1U) != 0 ? 1 : -1);
-      const unsigned beyond = signs_at(around, cell + step);
-      if ((sheet_table()[beyond].joined_faces >> (face ^ 1U) & 1U) != 0) turned |= 1U << face;
+      const unsigned beyond = signs_at(grid, around, cell + step);
+      if ((default_sheets(beyond).joined_faces >> (face ^ 1U) & 1U) != 0) turned |= 1U << face;
     }
     return turned == 0 ? defaults : sheets_of(signs, turned);
   }
 
-  void place_vertices(std::size_t b) {
-    fill_window(b, window_);
-    const BrickNeighbourhood around(bricks_, b);
-    cells_[b].first_vertex = static_cast<std::uint32_t>(mesh_.vertices.size());
-    for_each_voxel([&](int x, int y, int z) {
-      const Eigen::Vector3i voxel(x, y, z);
-      const unsigned signs = cells_[b].signs[brick_offset(voxel)];
+  void place_vertices(Grid& grid, std::size_t b) {
+    fill_window(grid, b);
+    const BrickNeighbourhood around(grid.bricks, b);
+    BrickCells& cells = grid.cells[b];
+    cells.first_vertex = static_cast<std::uint32_t>(mesh_.vertices.size());
+    for_each_cell([&](const Eigen::Vector3i& at) {
+      const unsigned signs = cells.signs[brick_offset(at)];
+      if (signs == 0) return;
+      const VoxelIndex lowest = grid.bricks.bricks()[b].first + at;
       CellCorners corners;
-      if (signs == 0 || !corners_of(window_, x, y, z, corners)) return;
-      const Sheets sheets = sheets_at(around, voxel, signs);
-      cells_[b].vertex[brick_offset(voxel)] =
-          static_cast<std::uint16_t>(mesh_.vertices.size() - cells_[b].first_vertex);
+      std::array<const TsdfSample*, 8> near{};
+      for (unsigned i = 0; i < 8; ++i) {
+        const WindowSample& sample = window_[in_window(at + corner_offset(i))];
+        corners.samples[i] = sample.value;
+        near[i] = sample.near;
+        corners.positions[i] = corner_position(i);
+        if (sample.mirrored)  // the centre of the coarse cell is half a voxel beside the voxel's
+          corners.positions[i] += (lowest + corner_offset(i))
+                                      .unaryExpr([](int v) { return (v & 1) != 0 ? -1 : 1; })
+                                      .cast<float>() *
+                                  0.5F;
+      }
+      const Sheets sheets = sheets_at(grid, around, at, signs);
+      cells.vertex[brick_offset(at)] = static_cast<std::uint16_t>(mesh_.vertices.size() - cells.first_vertex);
       for (int sheet = 0; sheet < sheets.count; ++sheet) {
         const SheetVertex vertex = place_vertex(corners, sheets, sheet);
-        // Samples are at voxel centres, hence + 0.5.
-        const Eigen::Vector3d voxels = (bricks_.bricks()[b].first + voxel).cast<double>() +
-                                       vertex.position.cast<double>() + Eigen::Vector3d::Constant(0.5);
+        // Samples are at the centres of cells, hence + 0.5.
+        const Eigen::Vector3d voxels = grid.edge * (lowest.cast<double>() + vertex.position.cast<double>() +
+                                                    Eigen::Vector3d::Constant(0.5));
         mesh_.vertices.emplace_back((voxels * resolution_m_ - mesh_.origin).cast<float>());
-        mesh_.normals.push_back(normal_at(corners, vertex.position));
+        mesh_.normals.push_back(normal_at(near, vertex.position));
         mesh_.colours.push_back(vertex.colour);
       }
     });
   }
 
-  void span_quads(std::size_t b) {
-    fill_window(b, window_);
-    const BrickNeighbourhood around(bricks_, b);
-    for_each_voxel([&](int x, int y, int z) {
-      const TsdfSample* from = window_[in_window(x, y, z)];
-      if (!from) return;
-      const Eigen::Vector3i voxel(x, y, z);
+  // A polygon around each measured crossing between two neighbouring samples, of which one belongs to this
+  // grid (of the coarse cells': both).
+  void span_polygons(Grid& grid, std::size_t b) {
+    fill_window(grid, b);
+    const BrickNeighbourhood around(grid.bricks, b);
+    for_each_cell([&](const Eigen::Vector3i& at) {
+      const WindowSample& from = window_[in_window(at)];
+      if (!from.value) return;
       for (int axis = 0; axis < 3; ++axis) {
-        const Eigen::Vector3i end = voxel + Eigen::Vector3i::Unit(axis);
-        const TsdfSample* to = window_[in_window(end.x(), end.y(), end.z())];
-        if (!to || !is_measured_crossing(*from, *to)) continue;
+        const WindowSample& to = window_[in_window(at + Eigen::Vector3i::Unit(axis))];
+        if (!to.value || !is_measured_crossing(*from.value, *to.value)) continue;
+        if (is_of_voxels(grid) ? from.mirrored && to.mirrored : from.mirrored || to.mirrored) continue;
+        polygon_.clear();
         // The four cells around the edge, counter-clockwise seen from its far end.
-        const int second = (axis + 1) % 3;
-        const int third = (axis + 2) % 3;
-        std::array<std::uint32_t, 4> quad{};
+        const Eigen::Vector3i second = Eigen::Vector3i::Unit((axis + 1) % 3),
+                              third = Eigen::Vector3i::Unit((axis + 2) % 3);
         constexpr std::array<std::array<int, 2>, 4> kBack{{{1, 1}, {0, 1}, {0, 0}, {1, 0}}};
         for (std::size_t i = 0; i < 4; ++i) {
-          const Eigen::Vector3i back =
-              kBack[i][0] * Eigen::Vector3i::Unit(second) + kBack[i][1] * Eigen::Vector3i::Unit(third);
-          quad[i] = vertex_across(around, voxel - back, back, axis);
+          const Eigen::Vector3i back = kBack[i][0] * second + kBack[i][1] * third;
+          const Eigen::Vector3i next = kBack[(i + 1) % 4][0] * second + kBack[(i + 1) % 4][1] * third;
+          std::uint32_t corner = vertex_across(grid, around, at - back, back, axis);
+          if (!is_of_voxels(grid)) {
+            const VoxelIndex cell = grid.bricks.bricks()[b].first + at;
+            // Where the coarse grid has no cell, one of the voxels' may touch both samples.
+            if (corner == kNoVertex) corner = vertex_of_voxels(2 * (cell - back), back, axis);
+            polygon_.push_back(corner);
+            // So may one half way to the next corner.
+            const Eigen::Vector3i both = back.cwiseMin(next), half = (back - next).cwiseAbs();
+            const std::uint32_t between = vertex_of_voxels(2 * (cell - both) - half, both, axis);
+            if (between != kNoVertex) polygon_.push_back(between);
+          } else {
+            polygon_.push_back(corner);
+          }
         }
-        if (to->distance_m < 0.0F) std::swap(quad[1], quad[3]);  // the free side is at `from`
-        add_quad(quad);
+        if (to.value->distance_m < 0.0F)  // the free side is at `from`
+          std::reverse(polygon_.begin() + 1, polygon_.end());
+        add_polygon();
       }
     });
   }
 
   // Vertex of the cell's sheet that crosses the edge along `axis` starting at corner `from`.
-  [[nodiscard]] std::uint32_t vertex_across(const BrickNeighbourhood& around, const Eigen::Vector3i& cell,
-                                            const Eigen::Vector3i& from, int axis) const {
+  static std::uint32_t vertex_across(const Grid& grid, const BrickNeighbourhood& around,
+                                     const Eigen::Vector3i& cell, const Eigen::Vector3i& from, int axis) {
     const auto [brick, offset] = around.place(cell);
     if (brick == TsdfBricks::kNone) return kNoVertex;
-    const unsigned signs = cells_[brick].signs[offset];
+    const unsigned signs = grid.cells[brick].signs[offset];
     if (signs == 0) return kNoVertex;
-    const Sheets& defaults = sheet_table()[signs];
-    if (defaults.count == 1 && defaults.joined_faces == 0) return cells_[brick].first_of(offset);
+    const Sheets& defaults = default_sheets(signs);
+    if (defaults.count == 1 && defaults.joined_faces == 0) return grid.cells[brick].first_of(offset);
     const auto corner = static_cast<unsigned>(from.x() | from.y() << 1 | from.z() << 2);
     const unsigned edge = edge_between(corner, corner | 1U << axis);
-    return cells_[brick].first_of(offset) + sheets_at(around, cell, signs).of_edge[edge];
+    return grid.cells[brick].first_of(offset) + sheets_at(grid, around, cell, signs).of_edge[edge];
+  }
+  // The same for the cell of the voxels' grid whose lowest voxel is at `even` + (1, 1, 1).
+  [[nodiscard]] std::uint32_t vertex_of_voxels(const VoxelIndex& even, const Eigen::Vector3i& from,
+                                               int axis) const {
+    const Grid& grid = grids_.front();
+    const VoxelIndex voxel = even + VoxelIndex::Ones(), first = brick_of(voxel);
+    const std::size_t brick = grid.bricks.find(first);
+    if (brick == TsdfBricks::kNone || grid.cells[brick].signs[brick_offset(voxel - first)] == 0)
+      return kNoVertex;
+    return vertex_across(grid, BrickNeighbourhood(grid.bricks, brick), voxel - first, from, axis);
   }
 
-  // Splits the quad along its shorter diagonal.
-  void add_quad(const std::array<std::uint32_t, 4>& q) {
-    for (const std::uint32_t v : q)
+  // Splits a polygon of four corners along its shorter diagonal, others into a fan.
+  void add_polygon() {
+    const auto& p = polygon_;
+    for (const std::uint32_t v : p)
       if (v == kNoVertex) return;
     const auto& v = mesh_.vertices;
-    if ((v[q[0]] - v[q[2]]).squaredNorm() <= (v[q[1]] - v[q[3]]).squaredNorm()) {
-      mesh_.triangles.push_back({q[0], q[1], q[2]});
-      mesh_.triangles.push_back({q[0], q[2], q[3]});
+    const bool from_second =
+        p.size() == 4 && (v[p[0]] - v[p[2]]).squaredNorm() > (v[p[1]] - v[p[3]]).squaredNorm();
+    if (from_second) {
+      mesh_.triangles.push_back({p[0], p[1], p[3]});
+      mesh_.triangles.push_back({p[1], p[2], p[3]});
     } else {
-      mesh_.triangles.push_back({q[0], q[1], q[3]});
-      mesh_.triangles.push_back({q[1], q[2], q[3]});
+      for (std::size_t i = 2; i < p.size(); ++i) mesh_.triangles.push_back({p[0], p[i - 1], p[i]});
     }
   }
 
-  const TsdfBricks& bricks_;
+  std::array<Grid, 2> grids_;  // voxels, coarse cells
   double resolution_m_;
-  std::vector<BrickCells> cells_;  // one per brick
-  SampleWindow window_{};
+  std::array<WindowSample, kWindow * kWindow * kWindow> window_{};
+  std::vector<std::uint32_t> polygon_;
   Mesh mesh_;
 };
 
 }  // namespace
 
 Mesh dual_marching_cubes(const TsdfBricks& bricks, double resolution_m) {
-  return Net(bricks, resolution_m).take();
+  return Net(bricks, TsdfBricks(std::vector<VoxelIndex>{}), resolution_m).take();
+}
+
+Mesh dual_marching_cubes(const TsdfLevels& levels, double resolution_m) {
+  return Net(levels.voxels, levels.coarse, resolution_m).take();
 }
 
 }  // namespace roomradar

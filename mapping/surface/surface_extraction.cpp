@@ -9,9 +9,9 @@
 
 #include "mapping/mesh/components.hpp"
 #include "mapping/mesh/mesh_simplify.hpp"
-#include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/surface/dual_marching_cubes.hpp"
 #include "mapping/surface/tsdf_extrapolation.hpp"
+#include "mapping/surface/tsdf_levels.hpp"
 #include "mapping/surface/tsdf_smoothing.hpp"
 #include "mapping/types/system/config_check.hpp"
 
@@ -36,10 +36,16 @@ void require_valid(const SurfaceConfig& config) {
   require("max_deviation_m", config.max_deviation_m);
 }
 
-Mesh full_surface(const StaticMap& map, const SurfaceConfig& config, TsdfBricks bricks) {
-  if (config.smoothing > 0.0F) smooth(bricks, config.smoothing, kSweeps);
-  extrapolate_neighbours(bricks);
-  return dual_marching_cubes(bricks, map.resolution_m());
+Mesh full_surface(const StaticMap& map, const SurfaceConfig& config, const Eigen::AlignedBox3d& box_world) {
+  TsdfLevels levels(map, config.min_weight, box_world);
+  if (config.smoothing > 0.0F) smooth(levels, config.smoothing, kSweeps);
+  extrapolate_neighbours(levels);
+  return dual_marching_cubes(levels, map.resolution_m());
+}
+
+Eigen::AlignedBox3d whole_box(const StaticMap& map) {
+  const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(map.reach_m());
+  return {-reach_m, reach_m};
 }
 
 // Returns the triangles that have a corner in the box.
@@ -57,7 +63,7 @@ std::vector<Triangle> triangles_in(const Mesh& mesh, const Eigen::AlignedBox3d& 
 
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceStats* facts) {
   require_valid(config);
-  Mesh full = full_surface(map, config, TsdfBricks(map, config.min_weight));
+  Mesh full = full_surface(map, config, whole_box(map));
   SimplifiedMesh result{drop_small_components(full, config.min_component_area_m2), 0.0F};
   full = {};
   const std::size_t full_triangles = result.mesh.triangles.size();
@@ -78,7 +84,7 @@ Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
     const Eigen::Vector3d by = Eigen::Vector3d::Constant(voxels * voxel_m);
     return Eigen::AlignedBox3d(box_world.min() - by, box_world.max() + by);
   };
-  const Mesh full = full_surface(map, config, TsdfBricks(map, config.min_weight, grown(kMargin_voxels)));
+  const Mesh full = full_surface(map, config, grown(kMargin_voxels));
   Mesh mesh = drop_small_components(full, config.min_component_area_m2);
   mesh = compacted(mesh, triangles_in(mesh, grown(kOverlap_voxels)));
   if (config.max_deviation_m <= 0.0F) return mesh;

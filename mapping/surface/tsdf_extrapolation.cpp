@@ -20,45 +20,62 @@ const TsdfSample* known_at(const std::vector<Brick>& bricks, const BrickNeighbou
   return sample.known() ? &sample : nullptr;
 }
 
+// Returns a guess for each unknown sample next to a known one.
+std::vector<Guess> guess_neighbours(const TsdfBricks& bricks) {
+  const std::vector<Brick>& all = bricks.bricks();
+  std::vector<Guess> guesses;
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    const BrickNeighbourhood around(bricks, b);
+    for (int z = 0; z < kBrickEdge; ++z)
+      for (int y = 0; y < kBrickEdge; ++y)
+        for (int x = 0; x < kBrickEdge; ++x) {
+          const Eigen::Vector3i voxel(x, y, z);
+          const TsdfSample& own = all[b].samples[brick_offset(voxel)];
+          if (own.known() || own.mirrored) continue;
+          float on_lines = 0.0F, beside = 0.0F;  // sums of distances
+          int lines = 0, count = 0;
+          for (int side = 0; side < 6; ++side) {
+            const Eigen::Vector3i step = (side % 2 == 0 ? 1 : -1) * Eigen::Vector3i::Unit(side / 2);
+            const TsdfSample* next = known_at(all, around.place(voxel + step));
+            if (!next) continue;
+            const TsdfSample* beyond = known_at(all, around.place(voxel + 2 * step));
+            beside += next->distance_m;
+            ++count;
+            if (!beyond) continue;
+            on_lines += 2.0F * next->distance_m - beyond->distance_m;
+            ++lines;
+          }
+          if (count > 0)
+            guesses.push_back(
+                {b, brick_offset(voxel),
+                 lines > 0 ? on_lines / static_cast<float>(lines) : beside / static_cast<float>(count)});
+        }
+  }
+  return guesses;
+}
+
+void store(const std::vector<Guess>& guesses, TsdfBricks& bricks) {
+  for (const Guess& guess : guesses) {
+    TsdfSample& sample = bricks.bricks()[guess.brick].samples[guess.offset];
+    sample.distance_m = guess.distance_m;
+    sample.weight = std::numeric_limits<float>::min();
+    sample.extrapolated = true;
+  }
+}
+
 }  // namespace
 
 void extrapolate_neighbours(TsdfBricks& bricks) {
-  std::vector<Brick>& all = bricks.bricks();
-  std::vector<Guess> guesses;
+  for (int ring = 0; ring < 2; ++ring) store(guess_neighbours(bricks), bricks);
+}
+
+void extrapolate_neighbours(TsdfLevels& levels) {
   for (int ring = 0; ring < 2; ++ring) {
-    guesses.clear();
-    for (std::size_t b = 0; b < all.size(); ++b) {
-      const BrickNeighbourhood around(bricks, b);
-      for (int z = 0; z < kBrickEdge; ++z)
-        for (int y = 0; y < kBrickEdge; ++y)
-          for (int x = 0; x < kBrickEdge; ++x) {
-            const Eigen::Vector3i voxel(x, y, z);
-            if (all[b].samples[brick_offset(voxel)].known()) continue;
-            float on_lines = 0.0F, beside = 0.0F;  // sums of distances
-            int lines = 0, count = 0;
-            for (int side = 0; side < 6; ++side) {
-              const Eigen::Vector3i step = (side % 2 == 0 ? 1 : -1) * Eigen::Vector3i::Unit(side / 2);
-              const TsdfSample* next = known_at(all, around.place(voxel + step));
-              if (!next) continue;
-              const TsdfSample* beyond = known_at(all, around.place(voxel + 2 * step));
-              beside += next->distance_m;
-              ++count;
-              if (!beyond) continue;
-              on_lines += 2.0F * next->distance_m - beyond->distance_m;
-              ++lines;
-            }
-            if (count > 0)
-              guesses.push_back(
-                  {b, brick_offset(voxel),
-                   lines > 0 ? on_lines / static_cast<float>(lines) : beside / static_cast<float>(count)});
-          }
-    }
-    for (const Guess& guess : guesses) {
-      TsdfSample& sample = all[guess.brick].samples[guess.offset];
-      sample.distance_m = guess.distance_m;
-      sample.weight = std::numeric_limits<float>::min();
-      sample.extrapolated = true;
-    }
+    const std::vector<Guess> in_voxels = guess_neighbours(levels.voxels);
+    store(guess_neighbours(levels.coarse), levels.coarse);
+    store(in_voxels, levels.voxels);
+    levels.mirror_voxels_in_coarse();
+    levels.mirror_coarse_in_voxels();
   }
 }
 

@@ -1,6 +1,7 @@
 // tsdf_extrapolation.hpp: extrapolates signed distances to voxels next to measured ones.
 #pragma once
 #include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/surface/tsdf_levels.hpp"
 
 namespace roomradar {
 
@@ -10,5 +11,7 @@ namespace roomradar {
 /// mean of the known face neighbours. Adds no bricks. Afterwards all eight corners of every cell around a
 /// measured zero crossing are known, so the surface extends as far as the measurements.
 void extrapolate_neighbours(TsdfBricks& bricks);
+/// The same in both grids, each in the places that belong to it.
+void extrapolate_neighbours(TsdfLevels& levels);
 
 }  // namespace roomradar

@@ -12,6 +12,10 @@ namespace {
 // of the difference to their neighbours.
 constexpr float kFirm = 30.0F;
 
+// The strength in the grid of coarse cells, relative to that of voxels. Of 1, 1/2, 1/4, 1/8 on a simulated
+// dining room, 1/4 and 1/8 kept the shape of edges as well as voxels did; 1/4 has the lower median error.
+constexpr float kCoarseStrength = 0.25F;
+
 struct Stencil {
   std::size_t axis;
   int step;  // index step in a brick's arrays
@@ -23,48 +27,73 @@ struct NeighbourBricks {
   std::array<std::size_t, 3> after{};
 };
 
-}  // namespace
-
-void smooth(TsdfBricks& bricks, float strength, int sweeps) {
-  std::vector<Brick>& all = bricks.bricks();
-  std::vector<NeighbourBricks> neighbours(all.size());
-  std::vector<std::array<float, kBrickSize>> measured_m(all.size());
-  for (std::size_t b = 0; b < all.size(); ++b) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const VoxelIndex step = kBrickEdge * VoxelIndex::Unit(static_cast<Eigen::Index>(a));
-      neighbours[b].before[a] = bricks.find(all[b].first - step);
-      neighbours[b].after[a] = bricks.find(all[b].first + step);
+/// Sweeps over one grid. Keeps the measured distances.
+class Sweeps {
+ public:
+  explicit Sweeps(TsdfBricks& bricks)
+      : all_(bricks.bricks()), neighbours_(all_.size()), measured_m_(all_.size()) {
+    for (std::size_t b = 0; b < all_.size(); ++b) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const VoxelIndex step = kBrickEdge * VoxelIndex::Unit(static_cast<Eigen::Index>(a));
+        neighbours_[b].before[a] = bricks.find(all_[b].first - step);
+        neighbours_[b].after[a] = bricks.find(all_[b].first + step);
+      }
+      for (std::size_t i = 0; i < kBrickSize; ++i) measured_m_[b][i] = all_[b].samples[i].distance_m;
     }
-    for (std::size_t i = 0; i < kBrickSize; ++i) measured_m[b][i] = all[b].samples[i].distance_m;
   }
-  // The sample one step from i along an axis, in brick b or the next; null if unknown.
-  const auto neighbour = [&](std::size_t beyond, std::size_t b, std::size_t i, int step,
-                             bool leaves_brick) -> const TsdfSample* {
-    const std::size_t brick = leaves_brick ? beyond : b;
-    if (brick == TsdfBricks::kNone) return nullptr;
-    const auto at = static_cast<int>(i) + (leaves_brick ? -(kBrickEdge - 1) * step : step);
-    const TsdfSample& found = all[brick].samples[static_cast<std::size_t>(at)];
-    return found.known() ? &found : nullptr;
-  };
-  for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (std::size_t b = 0; b < all.size(); ++b)
+
+  void sweep(float strength) {
+    for (std::size_t b = 0; b < all_.size(); ++b)
       for (std::size_t i = 0; i < kBrickSize; ++i) {
-        TsdfSample& sample = all[b].samples[i];
-        if (!sample.known() || sample.weight > kFirm * strength) continue;
-        float sum = sample.weight * measured_m[b][i];
+        TsdfSample& sample = all_[b].samples[i];
+        if (!sample.known() || sample.mirrored || sample.weight > kFirm * strength) continue;
+        float sum = sample.weight * measured_m_[b][i];
         float weight = sample.weight;
         for (const auto& [axis, step] : kAxes) {
           const int coordinate = static_cast<int>(i) / step % kBrickEdge;
-          const TsdfSample* before = neighbour(neighbours[b].before[axis], b, i, -step, coordinate == 0);
+          const TsdfSample* before = neighbour(neighbours_[b].before[axis], b, i, -step, coordinate == 0);
           if (!before) continue;
           const TsdfSample* after =
-              neighbour(neighbours[b].after[axis], b, i, step, coordinate == kBrickEdge - 1);
+              neighbour(neighbours_[b].after[axis], b, i, step, coordinate == kBrickEdge - 1);
           if (!after) continue;
           sum += strength * 0.5F * (before->distance_m + after->distance_m);
           weight += strength;
         }
         sample.distance_m = sum / weight;
       }
+  }
+
+ private:
+  std::vector<Brick>& all_;
+  std::vector<NeighbourBricks> neighbours_;
+  std::vector<std::array<float, kBrickSize>> measured_m_;
+
+  // The sample one step from i along an axis, in brick b or the next; null if unknown.
+  [[nodiscard]] const TsdfSample* neighbour(std::size_t beyond, std::size_t b, std::size_t i, int step,
+                                            bool leaves_brick) const {
+    const std::size_t brick = leaves_brick ? beyond : b;
+    if (brick == TsdfBricks::kNone) return nullptr;
+    const auto at = static_cast<int>(i) + (leaves_brick ? -(kBrickEdge - 1) * step : step);
+    const TsdfSample& found = all_[brick].samples[static_cast<std::size_t>(at)];
+    return found.known() ? &found : nullptr;
+  }
+};
+
+}  // namespace
+
+void smooth(TsdfBricks& bricks, float strength, int sweeps) {
+  Sweeps grid(bricks);
+  for (int i = 0; i < sweeps; ++i) grid.sweep(strength);
+}
+
+void smooth(TsdfLevels& levels, float strength, int sweeps) {
+  Sweeps voxels(levels.voxels), coarse(levels.coarse);
+  for (int i = 0; i < sweeps; ++i) {
+    voxels.sweep(strength);
+    levels.mirror_voxels_in_coarse();
+    coarse.sweep(kCoarseStrength * strength);
+    levels.mirror_coarse_in_voxels();
+  }
 }
 
 }  // namespace roomradar

@@ -1,6 +1,7 @@
 // tsdf_smoothing.hpp: smooths signed distances that have few or poor measurements.
 #pragma once
 #include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/surface/tsdf_levels.hpp"
 
 namespace roomradar {
 
@@ -13,5 +14,8 @@ namespace roomradar {
 /// averaged over several voxels. Source: weighted diffusion, the Gauss-Seidel steps of a screened Poisson
 /// equation.
 void smooth(TsdfBricks& bricks, float strength, int sweeps);
+/// Smooths both grids, that of the coarse cells with a quarter of the strength. The grids are smoothed
+/// together where they meet.
+void smooth(TsdfLevels& levels, float strength, int sweeps);
 
 }  // namespace roomradar

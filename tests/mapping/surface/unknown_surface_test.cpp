@@ -324,7 +324,8 @@ TEST(UnknownSurface, OfOneViewIsThePyramidThatItSaw) {
     along_m2 += area_of(surface.mesh_world, triangle).cwiseAbs();
   EXPECT_NEAR(along_m2.z(), 2.0 * 0.5 * width_m * 3.0, 0.05 * width_m * 3.0);    // above and below
   EXPECT_NEAR(along_m2.y(), 2.0 * 0.5 * height_m * 3.0, 0.05 * height_m * 3.0);  // left and right
-  EXPECT_NEAR(along_m2.x(), width_m * height_m, 0.06 * width_m * height_m);      // all four, seen along x
+  // All four, seen along x. The mesh of the wall ends at the centres of the outermost coarse cells.
+  EXPECT_NEAR(along_m2.x(), width_m * height_m, 0.07 * width_m * height_m);
   EXPECT_LT(surface.mesh_world.triangles.size(), 20000U);
 }
 

@@ -1,0 +1,183 @@
+// tsdf_levels.cpp: sorts cells into two grids, and mirrors each grid's samples in the other.
+#include "mapping/surface/tsdf_levels.hpp"
+
+#include <array>
+#include <cstdint>
+#include <unordered_set>
+#include <utility>
+
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kNodeEdge = 4;  // voxels; the cells of a node have one size
+constexpr int kCoarsePerNode = kNodeEdge / kCoarseEdge;
+
+VoxelIndex divided(const VoxelIndex& cell, int by) {
+  return cell.unaryExpr([by](int v) { return floor_div(v, by); });
+}
+
+/// Set of integer cells that remembers the order in which they were added.
+class CellSet {
+ public:
+  void add(const VoxelIndex& cell) {
+    if (!cells.empty() && cells.back() == cell) return;
+    if (keys_.insert(voxel_key(cell)).second) cells.push_back(cell);
+  }
+  [[nodiscard]] bool has(const VoxelIndex& cell) const { return keys_.contains(voxel_key(cell)); }
+
+  std::vector<VoxelIndex> cells;
+
+ private:
+  std::unordered_set<std::uint64_t> keys_;
+};
+
+/// Calls visit(node) for the 26 nodes around each node of a set.
+template <typename Visit>
+void for_each_beside(const CellSet& nodes, const Visit& visit) {
+  for (const VoxelIndex& node : nodes.cells)
+    for (int i = 0; i < kCellsRound; ++i)
+      if (i != kOwnCell) visit(VoxelIndex(node + neighbour_offset(i)));
+}
+
+template <typename Visit>
+void for_each_in_cube(int edge, const Visit& visit) {
+  for (int z = 0; z < edge; ++z)
+    for (int y = 0; y < edge; ++y)
+      for (int x = 0; x < edge; ++x) visit(Eigen::Vector3i(x, y, z));
+}
+
+TsdfSample& place_in(TsdfBricks& bricks, const VoxelIndex& cell) {
+  const VoxelIndex first = brick_of(cell);
+  return bricks.bricks()[bricks.find(first)].samples[brick_offset(cell - first)];
+}
+
+TsdfSample mirrored(TsdfSample sample, float distance_m) {
+  sample.distance_m = distance_m;
+  sample.mirrored = true;
+  return sample;
+}
+
+TsdfSample unknown_mirrored() { return mirrored({}, 0.0F); }
+
+}  // namespace
+
+const TsdfSample* sample_in(const TsdfBricks& bricks, const VoxelIndex& cell) {
+  const VoxelIndex first = brick_of(cell);
+  const std::size_t brick = bricks.find(first);
+  return brick == TsdfBricks::kNone ? nullptr : &bricks.bricks()[brick].samples[brick_offset(cell - first)];
+}
+
+TsdfLevels::TsdfLevels(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world)
+    : voxels(std::vector<VoxelIndex>{}), coarse(std::vector<VoxelIndex>{}) {
+  // The nodes of each grid.
+  CellSet voxel_nodes, coarse_nodes;
+  map.visit_cells(box_world, [&](const SurfaceSample& sample, int edge) {
+    if (sample.weight < min_weight) return;
+    (edge == 1 ? voxel_nodes : coarse_nodes).add(divided(sample.voxel, kNodeEdge));
+  });
+  CellSet around_voxels, coarse_beside, voxels_beside;
+  for_each_beside(voxel_nodes, [&](const VoxelIndex& node) {
+    if (!voxel_nodes.has(node) && !coarse_nodes.has(node)) around_voxels.add(node);
+  });
+  const auto is_of_voxels = [&](const VoxelIndex& node) {
+    return voxel_nodes.has(node) || around_voxels.has(node);
+  };
+  for_each_beside(coarse_nodes, [&](const VoxelIndex& node) {
+    if (is_of_voxels(node)) voxels_beside.add(node);
+  });
+  for_each_beside(voxels_beside, [&](const VoxelIndex& node) {
+    if (!is_of_voxels(node)) coarse_beside.add(node);
+  });
+
+  // The bricks, with the places that belong to the other grid marked.
+  constexpr int kVoxelNodes = kBrickEdge / kNodeEdge, kCoarseNodes = kBrickEdge / kCoarsePerNode;
+  CellSet voxel_bricks, coarse_bricks;
+  const auto add_brick = [](CellSet& bricks, const VoxelIndex& node, int nodes_per_brick) {
+    bricks.add(divided(node, nodes_per_brick) * kBrickEdge);
+  };
+  for (const VoxelIndex& node : voxel_nodes.cells) add_brick(voxel_bricks, node, kVoxelNodes);
+  for (const VoxelIndex& node : coarse_beside.cells) add_brick(voxel_bricks, node, kVoxelNodes);
+  for (const VoxelIndex& node : coarse_nodes.cells) add_brick(coarse_bricks, node, kCoarseNodes);
+  for (const VoxelIndex& node : voxels_beside.cells) add_brick(coarse_bricks, node, kCoarseNodes);
+  voxels = TsdfBricks(voxel_bricks.cells);
+  coarse = TsdfBricks(coarse_bricks.cells);
+  const auto mark = [&](TsdfBricks& bricks, int node_edge, bool marks_voxels) {
+    for (Brick& brick : bricks.bricks())
+      for_each_in_cube(kBrickEdge / node_edge, [&](const Eigen::Vector3i& at) {
+        if (is_of_voxels(divided(brick.first, node_edge) + at) != marks_voxels) return;
+        for_each_in_cube(node_edge, [&](const Eigen::Vector3i& cell) {
+          brick.samples[brick_offset(node_edge * at + cell)].mirrored = true;
+        });
+      });
+  };
+  mark(voxels, kNodeEdge, false);
+  mark(coarse, kCoarsePerNode, true);
+  coarse_beside_voxels_ = std::move(coarse_beside.cells);
+  voxels_beside_coarse_ = std::move(voxels_beside.cells);
+
+  // The samples.
+  map.visit_cells(box_world, [&](const SurfaceSample& sample, int edge) {
+    if (sample.weight < min_weight) return;
+    const VoxelIndex cell = edge == 1 ? sample.voxel : divided(sample.voxel, kCoarseEdge);
+    place_in(edge == 1 ? voxels : coarse, cell) = {.distance_m = sample.distance_m,
+                                                   .weight = sample.weight,
+                                                   .colour = sample.colour,
+                                                   .has_colour = sample.has_colour};
+  });
+  mirror_voxels_in_coarse();
+  mirror_coarse_in_voxels();
+}
+
+void TsdfLevels::mirror_coarse_in_voxels() {
+  for (const VoxelIndex& node : coarse_beside_voxels_)
+    for_each_in_cube(kCoarsePerNode, [&](const Eigen::Vector3i& at) {
+      const VoxelIndex cell = kCoarsePerNode * node + at;
+      const TsdfSample* own = sample_in(coarse, cell);
+      const bool is_known = own != nullptr && own->known();
+      std::array<std::array<float, 2>, 3> step_m{};  // [axis][side]: change to the voxels on that side
+      for (int axis = 0; is_known && axis < 3; ++axis) {
+        std::array<bool, 2> has{};
+        auto& steps = step_m[static_cast<std::size_t>(axis)];
+        for (std::size_t side = 0; side < 2; ++side) {
+          const TsdfSample* next = sample_in(coarse, cell + (side == 0 ? -1 : 1) * VoxelIndex::Unit(axis));
+          has[side] = next != nullptr && next->known();
+          if (has[side]) steps[side] = 0.25F * (next->distance_m - own->distance_m);
+        }
+        for (std::size_t side = 0; side < 2; ++side)
+          if (!has[side]) steps[side] = -steps[1 - side];
+      }
+      for_each_in_cube(kCoarseEdge, [&](const Eigen::Vector3i& offset) {
+        TsdfSample& voxel = place_in(voxels, kCoarseEdge * cell + offset);
+        voxel = unknown_mirrored();
+        if (!is_known) return;
+        float distance_m = own->distance_m;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          distance_m += step_m[axis][static_cast<std::size_t>(offset[static_cast<Eigen::Index>(axis)])];
+        voxel = mirrored(*own, distance_m);
+      });
+    });
+}
+
+void TsdfLevels::mirror_voxels_in_coarse() {
+  for (const VoxelIndex& node : voxels_beside_coarse_)
+    for_each_in_cube(kCoarsePerNode, [&](const Eigen::Vector3i& at) {
+      const VoxelIndex cell = kCoarsePerNode * node + at;
+      float sum_m = 0.0F;
+      int known = 0;
+      TsdfSample any;
+      for_each_in_cube(kCoarseEdge, [&](const Eigen::Vector3i& offset) {
+        const TsdfSample* voxel = sample_in(voxels, kCoarseEdge * cell + offset);
+        if (voxel == nullptr || !voxel->known()) return;
+        sum_m += voxel->distance_m;
+        any = *voxel;
+        ++known;
+      });
+      constexpr int kVoxelsPerCell = kCoarseEdge * kCoarseEdge * kCoarseEdge;
+      place_in(coarse, cell) =
+          known == kVoxelsPerCell ? mirrored(any, sum_m / kVoxelsPerCell) : unknown_mirrored();
+    });
+}
+
+}  // namespace roomradar
