@@ -69,6 +69,11 @@ MapKeyframe make_map_keyframe(const Frame& frame, const Eigen::Isometry3d& T_wor
   return place;
 }
 
+void update_index(KeyframeDatabase& keyframe_database) {
+  for (std::size_t i = keyframe_database.index.size(); i < keyframe_database.keyframes.size(); ++i)
+    keyframe_database.index.add(keyframe_database.keyframes[i].descriptors);
+}
+
 void transform(KeyframeDatabase& keyframe_database, const Eigen::Isometry3d& T_new_old) {
   for (MapKeyframe& place : keyframe_database.keyframes)
     place.T_world_camera = T_new_old * place.T_world_camera;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mapping/localization/feature_index.hpp"
 #include "mapping/localization/patches.hpp"
 #include "mapping/types/frame.hpp"
 
@@ -30,7 +31,13 @@ struct MapKeyframe {
 
 struct KeyframeDatabase {
   std::vector<MapKeyframe> keyframes;
+  /// Index of the first index.size() keyframes' descriptors. May be behind, or empty: searches compare all
+  /// features of the keyframes that are not in it.
+  FeatureIndex index;
 };
+
+/// Adds the keyframes that are not yet in the database's index to it.
+void update_index(KeyframeDatabase& keyframe_database);
 
 /// Max number of features, and of patches, per keyframe. The limit bounds the cost of matching all pairs.
 inline constexpr int kMostDescribed = 10'000;

@@ -78,15 +78,20 @@ bool is_usable_triple(const std::vector<PointPair>& pairs, const std::vector<std
 
 }  // namespace
 
-std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const MapKeyframe> keyframe_database,
-                                    std::size_t count, int min_matches, std::size_t strongest) {
-  const auto strongest_of = [&](const MapKeyframe& of) {
-    return Descriptors(of.descriptors).first(std::min(strongest, of.descriptors.size()));
+std::vector<std::size_t> most_alike(const MapKeyframe& place, const KeyframeDatabase& keyframe_database,
+                                    std::size_t count, int min_matches,
+                                    const std::function<bool(std::size_t)>& accept) {
+  const auto strongest_of = [](const MapKeyframe& of) {
+    return Descriptors(of.descriptors).first(std::min(FeatureIndex::kIndexedFeatures, of.descriptors.size()));
   };
+  std::vector<std::size_t> candidates =
+      keyframe_database.index.candidates(strongest_of(place), 16 + 2 * count, accept);
+  for (std::size_t i = keyframe_database.index.size(); i < keyframe_database.keyframes.size(); ++i)
+    if (!accept || accept(i)) candidates.push_back(i);
   std::vector<std::pair<int, std::size_t>> votes;
-  for (std::size_t i = 0; i < keyframe_database.size(); ++i) {
-    const int found =
-        static_cast<int>(matches(strongest_of(place), strongest_of(keyframe_database[i])).size());
+  for (const std::size_t i : candidates) {
+    const int found = static_cast<int>(
+        matches(strongest_of(place), strongest_of(keyframe_database.keyframes[i])).size());
     if (found >= min_matches) votes.emplace_back(-found, i);
   }
   std::sort(votes.begin(), votes.end());

@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <span>
+#include <functional>
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
@@ -11,9 +11,13 @@ namespace roomradar {
 
 /// Returns the indices in `keyframe_database` of the keyframes with the most feature matches to `place`, best
 /// first. Returns at most `count` keyframes, each with at least `min_matches` matches. Compares only the
-/// first `strongest` features of each keyframe.
-std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const MapKeyframe> keyframe_database,
-                                    std::size_t count, int min_matches, std::size_t strongest = 300);
+/// strongest FeatureIndex::kIndexedFeatures features of each keyframe. Of the keyframes in the database's
+/// index, compares only the 16 + 2 count that collide most with `place`, so that time does not grow with the
+/// database.
+/// @param accept  called with a keyframe's index; false: the keyframe is left out. Empty: all are accepted
+std::vector<std::size_t> most_alike(const MapKeyframe& place, const KeyframeDatabase& keyframe_database,
+                                    std::size_t count, int min_matches,
+                                    const std::function<bool(std::size_t)>& accept = {});
 
 /// Relative pose of two keyframes a and b, from their matched features.
 struct KeyframeMatch {

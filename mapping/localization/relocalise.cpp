@@ -194,7 +194,7 @@ Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_d
     constexpr int kMinMatches = 8;
     const MapKeyframe here = make_map_keyframe(frame, Eigen::Isometry3d::Identity(), config.place);
     const auto most = static_cast<std::size_t>(std::max(config.candidates, 0));
-    for (const std::size_t i : most_alike(here, keyframe_database.keyframes, most, kMinMatches)) {
+    for (const std::size_t i : most_alike(here, keyframe_database, most, kMinMatches)) {
       const KeyframeMatch match = match_keyframes(keyframe_database.keyframes[i], here);
       if (match.inliers < config.min_feature_inliers) continue;
       none.status = RelocalisationStatus::kNotVerified;

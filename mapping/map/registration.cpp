@@ -35,7 +35,7 @@ std::vector<Vote> collect_votes(const KeyframeDatabase& a, const KeyframeDatabas
   for (std::size_t j = 0; j < b.keyframes.size(); j += stride) {
     const MapKeyframe& view = b.keyframes[j];
     const auto candidates = static_cast<std::size_t>(std::max(config.candidates, 1));
-    for (const std::size_t i : most_alike(view, a.keyframes, candidates, kMinMatches)) {
+    for (const std::size_t i : most_alike(view, a, candidates, kMinMatches)) {
       const KeyframeMatch match = match_keyframes(a.keyframes[i], view);
       if (match.inliers < config.min_inliers) continue;
       votes.push_back(

@@ -17,10 +17,11 @@ bool join_alike(KeyframeGraph& graph, const MapKeyframe& newest, const KeyframeD
   constexpr std::size_t kCandidates = 2;
   const std::size_t number = graph.keyframes.size() - 1;
   bool joined = false;
-  for (const std::size_t i : most_alike(newest, keyframe_database.keyframes, kCandidates, kMinMatches)) {
-    const Eigen::Isometry3d T_older_newest =
-        graph.keyframes[i].T_world_camera.inverse() * graph.keyframes[number].T_world_camera;
-    if (view_distance(T_older_newest) < config.graph.furthest) continue;
+  const auto is_distant = [&](std::size_t i) {
+    return view_distance(graph.keyframes[i].T_world_camera.inverse() *
+                         graph.keyframes[number].T_world_camera) >= config.graph.furthest;
+  };
+  for (const std::size_t i : most_alike(newest, keyframe_database, kCandidates, kMinMatches, is_distant)) {
     const KeyframeMatch match = match_keyframes(keyframe_database.keyframes[i], newest);
     if (match.inliers < kMinInliers) continue;
     joined = join(graph, i, number, match.T_a_b, config, cache) || joined;

@@ -197,7 +197,9 @@ void Odometry::State::wait_for_job() {
 Eigen::Isometry3d Odometry::State::take_over_job() {
   wait_for_job();
   if (!joined) return Eigen::Isometry3d::Identity();
-  return take_over(*std::exchange(joined, std::nullopt), kept);
+  const Eigen::Isometry3d T_new_old = take_over(*std::exchange(joined, std::nullopt), kept);
+  update_index(kept.keyframe_database);
+  return T_new_old;
 }
 
 Odometry::Odometry(const OdometryConfig& config) : state_(std::make_unique<State>(config)) {}
@@ -208,13 +210,17 @@ Odometry::~Odometry() = default;
 Odometry::Odometry(const OdometryConfig& config, OdometrySnapshot snapshot)
     : state_(std::make_unique<State>(config)) {
   state_->kept = std::move(snapshot);
+  update_index(state_->kept.keyframe_database);
   if (state_->kept.graph.keyframes.empty()) return;
   const StoredView& view = *state_->kept.graph.keyframes[state_->kept.current].view;
   restore(view, config.view, state_->open);
   state_->open_measured = view.measured;
 }
 
-void Odometry::set_prior_map(KeyframeDatabase known) { state_->known = std::move(known); }
+void Odometry::set_prior_map(KeyframeDatabase known) {
+  state_->known = std::move(known);
+  update_index(state_->known);
+}
 
 bool Odometry::is_located() const { return state_->kept.located; }
 

@@ -3,7 +3,6 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -28,7 +27,6 @@ struct PoseBlock {
 struct Measured {
   std::size_t a, b;
   Eigen::Isometry3d T_a_b;
-  Matrix6d information;
   Matrix6d square_root;
   bool robust;
 };
@@ -48,19 +46,7 @@ std::optional<Measured> usable(std::size_t a, std::size_t b, std::size_t count,
   if (a > count || b >= count || a == b || !T_a_b.matrix().allFinite()) return std::nullopt;
   const std::optional<Matrix6d> root = square_root(information);
   if (!root) return std::nullopt;
-  return Measured{a, b, T_a_b, information, *root, robust};
-}
-
-/// Jacobian of b's pose in a, as a twist at b, with respect to a twist at a: -Ad(T_b_a).
-Matrix6d seen_from_b(const Eigen::Isometry3d& T_a_b) {
-  const Eigen::Isometry3d T_b_a = T_a_b.inverse();
-  const Eigen::Vector3d& t = T_b_a.translation();
-  Eigen::Matrix3d cross;
-  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
-  Matrix6d J = Matrix6d::Zero();
-  J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = -T_b_a.linear();
-  J.topRightCorner<3, 3>() = -cross * T_b_a.linear();
-  return J;
+  return Measured{a, b, T_a_b, *root, robust};
 }
 
 ceres::Solver::Options solver_options() {
@@ -70,38 +56,6 @@ ceres::Solver::Options solver_options() {
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   return options;
-}
-
-/// Counts the unconstrained directions of all free poses together: near-zero pivots of the normal equations.
-/// `place` gives each pose's index among the free poses, or -1.
-std::size_t count_free_directions(const std::vector<Measured>& measured, const std::vector<int>& place,
-                                  int free_poses) {
-  if (free_poses == 0) return 0;
-  constexpr double kNothing = 1e-9;  // relative to the strongest direction
-  std::vector<Eigen::Triplet<double>> entries;
-  double most = 0.0;
-  const auto add = [&](int row, int column, const Matrix6d& block) {
-    if (row < 0 || column < 0) return;
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j) entries.emplace_back(6 * row + i, 6 * column + j, block(i, j));
-    }
-    if (row == column) most = std::max(most, block.diagonal().maxCoeff());
-  };
-  for (const Measured& m : measured) {
-    const int a = place[m.a], b = place[m.b];
-    const Matrix6d J = seen_from_b(m.T_a_b);
-    add(a, a, J.transpose() * m.information * J);
-    add(a, b, J.transpose() * m.information);
-    add(b, a, m.information * J);
-    add(b, b, m.information);
-  }
-  const int size = 6 * free_poses;
-  for (int i = 0; i < size; ++i) entries.emplace_back(i, i, kNothing * most);
-  Eigen::SparseMatrix<double> H(size, size);
-  H.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> decomposed(H);
-  if (decomposed.info() != Eigen::Success) return static_cast<std::size_t>(size);
-  return static_cast<std::size_t>((decomposed.vectorD().array() < 100.0 * kNothing * most).count());
 }
 
 /// Returns the measurements that can move a pose, constraints first.
@@ -179,8 +133,7 @@ std::string describe(const PoseGraphResult& result) {
     case PoseGraphStatus::kSolved:
       return "the poses agree with what was measured between them";
     case PoseGraphStatus::kUnderdetermined:
-      return "no measurement constrains " + std::to_string(result.untied) + " poses and " +
-             std::to_string(result.free_directions) + " directions of the others; these are unchanged";
+      return "no measurement constrains " + std::to_string(result.untied) + " poses; these are unchanged";
     case PoseGraphStatus::kNothingToSolve:
       return "no usable measurement connects the poses; they are unchanged";
     case PoseGraphStatus::kNotFinite:
@@ -221,8 +174,6 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
   }
 
   const std::vector<int> place = number_free_poses(count, measured, is_constant);
-  const auto free_poses =
-      static_cast<int>(std::count_if(place.begin(), place.end(), [](int p) { return p >= 0; }));
   for (std::size_t i = 0; i < count; ++i) result.untied += !is_constant(i) && place[i] < 0 ? 1 : 0;
 
   ceres::Problem problem;
@@ -245,9 +196,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
   }
   result.cost_before = summary.initial_cost;
   result.cost_after = summary.final_cost;
-  result.free_directions = count_free_directions(measured, place, free_poses);
-  result.status = result.untied + result.free_directions > 0 ? PoseGraphStatus::kUnderdetermined
-                                                             : PoseGraphStatus::kSolved;
+  result.status = result.untied > 0 ? PoseGraphStatus::kUnderdetermined : PoseGraphStatus::kSolved;
   return result;
 }
 

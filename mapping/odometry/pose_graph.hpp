@@ -32,7 +32,7 @@ struct PoseAnchor {
 
 enum class PoseGraphStatus {
   kSolved,
-  /// Solved. Unconstrained poses and directions stay near their initial values.
+  /// Solved. Poses that no chain of measurements connects to a constant pose or an anchor are unchanged.
   kUnderdetermined,
   kNothingToSolve,  ///< no valid measurement involves a pose that may move; poses unchanged
   kNotFinite,       ///< a pose is not finite; poses unchanged
@@ -48,8 +48,6 @@ struct PoseGraphResult {
   PoseGraphStatus status = PoseGraphStatus::kFailed;
   /// Number of poses that no chain of measurements connects to a constant pose or an anchor.
   std::size_t untied = 0;
-  /// Number of unconstrained directions, summed over the poses that are connected.
-  std::size_t free_directions = 0;
   /// Initial cost: half the sum of the squared residuals, which are in standard deviations.
   double cost_before = 0.0;
   double cost_after = 0.0;
@@ -57,13 +55,12 @@ struct PoseGraphResult {
   std::vector<double> residual_sigma;
 };
 
-/// Returns a sentence that states the status and the counts of poses and directions.
+/// Returns a sentence that states the status and the count of unconstrained poses.
 std::string describe(const PoseGraphResult& result);
 
 /// Optimises the poses T_world_camera to minimise the residuals of constraints and anchors. Poses that no
 /// chain of measurements connects to a constant pose or an anchor do not change. Connected poses do not
-/// change in unconstrained directions. The result counts such poses (untied) and directions
-/// (free_directions). Does not throw.
+/// change in unconstrained directions. Does not throw.
 ///
 /// Leaves out measurements between two constant poses, and invalid measurements. A measurement is invalid if
 /// an index is out of range, a number is not finite, or the information is not positive semidefinite. Their

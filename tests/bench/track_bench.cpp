@@ -3,7 +3,7 @@
 // usage: track_bench [--frames N] [--places N] [--json FILE] SOURCE...      SOURCE: a folder or sim:ROOM?...
 // One row per source: ATE RMSE over all frames, median RPE over 1 and 30 frames, the error of the last pose
 // after aligning the first with its true pose, time per frame (wall clock, and CPU time of the tracking
-// thread), loops, and the memory used by keyframes. With --places N the first N frames, at their recorded
+// thread), loops, the memory used by keyframes, and the recall of the feature index. With --places N the first N frames, at their recorded
 // poses, become map keyframes, and the later frames are localised among them. Settings are the defaults of
 // OdometryConfig: changing them breaks the comparison with earlier results.
 #include <sys/resource.h>
@@ -20,6 +20,7 @@
 
 #include "app/sim/sensor/simulated_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
+#include "mapping/localization/place_matching.hpp"
 #include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
@@ -80,12 +81,44 @@ double relative_error_m(const std::vector<TimedPose>& estimate, const std::vecto
   return test::quantile(errors_m, 0.5);
 }
 
+/// Returns the median time, ms, of the frames in the minute that begins at from_s.
+double median_of_minute(const std::vector<double>& times_ms, const std::vector<double>& stamps_s,
+                        double from_s) {
+  std::vector<double> in_minute_ms;
+  for (std::size_t i = 0; i < times_ms.size(); ++i)
+    if (stamps_s[i] >= from_s && stamps_s[i] <= from_s + 60.0) in_minute_ms.push_back(times_ms[i]);
+  return test::quantile(in_minute_ms, 0.5);
+}
+
+/// Returns the share of keyframes found by comparing all features that the index finds, too: at most the two
+/// most alike, and 25 matches at least, as for closing loops. Samples some 200 keyframes as queries.
+double recall_of_index(KeyframeDatabase keyframe_database) {
+  constexpr std::size_t kQueries = 200, kCount = 2;
+  constexpr int kMinMatches = 25;
+  update_index(keyframe_database);
+  KeyframeDatabase compare_all{keyframe_database.keyframes, {}};
+  const std::size_t count = keyframe_database.keyframes.size(), stride = 1 + count / kQueries;
+  std::size_t expected = 0, found = 0;
+  for (std::size_t i = 0; i < count; i += stride) {
+    const MapKeyframe& query = keyframe_database.keyframes[i];
+    const auto is_distant = [&](std::size_t other) {
+      return view_distance(keyframe_database.keyframes[other].T_world_camera.inverse() *
+                           query.T_world_camera) >= KeyframeGraphConfig{}.furthest;
+    };
+    const auto all = most_alike(query, compare_all, kCount, kMinMatches, is_distant);
+    const auto indexed = most_alike(query, keyframe_database, kCount, kMinMatches, is_distant);
+    expected += all.size();
+    for (const std::size_t one : all) found += std::ranges::count(indexed, one) > 0 ? 1 : 0;
+  }
+  return expected > 0 ? static_cast<double>(found) / static_cast<double>(expected) : 1.0;
+}
+
 nlohmann::json bench_tracking(const std::string& name, const Settings& settings) {
   const std::unique_ptr<FrameSource> source = open(name);
   Odometry odometry;
   Frame frame;
   std::vector<TimedPose> truth;
-  std::vector<double> times_ms, cpu_ms;
+  std::vector<double> times_ms, cpu_ms, stamps_s;
   double inliers = 0.0;
   while (odometry.counts().frames < settings.frames) {
     const ReadResult read = source->next(frame);
@@ -96,6 +129,7 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
     const Tracking tracking = odometry.track(frame);
     cpu_ms.push_back(test::thread_ms() - cpu_start_ms);
     times_ms.push_back(since_ms(start));
+    stamps_s.push_back(frame.stamp_s);
     inliers += tracking.inlier_fraction;
     truth.push_back(
         {frame.index, frame.stamp_s, frame.T_world_camera.value_or(Eigen::Isometry3d::Identity())});
@@ -111,6 +145,7 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
   const bool known = frame.T_world_camera.has_value();
   const TrajectoryError ate = absolute_trajectory_error(estimate, truth);
   const OdometryCounts counts = odometry.counts();
+  const double peak_mb = peak_rss_mb();
   return {{"source", name},
           {"frames", counts.frames},
           {"tracked", counts.tracked},
@@ -132,9 +167,13 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
           {"thread_median_ms", test::quantile(cpu_ms, 0.5)},
           {"thread_p95_ms", test::quantile(cpu_ms, 0.95)},
           {"thread_max_ms", test::quantile(cpu_ms, 1.0)},
+          {"first_minute_median_ms", median_of_minute(times_ms, stamps_s, stamps_s.front())},
+          {"last_minute_median_ms", median_of_minute(times_ms, stamps_s, stamps_s.back() - 60.0)},
+          {"max_ms", test::quantile(times_ms, 1.0)},
           {"optimise_ms", optimise_ms},
           {"kept_mb", kept_mb(odometry.snapshot())},
-          {"peak_rss_mb", peak_rss_mb()}};
+          {"peak_rss_mb", peak_mb},
+          {"index_recall", recall_of_index(odometry.take_keyframe_database())}};
 }
 
 nlohmann::json bench_places(const std::string& name, const Settings& settings) {

@@ -1,0 +1,46 @@
+// feature_index.hpp: index that finds the keyframes with similar features without comparing all of them.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "mapping/localization/patches.hpp"
+
+namespace roomradar {
+
+/// Index over the descriptors of a sequence of keyframes, by locality-sensitive hashing. Two descriptors
+/// collide in one of the index's hash tables if they have equal values at the table's randomly chosen bits.
+/// Descriptors of one feature collide often, those of different features rarely. Deterministic. Source: Indyk
+/// and Motwani, Approximate nearest neighbors, STOC 1998 (bit sampling).
+class FeatureIndex {
+ public:
+  /// Adds the next keyframe, which gets the number size(). Uses its first kIndexedFeatures descriptors. Uses
+  /// 8 bytes per descriptor and table, at most 29 kB per keyframe.
+  void add(std::span<const Descriptor> descriptors);
+  /// Returns the number of keyframes in the index.
+  [[nodiscard]] std::size_t size() const { return keyframes_; }
+
+  /// Returns the numbers of the keyframes with the most descriptors that collide with one of `query`, best
+  /// first. Returns at most `count` keyframes, all with at least one collision.
+  /// @param accept  called with a keyframe's number; false: the keyframe is left out. Empty: all are accepted
+  [[nodiscard]] std::vector<std::size_t> candidates(std::span<const Descriptor> query, std::size_t count,
+                                                    const std::function<bool(std::size_t)>& accept) const;
+
+  static constexpr std::size_t kIndexedFeatures = 300;
+  static constexpr std::size_t kMaxKeyframes = 500'000;  ///< later keyframes are not indexed
+
+ private:
+  /// A descriptor in a bucket. Buckets are linked lists in one array: many small arrays that grow beside
+  /// large images would fragment the heap.
+  struct Entry {
+    std::uint32_t rest_and_keyframe;  ///< the bits of the hash that the bucket does not imply, and the number
+    std::uint32_t next;               ///< index of the bucket's next entry; 0: none
+  };
+  std::size_t keyframes_ = 0;
+  std::vector<std::uint32_t> first_;  ///< by bucket, of all tables: index of the first entry; 0: none
+  std::vector<Entry> entries_;        ///< entry 0 is unused
+};
+
+}  // namespace roomradar
