@@ -21,8 +21,9 @@ namespace fs = std::filesystem;
 const std::vector<std::vector<std::string>> kFloors = {
     {"mapping/types/system"},
     {"mapping/types"},
-    {"mapping/storage", "mapping/mesh", "mapping/octree", "mapping/alignment", "radar/geometry",
-     "dynamic/foreground", "dynamic/surface", "app/sources/formats", "app/sim/solids"},
+    {"mapping/storage"},
+    {"mapping/mesh", "mapping/octree", "mapping/alignment", "radar/geometry", "dynamic/foreground",
+     "dynamic/surface", "app/sources/formats", "app/sim/solids"},
     {"mapping/surface", "mapping/revision", "mapping/localization", "mapping/coverage", "radar/exact",
      "radar/gl", "app/sources/recordings", "app/calibration", "app/sim/room"},
     {"mapping/odometry", "mapping/map", "radar/motion", "radar/depth", "radar/batch", "app/sources/kinect",

@@ -33,6 +33,14 @@ KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m) {
   return {.first = to_key(low.ceil()), .last = to_key(high.floor())};
 }
 
+bool is_plausible_cube(const BlockOctree& tree, LogOdds log_odds, unsigned depth) {
+  constexpr int kMaxFree_voxels = 8192;
+  constexpr double kMaxSolid_m = 4.0;
+  const int edge_voxels = 1 << (kLeafDepth - depth);
+  if (log_odds < 0) return edge_voxels <= kMaxFree_voxels;
+  return log_odds > 0 && edge_voxels * tree.resolution_m() <= kMaxSolid_m;
+}
+
 SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth) {
   if (node.is_unknown()) return {};
   SubtreeSize size{.nodes = 1};

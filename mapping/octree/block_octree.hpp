@@ -8,10 +8,13 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
 
-#include "mapping/octree/block_pool.hpp"
 #include "mapping/octree/fusion_config.hpp"
 #include "mapping/types/image.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 
@@ -84,10 +87,11 @@ struct ColourBlock {
 /// With default settings and 1 cm voxels, the steps are 1e-4 for log-odds, 3 micrometres for distance, and
 /// half the weight of a frame at 5 m for weight.
 struct BlockUnits {
+  BlockUnits() = default;
   BlockUnits(double resolution_m, const FusionConfig& config);
-  float log_odds;
-  float distance_m;
-  float weight;
+  float log_odds = 0.0F;
+  float distance_m = 0.0F;
+  float weight = 0.0F;
 };
 
 /// Location of a node in the tree: its depth, and the key (kKeyOrigin + voxel index) of its lowest voxel.
@@ -123,6 +127,49 @@ struct KeyRange {
 };
 /// Returns the range for a box in the world, m. The range has no keys if the box is empty.
 KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m);
+
+/// Pool of equally sized blocks that are addressed by 32-bit numbers. Blocks never move. References thus stay
+/// valid while other blocks are allocated. Number 0 is reserved and means "none".
+template <typename Block>
+class BlockPool {
+ public:
+  /// @param limit  max number of blocks in use at a time; by default, all numbers below 2^31
+  explicit BlockPool(std::uint32_t limit = (1U << 31U) - 1) : limit_(limit) {}
+
+  /// Allocates a block, initialised to Block{}, and returns its number. Throws Error if the limit is reached.
+  std::uint32_t take() {
+    std::uint32_t number = 0;
+    if (free_.empty()) {
+      if (next_ > limit_)
+        throw Error("the octree has " + std::to_string(limit_) +
+                    " blocks of eight voxels, and no numbers for more; take a coarser resolution");
+      if (next_ % kChunk == 0 || chunks_.empty()) chunks_.push_back(std::make_unique<Block[]>(kChunk));
+      number = next_++;
+    } else {
+      number = free_.back();
+      free_.pop_back();
+    }
+    (*this)[number] = Block{};
+    return number;
+  }
+  void give_back(std::uint32_t number) { free_.push_back(number); }
+
+  Block& operator[](std::uint32_t number) { return chunks_[number / kChunk][number % kChunk]; }
+  const Block& operator[](std::uint32_t number) const { return chunks_[number / kChunk][number % kChunk]; }
+
+  [[nodiscard]] std::size_t in_use() const { return next_ - 1 - free_.size(); }
+  /// Returns the memory of all blocks ever allocated, since the pool keeps freed blocks for reuse.
+  [[nodiscard]] std::size_t memory_bytes() const {
+    return chunks_.size() * kChunk * sizeof(Block) + free_.capacity() * sizeof(std::uint32_t);
+  }
+
+ private:
+  static constexpr std::uint32_t kChunk = 2048;
+  std::uint32_t limit_;
+  std::uint32_t next_ = 1;
+  std::vector<std::unique_ptr<Block[]>> chunks_;
+  std::vector<std::uint32_t> free_;
+};
 
 class BlockOctree {
  public:
@@ -207,6 +254,11 @@ class BlockOctree {
   BlockPool<LeafBlock> leaves_;
   BlockPool<ColourBlock> colours_;
 };
+
+/// Returns true if a sensor may have observed a cube of these log-odds. A sensor observes free space in small
+/// cubes and only the surface of solids: free cubes have an edge of at most 8,192 voxels, occupied ones of at
+/// most 4 m. Larger cubes mean a damaged file. The limits also bound loops over the voxels of a cube.
+bool is_plausible_cube(const BlockOctree& tree, LogOdds log_odds, unsigned depth);
 
 struct SubtreeSize {
   std::size_t nodes = 0;  ///< number of nodes that OctoMap's file formats store

@@ -8,7 +8,7 @@ namespace roomradar {
 namespace {
 
 template <typename Value>
-void put(std::ostream& stream, const Value& value) {
+void write_field(std::ostream& stream, const Value& value) {
   stream.write(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
@@ -45,13 +45,13 @@ bool OctoMapNode::operator==(const OctoMapNode& other) const {
 }
 
 std::ostream& OctoMapNode::writeData(std::ostream& stream) const {
-  put(stream, value);
-  put(stream, static_cast<std::uint8_t>(has_sample() ? 1 : 0));
+  write_field(stream, value);
+  write_field(stream, static_cast<std::uint8_t>(has_sample() ? 1 : 0));
   if (has_sample()) {
-    put(stream, distance_m);
-    put(stream, weight);
-    put(stream, colour);
-    put(stream, colour_count);
+    write_field(stream, distance_m);
+    write_field(stream, weight);
+    write_field(stream, colour);
+    write_field(stream, colour_count);
   }
   return stream;
 }

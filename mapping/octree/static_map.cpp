@@ -8,6 +8,7 @@
 
 #include "mapping/octree/fusion.hpp"
 #include "mapping/octree/map_samples.hpp"
+#include "mapping/octree/octree_file.hpp"
 #include "mapping/octree/static_map_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -134,16 +135,25 @@ MapCounts StaticMap::counts() const {
   return counts;
 }
 
+void StaticMap::write(const std::filesystem::path& path) const { write_octree_file(octree_->tree, path); }
 void StaticMap::write_ot(const std::filesystem::path& path) const { write_ot_file(octree_->tree, path); }
 void StaticMap::write_bt(const std::filesystem::path& path) const { write_bt_file(octree_->tree, path); }
 
-StaticMap StaticMap::read_ot(const std::filesystem::path& path, const FusionConfig& config) {
+template <typename ReadFile>
+StaticMap StaticMap::read_by(const ReadFile& read_file, const FusionConfig& config) {
   std::unique_ptr<Octree> octree;
-  read_ot_file(path, [&](double resolution_m) -> BlockOctree& {
+  read_file([&](double resolution_m) -> BlockOctree& {
     octree = std::make_unique<Octree>(resolution_m, config);
     return octree->tree;
   });
   return StaticMap(std::move(octree));
+}
+
+StaticMap StaticMap::read(const std::filesystem::path& path, const FusionConfig& config) {
+  return read_by([&](const MakeOctree& make_tree) { read_octree_file(path, make_tree); }, config);
+}
+StaticMap StaticMap::read_ot(const std::filesystem::path& path, const FusionConfig& config) {
+  return read_by([&](const MakeOctree& make_tree) { read_ot_file(path, make_tree); }, config);
 }
 
 std::string_view to_string(FuseStatus status) {

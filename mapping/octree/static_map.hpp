@@ -133,6 +133,12 @@ class StaticMap {
   /// Counts leaves and nodes. Visits the whole tree, which takes about 20 ms per million nodes.
   [[nodiscard]] MapCounts counts() const;
 
+  /// Writes the complete map as compressed blocks, a quarter of the size of .ot. Throws Error if the file
+  /// cannot be written.
+  void write(const std::filesystem::path& path) const;
+  /// Reads a file written by write(), with equal log-odds, distances, weights and colours. If it was written
+  /// with another config, they are rounded to this config's steps. Validates like read_ot().
+  static StaticMap read(const std::filesystem::path& path, const FusionConfig& config = {});
   /// Writes the complete map in OctoMap's .ot format, with tree type "RoomRadarOcTree". Throws Error if the
   /// file cannot be written.
   void write_ot(const std::filesystem::path& path) const;
@@ -147,6 +153,8 @@ class StaticMap {
  private:
   struct Octree;
   explicit StaticMap(std::unique_ptr<Octree> octree);
+  template <typename ReadFile>
+  static StaticMap read_by(const ReadFile& read_file, const FusionConfig& config);
   std::unique_ptr<Octree> octree_;
 };
 

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/octomap_tree.hpp"
@@ -39,19 +40,20 @@ void write_stream(const std::filesystem::path& path, const Write& write) {
 // Writes the format of OctoMap's writeNodesRecurs: each node, the mask of its children, then its children.
 class NodeWriter {
  public:
-  NodeWriter(const BlockOctree& tree, std::ostream& stream) : tree_(tree), stream_(stream) {}
+  NodeWriter(const BlockOctree& tree, std::ostream& stream) : tree_(tree), stream_(stream) {
+    find_greatest(tree.root);
+  }
 
-  void write(Slot node, unsigned depth) {
+  void write(Slot node) {
     if (!node.is_block()) return put(leaf(node.log_odds()), 0);
-    OctoMapNode inner;  // OctoMap convention: log-odds of an inner node are the maximum of its leaves
-    inner.setLogOdds(greatest(node, depth));
+    const OctoMapNode inner = leaf(greatest_[next_++]);
     if (node.is_leaf_block()) return write_cells(inner, tree_.leaves(node));
     const InnerBlock& block = tree_.inner(node);
     unsigned children = 0;
     for (unsigned i = 0; i < 8; ++i) children |= block.slots[i].is_unknown() ? 0 : 1U << i;
     put(inner, children);
     for (const Slot child : block.slots)
-      if (!child.is_unknown()) write(child, depth + 1);
+      if (!child.is_unknown()) write(child);
   }
 
  private:
@@ -78,21 +80,30 @@ class NodeWriter {
       put(node, 0);
     }
   }
-  // Visits every node once per level above it: some tenths of a second per million nodes.
-  [[nodiscard]] float greatest(Slot node, unsigned depth) const {
-    LogOdds found = std::numeric_limits<LogOdds>::min();
-    for_each_part(
-        tree_, node, {depth, {}},
-        [&](const NodePlace&, LogOdds log_odds) { found = std::max(found, log_odds); },
-        [&](const NodePlace&, const LeafBlock& block) {
-          for (unsigned i = 0; i < 8; ++i)
-            if (block.holds(i)) found = std::max(found, block.log_odds[i]);
-        });
-    return static_cast<float>(found) * tree_.units().log_odds;
+  // Appends to greatest_ the greatest log-odds below each block of the subtree, and returns the node's.
+  LogOdds find_greatest(Slot node) {
+    if (!node.is_block()) return node.log_odds();
+    constexpr LogOdds kNone = std::numeric_limits<LogOdds>::min();
+    const std::size_t at = greatest_.size();
+    greatest_.push_back(kNone);
+    LogOdds found = kNone;
+    if (node.is_leaf_block()) {
+      const LeafBlock& block = tree_.leaves(node);
+      for (unsigned i = 0; i < 8; ++i)
+        if (block.holds(i)) found = std::max(found, block.log_odds[i]);
+    } else {
+      for (const Slot child : tree_.inner(node).slots)
+        if (!child.is_unknown()) found = std::max(found, find_greatest(child));
+    }
+    return greatest_[at] = found;
   }
 
   const BlockOctree& tree_;
   std::ostream& stream_;
+  // OctoMap's convention: the log-odds of an inner node are the maximum of its leaves. Blocks depth first, in
+  // the order in which they are written.
+  std::vector<LogOdds> greatest_;
+  std::size_t next_ = 0;
 };
 
 // Writes free and occupied only, in the format of OctoMap's writeBinaryNode: two bits for each child of a
@@ -256,7 +267,7 @@ class NodeReader {
   Slot read_subtree(const Leaf& node, unsigned children, unsigned depth) {
     if (node.sample || depth >= kLeafDepth) fault();
     if (children == 0) {
-      if (!is_cube_of_a_room(node.log_odds, depth)) fault();
+      if (!is_plausible_cube(tree_, node.log_odds, depth)) fault();
       return Slot::cube(node.log_odds);
     }
     if (depth == kLeafDepth - 1)
@@ -313,16 +324,6 @@ class NodeReader {
     block.coloured |= static_cast<std::uint8_t>(1U << i);
   }
 
-  // A sensor observes free space in small cubes and only the surface of solids, so larger cubes mean a
-  // damaged file. The limits also bound loops over the voxels of a cube.
-  [[nodiscard]] bool is_cube_of_a_room(LogOdds log_odds, unsigned depth) const {
-    constexpr int kMaxFree_voxels = 8192;
-    constexpr double kMaxSolid_m = 4.0;
-    const int edge_voxels = 1 << (kLeafDepth - depth);
-    if (log_odds < 0) return edge_voxels <= kMaxFree_voxels;
-    return log_odds > 0 && edge_voxels * tree_.resolution_m() <= kMaxSolid_m;
-  }
-
   static long in_steps(float value, float step, float least, float most) {
     return std::lround(std::clamp(value / step, least, most));
   }
@@ -342,7 +343,7 @@ void write_ot_file(const BlockOctree& tree, const std::filesystem::path& path) {
   write_stream(path, [&](std::ostream& stream) {
     stream << kFirstLine << "\n#\nid " << OctoMapTree::kTreeType << "\nsize "
            << size_of(tree, tree.root, 0).nodes << "\nres " << tree.resolution_m() << "\ndata\n";
-    if (!tree.root.is_unknown()) NodeWriter(tree, stream).write(tree.root, 0);
+    if (!tree.root.is_unknown()) NodeWriter(tree, stream).write(tree.root);
   });
 }
 

@@ -47,6 +47,13 @@ class BinaryReader {
     take(&number, 1, what);
     return number;
   }
+  /// Takes the next `count` bytes, which stay where they are.
+  std::string_view take_bytes(std::size_t count, const char* what) {
+    require(count, 1, what);
+    const std::string_view taken = bytes_.substr(0, count);
+    bytes_.remove_prefix(count);
+    return taken;
+  }
   /// Takes a double. Also throws if the number is not finite.
   double take_finite(const char* what);
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "mapping/octree/block_pool.hpp"
+#include "mapping/octree/block_octree.hpp"
 #include "mapping/octree/fusion.hpp"
 #include "mapping/octree/octomap_tree.hpp"
 #include "mapping/octree/static_map.hpp"
