@@ -83,7 +83,7 @@ bool is_held_out(std::int64_t frame_index, std::int64_t hold_out) {
 
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress, PrescanInput start) {
-  const double reach_m = start.map ? start.map->octree.reach_m() : StaticMap(config.resolution_m).reach_m();
+  const double reach_m = start.map ? start.map->octree->reach_m() : StaticMap(config.resolution_m).reach_m();
   const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
   PrescanWork work{source, config, times, progress, start.checkpoints, reach_m, maps_recorded_world};
   PrescanResult result;

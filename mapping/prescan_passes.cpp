@@ -188,7 +188,7 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
                 (fusing.counts.last_fault.empty() ? "" : "; the last fault: " + fusing.counts.last_fault));
   fusing.T_world_found = map ? transform_to_map(pass.odometry, fusing.found, *map, work.source.name())
                              : transform_to_new_map(fusing.found, work.config.poses);
-  fusing.octree = map ? std::move(map->octree) : StaticMap(work.config.resolution_m);
+  fusing.octree = map ? std::move(*map->octree) : StaticMap(work.config.resolution_m);
   keep(work.checkpoints, kFusingStage, fusing, work.times, /*between_frames=*/false);
   return fusing;
 }

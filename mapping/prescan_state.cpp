@@ -2,7 +2,7 @@
 //
 // state.bin: a file as in binary_file.hpp with magic "RRPRSCAN" and the fields in the order of the functions
 // below. Numbers are little-endian; lists are preceded by their length (u64). Beside it are odometry/ in the
-// first pass (odometry_checkpoint.cpp), and octree.ot and places.bin, as in a map, in the second.
+// first pass (odometry_checkpoint.cpp), and octree.bin and places.bin, as in a map, in the second.
 #include "mapping/prescan_state.hpp"
 
 #include <algorithm>
@@ -84,10 +84,10 @@ namespace {
 
 constexpr const char* kState = "state.bin";
 constexpr const char* kOdometry = "odometry";
-constexpr const char* kOctree = "octree.ot";
+constexpr const char* kOctree = "octree.bin";
 constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRPRSCAN";
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 
 template <typename Archive>
 void serialize_state(Archive& archive, TrackingPass& pass) {
@@ -138,7 +138,7 @@ void write_state(FusionPass& pass, const fs::path& into, const fs::path& previou
   // The keyframe database does not change in this pass.
   if (previous.empty() || !fs::exists(previous / kOctree) || !carry_over(previous / kPlaces, into / kPlaces))
     write_keyframe_database(pass.found.keyframe_database, into / kPlaces);
-  pass.octree.write_ot(into / kOctree);
+  pass.octree.write(into / kOctree);
 }
 
 TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConfig& config) {
@@ -152,7 +152,7 @@ FusionPass read_fusing_pass(const Checkpoint& checkpoint) {
   FusionPass pass;
   read_fields(checkpoint.folder / kState, pass);
   pass.found.keyframe_database = read_keyframe_database(checkpoint.folder / kPlaces);
-  pass.octree = StaticMap::read_ot(checkpoint.folder / kOctree);
+  pass.octree = StaticMap::read(checkpoint.folder / kOctree);
   return pass;
 }
 

@@ -35,11 +35,6 @@ constexpr int kFormatVersion = 3;
 constexpr int kOldestVersion = 2;  // keeps the files of meshes, read as they were then
 constexpr std::uintmax_t kMaxSettingsBytes = 1U << 20U;
 
-std::string checksum_of(const MapInfo& map) {
-  const auto found = map.files.find("octree.ot");
-  return found == map.files.end() ? "" : found->second.sha256;
-}
-
 Json read_settings(const fs::path& folder) {
   const fs::path path = folder / kSettings;
   Json json = Json::parse(read_bytes(path, "the settings of a recorded session", kMaxSettingsBytes), nullptr,
@@ -95,7 +90,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunOptions& options, con
                {"source", options.source},
                {"calibrated", are_calibrated},
                {"map", fs::absolute(options.map).lexically_normal().string()},
-               {"map_sha256", checksum_of(map)},
+               {"map_sha256", octree_checksum(map)},
                {"poses", to_string(options.poses)},
                {"surfaces", to_string(options.surfaces)},
                {"unknown_is_solid", options.unknown_is_solid},
@@ -198,7 +193,7 @@ std::unique_ptr<FrameSource> open_session_frames(const fs::path& folder) {
 std::string map_difference(const fs::path& folder, const MapInfo& map) {
   const Json settings = read_settings(folder);
   const auto recorded = settings.find("map_sha256");
-  if (recorded == settings.end() || *recorded == "" || *recorded == checksum_of(map)) return {};
+  if (recorded == settings.end() || *recorded == "" || *recorded == octree_checksum(map)) return {};
   return folder.string() + ": was recorded with a different map; results will differ";
 }
 

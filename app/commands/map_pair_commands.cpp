@@ -27,13 +27,13 @@ int run(const MapMergeOptions& options) {
     a.info.settings[kDeviationSetting] = format_number(*options.deviation_m);
     report.settings["deviation_m"] = *options.deviation_m;
   }
-  if (a.info.files.at("octree.ot").sha256 == b.info.files.at("octree.ot").sha256)
+  if (octree_checksum(a.info) == octree_checksum(b.info))
     throw Error(options.b + ": is the same map as " + options.a +
                 "; merged with itself, it would count every observation twice");
   const Registration found = require_registered(a, b, options.a, options.b, report);
   const SavedMap both = report.times.timed("merge", [&] { return merge_maps(std::move(a), b, found.T_a_b); });
   report.times.timed("save", [&] { save_map(options.map, both); });
-  report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree.memory_bytes()}};
+  report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree->memory_bytes()}};
   write_report(report, options.report);
   std::printf("%s: %zu triangles, %zu keyframes\n", options.map.c_str(), both.mesh.triangles.size(),
               both.keyframe_database.keyframes.size());
@@ -51,8 +51,9 @@ int run(const MapDiffOptions& options) {
   const SavedMap a = load_map(options.a);
   const SavedMap b = load_map(options.b);
   // A map saved by `run --save-map` has the keyframes of the map it came from, and so its world.
-  const bool one_world = !a.keyframe_database.keyframes.empty() &&
-                         a.info.files.at("places.bin").sha256 == b.info.files.at("places.bin").sha256;
+  const bool one_world =
+      !a.keyframe_database.keyframes.empty() &&
+      a.info.files.at(kMapKeyframesFile).sha256 == b.info.files.at(kMapKeyframesFile).sha256;
   const Eigen::Isometry3d T_a_b = one_world ? Eigen::Isometry3d::Identity()
                                             : require_registered(a, b, options.a, options.b, report).T_a_b;
   const std::vector<Change> changes =

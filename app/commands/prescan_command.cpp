@@ -157,7 +157,7 @@ int report_held_already(const PrescanOptions& options, Report& report) {
 /// differ from the requested ones. A deviation given as an option takes precedence, and the map keeps it.
 void keep_settings_of_map(const PrescanOptions& options, SavedMap& map, PrescanConfig& config,
                           Report& report) {
-  config.resolution_m = map.octree.resolution_m();
+  config.resolution_m = map.octree->resolution_m();
   std::map<std::string, std::string>& kept = map.info.settings;
   const bool is_asked_for = std::any_of(options.fixed.begin(), options.fixed.end(),
                                         [](const auto& field) { return field.first == "deviation_m"; });

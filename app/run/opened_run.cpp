@@ -199,7 +199,9 @@ void add_object(Session& session, const ScriptEvent& add, const std::string& scr
 }
 
 void open_session(OpenedRun& run, bool has_picture) {
-  run.session = std::make_unique<Session>(run.map, config_of(run, has_picture), &run.map.octree);
+  const SessionConfig config = config_of(run, has_picture);
+  StaticMap* const octree = config.map_updates ? &*run.map.octree : nullptr;  // read only if it may change
+  run.session = std::make_unique<Session>(run.map, config, octree);
   run.report.renderer = run.session->renderer();
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
   if (run.options.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);

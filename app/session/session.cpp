@@ -43,8 +43,8 @@ void Session::make_unknown_solid(StageTimes& times) {
       if (map_updater_ && (last_stamp_s_ || !map_updater_->committed_changes().empty()))
         throw Error(
             "unknown solid: changes are being adopted into the map; begin the run with --unknown solid");
-      room_.unknown = map_.unknown
-                          ? map_.unknown
+      room_.unknown = *map_.unknown
+                          ? *map_.unknown
                           : std::make_shared<const UnknownSurface>(unknown_surface(map_.octree, map_.mesh));
       room_.unknown_tree.build_by_place(room_.unknown->mesh_world);
       if (map_updater_) map_updater_->keep_up_unknown();

@@ -9,7 +9,7 @@ namespace {
 /// Returns the box around the map's surface and observed space, in the world.
 Eigen::AlignedBox3d known_box(const SavedMap& map) {
   Eigen::AlignedBox3d box = map.info.counts.known_world.isEmpty()  // not loaded from a folder
-                                ? map.octree.counts().known_world
+                                ? map.octree->counts().known_world
                                 : map.info.counts.known_world;
   for (const Eigen::Vector3f& vertex : map.mesh.vertices) box.extend(map.mesh.origin + vertex.cast<double>());
   return box;

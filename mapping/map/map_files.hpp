@@ -9,18 +9,22 @@ namespace roomradar {
 
 /// Name of the file that describes a map and lists its other files.
 inline constexpr const char* kMapInfoFile = "map.json";
-inline constexpr const char* kMapOctreeFile = "octree.ot";
-inline constexpr const char* kMapPlainOctreeFile = "octree.bt";
+inline constexpr const char* kMapOctreeFile = "octree.bin";
 inline constexpr const char* kMapMeshFile = "mesh.ply";
 inline constexpr const char* kMapKeyframesFile = "places.bin";
 inline constexpr const char* kMapTrajectoryFile = "trajectory.txt";
 /// All required files except map.json.
-inline constexpr std::array<const char*, 5> kMapParts = {kMapOctreeFile, kMapPlainOctreeFile, kMapMeshFile,
-                                                         kMapKeyframesFile, kMapTrajectoryFile};
+inline constexpr std::array<const char*, 4> kMapParts = {kMapOctreeFile, kMapMeshFile, kMapKeyframesFile,
+                                                         kMapTrajectoryFile};
+/// Octree of format versions 1 and 2, which also have octree.bt.
+inline constexpr const char* kMapOldOctreeFile = "octree.ot";
+inline constexpr const char* kMapOldPlainOctreeFile = "octree.bt";
+inline constexpr int kLastOldOctreeVersion = 2;
 inline constexpr const char* kMapCoverageFile = "coverage.png";  ///< optional
 inline constexpr const char* kMapUnknownFile = "unknown.bin";    ///< optional: missing in older maps
 
-/// Returns true for the names of the files, other than map.json, that a map's folder may contain.
+/// Returns true for the names of the files, other than map.json, that a folder with a map of any format
+/// version may contain.
 bool is_map_part(const std::string& name);
 
 /// Throws Error unless `folder` is missing, empty, or contains a map and nothing else.

@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <functional>
+#include <future>
 #include <optional>
 #include <string_view>
 
@@ -18,7 +18,6 @@
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/atomic_folder.hpp"
 #include "mapping/storage/sha256.hpp"
-#include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/process_memory.hpp"
@@ -36,9 +35,9 @@ constexpr std::uintmax_t kMaxInfoBytes = 1U << 20U;
   throw Error(path.string() + ": " + fault);
 }
 
-// Compares a file's size and checksum with map.json; returns the fault, or nullopt if they agree. Does not
-// read a file that exceeds the machine's memory.
-std::optional<std::string> fault_of(const fs::path& path, const MapFile& expected) {
+// Compares a file's kind and size with map.json; returns the fault, or nullopt if they agree. Refuses a file
+// that exceeds the machine's memory.
+std::optional<std::string> size_fault_of(const fs::path& path, const MapFile& expected) {
   std::error_code fault;
   const fs::file_status status = fs::symlink_status(path, fault);
   if (!fs::exists(status)) return path.string() + ": is missing";
@@ -52,6 +51,12 @@ std::optional<std::string> fault_of(const fs::path& path, const MapFile& expecte
   if (const std::uint64_t most = machine_bytes(); most > 0 && bytes > most)
     return path.string() + ": has " + std::to_string(bytes) + " bytes, and this machine's memory " +
            std::to_string(most) + "; it cannot be read here";
+  return std::nullopt;
+}
+
+// Compares a file's kind, size and checksum with map.json; returns the fault, or nullopt if they agree.
+std::optional<std::string> fault_of(const fs::path& path, const MapFile& expected) {
+  if (auto fault = size_fault_of(path, expected)) return fault;
   try {
     if (sha256_of_file(path) != expected.sha256)
       return path.string() + ": was altered: its checksum is another";
@@ -61,11 +66,19 @@ std::optional<std::string> fault_of(const fs::path& path, const MapFile& expecte
   return std::nullopt;
 }
 
+bool has_old_octree(const MapInfo& info) { return info.format_version <= kLastOldOctreeVersion; }
+
+const char* octree_file_of(const MapInfo& info) {
+  return has_old_octree(info) ? kMapOldOctreeFile : kMapOctreeFile;
+}
+
 // Checks that map.json lists all required parts, optionally others of a map, and nothing else. Thus no listed
 // path can lead out of the folder.
 void require_parts(const MapInfo& info, const fs::path& where) {
-  for (const char* part : kMapParts)
-    if (!info.files.contains(part)) fail(where, std::string("does not list \"") + part + "\"");
+  for (const char* part : kMapParts) {
+    const char* const name = part == kMapOctreeFile ? octree_file_of(info) : part;
+    if (!info.files.contains(name)) fail(where, std::string("does not list \"") + name + "\"");
+  }
   for (const auto& [name, file] : info.files)
     if (!is_map_part(name)) fail(where, "lists \"" + name.substr(0, 100) + "\", which is no part of a map");
 }
@@ -76,9 +89,10 @@ std::vector<std::uint8_t> read_picture(const fs::path& path) {
 }
 
 StaticMap read_octree(const fs::path& folder, const MapInfo& info) {
-  StaticMap octree = StaticMap::read_ot(folder / kMapOctreeFile);
+  const fs::path path = folder / octree_file_of(info);
+  StaticMap octree = has_old_octree(info) ? StaticMap::read_ot(path) : StaticMap::read(path);
   if (std::abs(octree.resolution_m() - info.resolution_m) > 1e-9 * info.resolution_m)
-    fail(folder / kMapOctreeFile, "its resolution is not the one in " + std::string(kMapInfoFile));
+    fail(path, "its resolution is not the one in " + std::string(kMapInfoFile));
   return octree;
 }
 
@@ -108,12 +122,12 @@ void save_map(const fs::path& folder, const SavedMap& map) {
                      " is the most; take a larger --deviation, or a coarser --resolution.");
   AtomicFolder partial(target);
 
-  map.octree.write_ot(partial.path() / kMapOctreeFile);
-  map.octree.write_bt(partial.path() / kMapPlainOctreeFile);
+  const StaticMap& octree = map.octree;
+  octree.write(partial.path() / kMapOctreeFile);
   write_mesh(map.mesh, partial.path() / kMapMeshFile);
   write_keyframe_database(map.keyframe_database, partial.path() / kMapKeyframesFile);
   write_trajectory(partial.path() / kMapTrajectoryFile, map.trajectory);
-  write_unknown_surface(unknown_surface(map.octree, map.mesh), partial.path() / kMapUnknownFile);
+  write_unknown_surface(unknown_surface(octree, map.mesh), partial.path() / kMapUnknownFile);
   if (!map.coverage_png.empty())
     write_bytes(partial.path() / kMapCoverageFile,
                 std::string(map.coverage_png.begin(), map.coverage_png.end()));
@@ -121,8 +135,8 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   MapInfo info = map.info;
   info.format_version = kMapFormatVersion;
   info.tool_version = kVersion;
-  info.resolution_m = map.octree.resolution_m();
-  info.counts = map.octree.counts();
+  info.resolution_m = octree.resolution_m();
+  info.counts = octree.counts();
   info.vertices = map.mesh.vertices.size();
   info.triangles = map.mesh.triangles.size();
   info.keyframes = map.keyframe_database.keyframes.size();
@@ -157,22 +171,52 @@ MapInfo read_info(const fs::path& folder) {
   return info;
 }
 
+void throw_if(const std::optional<std::string>& fault) {
+  if (fault) throw Error(*fault + "; take the map from a backup or scan the room again");
+}
+void require_sound(const fs::path& folder, const MapInfo& info, const std::string& name) {
+  throw_if(fault_of(folder / name, info.files.at(name)));
+}
+
+// Returns a part that is read when it is first used, if the folder still is the map that was opened.
+template <typename Part, typename Read>
+LazyPart<Part> read_later(const fs::path& folder, const MapInfo& info, const std::string& name,
+                          const Read& read) {
+  return LazyPart<Part>([folder, info, name, read, version = folder_version(folder)]() -> Part {
+    if (folder_version(folder) != version)
+      fail(folder, "was saved again while it was in use; start again to use the map that is there now");
+    require_sound(folder, info, name);
+    return read(folder, info);
+  });
+}
+
+std::shared_ptr<const UnknownSurface> read_unknown(const fs::path& folder, const MapInfo&) {
+  return std::make_shared<const UnknownSurface>(read_unknown_surface(folder / kMapUnknownFile));
+}
+
 SavedMap read_map(const fs::path& folder) {
-  MapInfo info = read_info(folder);
-  for (const auto& [name, file] : info.files)
-    if (const auto fault = fault_of(folder / name, file))
-      throw Error(*fault + "; take the map from a backup or scan the room again");
-  return {
-      .info = info,
-      .octree = read_octree(folder, info),
-      .mesh = read_mesh(folder / kMapMeshFile),
-      .keyframe_database = read_keyframe_database(folder / kMapKeyframesFile),
-      .trajectory = read_trajectory(folder / kMapTrajectoryFile),
-      .coverage_png = info.files.contains(kMapCoverageFile) ? read_picture(folder / kMapCoverageFile)
-                                                            : std::vector<std::uint8_t>{},
-      .unknown = info.files.contains(kMapUnknownFile)
-                     ? std::make_shared<const UnknownSurface>(read_unknown_surface(folder / kMapUnknownFile))
-                     : nullptr};
+  SavedMap map;
+  map.info = read_info(folder);
+  const MapInfo& info = map.info;
+  for (const auto& [name, file] : info.files) throw_if(size_fault_of(folder / name, file));
+  auto keyframes = std::async(std::launch::async, [&] {
+    require_sound(folder, info, kMapKeyframesFile);
+    return read_keyframe_database(folder / kMapKeyframesFile);
+  });
+  require_sound(folder, info, kMapMeshFile);
+  map.mesh = read_mesh(folder / kMapMeshFile);
+  require_sound(folder, info, kMapTrajectoryFile);
+  map.trajectory = read_trajectory(folder / kMapTrajectoryFile);
+  if (info.files.contains(kMapCoverageFile)) {
+    require_sound(folder, info, kMapCoverageFile);
+    map.coverage_png = read_picture(folder / kMapCoverageFile);
+  }
+  map.octree = read_later<StaticMap>(folder, info, octree_file_of(info), read_octree);
+  if (info.files.contains(kMapUnknownFile))
+    map.unknown =
+        read_later<std::shared_ptr<const UnknownSurface>>(folder, info, kMapUnknownFile, read_unknown);
+  map.keyframe_database = keyframes.get();
+  return map;
 }
 
 std::vector<std::string> faults_of(const fs::path& folder) {
@@ -194,7 +238,7 @@ std::vector<std::string> faults_of(const fs::path& folder) {
       continue;
     }
     attempt([&, &name = name] {
-      if (name == kMapOctreeFile) static_cast<void>(read_octree(folder, *info));
+      if (name == octree_file_of(*info)) static_cast<void>(read_octree(folder, *info));
       if (name == kMapMeshFile) static_cast<void>(read_mesh(folder / part));
       if (name == kMapKeyframesFile) static_cast<void>(read_keyframe_database(folder / part));
       if (name == kMapTrajectoryFile) static_cast<void>(read_trajectory(folder / part));
@@ -207,6 +251,11 @@ std::vector<std::string> faults_of(const fs::path& folder) {
 
 }  // namespace
 
+std::string octree_checksum(const MapInfo& info) {
+  const auto found = info.files.find(octree_file_of(info));
+  return found == info.files.end() ? "" : found->second.sha256;
+}
+
 MapInfo load_map_info(const fs::path& folder) {
   return read_consistent(folder, [&] { return read_info(folder); });
 }
@@ -218,7 +267,7 @@ SavedMap load_map(const fs::path& folder) {
 Mesh load_map_mesh(const fs::path& folder) {
   return read_consistent(folder, [&] {
     const MapInfo info = read_info(folder);
-    if (const auto fault = fault_of(folder / kMapMeshFile, info.files.at(kMapMeshFile))) throw Error(*fault);
+    require_sound(folder, info, kMapMeshFile);
     return read_mesh(folder / kMapMeshFile);
   });
 }
@@ -237,22 +286,16 @@ void export_map(const fs::path& folder, const fs::path& path) {
                    "\" is no format to export to; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
                    "the mesh");
   require_outside_maps(path);
-  const char* part = extension == ".ot"   ? kMapOctreeFile
-                     : extension == ".bt" ? kMapPlainOctreeFile
-                                          : kMapMeshFile;
-  read_consistent(folder, [&] {
+  if (!octree) return write_mesh(load_map_mesh(folder), path);
+  const StaticMap read = read_consistent(folder, [&] {
     const MapInfo info = read_info(folder);
-    if (const auto fault = fault_of(folder / part, info.files.at(part))) throw Error(*fault);
-    if (!octree) {
-      write_mesh(read_mesh(folder / part), path);
-      return 0;
-    }
-    std::ifstream in(folder / part, std::ios::binary);
-    AtomicFile out(path);
-    require_written(out.stream() << in.rdbuf(), path);
-    out.commit();
-    return 0;
+    require_sound(folder, info, octree_file_of(info));
+    return read_octree(folder, info);
   });
+  if (extension == ".ot")
+    read.write_ot(path);
+  else
+    read.write_bt(path);
 }
 
 }  // namespace roomradar

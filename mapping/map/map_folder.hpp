@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
+#include "mapping/map/lazy_part.hpp"
 #include "mapping/map/map_files.hpp"
 #include "mapping/map/map_info.hpp"
 #include "mapping/octree/static_map.hpp"
@@ -20,14 +21,14 @@ namespace roomradar {
 
 struct SavedMap {
   MapInfo info;
-  StaticMap octree{0.01};
+  LazyPart<StaticMap> octree{StaticMap(0.01)};
   Mesh mesh;
   KeyframeDatabase keyframe_database;
   std::vector<TimedPose> trajectory;
   std::vector<std::uint8_t> coverage_png;  ///< coverage picture; empty: none
   /// Border of unknown space, set by load_map(). Null if the map was not saved before, or was saved by an
   /// earlier version.
-  std::shared_ptr<const UnknownSurface> unknown;
+  LazyPart<std::shared_ptr<const UnknownSurface>> unknown{std::shared_ptr<const UnknownSurface>()};
 };
 
 /// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if
@@ -41,8 +42,15 @@ SurfaceConfig surface_config_of(const MapInfo& info);
 /// or the disk fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);
 
-/// Reads a map after verifying the checksum of every file. Throws Error naming the file and the fault.
+/// Reads a map of this or an earlier format version. Verifies the sizes of all files, and the checksum of
+/// each file before parsing it. Octree and unknown surface are read and verified when they are first used.
+/// Throws Error naming the file and the fault. So does the first use of octree or unknown surface, also if
+/// the folder was replaced since.
 SavedMap load_map(const std::filesystem::path& folder);
+
+/// Returns the SHA-256 of the file of the map's octree, 64 hexadecimal digits. Empty if the map was not
+/// saved.
+std::string octree_checksum(const MapInfo& info);
 
 /// Reads and checks only map.json.
 MapInfo load_map_info(const std::filesystem::path& folder);
@@ -53,7 +61,7 @@ Mesh load_map_mesh(const std::filesystem::path& folder);
 /// Returns one sentence per fault, naming the file; empty for an intact map. Never throws for a damaged map.
 std::vector<std::string> verify_map(const std::filesystem::path& folder);
 
-/// Exports one part of a saved map, chosen by extension. Exports the octree as .ot or .bt, the mesh as .ply,
+/// Exports one part of a saved map, chosen by extension. Writes the octree as .ot or .bt, the mesh as .ply,
 /// .obj, .stl or .glb. Throws Error if the extension is none of these, the map is damaged, or `path` is in a
 /// map's folder.
 void export_map(const std::filesystem::path& folder, const std::filesystem::path& path);

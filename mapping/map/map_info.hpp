@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-inline constexpr int kMapFormatVersion = 2;
+inline constexpr int kMapFormatVersion = 3;
 
 // Keys of MapInfo::settings that are read back.
 inline constexpr const char* kDeviationSetting = "deviation_m";       ///< SurfaceConfig::max_deviation_m
@@ -40,8 +40,7 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
-  /// Size and checksum by file name. The files are octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt
-  /// and, if present, coverage.png and unknown.bin.
+  /// Size and checksum by file name. The names are in map_files.hpp.
   std::map<std::string, MapFile> files;
 };
 

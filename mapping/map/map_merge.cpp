@@ -183,8 +183,8 @@ namespace {
 /// Throws Error if the resolutions differ so much that one of the maps should be scanned again.
 void require_alike(const SavedMap& a, const SavedMap& b) {
   constexpr double kMostTimes = 4.0;  // 64 voxels for one
-  const double finer_m = std::min(a.octree.resolution_m(), b.octree.resolution_m());
-  const double coarser_m = std::max(a.octree.resolution_m(), b.octree.resolution_m());
+  const double finer_m = std::min(a.octree->resolution_m(), b.octree->resolution_m());
+  const double coarser_m = std::max(a.octree->resolution_m(), b.octree->resolution_m());
   if (coarser_m <= kMostTimes * finer_m * (1.0 + 1e-9)) return;
   throw Error("the cells of one map are " + format_number(finer_m) + " m and of the other " +
               format_number(coarser_m) + " m; to be joined they may differ by " + format_number(kMostTimes) +
@@ -193,7 +193,7 @@ void require_alike(const SavedMap& a, const SavedMap& b) {
 
 /// Throws Error if a map, in the merged map's world, is out of reach at this resolution.
 void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map, double resolution_m) {
-  const Eigen::AlignedBox3d known = map.octree.counts().known_world;
+  const Eigen::AlignedBox3d known = map.octree->counts().known_world;
   if (known.isEmpty()) return;
   const double reach_m = StaticMap(resolution_m).reach_m();
   double farthest_m = 0.0;
@@ -214,12 +214,12 @@ void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map
 }  // namespace
 
 SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b) {
-  const double finer_m = std::min(a.octree.resolution_m(), b.octree.resolution_m());
+  const double finer_m = std::min(a.octree->resolution_m(), b.octree->resolution_m());
   require_in_reach(a, Eigen::Isometry3d::Identity(), finer_m);
   require_in_reach(b, T_a_b, finer_m);
   require_alike(a, b);
-  if (b.octree.resolution_m() < a.octree.resolution_m()) {
-    StaticMap finer(b.octree.resolution_m(), a.octree.config());
+  if (b.octree->resolution_m() < a.octree->resolution_m()) {
+    StaticMap finer(b.octree->resolution_m(), a.octree->config());
     add_map(a.octree, Eigen::Isometry3d::Identity(), finer);
     a.octree = std::move(finer);
     if (const auto setting = b.info.settings.find("resolution_m"); setting != b.info.settings.end())

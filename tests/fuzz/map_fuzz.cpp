@@ -29,6 +29,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 'o':
         (void)StaticMap::read_ot(test::file_with(bytes, "octree.ot"));
         break;
+      case 'b':
+        (void)StaticMap::read(test::file_with(sealed(bytes), "octree.bin"));
+        break;
       case 'p':
         (void)read_keyframe_database(test::file_with(sealed(bytes), "places.bin"));
         break;

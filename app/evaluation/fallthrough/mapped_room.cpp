@@ -49,7 +49,7 @@ void fuse_walk(const SimOptions& walk, const RoomScan& scan, const std::function
   Frame frame;
   while (source.next(frame).status == ReadStatus::kFrame) {
     ++map.info.frames_read;
-    if (map.octree.fuse(frame, *frame.T_world_camera) == FuseStatus::kFused) ++map.info.frames_fused;
+    if (map.octree->fuse(frame, *frame.T_world_camera) == FuseStatus::kFused) ++map.info.frames_fused;
     progress();
   }
   map.mesh = extract_surface(map.octree);

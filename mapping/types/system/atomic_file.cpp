@@ -70,7 +70,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-  errno = 0;
+  if (stream_) errno = 0;  // else a write has failed, and set it
   stream_.close();
   if (!stream_) fail(target_, errno != 0 ? std::strerror(errno) : "not all of it was taken");
   if (stream_of_process_ >= 0)

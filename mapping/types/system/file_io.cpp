@@ -35,12 +35,17 @@ std::string read_bytes(const fs::path& path, std::string_view what, std::uintmax
 }
 
 void write_bytes(const fs::path& path, std::string_view bytes) {
+  errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   const bool was_opened = file.is_open();
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
+  if (file) return;
+  const int why = errno;
   std::error_code ignored;
-  if (was_opened && !file && fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
+  if (was_opened && fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
+  if (const std::string known = why_not_writable(path); known.empty() && why != 0)
+    throw Error(path.string() + ": cannot be written: " + std::generic_category().message(why));
   require_written(file, path);
 }
 

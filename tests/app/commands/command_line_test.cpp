@@ -443,7 +443,8 @@ TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
       roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " + own.string() +
                 " --poses recorded --commit-changes 0.8 --save-map " + own.string());
   EXPECT_EQ(again.status, 0) << again.out;
-  EXPECT_EQ(read_text(own / "octree.ot"), read_text(fs::path(changed) / "octree.ot")) << "the same each time";
+  EXPECT_EQ(read_text(own / "octree.bin"), read_text(fs::path(changed) / "octree.bin"))
+      << "the same each time";
   EXPECT_EQ(read_text(own / "mesh.ply"), read_text(fs::path(changed) / "mesh.ply"));
 }
 
@@ -931,7 +932,7 @@ TEST_F(CommandLine, ABrokenMapIsRefusedAndTheFileNamed) {
   const std::string run = "run 'sim:table?frames=2&width=160' --map ";
   expect_fault(roomradar(run + (folder_ / "no_map").string()), 1, "no_map");
   for (const char* name :
-       {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
+       {"map.json", "octree.bin", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
     fs::path copy = broken_copy();
     fs::remove(copy / name);
     expect_fault(roomradar(run + copy.string()), 1, name);
@@ -949,7 +950,7 @@ TEST_F(CommandLine, ABrokenMapIsRefusedAndTheFileNamed) {
   }
   const fs::path later = broken_copy();
   std::string json = read_text(later / "map.json");
-  const std::size_t at = json.find("\"format_version\": 2");
+  const std::size_t at = json.find("\"format_version\": 3");
   ASSERT_NE(at, std::string::npos) << json.substr(0, 300);
   json.replace(at, 19, "\"format_version\": 9");
   std::ofstream(later / "map.json", std::ios::binary) << json;
@@ -1050,7 +1051,7 @@ TEST_F(CommandLine, ATexturedObjectIsReplayedToTheBit) {
   std::string settings = read_text(fs::path(session) / "session.json");
   const std::size_t at = settings.find("\"format_version\": 3");
   ASSERT_NE(at, std::string::npos);
-  settings.replace(at, 19, "\"format_version\": 2");
+  settings.replace(at, 19, "\"format_version\": 3");
   std::ofstream(fs::path(session) / "session.json") << settings;
   std::string events = read_text(fs::path(session) / "events.txt");
   events.replace(events.find("mesh-1.model"), 12, "mesh-1.obj");

@@ -184,7 +184,7 @@ TEST_F(DeferredErrors, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
   again.emplace_back("--resume");
   EXPECT_EQ(run(again), 0) << said();
   EXPECT_EQ(said().find("track 12/12"), std::string::npos) << "that pass was over: " << said();
-  EXPECT_TRUE(text_of(disk() / "map" / "octree.ot") == text_of(at("reference") / "octree.ot"));
+  EXPECT_TRUE(text_of(disk() / "map" / "octree.bin") == text_of(at("reference") / "octree.bin"));
 }
 
 TEST_F(DeferredErrors, ARunThatIsCutShortSavesAndReportsWhatCameBefore) {

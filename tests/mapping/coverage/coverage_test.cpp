@@ -26,7 +26,7 @@ SavedMap wall_seen(int count) {
   for (int i = 0; i < count; ++i) {
     const Eigen::Isometry3d T = test::looking_at({0.001 * i, 0.0, 1.0}, {0.001 * i, 2.0, 1.0});
     const Frame frame = test::exact_frame(test::plane(Vector3d::UnitY(), 2.0), kCamera, T);
-    EXPECT_EQ(map.octree.fuse(frame, T), FuseStatus::kFused);
+    EXPECT_EQ(map.octree->fuse(frame, T), FuseStatus::kFused);
     map.trajectory.push_back({i, i / 30.0, T});
   }
   map.mesh = extract_surface(map.octree);

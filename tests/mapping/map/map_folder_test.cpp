@@ -18,12 +18,15 @@
 #include <string>
 #include <thread>
 
+#include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/atomic_folder.hpp"
+#include "mapping/storage/sha256.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/map_content.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::map_folder_test {
@@ -40,7 +43,7 @@ SavedMap a_room() {
       test::nearest_of(test::sphere({1.2, 0.2, 0}, 0.3), test::plane(Eigen::Vector3d::UnitX(), 2.01));
   SavedMap map;
   map.octree = StaticMap(0.0234);
-  map.octree.fuse(test::exact_frame(scene, kCamera, T_world_camera, Rgb{90, 60, 30}), T_world_camera);
+  map.octree->fuse(test::exact_frame(scene, kCamera, T_world_camera, Rgb{90, 60, 30}), T_world_camera);
   map.mesh = extract_surface(map.octree);
   MapKeyframe place;
   place.frame_index = 7;
@@ -86,9 +89,14 @@ class MapFolder : public ::testing::Test {
  protected:
   MapFolder() { save_map(map_, room_); }
 
-  // Expects load_map to throw and verify_map to list a message that names the file and the fault.
+  // Expects load_map, or the first use of all parts, to throw and verify_map to list a message that names the
+  // file and the fault.
   void expect_fault(const std::string& file, const std::string& fault) {
-    const std::string message = error_of([&] { static_cast<void>(load_map(map_)); });
+    const std::string message = error_of([&] {
+      const SavedMap map = load_map(map_);
+      static_cast<void>(*map.octree);
+      static_cast<void>(*map.unknown);
+    });
     EXPECT_NE(message.find((map_ / file).string()), std::string::npos) << message;
     EXPECT_NE(message.find(fault), std::string::npos) << message;
     const std::vector<std::string> faults = verify_map(map_);
@@ -101,6 +109,18 @@ class MapFolder : public ::testing::Test {
     const std::size_t at = text.find(from);
     ASSERT_NE(at, std::string::npos) << from;
     put_text(map_ / "map.json", text.replace(at, from.size(), to));
+  }
+  // Turns the map into one of an earlier format version.
+  void make_old(int version) {
+    MapInfo info = load_map_info(map_);
+    fs::remove(map_ / "octree.bin");
+    info.files.erase("octree.bin");
+    room_.octree->write_ot(map_ / "octree.ot");
+    room_.octree->write_bt(map_ / "octree.bt");
+    for (const char* name : {"octree.ot", "octree.bt"})
+      info.files[name] = {fs::file_size(map_ / name), sha256_of_file(map_ / name)};
+    info.format_version = version;
+    put_text(map_ / "map.json", to_json(info));
   }
   [[nodiscard]] std::size_t entries() const {
     return static_cast<std::size_t>(
@@ -123,8 +143,8 @@ TEST_F(MapFolder, ComesBackAsItWasSaved) {
   EXPECT_TRUE(read.info.T_world_recorded.isApprox(room_.info.T_world_recorded, 1e-15));
   EXPECT_EQ(read.info.resolution_m, 0.0234);
   EXPECT_EQ(read.info.triangles, room_.mesh.triangles.size());
-  EXPECT_EQ(read.octree.resolution_m(), room_.octree.resolution_m());
-  const MapCounts before = room_.octree.counts(), after = read.octree.counts();
+  EXPECT_EQ(read.octree->resolution_m(), room_.octree->resolution_m());
+  const MapCounts before = room_.octree->counts(), after = read.octree->counts();
   EXPECT_EQ(after.nodes, before.nodes);
   EXPECT_EQ(after.occupied_leaves, before.occupied_leaves);
   EXPECT_EQ(read.info.counts.free_leaves, before.free_leaves);
@@ -157,19 +177,19 @@ TEST_F(MapFolder, ThePictureOfCoverageComesBackAndMayBeMissing) {
 
 TEST_F(MapFolder, TheBorderOfUnknownSpaceIsSavedWithTheMapAndOldMapsHaveNone) {
   const SavedMap read = load_map(map_);
-  ASSERT_TRUE(read.unknown);
+  ASSERT_TRUE(*read.unknown);
   const UnknownSurface expected = unknown_surface(room_.octree, room_.mesh);
   ASSERT_GT(expected.mesh_world.triangles.size(), 100U);
-  EXPECT_EQ(read.unknown->mesh_world.vertices, expected.mesh_world.vertices);
-  EXPECT_EQ(read.unknown->mesh_world.triangles, expected.mesh_world.triangles);
-  EXPECT_TRUE(read.unknown->unknown == expected.unknown);
+  EXPECT_EQ((*read.unknown)->mesh_world.vertices, expected.mesh_world.vertices);
+  EXPECT_EQ((*read.unknown)->mesh_world.triangles, expected.mesh_world.triangles);
+  EXPECT_TRUE((*read.unknown)->unknown == expected.unknown);
 
   nlohmann::json info = nlohmann::json::parse(text_of(map_ / "map.json"));
   info["files"].erase("unknown.bin");
   put_text(map_ / "map.json", info.dump());
   fs::remove(map_ / "unknown.bin");
   EXPECT_TRUE(verify_map(map_).empty());
-  EXPECT_FALSE(load_map(map_).unknown);
+  EXPECT_FALSE(*load_map(map_).unknown);
 }
 
 TEST_F(MapFolder, SavingAgainReplacesTheMapAndLeavesNothingBeside) {
@@ -249,8 +269,7 @@ TEST_F(MapFolder, AMapWithoutASurfaceIsNotSavedAndTheOldOneStays) {
 }
 
 TEST_F(MapFolder, EachMissingFileIsNamed) {
-  for (const char* file :
-       {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
+  for (const char* file : {"octree.bin", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
     const std::string content = text_of(map_ / file);
     fs::remove(map_ / file);
     expect_fault(file, "is missing");
@@ -261,8 +280,7 @@ TEST_F(MapFolder, EachMissingFileIsNamed) {
 }
 
 TEST_F(MapFolder, EachCutFileIsNamed) {
-  for (const char* file :
-       {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
+  for (const char* file : {"octree.bin", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
     const std::string content = text_of(map_ / file);
     for (const std::size_t length : {std::size_t{0}, content.size() / 2, content.size() - 1}) {
       put_text(map_ / file, content.substr(0, length));
@@ -277,8 +295,7 @@ TEST_F(MapFolder, EachCutFileIsNamed) {
 }
 
 TEST_F(MapFolder, OneChangedByteAnywhereIsNoticed) {
-  for (const char* file :
-       {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
+  for (const char* file : {"octree.bin", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
     const std::string content = text_of(map_ / file);
     for (std::size_t at = 0; at < content.size(); at += 1 + content.size() / 7) {
       std::string altered = content;
@@ -295,26 +312,69 @@ TEST_F(MapFolder, AFileThatNoMemoryHoldsIsNotReadThrough) {
   // A sparse file of 8.8 TB uses no disk space; reading all of it would take hours.
   constexpr std::uintmax_t kVast_bytes = std::uintmax_t{1} << 43U;
   std::error_code fault;
-  const std::uintmax_t bytes = fs::file_size(map_ / "octree.ot");
-  fs::resize_file(map_ / "octree.ot", kVast_bytes, fault);
+  const std::uintmax_t bytes = fs::file_size(map_ / "octree.bin");
+  fs::resize_file(map_ / "octree.bin", kVast_bytes, fault);
   if (fault) GTEST_SKIP() << "this file system has no files as large";
-  edit_info("\"octree.ot\": {\n      \"bytes\": " + std::to_string(bytes),
-            "\"octree.ot\": {\n      \"bytes\": " + std::to_string(kVast_bytes));
-  expect_fault("octree.ot", "this machine's memory");
+  edit_info("\"octree.bin\": {\n      \"bytes\": " + std::to_string(bytes),
+            "\"octree.bin\": {\n      \"bytes\": " + std::to_string(kVast_bytes));
+  expect_fault("octree.bin", "this machine's memory");
 }
 
 TEST_F(MapFolder, VerifyListsEveryFaultAtOnce) {
   fs::remove(map_ / "mesh.ply");
-  put_text(map_ / "octree.ot", "x");
+  put_text(map_ / "octree.bin", "x");
   put_text(map_ / "trajectory.txt", "");
   EXPECT_EQ(verify_map(map_).size(), 3U);
 }
 
-TEST_F(MapFolder, ALaterFormatIsRefusedWithAdviceAndAnEarlierOneIsRead) {
-  edit_info("\"format_version\": 2", "\"format_version\": 1");
-  EXPECT_EQ(load_map(map_).info.format_version, 1);
-  edit_info("\"format_version\": 1", "\"format_version\": 3");
+TEST_F(MapFolder, ALaterFormatIsRefusedWithAdvice) {
+  edit_info("\"format_version\": 3", "\"format_version\": 4");
   expect_fault("map.json", "use a later roomradar");
+}
+
+TEST_F(MapFolder, MapsOfEarlierFormatsAreReadAndSavedInThisOne) {
+  for (const int version : {1, 2}) {
+    save_map(map_, room_);
+    make_old(version);
+    EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
+    const SavedMap read = load_map(map_);
+    EXPECT_EQ(read.info.format_version, version);
+    test::expect_equal(read.octree, room_.octree);
+    for (const char* name : {"octree.ot", "octree.bt"}) {
+      const fs::path exported = folder_.path() / name;
+      export_map(map_, exported);
+      EXPECT_TRUE(text_of(exported) == text_of(map_ / name)) << name;
+    }
+    save_map(map_, read);
+    EXPECT_EQ(load_map_info(map_).format_version, 3);
+    EXPECT_FALSE(fs::exists(map_ / "octree.ot"));
+    EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
+    test::expect_equal(load_map(map_).octree, room_.octree);
+  }
+}
+
+TEST_F(MapFolder, AnEarlierFormatWithoutItsOctreeIsRefused) {
+  make_old(2);
+  fs::remove(map_ / "octree.ot");
+  expect_fault("octree.ot", "is missing");
+}
+
+TEST_F(MapFolder, TheOctreeIsReadWhenItIsUsed) {
+  std::string altered = text_of(map_ / "octree.bin");
+  altered[altered.size() / 2] = static_cast<char>(altered[altered.size() / 2] ^ 1);
+  put_text(map_ / "octree.bin", altered);
+  const SavedMap read = load_map(map_);
+  EXPECT_EQ(read.mesh.triangles.size(), room_.mesh.triangles.size());
+  EXPECT_NE(error_of([&] { static_cast<void>(*read.octree); }).find("octree.bin: was altered"),
+            std::string::npos);
+}
+
+TEST_F(MapFolder, AMapThatWasSavedAgainSaysSoWhenItsOctreeIsUsed) {
+  const SavedMap read = load_map(map_), used = load_map(map_);
+  static_cast<void>(*used.octree);
+  save_map(map_, room_);
+  EXPECT_NE(error_of([&] { static_cast<void>(*read.octree); }).find("was saved again"), std::string::npos);
+  EXPECT_EQ(used.octree->counts().nodes, room_.octree->counts().nodes);
 }
 
 TEST_F(MapFolder, NamesThatLeadOutOfTheFolderAreRefused) {
@@ -483,7 +543,9 @@ TEST_F(MapFolder, EveryExportIsReadable) {
         << extension;
   }
   export_map(map_, out / "room.ot");
-  EXPECT_EQ(StaticMap::read_ot(out / "room.ot").counts().nodes, room_.octree.counts().nodes);
+  room_.octree->write_ot(out / "own.ot");
+  EXPECT_TRUE(text_of(out / "room.ot") == text_of(out / "own.ot"));
+  EXPECT_EQ(StaticMap::read_ot(out / "room.ot").counts().nodes, room_.octree->counts().nodes);
   export_map(map_, out / "room.bt");
   octomap::OcTree plain(0.1);
   EXPECT_TRUE(plain.readBinary((out / "room.bt").string()));

@@ -51,7 +51,7 @@ SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& 
     if (seed > 0) test::add_depth_noise(frame, seed + static_cast<unsigned>(i));
     frame.index = i;
     const Isometry3d T_own_camera = T_own_world * T_world_camera;
-    EXPECT_EQ(map.octree.fuse(frame, T_own_camera), FuseStatus::kFused);
+    EXPECT_EQ(map.octree->fuse(frame, T_own_camera), FuseStatus::kFused);
     if (i % 2 == 0) map.keyframe_database.keyframes.push_back(make_map_keyframe(frame, T_own_camera));
     map.trajectory.push_back({i, i / 30.0, T_own_camera});
   }
@@ -156,11 +156,11 @@ TEST_F(MapPairs, WithoutColourNothingIsRecognised) {
 TEST_F(MapPairs, MergedWithAFinerMapItSaysTheFinerResolution) {
   SavedMap coarse;
   coarse.octree = StaticMap(2.0 * kVoxel_m);
-  coarse.info.settings["resolution_m"] = std::to_string(coarse.octree.resolution_m());
+  coarse.info.settings["resolution_m"] = std::to_string(coarse.octree->resolution_m());
   SavedMap fine = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
-  fine.info.settings["resolution_m"] = std::to_string(fine.octree.resolution_m());
+  fine.info.settings["resolution_m"] = std::to_string(fine.octree->resolution_m());
   const SavedMap merged = merge_maps(std::move(coarse), fine, Isometry3d::Identity());
-  EXPECT_EQ(merged.octree.resolution_m(), fine.octree.resolution_m());
+  EXPECT_EQ(merged.octree->resolution_m(), fine.octree->resolution_m());
   EXPECT_EQ(merged.info.settings.at("resolution_m"), fine.info.settings.at("resolution_m"));
 }
 
@@ -168,9 +168,9 @@ TEST_F(MapPairs, WhatLiesPastTheReachOfTheFinerCellsIsRefusedInWords) {
   SavedMap far, fine;
   far.info.source = "corridor";
   far.octree = StaticMap(0.01);
-  far.octree.add_evidence(MapLeaf{{7'000, 0, 0}, 8, -1.0F});
+  far.octree->add_evidence(MapLeaf{{7'000, 0, 0}, 8, -1.0F});
   fine.octree = StaticMap(0.002);
-  fine.octree.add_evidence(MapLeaf{{0, 0, 0}, 8, -1.0F});
+  fine.octree->add_evidence(MapLeaf{{0, 0, 0}, 8, -1.0F});
   const std::string fault =
       test::error_of([&] { (void)merge_maps(std::move(far), fine, Isometry3d::Identity()); });
   EXPECT_NE(fault.find("the map of corridor: reaches 70.1 m"), std::string::npos) << fault;
@@ -218,7 +218,7 @@ TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
     const Vector3d p = kT_a_b * p_b;
     const auto at = distance_at(merged.octree, p);
     if (!at || std::abs(at->distance_m) > kVoxel_m) ++lost;
-    if (!a().octree.sample_at(p)) ++only_b;
+    if (!a().octree->sample_at(p)) ++only_b;
   }
   EXPECT_GT(only_b, 100U);
   EXPECT_LT(lost, 60U);  // 3 %: at rims, where not all eight samples are known
@@ -227,12 +227,12 @@ TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
 TEST_F(MapPairs, InOneWorldAddingIsExact) {
   StaticMap sum(kVoxel_m);
   add_map(a().octree, Isometry3d::Identity(), sum);
-  EXPECT_EQ(sum.counts().occupied_leaves, a().octree.counts().occupied_leaves);
-  EXPECT_EQ(sum.counts().free_leaves, a().octree.counts().free_leaves);
-  EXPECT_EQ(sum.counts().memory_bytes, a().octree.counts().memory_bytes) << "coarse cells stay coarse";
+  EXPECT_EQ(sum.counts().occupied_leaves, a().octree->counts().occupied_leaves);
+  EXPECT_EQ(sum.counts().free_leaves, a().octree->counts().free_leaves);
+  EXPECT_EQ(sum.counts().memory_bytes, a().octree->counts().memory_bytes) << "coarse cells stay coarse";
   sum.visit_samples([](const SurfaceSample& sample) {
     const auto before =
-        a().octree.sample_at((sample.voxel.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m);
+        a().octree->sample_at((sample.voxel.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m);
     ASSERT_TRUE(before);
     EXPECT_NEAR(before->distance_m, sample.distance_m, 1e-5F);
   });

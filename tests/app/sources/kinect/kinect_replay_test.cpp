@@ -148,7 +148,7 @@ TEST_F(KinectReplay, AScanOfADeviceThatIsStoppedForMemoryTakesInTheRestLater) {
   EXPECT_EQ(stopped.status, 1) << stopped.rest;
   EXPECT_TRUE(contains(stopped.rest, "stopped by --max-memory")) << stopped.rest;
   EXPECT_TRUE(contains(stopped.rest, "--resume scans them again")) << stopped.rest;
-  EXPECT_TRUE(fs::exists(map / "octree.ot"));
+  EXPECT_TRUE(fs::exists(map / "octree.bin"));
   EXPECT_TRUE(fs::exists(unfinished / "spool" / "list.bin"));
   const Outcome rest = shell(scan + " --resume");
   EXPECT_EQ(rest.status, 0) << rest.rest;
