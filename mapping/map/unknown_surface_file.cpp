@@ -1,23 +1,28 @@
 // unknown_surface_file.cpp: reads and writes the border of unknown space as one binary file.
 //
-// All numbers are little-endian. Body: edge of a cell (f64, m), lowest cell and size of the grid (3 i32
-// each), number of runs (u32), runs of unknown cells: clear cells before the run, then its length (2 u32
-// each), with x fastest and z slowest; origin of the mesh (3 f64, m), number of vertices (u32), vertices (3
-// f32 each, m, relative to the origin), number of triangles (u32), triangles (3 u32 each).
+// All numbers are little-endian. The body is one column of 32-bit words (see compressed_columns.hpp); in
+// version 1, it is the words themselves. They are: edge of a cell (f64, m), lowest cell and size of the grid
+// (3 i32 each), number of runs (u32), runs of unknown cells: clear cells before the run, then its length (2
+// u32 each), with x fastest and z slowest; origin of the mesh (3 f64, m), number of vertices (u32), vertices
+// (3 f32 each, m, relative to the origin), number of triangles (u32), triangles (3 u32 each).
 #include "mapping/map/unknown_surface_file.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "mapping/storage/binary_file.hpp"
+#include "mapping/storage/compressed_columns.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr std::string_view kMagic = "RRUNKNWN";
-constexpr std::uint32_t kFileVersion = 1;
+constexpr std::uint32_t kUncompressed = 1, kCompressed = 2;  // versions of the file
+constexpr std::size_t kWord_bytes = sizeof(std::uint32_t);
 constexpr double kMaxReach_m = 2e5;  // a map reaches at most 32,768 voxels of 1 m, and the grid a margin more
 
 void put_cells(std::string& out, const BitGrid& cells) {
@@ -114,6 +119,14 @@ Mesh take_mesh(BinaryReader& in) {
   return mesh;
 }
 
+std::string words_of(BinaryBody body, const std::filesystem::path& path) {
+  if (body.version == kUncompressed) return std::move(body.bytes);
+  ColumnReader in(body.bytes, path);
+  const auto words = in.take<std::uint32_t>("words");
+  if (in.numbers().left() != 0) in.numbers().fail("bytes after its end");
+  return {reinterpret_cast<const char*>(words.data()), words.size() * kWord_bytes};
+}
+
 }  // namespace
 
 void write_unknown_surface(const UnknownSurface& surface, const std::filesystem::path& path) {
@@ -128,11 +141,13 @@ void write_unknown_surface(const UnknownSurface& surface, const std::filesystem:
   for (const Eigen::Vector3f& vertex : mesh.vertices) put(out, vertex.data(), 3);
   put(out, static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const Triangle& triangle : mesh.triangles) put(out, triangle.data(), 3);
-  write_binary(path, kMagic, kFileVersion, out);
+  std::string body;
+  put_column(body, out.data(), out.size() / kWord_bytes, kWord_bytes);
+  write_binary(path, kMagic, kCompressed, body);
 }
 
 UnknownSurface read_unknown_surface(const std::filesystem::path& path) {
-  const std::string bytes = read_binary(path, kMagic, kFileVersion);
+  const std::string bytes = words_of(read_binary(path, kMagic, kUncompressed, kCompressed), path);
   BinaryReader in(bytes, path);
   UnknownSurface surface;
   surface.grid = take_grid(in);

@@ -1,4 +1,4 @@
-// mesh_file.cpp: reads and writes meshes through assimp, with explicit limits.
+// mesh_file.cpp: reads and writes meshes through assimp, with explicit limits; .ply of its own directly.
 #include "mapping/mesh/mesh_file.hpp"
 
 #include <assimp/config.h>
@@ -9,14 +9,17 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "mapping/mesh/assimp_import.hpp"
-#include "mapping/mesh/ply_writer.hpp"
+#include "mapping/mesh/ply_file.hpp"
 #include "mapping/mesh/scene_mesh.hpp"
 #include "mapping/mesh/serialize_mesh.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/run_sandboxed.hpp"
 
 namespace roomradar {
@@ -24,7 +27,7 @@ namespace {
 
 struct Format {
   const char* extension;
-  const char* assimp_id;  // exporter name; null: written by ply_writer
+  const char* assimp_id;  // exporter name; null: written by ply_file
 };
 constexpr Format kFormats[] = {{".ply", nullptr}, {".obj", "objnomtl"}, {".stl", "stlb"}, {".glb", "glb2"}};
 
@@ -108,13 +111,17 @@ std::string assimp_bytes(const Mesh& mesh, const Format& format, const std::file
   return {static_cast<const char*>(blob->data), blob->size};
 }
 
+void require_triangles(const std::filesystem::path& path, const Mesh& mesh) {
+  if (mesh.triangles.empty()) fail_for_file(path, "holds no triangles with an area; wanted a surface mesh");
+}
+
 Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
   Assimp::Importer importer;
   const aiScene& scene =
       import_scene(importer, path, aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_TEXTURES);
   const bool gltf = is_gltf(format);
   Mesh mesh = scene_mesh(path, scene, {.y_up_to_z_up = gltf, .has_linear_colours = gltf}).mesh;
-  if (mesh.triangles.empty()) fail_for_file(path, "holds no triangles with an area; wanted a surface mesh");
+  require_triangles(path, mesh);
   return mesh;
 }
 
@@ -123,6 +130,12 @@ Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
 Mesh read_mesh(const std::filesystem::path& path) {
   const Format& format = format_of(path);
   require_plausible_size(path);
+  if (lower_extension(path) == ".ply") {
+    if (std::optional<Mesh> mesh = mesh_of_ply(read_bytes(path, "a mesh"), path)) {
+      require_triangles(path, *mesh);
+      return std::move(*mesh);
+    }
+  }
   // assimp crashes or hangs on damaged files, so it runs sandboxed.
   const std::uintmax_t bytes = std::filesystem::file_size(path);
   const auto most_s = static_cast<unsigned>(3 + (bytes >> 20U));

@@ -2,6 +2,7 @@
 #include "mapping/storage/binary_file.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -38,23 +39,25 @@ void write_binary(const std::filesystem::path& path, std::string_view magic, std
   write_bytes(path, out);
 }
 
-std::string read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version) {
+BinaryBody read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t oldest,
+                       std::uint32_t newest) {
   std::string bytes = read_bytes(path, "a file that begins with " + std::string(magic));
   BinaryReader in(bytes, path);
   if (!bytes.starts_with(magic)) in.fail("not a file of this kind, which begins with " + std::string(magic));
   std::string beginning(magic.size(), '\0');
   in.take(beginning.data(), beginning.size(), "beginning");
   const auto found = in.take<std::uint32_t>("version");
-  if (found != version) {
-    in.fail("version " + std::to_string(found) + ", this program reads version " + std::to_string(version));
+  if (found < oldest || found > newest) {
+    in.fail("version " + std::to_string(found) + ", this program reads version " +
+            (oldest == newest ? "" : std::to_string(oldest) + " to ") + std::to_string(newest));
   }
   if (in.left() < kHash_bytes) in.fail("cut short: checksum missing");
   std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + bytes.size() - kHash_bytes, kHash_bytes);
   bytes.resize(bytes.size() - kHash_bytes);
   if (hash != fnv1a(bytes)) in.fail("cut short or altered: the checksum is wrong");
-  bytes.erase(0, magic.size() + sizeof(version));
-  return bytes;
+  bytes.erase(0, magic.size() + sizeof(found));
+  return {found, std::move(bytes)};
 }
 
 }  // namespace roomradar

@@ -68,8 +68,19 @@ class BinaryReader {
 void write_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
                   std::string_view body);
 
-/// Returns the body of a file written by write_binary(). Throws Error naming the file and the fault if the
-/// file is missing, truncated, altered, or of another kind or version.
-std::string read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version);
+struct BinaryBody {
+  std::uint32_t version = 0;
+  std::string bytes;
+};
+/// Returns the body of a file written by write_binary() with a version from `oldest` to `newest`. Throws
+/// Error naming the file and the fault if the file is missing, truncated, altered, or of another kind or
+/// version.
+BinaryBody read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t oldest,
+                       std::uint32_t newest);
+/// Returns the body of a file of this version.
+inline std::string read_binary(const std::filesystem::path& path, std::string_view magic,
+                               std::uint32_t version) {
+  return read_binary(path, magic, version, version).bytes;
+}
 
 }  // namespace roomradar

@@ -11,6 +11,8 @@
 #include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/odometry.hpp"
+#include "mapping/storage/binary_file.hpp"
+#include "mapping/storage/compressed_columns.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
@@ -82,33 +84,124 @@ TEST(DescribePlace, FeaturePointsLieOnTheSurface) {
               0.05);
 }
 
-TEST(PlacesFile, ComesBackAsItWas) {
-  const test::TemporaryFolder folder;
-  const KeyframeDatabase keyframe_database = three_places();
-  write_keyframe_database(keyframe_database, folder.path() / "places.bin");
-  const KeyframeDatabase read = read_keyframe_database(folder.path() / "places.bin");
-  ASSERT_EQ(read.keyframes.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(read.keyframes[i].T_world_camera.matrix(),
-              keyframe_database.keyframes[i].T_world_camera.matrix());
-    EXPECT_EQ(read.keyframes[i].descriptors, keyframe_database.keyframes[i].descriptors);
-    EXPECT_EQ(read.keyframes[i].points_camera, keyframe_database.keyframes[i].points_camera);
-    EXPECT_EQ(read.keyframes[i].preview_depth_mm.pixels,
-              keyframe_database.keyframes[i].preview_depth_mm.pixels);
-    EXPECT_EQ(read.keyframes[i].preview_camera, keyframe_database.keyframes[i].preview_camera);
-    ASSERT_GT(read.keyframes[i].patches.size(), 100U);
-    ASSERT_EQ(read.keyframes[i].patches.size(), keyframe_database.keyframes[i].patches.size());
-    for (std::size_t k = 0; k < read.keyframes[i].patches.size(); ++k) {
-      const SurfacePatch &is = read.keyframes[i].patches[k], &was = keyframe_database.keyframes[i].patches[k];
-      EXPECT_EQ(is.point, was.point);
-      EXPECT_EQ(is.normal, was.normal);
-      EXPECT_EQ(is.along, was.along);
-      EXPECT_EQ(is.size, was.size);
-      EXPECT_EQ(is.bits, was.bits);
+/// Expects equal databases, but for points and directions that are rounded.
+void expect_near(const KeyframeDatabase& is, const KeyframeDatabase& was, float point_m, float direction) {
+  const auto off = [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+    return (a - b).cwiseAbs().maxCoeff();
+  };
+  ASSERT_EQ(is.keyframes.size(), was.keyframes.size());
+  for (std::size_t i = 0; i < is.keyframes.size(); ++i) {
+    const MapKeyframe &a = is.keyframes[i], &b = was.keyframes[i];
+    EXPECT_EQ(a.frame_index, b.frame_index);
+    EXPECT_EQ(a.T_world_camera.matrix(), b.T_world_camera.matrix());
+    EXPECT_EQ(a.descriptors, b.descriptors);
+    EXPECT_EQ(a.preview_depth_mm.pixels, b.preview_depth_mm.pixels);
+    EXPECT_EQ(a.preview_camera, b.preview_camera);
+    ASSERT_EQ(a.points_camera.size(), b.points_camera.size());
+    for (std::size_t k = 0; k < a.points_camera.size(); ++k)
+      EXPECT_LE(off(a.points_camera[k], b.points_camera[k]), point_m);
+    ASSERT_EQ(a.patches.size(), b.patches.size());
+    for (std::size_t k = 0; k < a.patches.size(); ++k) {
+      EXPECT_LE(off(a.patches[k].point, b.patches[k].point), point_m);
+      EXPECT_LE(off(a.patches[k].normal, b.patches[k].normal), direction);
+      EXPECT_LE(off(a.patches[k].along, b.patches[k].along), direction);
+      EXPECT_EQ(a.patches[k].size, b.patches[k].size);
+      EXPECT_EQ(a.patches[k].bits, b.patches[k].bits);
     }
   }
+}
+constexpr float kPoint_m = 1.01e-4F, kDirection = 0.51F / 32767.0F;
+
+TEST(PlacesFile, ComesBackAsItWasButForRounding) {
+  const test::TemporaryFolder folder;
+  const KeyframeDatabase keyframe_database = three_places();
+  ASSERT_GT(keyframe_database.keyframes[0].patches.size(), 100U);
+  write_keyframe_database(keyframe_database, folder.path() / "places.bin");
+  const KeyframeDatabase read = read_keyframe_database(folder.path() / "places.bin");
+  expect_near(read, keyframe_database, kPoint_m, kDirection);
+  // Nothing is rounded twice.
+  write_keyframe_database(read, folder.path() / "again.bin");
+  expect_near(read_keyframe_database(folder.path() / "again.bin"), read, 0.0F, 0.0F);
+  EXPECT_EQ(read_bytes(folder.path() / "again.bin"), read_bytes(folder.path() / "places.bin"));
+
   write_keyframe_database({}, folder.path() / "none.bin");
   EXPECT_TRUE(read_keyframe_database(folder.path() / "none.bin").keyframes.empty());
+}
+
+/// Returns the body of a file of version 2.
+std::string body_of_version_2(const KeyframeDatabase& keyframe_database) {
+  std::string out;
+  put(out, static_cast<std::uint32_t>(keyframe_database.keyframes.size()));
+  for (const MapKeyframe& place : keyframe_database.keyframes) {
+    put(out, place.frame_index);
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column) put(out, place.T_world_camera.linear()(row, column));
+    put(out, place.T_world_camera.translation().data(), 3);
+    const Intrinsics& camera = place.preview_camera;
+    for (const int size_px : {camera.width_px, camera.height_px})
+      put(out, static_cast<std::uint32_t>(size_px));
+    for (const double number : {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px}) put(out, number);
+    put(out, place.preview_depth_mm.pixels.data(), place.preview_depth_mm.pixels.size());
+    put(out, static_cast<std::uint32_t>(place.descriptors.size()));
+    for (const Eigen::Vector3f& p : place.points_camera) put(out, p.data(), 3);
+    for (const Descriptor& bits : place.descriptors) put(out, bits.data(), bits.size());
+    put(out, static_cast<std::uint32_t>(place.patches.size()));
+    for (const SurfacePatch& patch : place.patches) {
+      for (const Eigen::Vector3f* v : {&patch.point, &patch.normal, &patch.along}) put(out, v->data(), 3);
+      put(out, patch.size);
+      put(out, patch.bits.data(), patch.bits.size());
+    }
+  }
+  return out;
+}
+
+TEST(PlacesFile, TheVersionBeforeIsReadToTheBit) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "places.bin";
+  const KeyframeDatabase keyframe_database = three_places();
+  const std::string body = body_of_version_2(keyframe_database);
+  write_binary(path, "RRPLACES", 2, body);
+  expect_near(read_keyframe_database(path), keyframe_database, 0.0F, 0.0F);
+  for (std::size_t size = 0; size < body.size(); size += 1 + body.size() / 50) {
+    write_binary(path, "RRPLACES", 2, body.substr(0, size));
+    EXPECT_NE(refusal(path).find("cut short"), std::string::npos) << refusal(path);
+  }
+}
+
+/// Writes one view of 2 x 1 pixels with a feature and a patch, as a file of the present version.
+std::string refusal_of(const std::filesystem::path& path, const std::vector<std::uint16_t>& depth,
+                       const std::vector<std::int32_t>& points, const std::vector<std::int16_t>& directions,
+                       std::size_t bytes, std::uint32_t features = 1) {
+  std::string out;
+  put_column(out, depth);
+  put_column(out, points);
+  put_column(out, directions);
+  put_column(out, std::vector<std::uint8_t>(bytes));
+  put(out, std::uint32_t{1});
+  put(out, std::int64_t{0});
+  for (const double number : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}) put(out, number);
+  for (const std::uint32_t size_px : {2U, 1U}) put(out, size_px);
+  for (const double number : {2.0, 2.0, 0.5, 0.5}) put(out, number);
+  for (const std::uint32_t count : {features, 1U}) put(out, count);
+  write_binary(path, "RRPLACES", 3, out);
+  return refusal(path);
+}
+
+TEST(PlacesFile, ColumnsThatDoNotFitTheViewsAreRefused) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "places.bin";
+  const std::vector<std::int32_t> points(6);
+  const std::vector<std::int16_t> right{32767, 0, 0, 0, 32767, 0}, parallel{32767, 0, 0, 32767, 0, 0};
+  EXPECT_EQ(refusal_of(path, {1, 2}, points, right, 65), "accepted");
+  EXPECT_EQ(read_keyframe_database(path).keyframes[0].preview_depth_mm.at(1, 0), 3);
+  EXPECT_NE(refusal_of(path, {1}, points, right, 65).find("preview depth missing"), std::string::npos);
+  EXPECT_NE(refusal_of(path, {1, 2}, points, right, 64).find("missing"), std::string::npos);
+  EXPECT_NE(refusal_of(path, {1, 2}, points, right, 65, 9999).find("missing"), std::string::npos);
+  EXPECT_NE(refusal_of(path, {1, 2}, {0, 0, 0, 0, 0}, right, 65).find("missing"), std::string::npos);
+  EXPECT_NE(refusal_of(path, {1, 2}, points, {32767, 0, 0, 0, 32767}, 65).find("missing"), std::string::npos);
+  EXPECT_NE(refusal_of(path, {1, 2}, points, parallel, 65).find("right angles"), std::string::npos);
+  EXPECT_NE(refusal_of(path, {1, 2, 3}, points, right, 65).find("more than"), std::string::npos);
+  EXPECT_NE(refusal_of(path, {1, 2}, points, right, 66).find("more than"), std::string::npos);
 }
 
 TEST(PlacesFile, WhatIsCutOrAlteredIsRefused) {

@@ -9,6 +9,7 @@
 
 #include "mapping/map/map_folder.hpp"
 #include "mapping/storage/binary_file.hpp"
+#include "mapping/storage/compressed_columns.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -63,6 +64,19 @@ TEST(UnknownSurfaceFile, ComesBackToTheBit) {
       EXPECT_EQ(read.mesh_world.triangles, surface.mesh_world.triangles);
     }
   }
+}
+
+TEST(UnknownSurfaceFile, TheVersionBeforeIsRead) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "unknown.bin";
+  const UnknownSurface surface = random_surface({200, 7, 9}, 3);
+  write_unknown_surface(surface, path);
+  const std::string body = read_binary(path, "RRUNKNWN", 2);
+  const auto words = ColumnReader(body, path).take<std::uint32_t>("words");
+  write_binary(path, "RRUNKNWN", 1, {reinterpret_cast<const char*>(words.data()), 4 * words.size()});
+  const UnknownSurface read = read_unknown_surface(path);
+  EXPECT_TRUE(read.unknown == surface.unknown);
+  EXPECT_EQ(read.mesh_world.vertices, surface.mesh_world.vertices);
 }
 
 TEST(UnknownSurfaceFile, AMapWithoutFreeSpaceHasAnEmptyOne) {

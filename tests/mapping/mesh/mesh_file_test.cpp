@@ -60,6 +60,13 @@ class MeshFile : public ::testing::Test {
     EXPECT_NE(message.find(fault), std::string::npos) << message;
     EXPECT_EQ(message.rfind(path.string(), 0), 0U) << "the file comes first: " << message;
   }
+  /// Adds a comment to a .ply's header, so that it is another program's, and returns the new file.
+  std::filesystem::path with_comment(const std::string& name) {
+    std::ifstream in(folder_.path() / name, std::ios::binary);
+    std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    content.insert(content.find("element vertex"), "comment made elsewhere\n");
+    return file("foreign-" + name, content);
+  }
   test::TemporaryFolder folder_;
 };
 
@@ -121,7 +128,8 @@ TEST_F(MeshFile, AGlbHasYUpAndLinearColoursAsOtherProgramsExpect) {
   EXPECT_EQ(colour[2], 0.0F);
 }
 
-// assimp takes a newline at the start of the data for the end of the header.
+// assimp, which reads files of other programs, takes a newline at the start of the data for the end of the
+// header.
 TEST_F(MeshFile, APlyIsReadWhateverByteItsFirstNumberBeginsWith) {
   Mesh mesh = wavy_sheet(3);
   for (std::uint32_t byte = 0; byte < 256; ++byte) {
@@ -131,7 +139,47 @@ TEST_F(MeshFile, APlyIsReadWhateverByteItsFirstNumberBeginsWith) {
     const Mesh read = read_mesh(folder_.path() / "sheet.ply");
     ASSERT_EQ(read.vertices, mesh.vertices) << byte;
     ASSERT_EQ(read.triangles, mesh.triangles) << byte;
+    const Mesh foreign = read_mesh(with_comment("sheet.ply"));
+    ASSERT_EQ(foreign.vertices, mesh.vertices) << byte;
+    ASSERT_EQ(foreign.triangles, mesh.triangles) << byte;
   }
+}
+
+TEST_F(MeshFile, APlyOfItsOwnIsReadAsAssimpReadsIt) {
+  Mesh mesh = wavy_sheet(40);
+  mesh.triangles.push_back({7, 7, 8});  // no area
+  for (const bool has_normals : {false, true})
+    for (const bool has_colours : {false, true}) {
+      Mesh some = mesh;
+      if (!has_normals) some.normals.clear();
+      if (!has_colours) some.colours.clear();
+      write_mesh(some, folder_.path() / "m.ply");
+      const Mesh own = read_mesh(folder_.path() / "m.ply"), foreign = read_mesh(with_comment("m.ply"));
+      EXPECT_EQ(own.vertices, mesh.vertices);
+      EXPECT_EQ(own.triangles.size() + 1, mesh.triangles.size());
+      EXPECT_EQ(own.colours, some.colours);
+      EXPECT_EQ(own.vertices, foreign.vertices);
+      EXPECT_EQ(own.triangles, foreign.triangles);
+      EXPECT_EQ(own.colours, foreign.colours);
+      ASSERT_EQ(own.normals.size(), foreign.normals.size());
+      for (std::size_t i = 0; i < own.normals.size(); ++i)
+        EXPECT_LT((own.normals[i] - foreign.normals[i]).norm(), 1e-6F);
+    }
+}
+
+TEST_F(MeshFile, APlyOfItsOwnWithAFaultIsNamed) {
+  const Mesh mesh = wavy_sheet(5);
+  write_mesh(mesh, folder_.path() / "m.ply");
+  std::ifstream in(folder_.path() / "m.ply", std::ios::binary);
+  const std::string good{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::string bad = good;
+  const std::uint32_t absent = 25;
+  std::memcpy(bad.data() + bad.size() - 4, &absent, sizeof(absent));
+  expect_fault(file("bad.ply", bad), "a triangle names a vertex that is not there");
+  bad = good;
+  bad[bad.size() - 13] = 2;  // a face of two corners
+  EXPECT_NE(message_of(file("bad.ply", bad)), "");
+  EXPECT_NE(message_of(file("bad.ply", good + "x")), "");
 }
 
 TEST_F(MeshFile, StlKeepsTheTrianglesAndJoinsTheirCorners) {
