@@ -5,10 +5,13 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include <system_error>
 #include <utility>
 
 #include "app/cli/open_source.hpp"
+#include "app/objects/object_file.hpp"
+#include "app/objects/object_model.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/run/object_script.hpp"
 #include "app/session/apply_quality.hpp"
@@ -176,18 +179,40 @@ void make_unknown_solid(Session& session, StageTimes& times) {
         static_cast<double>(session.unknown()->memory_bytes) / 1e6);
 }
 
+constexpr double kLarge_mb = 10.0;  // a model of this size is prepared in about 5 s
+
+/// Returns the size of a model's file, MB; 0 for the built-in teapot.
+double model_mb(const ScriptEvent& add) {
+  std::error_code failed;
+  const std::uintmax_t bytes = std::filesystem::file_size(add.mesh, failed);
+  return failed ? 0.0 : static_cast<double>(bytes) / 1e6;
+}
+
+/// Prepares the run's first object on another thread, since that takes as long as loading the map. Returns an
+/// empty future if there is no object, or its model is large.
+std::future<ObjectParts> first_object_of(const Script& script) {
+  const auto add = std::find_if(script.events.begin(), script.events.end(),
+                                [](const ScriptEvent& event) { return event.action == Action::kAdd; });
+  if (add == script.events.end() || model_mb(*add) > kLarge_mb) return {};
+  return std::async(std::launch::async,
+                    [add = *add] { return object_parts(add.name, object_model(source_of(add))); });
+}
+
 /// Adds an object. A large model is announced, because preparing its levels of detail takes up to minutes.
 /// @param script  file in which errors are located; unused if the event is not from a file
-void add_object(Session& session, const ScriptEvent& add, const std::string& script) {
-  constexpr double kLarge_mb = 10.0;  // a model of this size is prepared in about 5 s
-  std::error_code failed;
-  const double size_mb = static_cast<double>(std::filesystem::file_size(add.mesh, failed)) / 1e6;
-  const bool is_announced = !failed && size_mb > kLarge_mb;
+/// @param prepared  the object's parts; empty: not prepared
+void add_object(Session& session, const ScriptEvent& add, const std::string& script,
+                std::future<ObjectParts> prepared) {
+  const double size_mb = model_mb(add);
+  const bool is_announced = size_mb > kLarge_mb;
   if (is_announced)
     std::fprintf(stderr, "%s: %.0f MB, preparing its levels of detail ...\n", add.mesh.c_str(), size_mb);
   const auto start = std::chrono::steady_clock::now();
   try {
-    apply(session, add);
+    if (prepared.valid())
+      add_object(session, add, prepared.get());
+    else
+      apply(session, add);
   } catch (const Error& fault) {
     if (add.line == 0) throw;
     throw Error(script + ":" + std::to_string(add.line) + ": " + fault.what());
@@ -198,7 +223,7 @@ void add_object(Session& session, const ScriptEvent& add, const std::string& scr
                  ms_since(start) / 1e3);
 }
 
-void open_session(OpenedRun& run, bool has_picture) {
+void open_session(OpenedRun& run, bool has_picture, std::future<ObjectParts> first_object) {
   const SessionConfig config = config_of(run, has_picture);
   StaticMap* const octree = config.map_updates ? &*run.map.octree : nullptr;  // read only if it may change
   run.session = std::make_unique<Session>(run.map, config, octree);
@@ -207,7 +232,8 @@ void open_session(OpenedRun& run, bool has_picture) {
   if (run.options.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   // Objects are loaded now, so an unreadable mesh is reported before the first frame.
   for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kAdd) add_object(*run.session, event, run.options.script);
+    if (event.action == Action::kAdd)
+      add_object(*run.session, event, run.options.script, std::move(first_object));
   for (const ObjectNotice& notice : run.session->take_notices())
     std::fprintf(stderr, "roomradar: %s%s\n", notice.name.c_str(), notice.text.c_str());
 }
@@ -258,12 +284,13 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   require_can_save_map(options, run.script);
   require_one_quality(options, run.script);
   if (!options.record_session.empty()) require_can_become_session(options.record_session);
+  std::future<ObjectParts> first_object = first_object_of(run.script);
   run.map = load_map(options.map);
   say_if_up_is_not_known(run.map.info, options.map);
   const bool has_picture = makes_picture(options, link != nullptr);
   std::unique_ptr<FrameSource> frames = open_frames(run);
   open_budget(run, has_picture);
-  open_session(run, has_picture);
+  open_session(run, has_picture, std::move(first_object));
   open_outputs(run);
   if (!options.frames_csv.empty()) run.frames_csv.emplace(options.frames_csv);
   record_frames(run, frames);  // last, so a run that fails to open leaves no folder that blocks the next

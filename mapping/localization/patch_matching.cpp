@@ -2,10 +2,11 @@
 #include "mapping/localization/patch_matching.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 
 #include "mapping/types/depth_noise.hpp"
@@ -166,14 +167,22 @@ Eigen::Vector3i cell_of(const Eigen::Vector3f& point_world) {
   return (point_world / kCell_m).array().floor().cast<int>();
 }
 
-/// Calls visit(patch) for known patches in the cells within half a cell of a point.
+std::size_t hash_of(const PatchIndex::OfSize& known, const Eigen::Vector3i& cell) {
+  const std::uint64_t mixed = voxel_key(cell) * 0x9E37'79B9'7F4A'7C15U;
+  return (mixed >> 32U) & (known.last_of_hash.size() - 1);
+}
+
+/// Calls visit(patch) for known patches in the cells within half a cell of a point, and for some others,
+/// possibly twice: callers compare distances anyway.
 template <typename Visit>
 void visit_near(const PatchIndex::OfSize& known, const Eigen::Vector3f& point_world, const Visit& visit) {
+  if (known.last_of_hash.empty()) return;
   const Eigen::Vector3i low = cell_of(point_world - Eigen::Vector3f::Constant(0.5F * kCell_m));
   for (int k = 0; k < 8; ++k) {
-    const auto [first, last] =
-        known.by_cell.equal_range(voxel_key(low + Eigen::Vector3i(k & 1, k >> 1 & 1, k >> 2)));
-    for (auto entry = first; entry != last; ++entry) visit(known.patches[entry->second]);
+    const Eigen::Vector3i cell = low + Eigen::Vector3i(k & 1, k >> 1 & 1, k >> 2);
+    for (std::uint32_t number = known.last_of_hash[hash_of(known, cell)]; number != 0;
+         number = known.before[number - 1])
+      visit(known.patches[number - 1]);
   }
 }
 
@@ -199,6 +208,11 @@ PatchIndex build_patch_index(const KeyframeDatabase& keyframe_database) {
   constexpr int kSameLook_bits = 40;
   constexpr float kSame_m = 0.02F;
   PatchIndex known;
+  std::array<std::size_t, kPatchSizes> counts{};
+  for (const MapKeyframe& place : keyframe_database.keyframes)
+    for (const SurfacePatch& patch : place.patches) ++counts[patch.size];
+  for (std::size_t size = 0; size < counts.size(); ++size)
+    if (counts[size] > 0) known.by_size[size].last_of_hash.assign(std::bit_ceil(counts[size]), 0);
   for (const MapKeyframe& place : keyframe_database.keyframes) {
     const Eigen::Isometry3f T_world_camera = place.T_world_camera.cast<float>();
     for (const SurfacePatch& in_camera : place.patches) {
@@ -211,9 +225,10 @@ PatchIndex build_patch_index(const KeyframeDatabase& keyframe_database) {
                                 distance_bits(other.bits, patch.bits) <= kSameLook_bits);
       });
       if (is_known) continue;
-      of_size.by_cell.emplace(voxel_key(cell_of(patch.point)),
-                              static_cast<std::uint32_t>(of_size.patches.size()));
       of_size.patches.push_back(patch);
+      std::uint32_t& last = of_size.last_of_hash[hash_of(of_size, cell_of(patch.point))];
+      of_size.before.push_back(last);
+      last = static_cast<std::uint32_t>(of_size.patches.size());
       of_size.first_bits.push_back(first_bits(patch.bits));
     }
   }

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
@@ -20,8 +19,10 @@ struct PatchIndex {
     /// First 64 bits of each patch's descriptor, contiguous in memory for fast comparison.
     std::vector<std::uint64_t> first_bits;
     std::vector<SurfacePatch> patches;
-    std::unordered_multimap<std::uint64_t, std::uint32_t> by_cell;  ///< indices in `patches`, by the 5 cm
-                                                                    ///< cell of the patch's centre
+    /// Per hash of a 5 cm cell, the number (index in `patches` + 1) of the last patch whose centre is in one
+    /// of these cells; 0: none. The size is a power of two, or 0.
+    std::vector<std::uint32_t> last_of_hash;
+    std::vector<std::uint32_t> before;  ///< per patch, the number of the one before it with the same hash
   };
   std::array<OfSize, kPatchSizes> by_size;
   [[nodiscard]] bool empty() const;

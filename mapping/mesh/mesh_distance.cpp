@@ -17,7 +17,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kReachesACube = 4.0F;  // cube edge / reach: a query visits one to eight cubes
 // Min cube edge, for very short reaches: mean triangle side / kCubesASide and mesh extent / kCubesAcross.
 // Smaller cubes would put a triangle into countless cubes, or exceed float precision.
-constexpr float kCubesASide = 8.0F, kCubesAcross = 1e5F;
+constexpr float kCubesASide = 3.0F, kCubesAcross = 1e5F;
 
 // Mean over triangles of the longest side of their bounding boxes.
 float mean_side_m(const Mesh& mesh) {
@@ -47,6 +47,14 @@ MeshDistanceQuery::MeshDistanceQuery(const Mesh& mesh, float reach_m)
       high = high.cwiseMax(vertex);
     }
     edge_m_ = std::max({edge_m_, mean_side_m(mesh) / kCubesASide, (high - low_).maxCoeff() / kCubesAcross});
+  }
+  spheres_.reserve(mesh.triangles.size());
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Eigen::Vector3f &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k];
+    const Eigen::Vector3f centre = (a + b + c) / 3.0F;
+    const float radius_m = std::sqrt(
+        std::max({(a - centre).squaredNorm(), (b - centre).squaredNorm(), (c - centre).squaredNorm()}));
+    spheres_.push_back({centre, radius_m});
   }
   struct Part {
     std::uint64_t mixed_code;
@@ -118,31 +126,35 @@ void MeshDistanceQuery::visit_near(const Eigen::Vector3f& p, const Visit& visit)
 }
 
 float MeshDistanceQuery::distance_m(const Eigen::Vector3f& p, float enough_m) const {
-  float nearest = reach_m_ * reach_m_;
+  float nearest = reach_m_ * reach_m_, nearest_m = reach_m_;
   bool found = false;
   visit_near(p, [&](std::uint32_t triangle) {
+    if (is_farther(triangle, p, nearest_m)) return false;
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const float distance =
         squared_distance_to_triangle(p, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
     if (distance > nearest) return false;
     nearest = distance;
+    nearest_m = std::sqrt(distance);
     found = true;
     return distance <= enough_m * enough_m;
   });
-  return found ? std::sqrt(nearest) : kInfinity;
+  return found ? nearest_m : kInfinity;
 }
 
 std::optional<std::uint32_t> MeshDistanceQuery::nearest_facing(const Eigen::Vector3f& p,
                                                                const Eigen::Vector3f& facing) const {
-  float nearest = reach_m_ * reach_m_;
+  float nearest = reach_m_ * reach_m_, nearest_m = reach_m_;
   std::optional<std::uint32_t> found;
   visit_near(p, [&](std::uint32_t triangle) {
+    if (is_farther(triangle, p, nearest_m)) return false;
     const auto& [i, j, k] = mesh_.triangles[triangle];
     const Eigen::Vector3f &a = mesh_.vertices[i], &b = mesh_.vertices[j], &c = mesh_.vertices[k];
     if (!((b - a).cross(c - a).dot(facing) > 0.0F)) return false;
     const float distance = squared_distance_to_triangle(p, a, b, c);
     if (distance > nearest) return false;
     nearest = distance;
+    nearest_m = std::sqrt(distance);
     found = triangle;
     return false;
   });

@@ -41,6 +41,19 @@ class MeshDistanceQuery {
   template <typename Visit>
   void visit_near(const Eigen::Vector3f& p, const Visit& visit) const;
 
+  /// Sphere around a triangle.
+  struct Sphere {
+    Eigen::Vector3f centre;
+    float radius_m;
+  };
+  /// Returns true if the triangle is farther from p than distance_m. Rules out most triangles of a cube
+  /// without their vertices; false proves nothing.
+  [[nodiscard]] bool is_farther(std::uint32_t triangle, const Eigen::Vector3f& p, float distance_m) const {
+    constexpr float kRounding = 1.0001F;
+    const Sphere& sphere = spheres_[triangle];
+    const float reach_m = sphere.radius_m + distance_m;
+    return (p - sphere.centre).squaredNorm() > kRounding * reach_m * reach_m;
+  }
   [[nodiscard]] std::size_t hash_of(std::uint64_t mixed) const { return mixed >> hash_shift_; }
 
   const Mesh& mesh_;
@@ -50,6 +63,7 @@ class MeshDistanceQuery {
   Eigen::Vector3f low_ = Eigen::Vector3f::Zero();
   std::vector<std::uint32_t> first_of_hash_;  ///< first index into entries_ per hash
   std::vector<Entry> entries_;                ///< sorted by the hash of their cubes
+  std::vector<Sphere> spheres_;               ///< one per triangle
 };
 
 /// A point of one mesh that is farther than a limit from the surface of another.

@@ -21,14 +21,22 @@ std::string option_before_size(const ScriptEvent& add) {
   return add.name == kOnlyObject ? "--object-size " : "--object " + add.mesh + ",size=";
 }
 
+void require_sensible_size(const Session& session, const ScriptEvent& add, const Model& model) {
+  require_sensible_size(model, source_of(add), {session.room_extent_m(), option_before_size(add)});
+}
+
 void add_object(Session& session, const ScriptEvent& add) {
-  const ObjectSource source = source_of(add);
-  Model model = object_model(source);
-  require_sensible_size(model, source, {session.room_extent_m(), option_before_size(add)});
+  Model model = object_model(source_of(add));
+  require_sensible_size(session, add, model);
   session.add_object(add.name, std::move(model), add.material);
 }
 
 }  // namespace
+
+void add_object(Session& session, const ScriptEvent& add, ObjectParts parts) {
+  require_sensible_size(session, add, parts.source);
+  session.add_object(add.name, std::move(parts), add.material);
+}
 
 std::string object_name(const std::string& mesh) {
   std::string stem = mesh.substr(mesh.find_last_of('/') + 1);

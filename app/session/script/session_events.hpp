@@ -20,4 +20,7 @@ std::string object_name(const std::string& mesh);
 /// a size refused by require_sensible_size().
 void apply(Session& session, const ScriptEvent& event);
 
+/// Executes a kAdd event with the parts that object_parts() made of object_model(source_of(add)).
+void add_object(Session& session, const ScriptEvent& add, ObjectParts parts);
+
 }  // namespace roomradar
