@@ -125,9 +125,10 @@ Without a Kinect, the simulated board shows the whole way:
 )";
 
 constexpr std::string_view kFiles =
-    R"(  MAP/             a saved map: map.json (facts and checksums), the octree as .ot and .bt, the mesh, the
-                   keyframe database for localisation, trajectory.txt, coverage.png and unknown.bin (the
-                   border of unknown space). It is saved completely or not at all.
+    R"(  MAP/             a saved map: map.json (facts and checksums), octree.bin (`map export` writes it as .ot
+                   and .bt), mesh.ply, places.bin (keyframe database for localisation), trajectory.txt,
+                   coverage.png and unknown.bin (the border of unknown space). It is saved completely or
+                   not at all.
   MAP.unfinished   checkpoint of an interrupted scan, for `prescan --resume`
   SESSION/         frames, events and results of `run --record-session`
 

@@ -123,11 +123,14 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   AtomicFolder partial(target);
 
   const StaticMap& octree = map.octree;
+  // On another thread, since the extraction takes as long as writing the rest.
+  auto unknown = std::async(std::launch::async, [&] {
+    write_unknown_surface(unknown_surface(octree, map.mesh), partial.path() / kMapUnknownFile);
+  });
   octree.write(partial.path() / kMapOctreeFile);
   write_mesh(map.mesh, partial.path() / kMapMeshFile);
   write_keyframe_database(map.keyframe_database, partial.path() / kMapKeyframesFile);
   write_trajectory(partial.path() / kMapTrajectoryFile, map.trajectory);
-  write_unknown_surface(unknown_surface(octree, map.mesh), partial.path() / kMapUnknownFile);
   if (!map.coverage_png.empty())
     write_bytes(partial.path() / kMapCoverageFile,
                 std::string(map.coverage_png.begin(), map.coverage_png.end()));
@@ -141,6 +144,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   info.triangles = map.mesh.triangles.size();
   info.keyframes = map.keyframe_database.keyframes.size();
   info.poses = map.trajectory.size();
+  unknown.get();
   info.files.clear();
   std::vector<std::string> parts(kMapParts.begin(), kMapParts.end());
   parts.emplace_back(kMapUnknownFile);
