@@ -47,6 +47,7 @@ class ObjectFinder {
   /// Returns each object's surface voxels, in the grid of the map that has the object.
   std::vector<std::vector<VoxelIndex>> find() {
     collect();
+    leave_out_noise();
     reach_out();
     return gather();
   }
@@ -101,6 +102,24 @@ class ObjectFinder {
           if (const auto found = suspects_.find(voxel_key(other)); found != suspects_.end())
             visit(other, found->second);
         }
+  }
+
+  /// Marks clear voxels as not clear where little of the surface around them is clear: a surface that was
+  /// measured from far away is centimetres rough, and single voxels stand out from it.
+  void leave_out_noise() {
+    constexpr std::size_t kOneInClear = 3;
+    const int around = static_cast<int>(std::lround(clearance_m_ / has_.resolution_m()));
+    std::vector<VoxelIndex> noise;
+    for (const VoxelIndex& voxel : order_) {
+      if (!suspects_.at(voxel_key(voxel)).clear) continue;
+      std::size_t all = 0, clear = 0;
+      neighbours(voxel, around, [&](const VoxelIndex&, const Suspect& suspect) {
+        ++all;
+        if (suspect.clear) ++clear;
+      });
+      if (kOneInClear * clear < all) noise.push_back(voxel);
+    }
+    for (const VoxelIndex& voxel : noise) suspects_.at(voxel_key(voxel)).clear = false;
   }
 
   /// Extends clear surface to the surface around it that is closer to other surfaces.
@@ -160,16 +179,19 @@ class ObjectFinder {
       box.extend(centre(voxel));
     }
     const double voxel_m = has_.resolution_m();
-    return static_cast<double>(clear) * voxel_m * voxel_m >= config_.min_area_m2 &&
+    constexpr std::size_t kOneInClear = 6;  // less: remains of noise, in surface that is noisy all round
+    return kOneInClear * clear >= thing.size() &&
+           static_cast<double>(clear) * voxel_m * voxel_m >= config_.min_area_m2 &&
            box.sizes().maxCoeff() + voxel_m >= config_.min_size_m;
   }
 
-  /// Returns whether the other map's scan ends at this surface: most of the space just behind it is unknown
-  /// there, because rays that grazed the surface freed voxels in front of it and saw nothing of it. The space
-  /// behind the surface of an object that appeared or disappeared is known in the map without it.
+  /// Returns whether the other map's scan ends at this surface: behind a quarter of it or more, what is not
+  /// free there is unknown, because rays that grazed the surface, or were measured too far, freed voxels in
+  /// front of it and saw nothing of it. Behind the surface of an object that appeared or disappeared, the map
+  /// without it has free space or the next surface.
   [[nodiscard]] bool ends_the_scan(const std::vector<VoxelIndex>& thing) const {
     static const std::array<Eigen::Vector3d, 14> kAround = directions();
-    const double behind_m = clearance_m_;
+    const double step_m = lacks_.resolution_m(), behind_m = 2.0 * clearance_m_;
     std::size_t looked = 0, unknown = 0;
     for (const VoxelIndex& voxel : thing) {
       const Eigen::Vector3d p = centre(voxel);
@@ -179,10 +201,15 @@ class ObjectFinder {
           outwards += direction;
       if (outwards.norm() < 0.5) continue;
       ++looked;
-      const Eigen::Vector3d behind = T_lacks_has_ * (p - behind_m * outwards.normalized());
-      if (lacks_.occupancy_at(behind) == Occupancy::kUnknown && !lacks_.sample_at(behind)) ++unknown;
+      for (double deep_m = step_m; deep_m < behind_m + 0.5 * step_m; deep_m += step_m) {
+        const Eigen::Vector3d behind = T_lacks_has_ * (p - deep_m * outwards.normalized());
+        const Occupancy occupancy = lacks_.occupancy_at(behind);
+        if (occupancy == Occupancy::kFree) continue;
+        if (occupancy == Occupancy::kUnknown && !lacks_.sample_at(behind)) ++unknown;
+        break;
+      }
     }
-    return 2 * unknown > looked;
+    return 4 * unknown > looked;
   }
 
   /// Returns whether the other map also has the object, slightly shifted.

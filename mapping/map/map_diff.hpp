@@ -31,7 +31,7 @@ struct DiffConfig {
   /// support, only has to be in the other map's free space.
   double clearance_m = 0.045;
   double clearance_voxels = 3.0;
-  double min_area_m2 = 3.6e-3;  ///< min clear surface of an object: 6 x 6 cm
+  double min_area_m2 = 4.9e-3;  ///< min clear surface of an object: 7 x 7 cm
   double min_size_m = 0.05;     ///< min extent of an object's clear surface
   /// Max error of T_a_b, m. An object counts as unmoved if the other map has its shape, shifted by at most
   /// this.
@@ -42,9 +42,11 @@ struct DiffConfig {
 void require_valid(const DiffConfig& config);
 
 /// Returns the changes, largest first. Regions that are unknown in one of the maps count as unchanged.
-/// Surface at which one map's scan ends counts as unchanged, too. Objects smaller than the clearance are not
-/// detected. Objects that moved by less than max_pose_error_m, or stand out from a plane by less, are not
-/// detected either.
+/// Surface at which one map's scan ends counts as unchanged, too, and so does the roughness of a surface that
+/// was measured from far away. Objects smaller than the clearance are not detected. Objects that moved by
+/// less than max_pose_error_m, or stand out from a plane by less, are not detected either. A pole of a few
+/// centimetres that one of the scans only measured from beyond 3 m can be missing in its map, and is then
+/// listed.
 /// @param T_a_b  maps points from b's world to a's world
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const DiffConfig& config = {});
