@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "app/objects/object_file.hpp"
 #include "app/objects/object_model.hpp"
@@ -38,6 +39,7 @@ struct VirtualObject {
   double waited_s = 0.0;  ///< time since advance() was last called for it
   /// Pose at which no surface of the room and no other object overlaps it, since physics moved it there.
   std::optional<Eigen::Isometry3d> T_world_undisturbed;
+  std::string_view why_not_in_room = "nothing placed or dropped it";  ///< valid while in_room is false
   /// Number of cells of the last frame's dynamic mesh that have full resolution because this object is near.
   std::size_t fine_cells = 0;
   std::shared_ptr<const ObjectModel> model;  ///< not null

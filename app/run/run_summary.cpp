@@ -85,7 +85,7 @@ std::string why_not_in_room(const VirtualObject& object, const Session& session)
   for (const WaitingDrop& waiting : session.waiting_drops())
     if (waiting.drop.name == object.body.name)
       return "; its drop waits: " + (waiting.why.empty() ? "no frame was located since" : waiting.why);
-  return object.departures > 0 ? "; it fell out of the map" : "; nothing placed or dropped it";
+  return object.departures > 0 ? "; it fell out of the map" : "; " + std::string(object.why_not_in_room);
 }
 
 void print_object(const VirtualObject& object, const Session& session) {

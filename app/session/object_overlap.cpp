@@ -55,9 +55,9 @@ std::string coordinates(const Eigen::Vector3d& p) {
   return text.data();
 }
 
-bool is_middle_unknown(const SessionRoom& room, const VirtualObject& object,
-                       const Eigen::Isometry3d& T_world_object) {
-  return room.unknown_is_solid && is_unknown(*room.unknown, T_world_object * object.model->middle);
+bool is_middle_unknown(const SessionRoom& room, const VirtualObject& object) {
+  return room.unknown_is_solid &&
+         is_unknown(*room.unknown, object.body.T_world_object * object.model->middle);
 }
 
 TreeInstance instance_of(const VirtualObject& object) {
@@ -77,7 +77,7 @@ std::optional<FreePose> free_pose_near(const VirtualObject& object, double max_m
 std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thrown) {
   constexpr double kSaid_m = 0.005;  // less is a surface's noise
   const bool crosses = is_crossed(instance_of(object), way.surfaces, way.proximity);
-  if (!crosses && !is_middle_unknown(way.room, object, object.body.T_world_object)) return {};
+  if (!crosses && !is_in_solid_unknown(way.room, object)) return {};
   if (const auto free = free_pose_near(object, kWayOut_m, way)) {
     object.body.T_world_object = free->T_world_object;
     if (free->moved_m < kSaid_m) return {};
@@ -85,10 +85,16 @@ std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thr
                    : " would begin in space that was not scanned, and is moved out by " +
                          millimetres(free->moved_m);
   }
-  if (!crosses && is_thrown) return " begins in space that was not scanned, where nothing stops it";
+  const bool is_middle = is_middle_unknown(way.room, object);
+  if (!crosses && is_thrown)
+    return is_middle
+               ? " begins in space that was not scanned, where nothing stops it"
+               : " begins partly in space that was not scanned, which does not stop it until it has left";
   std::string text = object.body.name + ": cannot begin at " +
                      coordinates(object.body.T_world_object.translation()) + ": " +
-                     (crosses ? "a surface is in the way" : "that space was not scanned") +
+                     (crosses     ? "a surface is in the way"
+                      : is_middle ? "that space was not scanned"
+                                  : "a part of it would be in space that was not scanned") +
                      ", and there is no free place within 10 cm";
   if (const auto far = free_pose_near(object, kSearched_m, way))
     text += "; the nearest found is " + coordinates(far->T_world_object.translation());

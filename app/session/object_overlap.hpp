@@ -38,8 +38,8 @@ struct WayOut {
 };
 
 /// Moves an object to the nearest free pose within 10 cm. Does nothing unless a surface intersects the object
-/// or its centre is in solid unknown space. Other objects do not count as surfaces. Throws PlaceRefused if no
-/// free pose is within 10 cm, unless the object is thrown from unknown space, where nothing stops it. The
+/// or a part of it is in solid unknown space. Other objects do not count as surfaces. Throws PlaceRefused if
+/// no free pose is within 10 cm, unless the object is thrown from unknown space, where nothing stops it. The
 /// error message names the nearest free position found within 1 m.
 /// @return notice text without the object's name. Empty if the object was moved by less than 5 mm
 std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thrown);

@@ -66,6 +66,7 @@ void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
     if (!moved.empty()) notices_.push_back({object.body.name, moved});
   } catch (const PlaceRefused&) {
     object.body.T_world_object = T_world_before;
+    object.why_not_in_room = "the place where it was to begin was refused";
     throw;
   }
   object.R_world_put = object.body.T_world_object.linear();
@@ -119,7 +120,11 @@ void ObjectSet::turn(const std::string& name, const Eigen::Vector3d& turn_world_
   turn_until_contact(object, turn_world_deg, scene_without(&object), radar_);
 }
 
-void ObjectSet::remove(const std::string& name) { take_over(name).in_room = false; }
+void ObjectSet::remove(const std::string& name) {
+  VirtualObject& object = take_over(name);
+  if (object.in_room) object.why_not_in_room = "it was removed";
+  object.in_room = false;
+}
 
 void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                                 const ExpectedView& expected, const FrameForeground& foreground,
@@ -131,7 +136,7 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
       continue;
     }
     DropRequest& drop = waiting.drop;
-    const VirtualObject& object = named(drop.name);
+    VirtualObject& object = named(drop.name);
     const std::vector<SceneTree> surfaces = scene_without(&object);
     DropPosition found = find_drop_position(object, drop, frame.depth_camera, T_world_camera, expected,
                                             foreground, {room_, surfaces, exact_radar_});
@@ -145,6 +150,7 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
       continue;
     }
     if (drop.near_world) {
+      object.why_not_in_room = "no place for its drop was found";
       notices_.push_back({drop.name, " is not dropped: " + found.why});
       continue;
     }

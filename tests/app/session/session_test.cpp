@@ -926,17 +926,32 @@ TEST(Session, WhatIsPutIntoUnknownSpaceCanLeaveItAndCannotComeBack) {
   EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
 }
 
-TEST(Session, WhatIsPutOnTheBorderOfUnknownSpaceComesOutAndStaysOnIt) {
+TEST(Session, WhatIsPutPartlyIntoUnknownSpaceIsMovedOutOrRefused) {
   const SavedMap map = half_floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
   session.make_unknown_solid(times);
   const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.04}, 0.0).pot;  // 4 of its 15 cm are in the floor
-  EXPECT_TRUE(pot.began_in_unknown);
-  EXPECT_FALSE(pot.in_unknown);
+  EXPECT_FALSE(pot.began_in_unknown);
   EXPECT_TRUE(pot.body.asleep);
   EXPECT_EQ(pot.body.rests_on, SurfaceKind::kUnknownFrontier);
   EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
+
+  // a beam of 2.4 m of which 20 cm are beyond the end of the map, at x = 1.92
+  Model beam{.mesh = shapes::box({2.4F, 0.1F, 0.1F})};
+  session.add_object("beam", std::move(beam));
+  const std::string refusal = test::error_of([&] {
+    session.place("beam", {.position_world = {0.92, 0.0, 0.8}});
+  });
+  EXPECT_NE(refusal.find("a part of it would be in space that was not scanned"), std::string::npos)
+      << refusal;
+  const VirtualObject& its = *find_object(session.objects(), "beam");
+  EXPECT_FALSE(its.in_room);
+  EXPECT_EQ(its.why_not_in_room, "the place where it was to begin was refused");
+  session.place("beam", {.position_world = {0.92, 0.0, 0.8}, .velocity_world_mps = {-1.0, 0.0, 0.0}});
+  EXPECT_TRUE(its.in_room);
+  session.remove("beam");
+  EXPECT_EQ(its.why_not_in_room, "it was removed");
 }
 
 TEST(Session, NothingIsPutIntoUnscannedSpaceUnlessItIsThrown) {
