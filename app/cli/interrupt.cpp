@@ -73,6 +73,8 @@ bool Interrupt::take() {
 
 bool Interrupt::is_asked() { return asked == kToEnd; }
 
+bool Interrupt::was_pressed() { return asked != kNothing; }
+
 std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source) {
   return std::make_unique<EndedByInterrupt>(std::move(source));
 }

@@ -22,6 +22,8 @@ class Interrupt {
   static bool take();
   /// Returns true if Ctrl-C was pressed and take() has not been called since.
   static bool is_asked();
+  /// Returns true if Ctrl-C was pressed since the last instance was made, taken or not.
+  static bool was_pressed();
 };
 
 /// Returns a source that delivers the frames of `source` and ends when Ctrl-C is pressed.

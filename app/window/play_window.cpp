@@ -21,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/cli/interrupt.hpp"
 #include "app/window/glfw_window.hpp"
 #include "app/window/panes/theme.hpp"
 #include "app/window/panes/window_layout.hpp"
@@ -119,8 +120,9 @@ int run_in_window(const std::string& title, const std::vector<ObjectSource>& mes
       status = work(link);
     } catch (...) {
       fault = std::current_exception();
-      glfwSetWindowShouldClose(window.get(), GLFW_TRUE);  // allowed on any thread
     }
+    if (fault || Interrupt::was_pressed())
+      glfwSetWindowShouldClose(window.get(), GLFW_TRUE);  // allowed on any thread
     link.finish();
   });
   try {

@@ -196,6 +196,20 @@ play_again() {
 }
 play_again 20
 
+echo "== Ctrl-C in the terminal ends the window, too, and the summary comes"
+"$program" run 'sim:table?frames=30&width=320&path=view&seed=2' --poses recorded --map "$work/map" --window --at-end loop \
+  > "$work/interrupted" 2>&1 &
+player=$!
+until_true grep -q '^running .* located' "$work/interrupted"
+kill -INT "$player"
+ended() { ! kill -0 "$player" 2> /dev/null; }
+for _ in $(seq 300); do ended && break; sleep 0.1; done
+ended || fail "the window is still there"
+status=0
+wait "$player" || status=$?
+[[ $status == 0 ]] || fail "exit status $status after Ctrl-C"
+grep -q '^camera located in ' "$work/interrupted" || fail "no summary after Ctrl-C"
+
 if command -v fakenect > /dev/null; then
   echo "== a Kinect's driver, with fakenect in the device's place, and a French keyboard, whose Q is where A is"
   setxkbmap fr || echo "no French keyboard: setxkbmap is not installed (package x11-xkb-utils)"
