@@ -80,7 +80,8 @@ void require_valid(const Board& board) {
     require(corners >= 3 && corners <= 30, std::to_string(corners) + " inner corners along a side",
             "3 to 30");
   require(board.columns != board.rows,
-          std::to_string(board.columns) + " by " + std::to_string(board.rows) + " inner corners",
+          std::to_string(board.columns) + " by " + std::to_string(board.rows) +
+              " inner corners (--columns, --rows)",
           "not square, so that its sides can be told apart");
   require(board.square_m >= 0.001 && board.square_m <= 1.0,
           "squares of " + format_number(board.square_m) + " m", "of 0.001 to 1 m");

@@ -21,8 +21,13 @@ std::vector<std::string> names_of(const std::vector<const CLI::App*>& commands) 
   return names;
 }
 
-/// Returns the words of a type such as "exact|sampled"; an empty string for another type.
+/// Returns the words of a type such as "exact|sampled", and the usual words of some other options; otherwise
+/// an empty string.
 std::string choices_of(const CLI::Option& option) {
+  if (option.check_name("--preset")) return "fast balanced accurate";
+  if (option.check_name("--room")) return "table shelf wall random board";
+  if (option.check_name("--path")) return "scan view swing";
+  if (option.check_name("--moving")) return "hand ball person";
   std::string type = option.get_type_name();
   if (type.find('|') == std::string::npos) return {};
   for (char& c : type)
@@ -56,7 +61,8 @@ void append_cases(const CLI::App& command, const std::string& path, std::string&
 
 std::string completion_script(const CLI::App& app, std::string_view shell) {
   if (shell != "bash" && shell != "zsh")
-    throw CLI::ValidationError("--completion " + std::string(shell) + ": must be bash or zsh");
+    throw CLI::ValidationError("--completion " + std::string(shell) +
+                               ": must be bash or zsh; there is no completion for other shells");
   std::string options, choices;
   append_cases(app, "", options, choices);
   std::string script;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/cli/help_topics.hpp"
+#include "app/cli/options/option_groups.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -46,8 +47,8 @@ std::string usage_of(const CLI::App& command, const std::string& name) {
 
 std::string options_of(const CLI::App& command) {
   std::string text;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->get_group().empty() || option->get_name(false, true) == "-h,--help") continue;
+  for (const CLI::Option* option : options_in_order(command)) {
+    if (option->get_name(false, true) == "-h,--help") continue;
     const std::string type = option->get_type_name();
     text += ".TP\n";
     if (option->get_positional())

@@ -74,6 +74,21 @@ std::string missing_argument(const CLI::App& command) {
   return {};
 }
 
+/// Returns a sentence about an option that is given twice or without a value; empty for other faults.
+/// @param what  CLI11's message: "--map: At Most 1 required but received 2" or "--map: 1 required DIR
+/// missing"
+std::string wrong_count(const CLI::App& command, const std::string& what) {
+  const std::string name = what.substr(0, what.find(':'));
+  const CLI::Option* option = command.get_option_no_throw(name);
+  if (option == nullptr) return {};
+  if (what.find("At Most 1 required") != std::string::npos)
+    return name + ": is given " + what.substr(what.rfind(' ') + 1) + " times; give it once";
+  if (!what.ends_with(" missing")) return {};
+  const std::string type = option->get_type_name();
+  const std::string meaning = option->get_group().empty() ? "" : ", " + type + ": " + meaning_of(*option);
+  return name + ": needs a value" + meaning;
+}
+
 std::string unknown_option(const CLI::App& command, std::span<const std::string> rest) {
   for (const std::string& word : rest) {
     if (word == "--") break;
@@ -123,8 +138,11 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
     std::vector<std::string> names;
     for (const CLI::App* part : parts) names.push_back(part->get_name());
     if (at < arguments.size() && arguments[at].starts_with("-")) {
-      const std::string fault = unknown_option(*command, std::span(arguments).subspan(at));
+      std::string fault = unknown_option(*command, std::span(arguments).subspan(at));
       if (!fault.empty()) return name + ": " + fault + see_help;
+      const std::string what = error.what();  // it begins with a colon if the option is not in the help
+      fault = wrong_count(*command, what.starts_with(':') ? arguments[at] + what : what);
+      return name + ": " + (fault.empty() ? what : fault) + see_help;
     }
     if (at == arguments.size())
       return name + " needs a command:\n" + command_list(*command) + see_help.substr(1);
@@ -140,6 +158,7 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
     const std::string what = error.what();
     fault = "more arguments than it takes" + what.substr(std::min(what.find(':'), what.size()));
   }
+  if (fault.empty()) fault = wrong_count(*command, error.what());
   if (fault.empty()) fault = error.what();
   return name + ": " + fault + see_help;
 }

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/shared_options.hpp"
 
 namespace roomradar {
@@ -17,10 +18,13 @@ void add_options(CLI::App& command, CalibrateOptions& options) {
   command
       .add_option("--columns", options.board.columns,
                   "inner corners along the board's longer side (default: 8)")
+      ->check(whole_within(3, 30))
       ->type_name("N");
   command.add_option("--rows", options.board.rows, "inner corners along the shorter side (default: 6)")
+      ->check(whole_within(3, 30))
       ->type_name("N");
   command.add_option("--square", options.board.square_m, "side of a square, metres (default: 0.03)")
+      ->check(within(0.001, 1.0, "metres"))
       ->type_name("M");
   add_frames_option(command, options.frames);
   command

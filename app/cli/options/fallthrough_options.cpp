@@ -35,18 +35,18 @@ void add_recorded_room_options(CLI::App& command, FallthroughOptions& options) {
 
 void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) {
   command.add_option("--scenarios", options.scenarios, "number of scenarios (default: 200)")
-      ->check(CLI::Range(1, 1'000'000))
+      ->check(whole_within(1, 1'000'000))
       ->type_name("N");
   command.add_option("--seed", options.seed, "seed of the scenarios (default: 1)")->type_name("N");
   command
       .add_option("--random-rooms", options.random_rooms,
                   "number of randomly furnished rooms, in addition to table, shelf and wall (default: 3)")
-      ->check(CLI::Range(0, 1000))
+      ->check(whole_within(0, 1000))
       ->type_name("N");
   command
       .add_option("--threads", options.threads,
                   "threads for scanning rooms and preparing scenarios (default: all processors)")
-      ->check(CLI::Range(1, 256))
+      ->check(whole_within(1, 256))
       ->type_name("N");
   command
       .add_option("--maps", options.maps,
@@ -61,7 +61,7 @@ void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) 
   CLI::Option* scenario = command
                               .add_option("--scenario", options.scenario,
                                           "replay only this scenario, as a video (default: run all)")
-                              ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000}))
+                              ->check(whole_within(0, 1'000'000))
                               ->type_name("N");
   CLI::Option* video = command
                            .add_option("--video", options.video,

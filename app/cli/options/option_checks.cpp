@@ -19,6 +19,25 @@ CLI::Validator within(double low, double high, const std::string& unit) {
       "", "within");
 }
 
+CLI::Validator whole_within(std::int64_t low, std::int64_t high) {
+  return CLI::Validator(
+      [low, high](const std::string& text) -> std::string {
+        std::int64_t value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
+        return "must be a whole number within " + std::to_string(low) + " and " + std::to_string(high) +
+               ", not " + text;
+      },
+      "", "whole_within");
+}
+
+std::string words_of_choice(const std::string& type) {
+  std::string words;
+  const std::size_t last = type.rfind('|');
+  for (std::size_t i = 0; i < type.size(); ++i)
+    words += type[i] != '|' ? std::string(1, type[i]) : i == last ? " or " : ", ";
+  return words;
+}
+
 void refuse_other_bases(CLI::App& app) {
   const auto fault_of = [](const std::string& text) -> std::string {
     const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });

@@ -2,6 +2,7 @@
 // integers).
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <map>
 #include <string>
 
@@ -10,6 +11,12 @@ namespace roomradar {
 /// Returns a check that a number is in low..high. Unlike CLI11's Range, the check rejects "nan".
 /// @param unit  unit in the plural, for the error message
 CLI::Validator within(double low, double high, const std::string& unit);
+
+/// Returns a check that a number is a whole number in low..high.
+CLI::Validator whole_within(std::int64_t low, std::int64_t high);
+
+/// Returns the words of a type such as "a|b|c" for a sentence: "a, b or c". Other text is unchanged.
+std::string words_of_choice(const std::string& type);
 
 /// Adds checks that reject numbers that CLI11 would misread. It reads 010 as 8, and the seed -1 as 2^64 - 1.
 /// The checks apply to all options of type "N" of the program and its commands. Call after all options were
@@ -30,7 +37,8 @@ void add_choice(CLI::App& command, const std::string& name, Value& value,
           name,
           [&value, choices, name, type](const std::string& word) {
             const auto found = choices.find(word);
-            if (found == choices.end()) throw CLI::ValidationError(name + " " + word + ": must be " + type);
+            if (found == choices.end())
+              throw CLI::ValidationError(name + " " + word + ": must be " + words_of_choice(type));
             value = found->second;
           },
           help)

@@ -153,6 +153,28 @@ class HelpFormatter final : public CLI::Formatter {
 
 }  // namespace
 
+std::vector<const CLI::Option*> options_in_order(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  const bool is_part = parent != nullptr && parent->get_parent() != nullptr;
+  const std::string path = (is_part ? parent->get_name() + " " : "") + command.get_name();
+  std::vector<std::string> names;
+  for (const CommandHelp& help : command_helps())
+    if (help.command == path)
+      for (const OptionGroup& group : help.groups)
+        names.insert(names.end(), group.options.begin(), group.options.end());
+  const auto rank = [&](const CLI::Option* option) {
+    if (option->get_positional()) return std::ptrdiff_t{-1};
+    return std::find_if(names.begin(), names.end(),
+                        [&](const std::string& name) { return option->check_name(name); }) -
+           names.begin();
+  };
+  std::vector<const CLI::Option*> options =
+      command.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
+  std::stable_sort(options.begin(), options.end(),
+                   [&](const auto* a, const auto* b) { return rank(a) < rank(b); });
+  return options;
+}
+
 void arrange_help(CLI::App& app) {
   app.formatter(std::make_shared<HelpFormatter>());
   for (const CommandHelp& help : command_helps()) {

@@ -48,7 +48,7 @@ void add_options(CLI::App& command, PrescanOptions& options) {
       .add_option("--hold-out", options.hold_out,
                   "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them\n"
                   "(default: none)")
-      ->check(CLI::Range(std::int64_t{2}, std::int64_t{1'000'000}))
+      ->check(whole_within(2, 1'000'000))
       ->type_name("N");
   command.add_flag(
       "--resume", options.resume,

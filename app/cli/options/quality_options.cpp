@@ -2,8 +2,10 @@
 #include "app/cli/options/quality_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
+#include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/renamed_options.hpp"
 #include "app/quality/presets.hpp"
 #include "mapping/types/system/error.hpp"
@@ -25,7 +27,10 @@ void add_field_options(CLI::App& command, FieldWords& fixed) {
                 Quality scratch;
                 set_field(scratch, field.name, word);
               } catch (const Error& error) {
-                throw CLI::ValidationError(std::string(field.option) + " " + word, error.what());
+                const std::string fault = error.what();  // "field = word: must be ...": the option says both
+                throw CLI::ValidationError(
+                    std::string(field.option) + " " + word,
+                    words_of_choice(fault.substr(std::min(fault.find("must be"), fault.size() - 1))));
               }
               fixed.emplace_back(field.name, word);
             },

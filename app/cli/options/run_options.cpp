@@ -95,7 +95,7 @@ void add_picture_options(CLI::App& command, RunOptions& options) {
   command
       .add_option("--pictures-stride", options.pictures_stride,
                   "write pictures of every Nth frame (default: 10)")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
+      ->check(whole_within(1, 1'000'000))
       ->type_name("N");
 }
 

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/shared_options.hpp"
 
 namespace roomradar {
@@ -17,7 +18,7 @@ void add_options(CLI::App& command, SimulateOptions& options) {
                   "seed of the camera's path, the noise and the furniture of a random room (default: 1)")
       ->type_name("N");
   command.add_option("--frames", options.frames, "number of frames (default: 300)")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
+      ->check(whole_within(1, 1'000'000))
       ->type_name("N");
   command
       .add_option(

@@ -2,7 +2,9 @@
 #include "app/cli/options/trade_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <map>
 
+#include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/renamed_options.hpp"
 #include "app/cli/options/shared_options.hpp"
 
@@ -19,28 +21,30 @@ void add_sweep_options(CLI::App& command, TradeOptions& options) {
       ->allow_extra_args(false)  // the next argument is a recording
       ->delimiter(',')
       ->type_name("LIST");
-  command.add_option("--only", options.only, "measure only this command (default: both)")
-      ->check(CLI::IsMember({"prescan", "run"}));
+  const std::map<std::string, std::string> commands{{"prescan", "prescan"}, {"run", "run"}};
+  add_choice(command, "--only", options.only, commands, "measure only this command (default: both)");
   command
       .add_option("--settings", options.settings,
                   "number of settings per command, in addition to the default (default: 30)")
-      ->check(CLI::Range(1, 10'000))
+      ->check(whole_within(1, 10'000))
       ->type_name("N");
   command.add_option("--repeats", options.repeats, "measurements per setting and scene (default: 2)")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_within(1, 1000))
       ->type_name("N");
   command
       .add_option("--objects", options.objects,
                   "virtual objects in a run, except in settings that change their number (default: 1)")
-      ->check(CLI::IsMember({1, 5, 20}))
+      ->check([](const std::string& text) {
+        const bool is_one = text == "1" || text == "5" || text == "20";
+        return is_one ? std::string() : "must be 1, 5 or 20, not " + text;
+      })
       ->type_name("N");
   command.add_option("--seed", options.seed, "seed of the settings and of their order (default: 1)")
       ->type_name("N");
-  command
-      .add_option("--time", options.time,
-                  "compare settings by wall-clock time (wall) or, on a busy machine, by the CPU time of all\n"
-                  "threads (cpu) (default: wall)")
-      ->check(CLI::IsMember({"wall", "cpu"}));
+  const std::map<std::string, std::string> times{{"wall", "wall"}, {"cpu", "cpu"}};
+  add_choice(command, "--time", options.time, times,
+             "compare settings by wall-clock time (wall) or, on a busy machine, by the CPU time of all\n"
+             "threads (cpu) (default: wall)");
   command.add_flag(
       "--quick", options.quick,
       "use few frames of small images: a functional test, not a basis for choices (default: off)");

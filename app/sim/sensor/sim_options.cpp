@@ -214,7 +214,9 @@ void require_valid(const SimOptions& options) {
     refuse("noise", format_number(options.noise_scale), "0 (off), 1 (a Kinect's) or another factor up to 10");
   if (options.faults && options.registered_colour && options.with_colour)
     refuse("faults", "1",
-           "said together with colour=separate or colour=none: registering needs what it takes away");
+           "combined with colour=separate or colour=none: faults=1 takes away the calibration by which the "
+           "colour "
+           "image is registered to the depth image");
   for (std::size_t i = 0; i < options.movers.size(); ++i)
     if (std::find(options.movers.begin(), options.movers.begin() + static_cast<std::ptrdiff_t>(i),
                   options.movers[i]) != options.movers.begin() + static_cast<std::ptrdiff_t>(i))

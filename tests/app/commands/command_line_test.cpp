@@ -505,14 +505,22 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar(prescan + " --resolution -0.01"), 2, "0.001");
   expect_fault(roomradar(prescan + " --frames 9:3"), 2, "A:B");
   expect_fault(roomradar(prescan + " --frames x"), 2, "A:B");
-  expect_fault(roomradar(prescan + " --hold-out 1"), 2, "--hold-out");
+  expect_fault(roomradar(prescan + " --hold-out 1"), 2,
+               "--hold-out: must be a whole number within 2 and 1000000, not 1");
+  expect_fault(roomradar(prescan + " --map twice"), 2, "--map: is given 2 times; give it once");
+  expect_fault(roomradar("prescan sim:table --map"), 2, "--map: needs a value, DIR: folder for the map");
+  expect_fault(roomradar("trade --only foo"), 2, "--only foo: must be prescan or run");
+  expect_fault(roomradar("trade --objects 3"), 2, "--objects: must be 1, 5 or 20, not 3");
+  expect_fault(roomradar("run sim:table --map m --depth-stride 3"), 2, "--depth-stride 3: must be 1, 2 or 4");
+  expect_fault(roomradar("calibrate sim:board --out c.json --rows 1"), 2,
+               "--rows: must be a whole number within 3 and 30, not 1");
   for (const char* number : {"nan", "-5", "inf", "1e9", "x"}) {
     expect_fault(roomradar(prescan + " --max-memory " + number), 2, "10000000 (megabytes)");
     expect_fault(roomradar(prescan + " --checkpoint-every " + number), 2, "86400 (seconds)");
   }
-  expect_fault(roomradar(prescan + " --poses guessed"), 2, "recorded|tracked");
+  expect_fault(roomradar(prescan + " --poses guessed"), 2, "--poses guessed: must be recorded or tracked");
   const std::string run = "run sim:table --map " + map();
-  expect_fault(roomradar(run + " --radar roughly"), 2, "exact|sampled");
+  expect_fault(roomradar(run + " --radar roughly"), 2, "--radar roughly: must be exact or sampled");
   expect_fault(roomradar(run + " --object teapot --script s.txt"), 2, "--script says which objects");
   expect_fault(roomradar(run + " --radar-px 0"), 2, "4096");
   expect_fault(roomradar("fallthrough --map " + map()), 2, "--map: used only with a SOURCE");
@@ -568,6 +576,15 @@ TEST_F(CommandLine, FormerNamesOfOptionsWorkAndSaySo) {
   expect_fault(table, 2, "--csv: used only for a sweep, not with --compare-published");
   expect_fault(table, 2, "--table1 is now --compare-published; the old name will go in the next version");
   EXPECT_EQ(roomradar("trade --help").out.find("--table1"), std::string::npos);
+}
+
+TEST_F(CommandLine, TheManualHasTheOrderOfTheHelpAndNoneOfTheParsersRanges) {
+  const std::string manual = roomradar("--manual").out;
+  EXPECT_EQ(manual.find(" in ["), std::string::npos);
+  EXPECT_EQ(manual.find(":INT"), std::string::npos);
+  const std::string run = manual.substr(manual.find(".SS run"));
+  EXPECT_LT(run.find("\n.B \\-\\-window"), run.find("\\-\\-frames \""));
+  EXPECT_LT(run.find("\\-\\-object \""), run.find("\\-\\-poses \""));
 }
 
 TEST_F(CommandLine, HelpOfEveryOptionEndsWithItsDefault) {
@@ -672,7 +689,9 @@ TEST_F(CommandLine, CompletionKnowsCommandsOptionsAndChoices) {
   EXPECT_EQ(completed("map export x --u"), "--unknown\n");
   EXPECT_EQ(shell("bash -n " + script).status, 0);
   EXPECT_EQ(roomradar("--completion zsh").out.rfind("#compdef roomradar", 0), 0U);
-  EXPECT_EQ(roomradar("--completion fish").status, 2);
+  EXPECT_EQ(completed("run x --preset b"), "balanced\n");
+  expect_fault(roomradar("--completion fish"), 2, "--completion fish: must be bash or zsh");
+  expect_fault(roomradar("--completion"), 2, "--completion: needs a value");
 }
 
 TEST_F(CommandLine, MapInfoListsTheLevelSurfaces) {
