@@ -17,6 +17,7 @@
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace {
@@ -81,9 +82,7 @@ void require_can_become_session(const fs::path& folder) {
 SessionRecorder::SessionRecorder(fs::path folder, const RunOptions& options, const MapInfo& map,
                                  bool are_calibrated)
     : folder_(std::move(folder)) {
-  std::error_code fault;
-  fs::create_directories(folder_, fault);
-  if (fault) throw Error(folder_.string() + ": the folder cannot be created: " + fault.message());
+  make_folder(folder_);
   require_can_become_session(folder_);
   Json json = {{"format", kFormat},
                {"format_version", kFormatVersion},

@@ -23,6 +23,7 @@
 #include "app/evaluation/fallthrough/trial_pictures.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace {
@@ -34,9 +35,8 @@ using Rooms = std::vector<std::unique_ptr<MappedRoom>>;
 void require_folder_of_maps(const std::filesystem::path& folder) {
   if (folder.empty()) return;
   require_contents_outside_maps(folder);
+  make_folder(folder);
   std::error_code fault;
-  std::filesystem::create_directories(folder, fault);
-  if (fault) throw Error(folder.string() + ": the folder cannot be created: " + fault.message());
   if (access(folder.c_str(), W_OK) != 0 && std::filesystem::is_empty(folder, fault))
     throw Error(folder.string() + ": no map can be stored there: the folder is not writable");
 }

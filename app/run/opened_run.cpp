@@ -19,6 +19,7 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace {
@@ -242,9 +243,7 @@ void open_outputs(OpenedRun& run) {
   const RunOptions& options = run.options;
   if (!options.video.empty()) run.video = std::make_unique<VideoWriter>(options.video, kVideoFramesPerS);
   if (options.pictures.empty()) return;
-  std::error_code failed;
-  std::filesystem::create_directories(options.pictures, failed);
-  if (failed) throw Error(options.pictures + ": the folder cannot be created: " + failed.message());
+  make_folder(options.pictures);
 }
 
 /// Wraps the frames so they are recorded, if requested.

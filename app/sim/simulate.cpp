@@ -13,6 +13,7 @@
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/make_folder.hpp"
 #include "mapping/types/trajectory.hpp"
 
 namespace roomradar {
@@ -49,11 +50,9 @@ void simulate(const std::filesystem::path& folder, const SimOptions& options, Re
   const std::filesystem::path truth = folder / "truth";
   const bool moves =
       !options.movers.empty() || options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
-  std::error_code fault;
-  std::filesystem::create_directories(truth / "depth", fault);
+  make_folder(truth / "depth");
   for (const char* const masks : {"moved", "mover", "revealed"})
-    if (moves && !fault) std::filesystem::create_directories(truth / masks, fault);
-  if (fault) throw Error(truth.string() + ": cannot be made: " + fault.message());
+    if (moves) make_folder(truth / masks);
   write_bytes(truth / "sim.json", description(options));
   write_mesh(room_mesh(source.room()), truth / "room.ply");
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace {
@@ -76,13 +77,11 @@ void sync_to_disk(const fs::path& path) {
 }
 
 AtomicFolder::AtomicFolder(const fs::path& target) : target_(target), partial_(beside(target, kPartial)) {
-  std::error_code fault;
-  fs::create_directories(parent_of(target), fault);
-  if (fault) fail(parent_of(target), "the folder cannot be made", fault.value());
+  make_folder(parent_of(target));
   clear_abandoned(target);
+  std::error_code fault;
   fs::remove_all(partial_, fault);  // left by an earlier process with the same PID
-  fs::create_directory(partial_, fault);
-  if (fault) fail(partial_, "the folder cannot be made", fault.value());
+  make_folder(partial_);
 }
 
 AtomicFolder::~AtomicFolder() {

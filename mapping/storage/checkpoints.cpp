@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/make_folder.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -73,9 +74,7 @@ void Checkpoints::take_lock() {
 
 void Checkpoints::ensure_folder() {
   if (lock_ >= 0) return;
-  std::error_code fault;
-  fs::create_directories(folder_, fault);
-  if (fault) fail(folder_, "the folder cannot be made: " + fault.message());
+  make_folder(folder_);
   take_lock();
   write_identity(folder_, identity_);
 }

@@ -87,7 +87,14 @@ Json parse_json_of_format(const std::filesystem::path& path, const char* format,
   const std::string name = path.string();
   Json root = Json::parse(read_json_text(path), nullptr, /*allow_exceptions=*/false);
   if (root.is_discarded()) throw Error(name + ": is not JSON; is it cut short?");
-  const Json& said = json_field(root, "format", name);
+  if (!root.is_object() || !root.contains("format")) {
+    const auto command = root.is_object() ? root.find("command") : root.end();
+    const bool is_report = root.is_object() && command != root.end() && command->is_string();
+    throw Error(
+        name + ": is no " + format + ": the field 'format' is missing" +
+        (is_report ? "; the file is the report of `roomradar " + command->get<std::string>() + "`" : ""));
+  }
+  const Json& said = root["format"];
   if (said != format)
     throw Error(name + ": 'format' is " + (said.is_string() ? said.dump() : "no text") + "; must be \"" +
                 format + "\"");

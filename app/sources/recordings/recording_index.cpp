@@ -136,6 +136,10 @@ RecordingIndex index_recording(const fs::path& folder) {
       index = index_seven_scenes(folder);
     else if (fs::is_directory(folder / "depth"))
       index = index_numbered(folder);
+    else if (fs::exists(folder / "map.json"))
+      throw Error(name + ": is a saved map, not a recording; give the recording or the device as SOURCE");
+    else if (fs::exists(folder / "events.txt") && fs::exists(folder / "session.json"))
+      throw Error(name + ": is a recorded session, not a recording; `roomradar run` replays it");
     else
       throw Error(name +
                   ": is no recording that is known here; looked for INDEX.txt (fakenect), depth.txt and "

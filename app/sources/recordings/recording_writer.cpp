@@ -15,6 +15,7 @@
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace {
@@ -30,12 +31,6 @@ std::string spaced(std::initializer_list<double> values, int digits) {
   std::string text;
   for (const double value : values) text += ' ' + format_general(value, digits);
   return text;
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code fault;
-  fs::create_directories(folder, fault);
-  if (fault) throw Error(folder.string() + ": cannot be made: " + fault.message());
 }
 
 /// Opens the list if needed, and adds a line.

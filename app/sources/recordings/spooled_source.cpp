@@ -8,6 +8,7 @@
 #include "app/sources/formats/temporary_folder.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace fs = std::filesystem;
@@ -22,9 +23,7 @@ SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, const fs::path
 
 std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> source,
                                                    const fs::path& folder, std::size_t most_ahead) {
-  std::error_code fault;
-  fs::create_directories(folder, fault);
-  if (fault) throw Error(folder.string() + ": the folder cannot be made: " + fault.message());
+  make_folder(folder);
   std::unique_ptr<SpooledSource> spooled(new SpooledSource(std::move(source), folder, /*kept=*/true));
   spooled->most_ahead_ = most_ahead;
   if (has_spool_list(folder)) {

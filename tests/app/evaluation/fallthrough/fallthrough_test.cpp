@@ -189,7 +189,7 @@ TEST(FallthroughFiles, AFolderForMapsThatCannotBeIsNamedBeforeTheWork) {
     return fault;
   };
   for (const char* maps : {"file", "file/maps"})
-    EXPECT_NE(fault_of(folder.path() / maps).find("cannot be created"), std::string::npos) << maps;
+    EXPECT_NE(fault_of(folder.path() / maps).find("cannot be made"), std::string::npos) << maps;
   for (const char* maps : {"map", "map/maps"})
     EXPECT_NE(fault_of(folder.path() / maps).find("lies in the folder of a map"), std::string::npos) << maps;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "map" / "maps"));

@@ -221,6 +221,17 @@ TEST(RecordingRoundTrip, FramesWithoutPoseOrColourComeBackWithout) {
   }
 }
 
+TEST(FolderSource, AMapOrASessionIsCalledWhatItIs) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "map" / "map.json", "{}");
+  write_text(folder.path() / "session" / "session.json", "{}");
+  write_text(folder.path() / "session" / "events.txt", "");
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path() / "map"); }),
+                       "is a saved map, not a recording; give the recording or the device as SOURCE"));
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path() / "session"); }),
+                       "is a recorded session, not a recording; `roomradar run` replays it"));
+}
+
 TEST(RecordingWriter, RefusesWhatItCannotKeep) {
   const TemporaryFolder folder;
   write_text(folder.path() / "full" / "something.txt", "x");
@@ -231,6 +242,8 @@ TEST(RecordingWriter, RefusesWhatItCannotKeep) {
                                          RecordingFormat::kTum);
                        }),
                        "cannot be made"));
+  EXPECT_TRUE(contains(error_of([&] { RecordingWriter("/proc/recording", RecordingFormat::kTum); }),
+                       "the folder cannot be made: /proc cannot hold files; choose another place"));
   RecordingWriter writer(folder.path() / "new", RecordingFormat::kTum);
   writer.write(some_frame(1));
   EXPECT_TRUE(contains(error_of([&] { writer.write(some_frame(0)); }), "not later"));
@@ -685,6 +698,9 @@ TEST(Intrinsics, BrokenFilesAreNamed) {
       R"({"width_px": 16, "height_px": 12, "fx_px": 14, "fy_px": 14, "cx_px": 8, "cy_px": 6})";
   EXPECT_TRUE(contains(fails("camera.json", head + depth), "not JSON"));
   EXPECT_TRUE(contains(fails("camera.json", "{}"), "'format' is missing"));
+  EXPECT_TRUE(contains(fails("camera.json", R"({"command": "run", "settings": {}})"),
+                       "is no roomradar camera: the field 'format' is missing; the file is the report of "
+                       "`roomradar run`"));
   EXPECT_TRUE(contains(fails("camera.json", "[1, 2]"), "missing"));
   EXPECT_TRUE(contains(fails("camera.json", R"({"format": "roomradar camera", "version": 2})"), "version 2"));
   const std::string deep = std::string(400'000, '[') + std::string(400'000, ']');
