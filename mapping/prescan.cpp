@@ -106,6 +106,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   map.octree = std::move(pass.octree);
 
   // Surface extraction.
+  work.show("surface", {});
   map.mesh =
       times.timed("surface", [&] { return extract_surface(map.octree, config.surface, &result.surface); });
   if (map.mesh.triangles.empty())

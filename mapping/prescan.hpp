@@ -47,13 +47,14 @@ struct FrameSpan {
 
 struct PrescanResult {
   SavedMap map;
-  std::vector<Hole> holes;      ///< regions that the scan did not observe; per kind, largest first
+  std::vector<Hole> holes;      ///< regions that the scan did not observe; largest first, outer borders last
   std::vector<FrameSpan> lost;  ///< readable frames without a trusted pose, in order
   PrescanCounts counts;
   SurfaceStats surface;
 };
 
 /// Callback after each frame. `stage` is "track", "fuse" or "ghosts", and `note` states the frame's outcome.
+/// Called once more, as "surface", when the frames have been read and the surface is to be extracted.
 /// While tracking, the note also states the surface area observed in total and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 

@@ -36,12 +36,12 @@ std::string progress_line(const ProgressState& state, bool with_bar) {
     char text[48];
     std::snprintf(text, sizeof(text), ", %.1f/s", state.per_s);
     line += text;
-    if (has_total && state.done < *state.total && !state.is_over) {
-      const double left_s = std::ceil(static_cast<double>(*state.total - state.done) / state.per_s);
-      const auto whole_s = static_cast<long long>(std::min(left_s, 3.6e6));
-      std::snprintf(text, sizeof(text), ", %lld:%02lld left", whole_s / 60, whole_s % 60);
-      line += text;
-    }
+  }
+  if (state.left_s >= 0.0) {
+    const auto whole_s = static_cast<long long>(std::min(std::ceil(state.left_s), 3.6e6));
+    char text[48];
+    std::snprintf(text, sizeof(text), ", %lld:%02lld left", whole_s / 60, whole_s % 60);
+    line += text;
   }
   return state.note.empty() ? line : line + ", " + state.note;
 }
@@ -53,8 +53,18 @@ void SmoothRate::add(double steps, double seconds) {
   seconds_ = kept * seconds_ + seconds;
 }
 
+double SmoothRemaining::add(double estimate_s, double passed_s) {
+  constexpr double kLeast_s = 0.5;  // keeps the ratio finite
+  const double estimated_s = std::max(estimate_s, kLeast_s);
+  if (left_s_ < 0.0) return left_s_ = estimated_s;
+  const double counted_s = std::max(left_s_ - passed_s, kLeast_s);
+  const double constant_s =
+      std::min(kRateOver_s, std::max(estimated_s, 1.0));  // near the end it must be right
+  return left_s_ = counted_s * std::pow(estimated_s / counted_s, 1.0 - std::exp(-passed_s / constant_s));
+}
+
 Progress::Progress(std::string what, std::optional<std::int64_t> total)
-    : state_{std::move(what), 0, total, 0.0, {}, false},
+    : state_{std::move(what), 0, total, 0.0, {}, -1.0},
       is_terminal_(isatty(STDERR_FILENO) != 0),
       started_(Clock::now()),
       shown_(started_) {}
@@ -70,15 +80,24 @@ void Progress::step(const std::string& note) {
   if (now - shown_ < (is_terminal_ ? Clock::duration(kRedrawEvery) : kLineEvery)) return;
   rate_.add(static_cast<double>(state_.done - shown_done_), seconds(now - shown_));
   state_.per_s = rate_.per_s();
+  if (is_foreseeable())
+    state_.left_s =
+        remaining_.add(std::max(0.0, static_cast<double>(*state_.total - state_.done) / state_.per_s),
+                       seconds(now - shown_));
   shown_ = now;
   shown_done_ = state_.done;
   show(/*last=*/false);
 }
 
+bool Progress::is_foreseeable() const {
+  constexpr std::int64_t kMostAwaited = 10;  // the first steps are slower
+  return state_.total && state_.per_s > 0.0 && state_.done >= std::min(kMostAwaited, *state_.total / 8 + 1);
+}
+
 void Progress::show(bool last) {
   // The last line shows the mean rate of the whole work.
   if (last) {
-    state_.is_over = true;
+    state_.left_s = -1.0;
     state_.per_s = static_cast<double>(state_.done) / std::max(seconds(Clock::now() - started_), 1e-6);
   }
   std::fprintf(stderr, "%s%s%s", is_terminal_ ? "\r" : "", progress_line(state_, is_terminal_).c_str(),

@@ -19,12 +19,12 @@ struct ProgressState {
   double per_s = 0.0;
   /// Text after the count, such as "tracked; 12.4 m2 seen".
   std::string note;
-  /// True if the operation has ended, even if done < total.
-  bool is_over = false;
+  /// Remaining time, s; < 0: unknown.
+  double left_s = -1.0;
 };
 
-/// Returns a line such as "track [###### ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". The remaining
-/// time appears only if the total is known. The bar appears only if also with_bar is true.
+/// Returns a line such as "track [###### ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". The bar
+/// appears only if the total is known and with_bar is true.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
 /// Speed of an operation, averaged over about the last 15 s. A single slow or fast step thus hardly affects
@@ -38,6 +38,20 @@ class SmoothRate {
 
  private:
   double steps_ = 0.0, seconds_ = 0.0;  ///< sums with weights that decay with age
+};
+
+/// Remaining time of an operation. Between estimates it counts down; an estimate that disagrees moves it by a
+/// part of the ratio, with a time constant of the estimate or 15 s, whichever is less. So the remaining time
+/// does not jump with the speed.
+class SmoothRemaining {
+ public:
+  /// @param estimate_s  remaining steps divided by the recent speed, s
+  /// @param passed_s    time since the last call, s
+  /// @return remaining time to show, s
+  double add(double estimate_s, double passed_s);
+
+ private:
+  double left_s_ = -1.0;  ///< < 0: no estimate so far
 };
 
 /// Shows a progress line on stderr. Redraws it in place if stderr is a terminal. Otherwise prints a line
@@ -57,6 +71,8 @@ class Progress {
  private:
   using Time = std::chrono::steady_clock::time_point;
   void show(bool last);
+  /// Returns true if enough steps are done to estimate the remaining time.
+  [[nodiscard]] bool is_foreseeable() const;
 
   ProgressState state_;
   bool is_terminal_;
@@ -64,6 +80,7 @@ class Progress {
   Time shown_;
   std::int64_t shown_done_ = 0;  ///< number of finished steps when the line was last shown
   SmoothRate rate_;
+  SmoothRemaining remaining_;
 };
 
 }  // namespace roomradar

@@ -53,6 +53,7 @@ void announce_memory(FrameSource& source, const PrescanConfig& config, Report& r
                                        {"frames", estimate->frames}};
 }
 
+constexpr const char* kLookedAt = "looked";  // the note of each frame in which ghosts are searched
 constexpr const char* kStops =
     "\nroomradar: stops after the next frame, without a map; after the last frame the map is still made. "
     "Press Ctrl-C again to end at once\n";
@@ -184,8 +185,16 @@ class ScanProgress {
     if (stage_.empty() && start_.checkpoints)  // the checkpoints have been read
       for (const std::string& fault : start_.checkpoints->faults())
         std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
-    if (stage != stage_) begin(stage);
-    progress_->step(note);
+    if (stage == "surface") {
+      progress_.reset();
+      std::fprintf(stderr,
+                   "surface: is extracted; then what the scan missed is listed, and the map is saved\n");
+      return;
+    }
+    const bool is_again = stage == "ghosts" && note != kLookedAt;
+    if (const std::string title = is_again ? "fuse again" : stage; title != stage_) begin(title);
+    if (stage == "fuse" && note == to_string(FuseStatus::kFused)) ++fused_;
+    progress_->step(is_again && fused_ > 0 ? note + ", of at most " + std::to_string(fused_) : note);
     const bool ends_by_itself = start_.is_live && stage == "track";
     if (is_stopping_) stop(options_.map, start_.checkpoints.get());
     is_stopping_ = !ends_by_itself && Interrupt::take();
@@ -197,13 +206,21 @@ class ScanProgress {
   const ScanStart& start_;
   std::unique_ptr<Progress> progress_;
   std::string stage_;
+  std::int64_t fused_ = 0;  ///< frames fused in this process
   bool is_stopping_ = false;
+
+  /// Returns the number of frames of a stage. The search for ghosts looks at evenly spaced fused frames;
+  /// after a resumed scan their number is not known here.
+  [[nodiscard]] std::optional<std::int64_t> total_of(const std::string& stage) const {
+    if (stage == "fuse again" || (stage == "ghosts" && fused_ == 0)) return std::nullopt;
+    if (stage != "ghosts") return start_.source->frame_count();
+    const std::int64_t stride = 1 + (fused_ - 1) / GhostConfig{}.max_looks;
+    return (fused_ + stride - 1) / stride;
+  }
 
   void begin(const std::string& stage) {
     progress_.reset();
-    // The passes of ghost removal read only parts of the source, some twice.
-    progress_ =
-        std::make_unique<Progress>(stage, stage == "ghosts" ? std::nullopt : start_.source->frame_count());
+    progress_ = std::make_unique<Progress>(stage, total_of(stage));
     stage_ = stage;
     if (stage != "track") Interrupt::say(kStops);
   }

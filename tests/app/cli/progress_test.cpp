@@ -7,7 +7,7 @@ namespace roomradar::progress_test {
 namespace {
 
 TEST(ProgressLine, SaysHowFarHowFastAndHowLongYet) {
-  const ProgressState state{"track", 120, 300, 24.05, "tracked, 12.4 m2 seen"};
+  const ProgressState state{"track", 120, 300, 24.05, "tracked, 12.4 m2 seen", 7.5};
   EXPECT_EQ(progress_line(state, false), "track 120/300, 24.1/s, 0:08 left, tracked, 12.4 m2 seen");
   EXPECT_EQ(progress_line(state, true),
             "track [############                  ] 120/300, 24.1/s, 0:08 left, tracked, 12.4 m2 seen");
@@ -25,11 +25,26 @@ TEST(ProgressLine, StaysWithinItsBarWhereMoreIsDoneThanAnnounced) {
 }
 
 TEST(ProgressLine, NothingIsLeftOnceItIsOver) {
-  EXPECT_EQ(progress_line({"fuse", 35, 36, 2.0, "fused", true}, false), "fuse 35/36, 2.0/s, fused");
+  EXPECT_EQ(progress_line({"fuse", 35, 36, 2.0, "fused"}, false), "fuse 35/36, 2.0/s, fused");
 }
 
 TEST(ProgressLine, LongWaitsAreInMinutes) {
-  EXPECT_EQ(progress_line({"fuse", 1, 1201, 2.0, {}}, false), "fuse 1/1201, 2.0/s, 10:00 left");
+  EXPECT_EQ(progress_line({"fuse", 1, 1201, 2.0, {}, 600.0}, false), "fuse 1/1201, 2.0/s, 10:00 left");
+}
+
+TEST(SmoothRemaining, CountsDownAndFollowsAChangeOfSpeedWithoutAJump) {
+  SmoothRemaining remaining;
+  EXPECT_EQ(remaining.add(40.0, 5.0), 40.0);
+  EXPECT_NEAR(remaining.add(35.0, 5.0), 35.0, 1e-9);
+  const double slower_s = remaining.add(110.0, 5.0);  // one step took three times as long
+  EXPECT_GT(slower_s, 30.0);
+  EXPECT_LT(slower_s, 50.0);
+  EXPECT_NEAR(remaining.add(37.0, 5.0), 38.0, 3.0);
+  double shown_s = 0.0, estimate_s = 400.0;  // a lasting change is followed
+  for (int i = 0; i < 12; ++i, estimate_s -= 5.0) shown_s = remaining.add(estimate_s, 5.0);
+  EXPECT_NEAR(shown_s, estimate_s, 30.0);
+  for (int i = 0; i < 2; ++i) shown_s = remaining.add(3.0, 5.0);
+  EXPECT_LT(shown_s, 5.0) << "near the end";
 }
 
 TEST(SmoothRate, OneSlowSecondHardlyMovesTheRemainingTime) {
