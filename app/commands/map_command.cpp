@@ -16,6 +16,7 @@
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/surface/unknown_surface.hpp"
+#include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
 namespace {
@@ -38,7 +39,7 @@ std::string describe(std::vector<LevelSurface> surfaces) {
   std::sort(surfaces.begin(), surfaces.end(),
             [](const auto& a, const auto& b) { return a.height_m < b.height_m; });
   const std::optional<std::size_t> floor = floor_among(surfaces);
-  const auto cm = [](double m) { return std::round(100.0 * m) / 100.0 + 0.0; };  // no -0.00
+  const auto cm = [](double m) { return rounded(m, 2); };
   std::string text;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const Eigen::Vector3d& p = surfaces[i].middle_world;

@@ -64,13 +64,25 @@ nlohmann::json held_out_json(const HeldOutScore& score) {
           {"bias_m", score.bias_m}, {"cover", score.cover},   {"outliers", score.outliers}};
 }
 
+namespace {
+
+std::string up_words(const std::string& source) {
+  if (source == to_string(UpSource::kNone)) return "up direction not known";
+  if (source == to_string(UpSource::kGiven)) return "up as given by --up";
+  if (source == to_string(UpSource::kAccelerometer)) return "up from gravity";
+  if (source == to_string(UpSource::kPlane)) return "up from a level surface";
+  return "up from " + source;
+}
+
+}  // namespace
+
 void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
                    const std::optional<HeldOutScore>& held_out) {
   const PrescanCounts& counts = scanned.counts;
-  std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, up from %s\n", options.map.c_str(),
+  std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, %s\n", options.map.c_str(),
               static_cast<long long>(counts.frames_tracked), static_cast<long long>(counts.frames_read),
               static_cast<long long>(counts.frames_fused), scanned.map.mesh.triangles.size(),
-              scanned.map.info.up_source.c_str());
+              up_words(scanned.map.info.up_source).c_str());
   if (!scanned.lost.empty()) {
     std::printf("frames without a pose:");
     constexpr std::size_t kShown = 5;

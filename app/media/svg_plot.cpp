@@ -6,8 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
 namespace {
@@ -23,10 +25,9 @@ std::string format(const char* text, Numbers... numbers) {
 
 std::string readable_number(double value, int digits) {
   if (!std::isfinite(value)) return format_number(value);
-  const std::string rounded = format_general(value, digits);  // may have an exponent
+  const std::string general = format_general(without_minus_zero(value), digits);  // may have an exponent
   double parsed = 0.0;
-  std::from_chars(rounded.data(), rounded.data() + rounded.size(), parsed);
-  if (parsed == 0.0) parsed = 0.0;  // without a sign
+  std::from_chars(general.data(), general.data() + general.size(), parsed);
   std::array<char, 400> text{};
   std::string plain(
       text.data(),
@@ -59,16 +60,40 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
+std::string named_cells(const std::string& table) {
+  std::vector<std::string> names;
+  std::string named;
+  std::size_t at = 0, column = 0;
+  const auto begins = [&](const char* tag) {
+    return table.compare(at, std::string_view(tag).size(), tag) == 0;
+  };
+  while (at < table.size()) {
+    if (begins("<tr")) column = 0;
+    if (begins("<th>")) names.push_back(table.substr(at + 4, table.find("</th>", at) - at - 4));
+    if (begins("<td") && column < names.size()) {
+      named += "<td data-name=\"" + names[column++] + "\"";
+      at += 3;
+      continue;
+    }
+    named += table[at++];
+  }
+  return named;
+}
+
 std::string percent_plot(const std::string& title, const std::string& x_name, double x_least, double x_most,
                          const std::vector<PlotLine>& lines) {
-  constexpr double kLeft = 44.0, kTop = 28.0, kWide = 400.0, kHigh = 220.0;
+  constexpr double kLeft = 44.0, kTop = 10.0, kWide = 340.0, kHigh = 220.0;
+  constexpr std::size_t kNamesInRow = 3;
   const auto at_x = [&](double x) {
     const double part = std::log(std::max(x, x_least) / x_least) / std::log(x_most / x_least);
     return kLeft + kWide * std::min(part, 1.0);
   };
   const auto at_y = [&](double percent) { return kTop + kHigh * (1.0 - percent / 100.0); };
-  std::string svg = "<svg viewBox=\"0 0 580 296\" width=\"580\" height=\"296\" role=\"img\">";
-  svg += "<text x=\"44\" y=\"16\" class=\"t\">" + escaped(title) + "</text>";
+  const std::size_t legend_rows = (lines.size() + kNamesInRow - 1) / kNamesInRow;
+  const double height = kTop + kHigh + 42.0 + 18.0 * static_cast<double>(legend_rows);
+  std::string svg = "<p class=\"t\">" + escaped(title) + "</p>\n" +
+                    format("<svg viewBox=\"0 0 400 %.0f\" width=\"520\" role=\"img\" aria-label=\"", height) +
+                    escaped(title) + "\">";
   for (int percent = 0; percent <= 100; percent += 25)
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" class=\"g\"/>", kLeft, kLeft + kWide,
                   at_y(percent), at_y(percent)) +
@@ -82,7 +107,7 @@ std::string percent_plot(const std::string& title, const std::string& x_name, do
                   readable_number(decade).c_str());
   svg += format("<text x=\"%.1f\" y=\"%.1f\" class=\"n m\">", kLeft + 0.5 * kWide, kTop + kHigh + 32.0) +
          escaped(x_name) + "</text>";
-  double legend_y = kTop + 12.0;
+  std::size_t named = 0;
   bool is_dashed = false;
   for (const PlotLine& line : lines) {
     is_dashed = !is_dashed;  // every second line, so that lines below remain visible
@@ -90,10 +115,13 @@ std::string percent_plot(const std::string& title, const std::string& x_name, do
     if (is_dashed) svg += " stroke-dasharray=\"7 7\"";
     svg += " stroke=\"" + line.colour + "\" points=\"";
     for (const auto& [x, percent] : line.points) svg += format("%.1f,%.1f ", at_x(x), at_y(percent));
-    svg += "\"/>" + format("<rect x=\"456\" y=\"%.1f\" width=\"14\" height=\"4\" fill=\"", legend_y - 6.0) +
-           line.colour + "\"/>" + format("<text x=\"476\" y=\"%.1f\" class=\"n\">", legend_y) +
+    const double legend_x = kLeft + kWide / kNamesInRow * static_cast<double>(named % kNamesInRow);
+    const double legend_y = kTop + kHigh + 54.0 + 18.0 * static_cast<double>(named++ / kNamesInRow);
+    svg += "\"/>" +
+           format("<rect x=\"%.1f\" y=\"%.1f\" width=\"14\" height=\"4\" fill=\"", legend_x, legend_y - 6.0) +
+           line.colour + "\"/>" +
+           format("<text x=\"%.1f\" y=\"%.1f\" class=\"n\">", legend_x + 20.0, legend_y) +
            escaped(line.name) + "</text>";
-    legend_y += 18.0;
   }
   return svg + "</svg>\n";
 }

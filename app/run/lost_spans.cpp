@@ -4,6 +4,7 @@
 namespace roomradar {
 
 std::string LostSpans::add(std::int64_t frame_index, bool is_located) {
+  last_frame = frame_index;
   const bool was_lost = !spans.empty() && spans.back().until < 0;
   if (is_located != was_lost) return {};
   if (!is_located) {

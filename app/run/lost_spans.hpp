@@ -16,6 +16,7 @@ struct LostSpan {
 
 struct LostSpans {
   std::vector<LostSpan> spans;
+  std::int64_t last_frame = -1;  ///< index of the last frame added; -1: none
 
   /// Records whether a frame was localised. Call for each frame. Returns a message for the user if
   /// localisation was lost or regained in this frame, otherwise an empty string.

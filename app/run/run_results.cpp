@@ -76,7 +76,8 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                                  {"size_m", to_json(change.box_world.sizes())}});
   nlohmann::json lost = nlohmann::json::array();
   for (const LostSpan& span : totals.lost.spans)
-    lost.push_back({{"from_frame", span.from}, {"until_frame", span.until}});
+    lost.push_back({{"from_frame", span.from},
+                    {"until_frame", span.until < 0 ? totals.lost.last_frame + 1 : span.until}});
   nlohmann::json contacts_by_kind = nlohmann::json::object();
   for (std::size_t kind = 1; kind < kSurfaceKinds; ++kind)
     contacts_by_kind[std::string(to_string(static_cast<SurfaceKind>(kind)))] = totals.contacts_by_kind[kind];

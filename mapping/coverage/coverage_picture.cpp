@@ -14,6 +14,7 @@
 
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -199,17 +200,22 @@ void draw_view(const Mesh& mesh, const std::vector<std::uint8_t>& well, const Fr
     draw_badge(picture, cv::Point(view.at(holes[i].position_world)), std::to_string(i + 1),
                colour_of(holes[i].kind));
   cv::rectangle(picture, view.panel, kFaint);
-  put(picture, view.title, view.panel.tl() + cv::Point(8, 18), 0.45);
+  put(picture, view.title, view.panel.tl() + cv::Point(0, -8), 0.45);
   draw_axes(view, picture);
 }
 
-void draw_scale(const Projection& view, cv::Mat3b& picture) {
-  const cv::Point right = view.panel.br() - cv::Point(16, 16);
-  const cv::Point left = right - cv::Point(static_cast<int>(std::lround(view.px_per_m)), 0);
+// Draws the scale to the right of the plan, where nothing else is.
+// @param room_px  width of the free place
+void draw_scale(const Projection& view, int room_px, cv::Mat3b& picture) {
+  double length_m = 1.0;
+  for (const double shorter_m : {0.5, 0.2, 0.1, 0.05})
+    if (length_m * view.px_per_m > room_px) length_m = shorter_m;
+  const cv::Point left = view.panel.br() + cv::Point(16, -16);
+  const cv::Point right = left + cv::Point(static_cast<int>(std::lround(length_m * view.px_per_m)), 0);
   cv::line(picture, left, right, kInk, 2, cv::LINE_AA);
   for (const cv::Point end : {left, right})
     cv::line(picture, end - cv::Point(0, 5), end + cv::Point(0, 5), kInk, 1);
-  put(picture, "1 m", left + cv::Point(0, -9), 0.42);
+  put(picture, format_number(length_m) + " m", left + cv::Point(0, -9), 0.42);
 }
 
 // Returns the y coordinate of its end.
@@ -329,7 +335,7 @@ ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Front
     const std::array<Projection, 3> views = lay_out(surface, frontier, trajectory);
     const std::vector<std::uint8_t> well = seen_well(map, surface);
     for (const Projection& view : views) draw_view(surface, well, frontier, holes, trajectory, view, picture);
-    draw_scale(views[0], picture);
+    draw_scale(views[0], views[2].panel.width, picture);
     height = views[2].panel.br().y;
   }
   height = std::max(height, draw_legend(holes, map.resolution_m(),

@@ -8,6 +8,7 @@
 #include "mapping/coverage/frontier.hpp"
 #include "mapping/mesh/mesh_borders.hpp"
 #include "mapping/octree/static_map.hpp"
+#include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
 
@@ -46,24 +47,26 @@ std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Fr
     holes.push_back(hole);
   }
   std::stable_sort(holes.begin(), holes.end(), [](const Hole& a, const Hole& b) {
-    return a.kind != b.kind ? a.kind < b.kind : a.area_m2 > b.area_m2;
+    const bool is_a_outside = a.kind == HoleKind::kOuterBorder;
+    const bool is_b_outside = b.kind == HoleKind::kOuterBorder;
+    return is_a_outside != is_b_outside ? is_b_outside : a.area_m2 > b.area_m2;
   });
   return holes;
 }
 
 std::string describe(const Hole& hole) {
   char text[512];  // room for five numbers of up to 42 digits, and words
-  const auto& p = hole.position_world;
-  constexpr double kSmallest = 0.005;  // prints no "-0.00"
-  const Eigen::Vector3d look = hole.look_direction_world.unaryExpr(
-      [](double coordinate) { return std::abs(coordinate) < kSmallest ? 0.0 : coordinate; });
+  const auto cm = [](const Eigen::Vector3d& v) -> Eigen::Vector3d {
+    return v.unaryExpr([](double coordinate) { return rounded(coordinate, 2); });
+  };
+  const Eigen::Vector3d p = cm(hole.position_world), look = cm(hole.look_direction_world);
   int length = std::snprintf(
       text, sizeof(text), "%s at (%.2f, %.2f, %.2f) m, %.2f m wide, %.2f m2; look along (%.2f, %.2f, %.2f)",
       std::string(to_string(hole.kind)).c_str(), p.x(), p.y(), p.z(), hole.size_m, hole.area_m2, look.x(),
       look.y(), look.z());
   std::string words(text, static_cast<std::size_t>(length));
   if (!hole.viewpoint_world) return words;
-  const auto& from = *hole.viewpoint_world;
+  const Eigen::Vector3d from = cm(*hole.viewpoint_world);
   length = std::snprintf(text, sizeof(text), " from (%.2f, %.2f, %.2f)", from.x(), from.y(), from.z());
   return words.append(text, static_cast<std::size_t>(length));
 }

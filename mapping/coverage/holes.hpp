@@ -13,7 +13,7 @@ struct Frontier;
 
 /// Returns the frontier's holes and the surface's holes. The latter are border loops of at least
 /// min_border_size_m that surface surrounds. Leaves out loops whose centre is within three cell widths of a
-/// frontier hole's cell. Sorts by kind, then largest area first.
+/// frontier hole's cell. Sorts by area, largest first; the scan's outer borders come last.
 std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                              double min_border_size_m = 0.12);
 

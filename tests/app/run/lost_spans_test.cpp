@@ -19,6 +19,7 @@ TEST(LostSpans, TellOnceWhenTheCameraIsLostAndOnceWhenItIsFound) {
   EXPECT_EQ(lost.spans[0].until, 14);
   EXPECT_EQ(lost.spans[1].from, 16);
   EXPECT_EQ(lost.spans[1].until, -1);
+  EXPECT_EQ(lost.last_frame, 16);
 }
 
 TEST(LostSpans, ARunThatBeginsLostSaysSo) {

@@ -97,6 +97,25 @@ TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {
   EXPECT_EQ(once.size(), 1U) << "the frontier's hole there is the same one";
 }
 
+TEST(Coverage, HolesAreSortedByAreaAndTheScansEndComesLast) {
+  const SavedMap map = wall_seen(30);
+  Frontier frontier{.cell_m = 0.08, .holes = {}, .cells = {}};
+  for (const auto& [kind, area_m2] :
+       {std::pair{HoleKind::kUnknownSpace, 0.1}, std::pair{HoleKind::kSurfaceBorder, 0.5},
+        std::pair{HoleKind::kOuterBorder, 9.0}, std::pair{HoleKind::kUnknownSpace, 0.7}})
+    frontier.holes.push_back({.kind = kind, .area_m2 = area_m2});
+  std::vector<double> areas_m2;
+  for (const Hole& hole : find_holes(map.octree, Mesh{}, frontier)) areas_m2.push_back(hole.area_m2);
+  EXPECT_EQ(areas_m2, (std::vector<double>{0.7, 0.5, 0.1, 9.0}));
+}
+
+TEST(Coverage, NoNumberOfAHolesDescriptionIsMinusZero) {
+  const Hole hole{.position_world = {-0.001, 1.0, -0.004},
+                  .look_direction_world = {-0.002, 1.0, 0.0},
+                  .viewpoint_world = Vector3d(-0.003, 0.0, 0.0)};
+  EXPECT_EQ(describe(hole).find("-0.00"), std::string::npos) << describe(hole);
+}
+
 TEST(Coverage, ASurveyHasTheFrontiersHolesAndAPicture) {
   const SavedMap scan = wall_seen(30);
   const Coverage coverage = survey_coverage(scan.octree, scan.mesh, scan.trajectory);
