@@ -12,8 +12,8 @@ struct PlotLine {
   std::vector<std::pair<double, double>> points;  ///< x ascending
 };
 
-/// Returns a plot of lines with a legend. The x axis is logarithmic. y is in percent, from 0 to 100. Points
-/// with x below x_least are drawn at x_least.
+/// Returns a plot of lines with its title above it, as text of the page, and a legend below it. The x axis is
+/// logarithmic. y is in percent, from 0 to 100. Points with x below x_least are drawn at x_least.
 std::string percent_plot(const std::string& title, const std::string& x_name, double x_least, double x_most,
                          const std::vector<PlotLine>& lines);
 
@@ -25,6 +25,10 @@ struct ShareTable {
 };
 /// Returns the table as coloured cells.
 std::string share_cells(const ShareTable& table);
+
+/// Returns an HTML table with each cell's column heading as the attribute data-name, so that a style can show
+/// the rows one below the other on a narrow screen. The first row holds the headings.
+std::string named_cells(const std::string& table);
 
 /// Formats a number with `digits` (1..15) significant digits, commas between thousands and no exponent, such
 /// as "2,250", "0.00123" or "-12". NaN and infinity become "nan" and "inf".

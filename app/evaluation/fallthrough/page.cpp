@@ -27,8 +27,12 @@ constexpr char kStyle[] =
     "img{max-width:100%}.part{display:inline-block;max-width:100%;margin-right:2em;vertical-align:top}"
     ".cells th,.cells td{min-width:3.3em;text-align:center;font-variant-numeric:tabular-nums}"
     ".cells tr>th:first-child{text-align:left;font-weight:400}td{white-space:nowrap}"
-    "@media(max-width:500px){.part{margin-right:0}.cells{font-size:12px}"
-    ".cells th,.cells td{min-width:0;padding:.25em .35em}}";
+    "@media(max-width:500px){body{padding:0 .6em}.part{margin-right:0}.cells{font-size:12px;width:100%}"
+    ".cells th,.cells td{min-width:0;padding:.25em .15em}td,.cells tr>th:first-child{white-space:normal}"
+    ".totals tr:first-child{display:none}.totals,.totals tbody{display:block}"
+    ".totals tr{display:block;padding:.4em 0}"
+    ".totals td{display:flex;justify-content:space-between;gap:1em;padding:.1em 0;text-align:right}"
+    ".totals td:first-child{font-weight:600}.totals td::before{content:attr(data-name);font-weight:400}}";
 
 constexpr const char* kColours[] = {"#8a8a8a", "#c98a1b", "#b04ab0", "#2367c9", "#1a9850"};
 static_assert(std::size(kColours) == kPolicyCount);
@@ -65,7 +69,7 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
                   millimetres(t.contact_error_p95_m).c_str(), t.frame_median_ms, t.cost_ratio);
     html += line;
   }
-  return html + "</table></div>\n";
+  return named_cells(html) + "</table></div>\n";
 }
 
 /// Plots the share of scenarios that ended within x of the true contact. Objects that were not stopped count

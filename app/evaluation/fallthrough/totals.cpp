@@ -64,10 +64,11 @@ std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>&
 std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int scenarios) {
   char line[160];
   std::string table =
-      "surfaces       passed through     false stops   contact error, median and 95 %   frame, median\n";
+      "surfaces       passed through     stopped where nothing is   contact error, median and 95 %   frame, "
+      "median\n";
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const PolicyTotals& t = totals[i];
-    std::snprintf(line, sizeof line, "%-11s %8d (%5.1f %%) %6d (%5.1f %%)  %13s %13s  %10.1f ms x %.2f\n",
+    std::snprintf(line, sizeof line, "%-11s %8d (%5.1f %%) %19d (%5.1f %%)  %13s %13s  %10.1f ms x %.2f\n",
                   std::string(kFallthroughPolicies[i].name).c_str(), t.passed, 100.0 * t.passed / scenarios,
                   t.false_stops, 100.0 * t.false_stops / scenarios,
                   millimetres(t.contact_error_median_m).c_str(), millimetres(t.contact_error_p95_m).c_str(),

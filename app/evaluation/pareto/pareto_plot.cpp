@@ -10,7 +10,8 @@
 namespace roomradar {
 namespace {
 
-constexpr double kWidth = 640.0, kHeight = 380.0, kLeft = 62.0, kTop = 14.0, kRight = 16.0, kBottom = 48.0;
+// On a screen of 400 px a letter is 10 px high.
+constexpr double kWidth = 440.0, kHeight = 320.0, kLeft = 62.0, kTop = 14.0, kRight = 16.0, kBottom = 48.0;
 
 template <typename... Numbers>
 std::string format(const char* text, Numbers... numbers) {

@@ -24,7 +24,8 @@ constexpr char kStyle[] =
     "body{font:15px/1.5 system-ui,sans-serif;background:var(--paper);color:var(--ink);max-width:1340px;"
     "margin:2em auto;padding:0 1em}h1{font-size:1.6em}h2{margin-top:2em}p{max-width:75ch}"
     ".about{color:var(--soft);font-size:13px}.plots{display:grid;gap:1.2em;"
-    "grid-template-columns:repeat(auto-fit,minmax(min(560px,100%),1fr))}svg{width:100%;height:auto}"
+    "grid-template-columns:repeat(auto-fit,minmax(min(480px,100%),1fr))}svg{width:100%;max-width:640px;"
+    "height:auto}"
     ".wide{overflow-x:auto}table{border-collapse:collapse;margin:1em 0;font-size:13.5px}"
     "td,th{padding:.3em .7em;text-align:right;border-bottom:1px solid var(--grid);white-space:nowrap}"
     "th{font-weight:600;text-align:right}tr>*:first-child{text-align:left}thead th{white-space:normal;"
@@ -35,7 +36,12 @@ constexpr char kStyle[] =
     ".spread{stroke:var(--dot);stroke-opacity:.5}.dot{fill:var(--dot)}.best{fill:var(--front)}"
     ".front{fill:none;stroke:var(--front);stroke-width:1.6}.ring{fill:none;stroke:var(--mark);stroke-width:2}"
     ".preset{fill:var(--mark)}.label{font-weight:600;paint-order:stroke;stroke:var(--paper);stroke-width:"
-    "4px}";
+    "4px}"
+    "@media(max-width:600px){body{padding:0 .6em}thead{display:none}table,tbody,tr{display:block}"
+    "tr{padding:.5em .3em;border-bottom:1px solid var(--grid)}"
+    "td,td.words{display:flex;justify-content:space-between;gap:1em;padding:.1em 0;border:0;min-width:0;"
+    "white-space:normal;text-align:right}td:first-child{font-weight:600}"
+    "td::before{content:attr(data-name);color:var(--soft);font-weight:400;text-align:left}}";
 
 std::string page_number(double value) { return std::isfinite(value) ? readable_number(value) : "–"; }
 std::string page_number(double value, const char* form) {
@@ -162,7 +168,7 @@ std::string table_of(const TradeResult& result, const std::vector<std::size_t>& 
       html += "<td>" + page_number(result.work.figures[f].shown * summary.figures[f]) + "</td>";
     html += "</tr>\n";
   }
-  return html + "</table></div>\n";
+  return named_cells(html) + "</table></div>\n";
 }
 
 /// Returns the settings that change a single parameter, sorted by parameter, after the default.

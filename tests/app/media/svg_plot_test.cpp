@@ -25,5 +25,19 @@ TEST(ReadableNumber, IsWrittenAsPeopleWriteIt) {
   EXPECT_EQ(readable_number(std::numeric_limits<double>::infinity()), "inf");
 }
 
+TEST(NamedCells, EachCellHasTheHeadingOfItsColumn) {
+  EXPECT_EQ(
+      named_cells("<table><tr><th>a</th><th>b</th></tr>\n<tr><td>1</td><td class=\"x\">2</td></tr>\n"
+                  "<tr><td>3</td><td>4</td><td>5</td></tr>"),
+      "<table><tr><th>a</th><th>b</th></tr>\n<tr><td data-name=\"a\">1</td><td data-name=\"b\" "
+      "class=\"x\">2</td></tr>\n<tr><td data-name=\"a\">3</td><td data-name=\"b\">4</td><td>5</td></tr>");
+}
+
+TEST(PercentPlot, IsNoWiderThanAPhoneSoThatItsTextCanBeRead) {
+  const std::string svg = percent_plot("a long title", "mm", 0.1, 1000.0, {{"x", "red", {{1.0, 50.0}}}});
+  EXPECT_NE(svg.find("viewBox=\"0 0 400 "), std::string::npos);
+  EXPECT_EQ(svg.rfind("<p class=\"t\">a long title</p>", 0), 0U) << "text that the page wraps";
+}
+
 }  // namespace
 }  // namespace roomradar::svg_plot_test
