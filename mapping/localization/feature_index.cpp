@@ -12,7 +12,7 @@ namespace {
 
 // Two descriptors of one feature differ in 30 of 256 bits on average, those of different features in about
 // 110. With 20 bits, the former collide in 8 % of the tables, the latter in 0.001 %.
-constexpr unsigned kTables = 12;
+constexpr unsigned kTables = 16;
 constexpr unsigned kBits = 20;        // per table
 constexpr unsigned kBucketBits = 16;  // select the bucket; the others are stored with the entry
 constexpr std::size_t kBuckets = 1U << kBucketBits;

@@ -17,7 +17,7 @@ namespace roomradar {
 class FeatureIndex {
  public:
   /// Adds the next keyframe, which gets the number size(). Uses its first kIndexedFeatures descriptors. Uses
-  /// 8 bytes per descriptor and table, at most 29 kB per keyframe.
+  /// 8 bytes per descriptor and table, at most 38 kB per keyframe.
   void add(std::span<const Descriptor> descriptors);
   /// Returns the number of keyframes in the index.
   [[nodiscard]] std::size_t size() const { return keyframes_; }

@@ -85,13 +85,13 @@ std::vector<std::size_t> most_alike(const MapKeyframe& place, const KeyframeData
     return Descriptors(of.descriptors).first(std::min(FeatureIndex::kIndexedFeatures, of.descriptors.size()));
   };
   std::vector<std::size_t> candidates =
-      keyframe_database.index.candidates(strongest_of(place), 16 + 2 * count, accept);
+      keyframe_database.index.candidates(strongest_of(place), 40 + 2 * count, accept);
   for (std::size_t i = keyframe_database.index.size(); i < keyframe_database.keyframes.size(); ++i)
     if (!accept || accept(i)) candidates.push_back(i);
   std::vector<std::pair<int, std::size_t>> votes;
   for (const std::size_t i : candidates) {
-    const int found = static_cast<int>(
-        matches(strongest_of(place), strongest_of(keyframe_database.keyframes[i])).size());
+    const int found =
+        static_cast<int>(matches(strongest_of(place), strongest_of(keyframe_database.keyframes[i])).size());
     if (found >= min_matches) votes.emplace_back(-found, i);
   }
   std::sort(votes.begin(), votes.end());

@@ -69,4 +69,22 @@ Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const Nod
   return tree.prune(node, block);
 }
 
+/// Calls visit(place, block, sides, i) in Morton order for each cell that has a signed distance and a voxel
+/// in the range: cell i of the leaf block `block` at `place`. `sides` and `place` of the call are those of
+/// `node`.
+template <typename Visit>
+void for_each_cell(const BlockOctree& tree, Slot node, const Sides& sides, const NodePlace& place,
+                   const KeyRange& range, const Visit& visit) {
+  if (!node.is_block() || !range.meets(place)) return;
+  if (node.is_leaf_block()) {
+    const LeafBlock& block = tree.leaves(node);
+    for (unsigned i = 0; i < 8; ++i)
+      if (block.weight[i] != 0 && range.meets(place.child(i))) visit(place, block, sides, i);
+    return;
+  }
+  const InnerBlock& block = tree.inner(node);
+  for (unsigned i = 0; i < 8; ++i)
+    for_each_cell(tree, block.slots[i], sides_of_child(tree, block, sides, i), place.child(i), range, visit);
+}
+
 }  // namespace roomradar

@@ -128,23 +128,6 @@ Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, 
   return tree.prune(node, block);
 }
 
-// Calls visit(place, block, sides, i) for the cells of the subtree that have a sample and a voxel in the
-// range.
-template <typename Visit>
-void visit_in(const BlockOctree& tree, Slot node, const Sides& sides, const NodePlace& place,
-              const KeyRange& range, const Visit& visit) {
-  if (!node.is_block() || !range.meets(place)) return;
-  if (node.is_leaf_block()) {
-    const LeafBlock& block = tree.leaves(node);
-    for (unsigned i = 0; i < 8; ++i)
-      if (block.weight[i] != 0 && range.meets(place.child(i))) visit(place, block, sides, i);
-    return;
-  }
-  const InnerBlock& block = tree.inner(node);
-  for (unsigned i = 0; i < 8; ++i)
-    visit_in(tree, block.slots[i], sides_of_child(tree, block, sides, i), place.child(i), range, visit);
-}
-
 // Returns the sides of the node at `place`.
 Sides sides_of(const BlockOctree& tree, const NodePlace& place) {
   Sides sides;
@@ -321,19 +304,19 @@ void visit_samples(const BlockOctree& tree, const KeyRange& range,
   const auto in_range = [&](const SurfaceSample& sample) {
     if (range.holds(sample.voxel.array() + kKeyOrigin)) visit(sample);
   };
-  visit_in(tree, tree.root, {}, {}, range,
-           [&](const NodePlace& place, const LeafBlock& block, const Sides& sides, unsigned i) {
-             visit_cell(tree, place, block, sides, i, in_range);
-           });
+  for_each_cell(tree, tree.root, {}, {}, range,
+                [&](const NodePlace& place, const LeafBlock& block, const Sides& sides, unsigned i) {
+                  visit_cell(tree, place, block, sides, i, in_range);
+                });
 }
 
 void visit_cells(const BlockOctree& tree, const KeyRange& range,
                  const std::function<void(const SurfaceSample&, int)>& visit) {
-  visit_in(tree, tree.root, {}, {}, range,
-           [&](const NodePlace& place, const LeafBlock& block, const Sides&, unsigned i) {
-             const NodePlace cell = place.child(i);
-             visit(sample_of(tree, block, i, cell.key, block.distance[i]), cell.edge_voxels());
-           });
+  for_each_cell(tree, tree.root, {}, {}, range,
+                [&](const NodePlace& place, const LeafBlock& block, const Sides&, unsigned i) {
+                  const NodePlace cell = place.child(i);
+                  visit(sample_of(tree, block, i, cell.key, block.distance[i]), cell.edge_voxels());
+                });
 }
 
 void revise_samples(BlockOctree& tree, const FusionConfig& config, const KeyRange& range,

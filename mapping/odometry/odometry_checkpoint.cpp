@@ -240,7 +240,8 @@ void save_odometry(const Odometry& odometry, const fs::path& into, const fs::pat
   }
   for (std::size_t i = 0; i < kept.keyframe_database.keyframes.size(); ++i) {
     const fs::path name = place_name(i);
-    if (!is_carried_over(name)) write_keyframe_database({{kept.keyframe_database.keyframes[i]}, {}}, into / name);
+    if (!is_carried_over(name))
+      write_keyframe_database({{kept.keyframe_database.keyframes[i]}, {}}, into / name);
   }
   std::string out;
   put_counts(out, kept.counts);

@@ -21,12 +21,12 @@ const std::vector<std::string>& room_names() {
 
 void require_room(std::string_view name) {
   const std::vector<std::string>& furnished = room_names();
-  if (name == kRandomRoom || name == kFlat || name == kBoardRoom ||
+  if (name == kRandomRoom || name == kFlatRoom || name == kBoardRoom ||
       std::find(furnished.begin(), furnished.end(), name) != furnished.end())
     return;
   std::string known;
   for (const std::string& one : furnished) known.append(one).append(", ");
-  known.append(kRandomRoom).append(", ").append(kFlat).append(", ").append(kBoardRoom);
+  known.append(kRandomRoom).append(", ").append(kFlatRoom).append(", ").append(kBoardRoom);
   throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known);
 }
 
@@ -41,7 +41,7 @@ Room make_room(std::string_view name, bool crate, std::uint64_t seed) {
     room = make_wall_room();
   } else if (name == kRandomRoom) {
     room = make_random_room(seed);
-  } else if (name == kFlat) {
+  } else if (name == kFlatRoom) {
     room = make_flat(seed);
   } else {
     room = make_board_room();

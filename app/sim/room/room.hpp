@@ -74,12 +74,12 @@ inline constexpr std::string_view kRandomRoom = "random";
 inline constexpr std::string_view kBoardRoom = "board";
 /// Another name for make_room(): a flat of four rooms in a ring, with doorways between them and furniture
 /// drawn at random from the seed.
-inline constexpr std::string_view kFlat = "flat";
+inline constexpr std::string_view kFlatRoom = "flat";
 /// Throws Error listing the known names if `name` is none of them.
 void require_room(std::string_view name);
 /// Makes the room of this name.
 /// @param crate  true: adds a crate on the ball's path
-/// @param seed   selects the furniture of kRandomRoom and kFlat; other rooms do not depend on it
+/// @param seed   selects the furniture of kRandomRoom and kFlatRoom; other rooms do not depend on it
 /// @throws Error listing the known names if `name` is none of them
 Room make_room(std::string_view name, bool crate = false, std::uint64_t seed = 1);
 

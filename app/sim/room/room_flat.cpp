@@ -83,7 +83,7 @@ Room make_flat(std::uint64_t seed) {
     flat.interior_min_world = room.interior_min_world + shift;
   }
   flat.walk_turns = static_cast<int>(std::lround((yaw_rad + kQuarter_rad) / kFullTurn_rad));
-  flat.name = kFlat;
+  flat.name = kFlatRoom;
   return flat;
 }
 

@@ -59,9 +59,10 @@ inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 24
 Intrinsics kinect_of_width(int width_px);
 
 struct SimOptions {
-  /// Name of the room: one of room_names(), kRandomRoom, kFlat or kBoardRoom.
+  /// Name of the room: one of room_names(), kRandomRoom, kFlatRoom or kBoardRoom.
   std::string room = "table";
-  /// Seed of the camera path, the phases of moving objects, the noise, and the furniture of a random room or flat.
+  /// Seed of the camera path, the phases of moving objects, the noise, and the furniture of a random room or
+  /// flat.
   std::uint64_t seed = 1;
   /// Number of frames, >= 1.
   std::int64_t frames = 300;

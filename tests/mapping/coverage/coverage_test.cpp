@@ -103,7 +103,7 @@ TEST(Coverage, HolesAreSortedByAreaAndTheScansEndComesLast) {
   for (const auto& [kind, area_m2] :
        {std::pair{HoleKind::kUnknownSpace, 0.1}, std::pair{HoleKind::kSurfaceBorder, 0.5},
         std::pair{HoleKind::kOuterBorder, 9.0}, std::pair{HoleKind::kUnknownSpace, 0.7}})
-    frontier.holes.push_back({.kind = kind, .area_m2 = area_m2});
+    frontier.holes.push_back({.kind = kind, .area_m2 = area_m2, .viewpoint_world = {}});
   std::vector<double> areas_m2;
   for (const Hole& hole : find_holes(map.octree, Mesh{}, frontier)) areas_m2.push_back(hole.area_m2);
   EXPECT_EQ(areas_m2, (std::vector<double>{0.7, 0.5, 0.1, 9.0}));

@@ -315,7 +315,7 @@ TEST(Relocalise, FeaturesWithoutTheDepthAreUnproven) {
   for (int y = 2 * frame.depth_m.height / 5; y < frame.depth_m.height; ++y) {
     std::fill_n(frame.depth_m.row(y), frame.depth_m.width, 0.7F);
   }
-  const KeyframeDatabase one{{three_places().keyframes[1]}};
+  const KeyframeDatabase one{{three_places().keyframes[1]}, {}};
   EXPECT_TRUE(relocalise(painted(eye(0.0)), one));
   EXPECT_EQ(relocalise(frame, one).status, RelocalisationStatus::kNotVerified);
 }

@@ -20,7 +20,7 @@ Frame painted(const Eigen::Isometry3d& T_world_camera) {
 }
 
 KeyframeDatabase place_at(const Eigen::Isometry3d& T_world_camera) {
-  return {{make_map_keyframe(painted(T_world_camera), T_world_camera)}};
+  return {{make_map_keyframe(painted(T_world_camera), T_world_camera)}, {}};
 }
 
 const Eigen::Isometry3d kEye = test::looking_at({-0.2, -0.3, 1.2}, {0.0, 2.0, 0.6});

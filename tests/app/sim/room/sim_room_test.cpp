@@ -123,7 +123,7 @@ TEST(SimRandomRoom, SolidsDoNotOverlapAndThereIsRoomToWalkAndScan) {
 TEST(SimFlat, SolidsDoNotOverlapAndTheWalkGoesThroughAllRoomsClearOfThem) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(seed);
-    const Room flat = make_room(kFlat, /*crate=*/false, seed);
+    const Room flat = make_room(kFlatRoom, /*crate=*/false, seed);
     const Mesh mesh = room_mesh(flat);
     for (const Eigen::Vector3f& vertex : mesh.vertices)
       ASSERT_GT(signed_distance_m(flat, mesh.origin + vertex.cast<double>()), -1e-6);
