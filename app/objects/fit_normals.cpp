@@ -6,7 +6,6 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 #include "app/objects/triangle_weights.hpp"
@@ -17,12 +16,6 @@ namespace {
 
 constexpr double kAsItWas = 0.002;  // weight of a vertex's original normal, relative to its share of the area
 constexpr int kMostParts = 64;      // per side of a triangle
-
-// The index type is not the default int: Ceres' static library contains Eigen's sparse solver for int,
-// compiled with other options, and a linker that takes some of its functions for this one makes a solver that
-// crashes.
-using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
-using SparseSolver = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<std::int64_t>>;
 
 struct Corners {
   Eigen::Vector3f a, b, c;
@@ -92,7 +85,7 @@ void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse)
 
   const auto vertices = static_cast<Eigen::Index>(coarse.vertices.size());
   const double own = kAsItWas * area_m2 / static_cast<double>(vertices);
-  std::vector<Eigen::Triplet<double, std::int64_t>> entries;
+  std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixX3d right_side(vertices, 3);
   for (Eigen::Index v = 0; v < vertices; ++v) {
     entries.emplace_back(v, v, own);
@@ -105,9 +98,9 @@ void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse)
       for (int j = 0; j < 3; ++j)
         entries.emplace_back(row, coarse.triangles[t][static_cast<std::size_t>(j)], sums[t].weights(i, j));
     }
-  SparseMatrix weights(vertices, vertices);
+  Eigen::SparseMatrix<double> weights(vertices, vertices);
   weights.setFromTriplets(entries.begin(), entries.end());
-  const SparseSolver solver(weights);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(weights);
   if (solver.info() != Eigen::Success) return;
   const Eigen::MatrixX3d fitted = solver.solve(right_side);
   for (std::size_t v = 0; v < coarse.normals.size(); ++v) {
