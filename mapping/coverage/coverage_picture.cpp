@@ -15,6 +15,7 @@
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
 namespace {
@@ -255,11 +256,14 @@ int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point pane
                   hole.area_m2, hole.size_m);
     line(text, 32, 0.43);
     y += 17;
-    const Vector3d& p = hole.position_world;
+    const auto in_cm = [](const Vector3d& v) {
+      return v.unaryExpr([](double m) { return rounded(m, 2); }).eval();
+    };
+    const Vector3d p = in_cm(hole.position_world);
     std::snprintf(text, sizeof(text), "at %.2f, %.2f, %.2f", p.x(), p.y(), p.z());
     std::string where = text;
     if (hole.viewpoint_world) {
-      const Vector3d& s = *hole.viewpoint_world;
+      const Vector3d s = in_cm(*hole.viewpoint_world);
       std::snprintf(text, sizeof(text), "; look from %.2f, %.2f, %.2f", s.x(), s.y(), s.z());
       where += text;
     }
