@@ -163,6 +163,7 @@ MapInfo read_info(const fs::path& folder) {
   if (const fs::path aside = interrupted_replacement_of(folder); !aside.empty())
     fail(folder, "a save was killed while it took this map's place, and left it as " +
                      aside.filename().string() + "; rename that to " + folder.filename().string());
+  if (fs::is_regular_file(folder, fault)) fail(folder, "is a file; a map is a folder, give that");
   if (!fs::is_directory(folder, fault))
     fail(folder, "there is no such map folder; make one with `roomradar prescan`");
   const fs::path path = folder / kMapInfoFile;

@@ -472,6 +472,9 @@ TEST_F(MapFolder, WhatASaveKilledBetweenTwoRenamesSetAsideIsNamedAndBroughtBack)
   const fs::path living = map_.string() + ".before-" + std::to_string(getppid());
   fs::rename(map_, living);
   EXPECT_NE(error_of([&] { load_map(map_); }).find("no such map"), std::string::npos);
+  const fs::path file = map_.string() + ".ply";
+  std::ofstream(file) << "ply";
+  EXPECT_NE(error_of([&] { load_map(file); }).find("is a file; a map is a folder"), std::string::npos);
 }
 
 TEST_F(MapFolder, KilledAtAnyMomentOfSavingItIsTheOldMapOrTheNew) {
