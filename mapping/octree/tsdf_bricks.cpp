@@ -1,7 +1,5 @@
-// tsdf_bricks.cpp: sorts an octree's samples into bricks.
+// tsdf_bricks.cpp: bricks by the Morton code of their place, and the bricks around one.
 #include "mapping/octree/tsdf_bricks.hpp"
-
-#include <optional>
 
 #include "mapping/types/voxel_key.hpp"
 
@@ -13,39 +11,6 @@ constexpr int kBrickShift = 3;
 static_assert(1 << kBrickShift == kBrickEdge);
 
 }  // namespace
-
-TsdfBricks::TsdfBricks(const StaticMap& map, float min_weight)
-    : TsdfBricks([&map](const auto& visit) { map.visit_samples(visit); }, min_weight) {}
-
-TsdfBricks::TsdfBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world)
-    : TsdfBricks([&](const auto& visit) { map.visit_samples(box_world, visit); }, min_weight) {}
-
-TsdfBricks::TsdfBricks(const VisitSamples& visit_samples, float min_weight) {
-  // In the octree's order each brick is visited once. A first pass counts the bricks: a growing vector would
-  // temporarily hold them twice.
-  std::optional<VoxelIndex> last;
-  std::size_t count = 0;
-  visit_samples([&](const SurfaceSample& sample) {
-    if (sample.weight < min_weight) return;
-    const VoxelIndex first = brick_of(sample.voxel);
-    count += last != first ? 1U : 0U;
-    last = first;
-  });
-  bricks_.reserve(count);
-  by_code_.reserve(count);
-  visit_samples([&](const SurfaceSample& sample) {
-    if (sample.weight < min_weight) return;
-    const VoxelIndex first = brick_of(sample.voxel);
-    if (bricks_.empty() || bricks_.back().first != first) {
-      by_code_.emplace(voxel_key(first), bricks_.size());
-      bricks_.emplace_back().first = first;
-    }
-    bricks_.back().samples[brick_offset(sample.voxel - first)] = {.distance_m = sample.distance_m,
-                                                                  .weight = sample.weight,
-                                                                  .colour = sample.colour,
-                                                                  .has_colour = sample.has_colour};
-  });
-}
 
 TsdfBricks::TsdfBricks(const std::vector<VoxelIndex>& firsts) : bricks_(firsts.size()) {
   by_code_.reserve(firsts.size());

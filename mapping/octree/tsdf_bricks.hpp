@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -33,12 +32,9 @@ struct Brick {
   std::array<TsdfSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
 };
 
-/// All bricks that contain at least one sample of weight min_weight or more, in Morton order.
+/// Bricks of samples, found by their place.
 class TsdfBricks {
  public:
-  TsdfBricks(const StaticMap& map, float min_weight);
-  /// Uses only samples whose voxel centre is in the box.
-  TsdfBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world);
   /// Bricks of unknown samples, with these lowest voxels. None may repeat.
   explicit TsdfBricks(const std::vector<VoxelIndex>& firsts);
 
@@ -50,9 +46,6 @@ class TsdfBricks {
   [[nodiscard]] std::size_t find(const VoxelIndex& first) const;
 
  private:
-  using VisitSamples = std::function<void(const std::function<void(const SurfaceSample&)>&)>;
-  TsdfBricks(const VisitSamples& visit_samples, float min_weight);
-
   std::vector<Brick> bricks_;
   std::unordered_map<std::uint64_t, std::size_t> by_code_;
 };

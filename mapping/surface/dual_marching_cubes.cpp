@@ -1,4 +1,4 @@
-// dual_marching_cubes.cpp: dual marching cubes over bricks of samples, in one grid or two.
+// dual_marching_cubes.cpp: dual marching cubes over both grids of samples.
 #include "mapping/surface/dual_marching_cubes.hpp"
 
 #include <algorithm>
@@ -344,10 +344,6 @@ class Net {
 };
 
 }  // namespace
-
-Mesh dual_marching_cubes(const TsdfBricks& bricks, double resolution_m) {
-  return Net(bricks, TsdfBricks(std::vector<VoxelIndex>{}), resolution_m).take();
-}
 
 Mesh dual_marching_cubes(const TsdfLevels& levels, double resolution_m) {
   return Net(levels.voxels, levels.coarse, resolution_m).take();

@@ -1,6 +1,5 @@
 // dual_marching_cubes.hpp: extracts the zero level set of signed distances at voxel resolution.
 #pragma once
-#include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/surface/tsdf_levels.hpp"
 #include "mapping/types/mesh.hpp"
 
@@ -20,13 +19,12 @@ namespace roomradar {
 /// cells, the face separates its outside corners instead. Source: Gibson, Constrained Elastic Surface Nets,
 /// MICCAI 1998 (placement); Nielson, Dual Marching Cubes, IEEE Visualization 2004 (sheets); Wenger,
 /// Isosurfaces, CRC Press 2013, chapter 3 (manifold faces).
-Mesh dual_marching_cubes(const TsdfBricks& bricks, double resolution_m);
-
-/// Extracts the surface from both grids. The cells where grids meet are the eight samples around a corner of
-/// a voxel, where a coarse sample stands for several corners. A polygon around a crossing between two coarse
-/// samples has up to eight corners, where voxels touch it. So there are no cracks. Only the choice of sheets
-/// at ambiguous faces between cells of different grids may differ. Source: Schaefer and Warren, Dual Marching
-/// Cubes: Primal Contouring of Dual Grids, Pacific Graphics 2004 (cells of a dual grid).
+///
+/// The cells where the grids of a map meet are the eight samples around a corner of a voxel, where a coarse
+/// sample stands for several corners. A polygon around a crossing between two coarse samples has up to eight
+/// corners, where voxels touch it. So there are no cracks. Only the choice of sheets at ambiguous faces
+/// between cells of different grids may differ. Source: Schaefer and Warren, Dual Marching Cubes: Primal
+/// Contouring of Dual Grids, Pacific Graphics 2004 (cells of a dual grid).
 Mesh dual_marching_cubes(const TsdfLevels& levels, double resolution_m);
 
 }  // namespace roomradar

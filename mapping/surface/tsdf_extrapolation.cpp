@@ -65,10 +65,6 @@ void store(const std::vector<Guess>& guesses, TsdfBricks& bricks) {
 
 }  // namespace
 
-void extrapolate_neighbours(TsdfBricks& bricks) {
-  for (int ring = 0; ring < 2; ++ring) store(guess_neighbours(bricks), bricks);
-}
-
 void extrapolate_neighbours(TsdfLevels& levels) {
   for (int ring = 0; ring < 2; ++ring) {
     const std::vector<Guess> in_voxels = guess_neighbours(levels.voxels);

@@ -1,6 +1,5 @@
 // tsdf_extrapolation.hpp: extrapolates signed distances to voxels next to measured ones.
 #pragma once
-#include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/surface/tsdf_levels.hpp"
 
 namespace roomradar {
@@ -10,8 +9,7 @@ namespace roomradar {
 /// directions, those with two known next voxels are used. If there is no such direction, the distance is the
 /// mean of the known face neighbours. Adds no bricks. Afterwards all eight corners of every cell around a
 /// measured zero crossing are known, so the surface extends as far as the measurements.
-void extrapolate_neighbours(TsdfBricks& bricks);
-/// The same in both grids, each in the places that belong to it.
+/// Each grid is extrapolated in the places that belong to it.
 void extrapolate_neighbours(TsdfLevels& levels);
 
 }  // namespace roomradar

@@ -81,11 +81,6 @@ class Sweeps {
 
 }  // namespace
 
-void smooth(TsdfBricks& bricks, float strength, int sweeps) {
-  Sweeps grid(bricks);
-  for (int i = 0; i < sweeps; ++i) grid.sweep(strength);
-}
-
 void smooth(TsdfLevels& levels, float strength, int sweeps) {
   Sweeps voxels(levels.voxels), coarse(levels.coarse);
   for (int i = 0; i < sweeps; ++i) {

@@ -1,6 +1,5 @@
 // tsdf_smoothing.hpp: smooths signed distances that have few or poor measurements.
 #pragma once
-#include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/surface/tsdf_levels.hpp"
 
 namespace roomradar {
@@ -13,9 +12,8 @@ namespace roomradar {
 /// radius is sqrt(s / w) voxels. A wall scanned from 1 m keeps its detail. A wall measured once from 4 m is
 /// averaged over several voxels. Source: weighted diffusion, the Gauss-Seidel steps of a screened Poisson
 /// equation.
-void smooth(TsdfBricks& bricks, float strength, int sweeps);
-/// Smooths both grids, that of the coarse cells with a quarter of the strength. The grids are smoothed
-/// together where they meet.
+/// The grid of the coarse cells is smoothed with a quarter of the strength, and together with the voxels
+/// where the grids meet.
 void smooth(TsdfLevels& levels, float strength, int sweeps);
 
 }  // namespace roomradar

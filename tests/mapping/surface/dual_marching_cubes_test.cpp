@@ -30,6 +30,11 @@ StaticMap cube_map(const Distance& distance_m, float weight = 1.0F) {
   return map;
 }
 
+TsdfLevels levels_of(const StaticMap& map) {
+  const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(map.reach_m());
+  return {map, 0.0F, Eigen::AlignedBox3d(-reach_m, reach_m)};
+}
+
 // Returns the depth of a vertex inside the cube of samples, in voxels; the cube's outermost samples are at 0.
 double depth_voxels(const Mesh& mesh, std::uint32_t vertex) {
   const Eigen::Array3d voxels =
@@ -44,7 +49,7 @@ TEST(SurfaceNet, RandomSignsMakeASurfaceWhoseBorderIsWhereSamplesEnd) {
     std::uniform_real_distribution<float> size_m(0.001F, 0.009F);
     const StaticMap map =
         cube_map([&](const VoxelIndex&) { return is_inside(random) ? -size_m(random) : size_m(random); });
-    const Mesh mesh = dual_marching_cubes(TsdfBricks(map, 0.0F), kResolution_m);
+    const Mesh mesh = dual_marching_cubes(levels_of(map), kResolution_m);
     ASSERT_GT(mesh.triangles.size(), 5'000U);
     ASSERT_EQ(mesh.normals.size(), mesh.vertices.size());
     ASSERT_EQ(mesh.colours.size(), mesh.vertices.size());
@@ -64,9 +69,9 @@ TEST(SurfaceNet, APlaneIsWhereTheDistancesSay) {
                               0.0123);
   });
   for (const float strength : {0.0F, 50.0F}) {  // smoothing does not change linear distances
-    TsdfBricks bricks(map, 0.0F);
-    if (strength > 0.0F) smooth(bricks, strength, 5);
-    const Mesh mesh = dual_marching_cubes(bricks, kResolution_m);
+    TsdfLevels levels = levels_of(map);
+    if (strength > 0.0F) smooth(levels, strength, 5);
+    const Mesh mesh = dual_marching_cubes(levels, kResolution_m);
     ASSERT_GT(mesh.triangles.size(), 500U);
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
       // Distances are stored in steps of 5 micrometres.
@@ -77,10 +82,9 @@ TEST(SurfaceNet, APlaneIsWhereTheDistancesSay) {
 }
 
 TEST(SurfaceNet, SamplesOfOneSignOrNoneMakeNone) {
-  EXPECT_TRUE(
-      dual_marching_cubes(TsdfBricks(StaticMap(kResolution_m), 0.0F), kResolution_m).vertices.empty());
+  EXPECT_TRUE(dual_marching_cubes(levels_of(StaticMap(kResolution_m)), kResolution_m).vertices.empty());
   const StaticMap map = cube_map([](const VoxelIndex&) { return 0.004F; });
-  EXPECT_TRUE(dual_marching_cubes(TsdfBricks(map, 0.0F), kResolution_m).triangles.empty());
+  EXPECT_TRUE(dual_marching_cubes(levels_of(map), kResolution_m).triangles.empty());
 }
 
 TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
@@ -95,9 +99,9 @@ TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
       for (int z = -4; z < 4; ++z)
         map.add_evidence(
             SurfaceSample{.voxel = {x, y, z}, .distance_m = distance_m({x, y, z}), .weight = 1.0F});
-  TsdfBricks bricks(map, 0.0F);
+  TsdfLevels levels = levels_of(map);
   const auto reach = [&] {
-    const Mesh mesh = dual_marching_cubes(bricks, 0.01);
+    const Mesh mesh = dual_marching_cubes(levels, 0.01);
     Eigen::AlignedBox3f box;
     for (const Triangle& t : mesh.triangles)
       for (const std::uint32_t v : t) {
@@ -111,7 +115,7 @@ TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
   };
   const Eigen::Vector3f before = reach();
   EXPECT_LT(before.y(), 0.105F);
-  extrapolate_neighbours(bricks);
+  extrapolate_neighbours(levels);
   const Eigen::Vector3f after = reach();
   for (const float side_m : {after.x(), after.y()}) {
     EXPECT_GE(side_m, 0.01F * (kLast - kFirst));
@@ -123,15 +127,14 @@ TEST(SampleGuess, RandomSignsWithGapsStillMakeASurface) {
   std::mt19937 random(9);
   std::bernoulli_distribution is_inside(0.4), is_missing(0.2);
   std::uniform_real_distribution<float> size_m(0.001F, 0.009F);
-  TsdfBricks bricks(
-      cube_map([&](const VoxelIndex&) { return is_inside(random) ? -size_m(random) : size_m(random); }),
-      0.0F);
-  for (Brick& brick : bricks.bricks())
+  TsdfLevels levels = levels_of(
+      cube_map([&](const VoxelIndex&) { return is_inside(random) ? -size_m(random) : size_m(random); }));
+  for (Brick& brick : levels.voxels.bricks())
     for (TsdfSample& sample : brick.samples)
       if (is_missing(random)) sample.weight = 0.0F;
-  const std::size_t without_extrapolated = dual_marching_cubes(bricks, kResolution_m).triangles.size();
-  extrapolate_neighbours(bricks);
-  const Mesh mesh = dual_marching_cubes(bricks, kResolution_m);
+  const std::size_t without_extrapolated = dual_marching_cubes(levels, kResolution_m).triangles.size();
+  extrapolate_neighbours(levels);
+  const Mesh mesh = dual_marching_cubes(levels, kResolution_m);
   EXPECT_GT(mesh.triangles.size(), 2 * without_extrapolated);
   for (const Eigen::Vector3f& vertex : mesh.vertices) ASSERT_TRUE(vertex.allFinite());
   for (const auto& [edge, use] : test::edge_uses(mesh)) {
@@ -144,10 +147,10 @@ TEST(SampleSmoothing, WhatIsWellMeasuredStays) {
   const auto spread_m = [](float weight) {
     std::mt19937 random(3);
     std::normal_distribution<float> noise_m(0.0F, 0.004F);
-    TsdfBricks bricks(cube_map([&](const VoxelIndex&) { return noise_m(random); }, weight), 0.0F);
-    smooth(bricks, 0.4F, 6);
+    TsdfLevels levels = levels_of(cube_map([&](const VoxelIndex&) { return noise_m(random); }, weight));
+    smooth(levels, 0.4F, 6);
     double sum = 0.0;
-    for (const Brick& brick : bricks.bricks())
+    for (const Brick& brick : levels.voxels.bricks())
       for (const TsdfSample& sample : brick.samples) sum += sample.distance_m * sample.distance_m;
     return std::sqrt(sum / (kEdge * kEdge * kEdge));
   };
