@@ -256,14 +256,11 @@ int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point pane
                   hole.area_m2, hole.size_m);
     line(text, 32, 0.43);
     y += 17;
-    const auto in_cm = [](const Vector3d& v) {
-      return v.unaryExpr([](double m) { return rounded(m, 2); }).eval();
-    };
-    const Vector3d p = in_cm(hole.position_world);
+    const Vector3d p = rounded(hole.position_world, 2);
     std::snprintf(text, sizeof(text), "at %.2f, %.2f, %.2f", p.x(), p.y(), p.z());
     std::string where = text;
     if (hole.viewpoint_world) {
-      const Vector3d s = in_cm(*hole.viewpoint_world);
+      const Vector3d s = rounded(*hole.viewpoint_world, 2);
       std::snprintf(text, sizeof(text), "; look from %.2f, %.2f, %.2f", s.x(), s.y(), s.z());
       where += text;
     }

@@ -56,17 +56,14 @@ std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Fr
 
 std::string describe(const Hole& hole) {
   char text[512];  // room for five numbers of up to 42 digits, and words
-  const auto cm = [](const Eigen::Vector3d& v) -> Eigen::Vector3d {
-    return v.unaryExpr([](double coordinate) { return rounded(coordinate, 2); });
-  };
-  const Eigen::Vector3d p = cm(hole.position_world), look = cm(hole.look_direction_world);
+  const Eigen::Vector3d p = rounded(hole.position_world, 2), look = rounded(hole.look_direction_world, 2);
   int length = std::snprintf(
       text, sizeof(text), "%s at (%.2f, %.2f, %.2f) m, %.2f m wide, %.2f m2; look along (%.2f, %.2f, %.2f)",
       std::string(to_string(hole.kind)).c_str(), p.x(), p.y(), p.z(), hole.size_m, hole.area_m2, look.x(),
       look.y(), look.z());
   std::string words(text, static_cast<std::size_t>(length));
   if (!hole.viewpoint_world) return words;
-  const Eigen::Vector3d from = cm(*hole.viewpoint_world);
+  const Eigen::Vector3d from = rounded(*hole.viewpoint_world, 2);
   length = std::snprintf(text, sizeof(text), " from (%.2f, %.2f, %.2f)", from.x(), from.y(), from.z());
   return words.append(text, static_cast<std::size_t>(length));
 }
