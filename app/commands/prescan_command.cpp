@@ -214,7 +214,7 @@ class ScanProgress {
   [[nodiscard]] std::optional<std::int64_t> total_of(const std::string& stage) const {
     if (stage == "fuse again" || (stage == "ghosts" && fused_ == 0)) return std::nullopt;
     if (stage != "ghosts") return start_.source->frame_count();
-    const std::int64_t stride = 1 + (fused_ - 1) / GhostConfig{}.max_looks;
+    const std::int64_t stride = look_stride(fused_, GhostConfig{});
     return (fused_ + stride - 1) / stride;
   }
 

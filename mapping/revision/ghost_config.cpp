@@ -26,4 +26,8 @@ void require_valid(const GhostConfig& c) {
   require(c.max_looks >= 1 && c.max_looks <= 60'000, "max_looks", c.max_looks, "in 1..60000");
 }
 
+std::int64_t look_stride(std::int64_t frames, const GhostConfig& config) {
+  return 1 + (frames - 1) / config.max_looks;
+}
+
 }  // namespace roomradar

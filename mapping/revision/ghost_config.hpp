@@ -1,6 +1,7 @@
 // ghost_config.hpp: thresholds at which a surface of the map counts as a ghost (surface of an object that
 // moved away during the scan).
 #pragma once
+#include <cstdint>
 
 namespace roomradar {
 
@@ -34,5 +35,9 @@ struct GhostConfig {
 
 /// Throws Error (naming the field, its value and the rule) if a setting is out of range.
 void require_valid(const GhostConfig& config);
+
+/// Returns the distance between two frames used, of `frames` frames: each is used (1), every second (2) and
+/// so on.
+std::int64_t look_stride(std::int64_t frames, const GhostConfig& config);
 
 }  // namespace roomradar

@@ -41,7 +41,7 @@ GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fus
   // Find the voxels that frames see through.
   GhostVotes votes(map, config);
   Frame frame;
-  const std::size_t stride = 1 + (fused.size() - 1) / static_cast<std::size_t>(config.max_looks);
+  const auto stride = static_cast<std::size_t>(look_stride(static_cast<std::int64_t>(fused.size()), config));
   ChosenFrames chosen(source, times);
   for (std::size_t i = 0; i < fused.size(); i += stride) {
     if (!chosen.read(fused[i], frame)) continue;
