@@ -25,7 +25,7 @@ std::vector<std::string> names_of(const std::vector<const CLI::App*>& commands) 
 /// an empty string.
 std::string choices_of(const CLI::Option& option) {
   if (option.check_name("--preset")) return "fast balanced accurate";
-  if (option.check_name("--room")) return "table shelf wall random board";
+  if (option.check_name("--room")) return "table shelf wall random flat board";
   if (option.check_name("--path")) return "scan view swing";
   if (option.check_name("--moving")) return "hand ball person";
   std::string type = option.get_type_name();

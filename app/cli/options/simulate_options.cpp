@@ -11,11 +11,12 @@ namespace roomradar {
 void add_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("DIR", options.folder, "folder to write; must be empty or not exist (required)")
       ->required();
-  command.add_option("--room", options.room, "table, shelf, wall, random or board (default: table)")
+  command.add_option("--room", options.room, "table, shelf, wall, random, flat or board (default: table)")
       ->type_name("NAME");
   command
-      .add_option("--seed", options.seed,
-                  "seed of the camera's path, the noise and the furniture of a random room (default: 1)")
+      .add_option(
+          "--seed", options.seed,
+          "seed of the camera's path, the noise and the furniture of a random room or flat (default: 1)")
       ->type_name("N");
   command.add_option("--frames", options.frames, "number of frames (default: 300)")
       ->check(whole_within(1, 1'000'000))

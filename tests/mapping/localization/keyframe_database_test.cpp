@@ -84,7 +84,7 @@ TEST(DescribePlace, FeaturePointsLieOnTheSurface) {
               0.05);
 }
 
-/// Expects equal databases, but for points and directions that are rounded.
+/// Expects equal databases. Points and directions may differ by their rounding.
 void expect_near(const KeyframeDatabase& is, const KeyframeDatabase& was, float point_m, float direction) {
   const auto off = [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
     return (a - b).cwiseAbs().maxCoeff();
