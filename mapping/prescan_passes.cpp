@@ -77,7 +77,7 @@ void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, StageTimes& t
   });
 }
 
-/// Same in the first pass, where the odometry's thread must be idle at the fork.
+/// Same in the first pass, where the odometry's second thread must be idle.
 void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass, StageTimes& times) {
   if (!checkpoints || !checkpoints->is_due()) return;
   times.timed("checkpoint", [&] { pass.odometry.finish_jobs(); });

@@ -2,10 +2,7 @@
 #include "mapping/odometry/keyframe_graph.hpp"
 
 #include <algorithm>
-#include <array>
-#include <future>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -26,41 +23,6 @@ std::vector<std::size_t> spread(const std::vector<std::size_t>& items, std::size
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(items[i * items.size() / count]);
   return chosen;
-}
-
-/// Returns both constraints between two keyframes from their alignments in both directions, or nullopt if
-/// these are too poor or disagree.
-std::optional<std::array<PoseConstraint, 2>> agreement(const KeyframeGraph& graph, std::size_t older,
-                                                       std::size_t newer, const Tracking& newer_in_older,
-                                                       const Tracking& older_in_newer,
-                                                       const KeyframeGraphConfig& config) {
-  const Eigen::Isometry3d gap = newer_in_older.T_world_camera * older_in_newer.T_world_camera;
-  if (!is_joint(newer_in_older, config) || !is_joint(older_in_newer, config) ||
-      gap.translation().norm() > config.max_gap_m ||
-      Eigen::AngleAxisd(gap.linear()).angle() > config.max_gap_rad ||
-      !is_within_drift(graph, older, newer, newer_in_older.T_world_camera, config)) {
-    return std::nullopt;
-  }
-  const bool loop = newer - older >= kNeighbours;
-  return std::array<PoseConstraint, 2>{
-      PoseConstraint{older, newer, newer_in_older.T_world_camera, newer_in_older.information, loop},
-      PoseConstraint{newer, older, older_in_newer.T_world_camera, older_in_newer.information, loop}};
-}
-
-/// Adds a pair of constraints, if any, and counts loops. Returns whether there was a pair.
-bool add(KeyframeGraph& graph, std::size_t older, std::size_t newer,
-         const std::optional<std::array<PoseConstraint, 2>>& pair) {
-  if (pair) graph.constraints.insert(graph.constraints.end(), pair->begin(), pair->end());
-  if (newer - older >= kNeighbours) ++(pair ? graph.loops_found : graph.loops_rejected);
-  return pair.has_value();
-}
-
-/// Returns at most `most` older keyframes with a similar view.
-std::vector<std::size_t> older_near(const KeyframeGraph& graph, std::size_t newer, int most,
-                                    double furthest) {
-  std::vector<std::size_t> older = keyframes_near(graph, graph.keyframes[newer].T_world_camera, furthest);
-  std::erase_if(older, [&](std::size_t i) { return i >= newer; });
-  return spread(older, static_cast<std::size_t>(std::max(most, 1)));
 }
 
 Eigen::Isometry3d relative(const KeyframeGraph& graph, std::size_t a, std::size_t b) {
@@ -114,11 +76,11 @@ double view_distance(const Eigen::Isometry3d& T_a_b) {
   return T_a_b.translation().norm() / kFar_m + Eigen::AngleAxisd(T_a_b.linear()).angle() / kFar_rad;
 }
 
-std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen::Isometry3d& T_world_camera,
-                                        double furthest) {
+std::vector<std::size_t> keyframes_near(std::span<const Keyframe> keyframes,
+                                        const Eigen::Isometry3d& T_world_camera, double furthest) {
   std::vector<std::pair<double, std::size_t>> found;
-  for (std::size_t i = 0; i < graph.keyframes.size(); ++i) {
-    const double distance = view_distance(graph.keyframes[i].T_world_camera.inverse() * T_world_camera);
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const double distance = view_distance(keyframes[i].T_world_camera.inverse() * T_world_camera);
     if (distance < furthest) found.emplace_back(distance, i);
   }
   std::sort(found.begin(), found.end());
@@ -137,66 +99,41 @@ bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t 
   return change.translation().norm() < most && Eigen::AngleAxisd(change.linear()).angle() < most;
 }
 
+bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const KeyframeGraphConfig& config) {
+  const auto& [older, newer, newer_in_older, older_in_newer] = pair;
+  const Eigen::Isometry3d gap = newer_in_older.T_world_camera * older_in_newer.T_world_camera;
+  const bool agree = is_joint(newer_in_older, config) && is_joint(older_in_newer, config) &&
+                     gap.translation().norm() <= config.max_gap_m &&
+                     Eigen::AngleAxisd(gap.linear()).angle() <= config.max_gap_rad &&
+                     is_within_drift(graph, older, newer, newer_in_older.T_world_camera, config);
+  const bool loop = newer - older >= kNeighbours;
+  if (loop) ++(agree ? graph.loops_found : graph.loops_rejected);
+  if (!agree) return false;
+  graph.constraints.push_back(
+      {older, newer, newer_in_older.T_world_camera, newer_in_older.information, loop});
+  graph.constraints.push_back(
+      {newer, older, older_in_newer.T_world_camera, older_in_newer.information, loop});
+  return true;
+}
+
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const ConnectConfig& config, KeyframeCache& cache) {
   const auto a = cache.get(older, *graph.keyframes[older].view, config.view);
   const auto b = cache.get(newer, *graph.keyframes[newer].view, config.view);
-  const Tracking b_in_a = align(b->live, a->reference, T_older_newer, config.align);
-  const Tracking a_in_b = align(a->live, b->reference, T_older_newer.inverse(), config.align);
-  return add(graph, older, newer, agreement(graph, older, newer, b_in_a, a_in_b, config.graph));
+  return add_constraints(graph,
+                         {older, newer, align(b->live, a->reference, T_older_newer, config.align),
+                          align(a->live, b->reference, T_older_newer.inverse(), config.align)},
+                         config.graph);
 }
 
 void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache) {
   if (graph.keyframes.size() < 2) return;
   const std::size_t newest = graph.keyframes.size() - 1;
-  for (const std::size_t i : older_near(graph, newest, config.graph.max_edges_new, config.graph.furthest)) {
+  const std::vector<std::size_t> near =
+      keyframes_near(std::span(graph.keyframes).first(newest), graph.keyframes[newest].T_world_camera,
+                     config.graph.furthest);
+  for (const std::size_t i : spread(near, static_cast<std::size_t>(std::max(config.graph.max_edges_new, 1))))
     join(graph, i, newest, relative(graph, i, newest), config, cache);
-  }
-}
-
-void close_loops(KeyframeGraph& graph, const ConnectConfig& config) {
-  // Sorted by reference, so each thread prepares a reference once and keeps only one in memory.
-  struct Half {
-    std::size_t reference, live;
-    Tracking live_in_reference;
-  };
-  std::vector<Half> halves;
-  for (std::size_t newer = 1; newer < graph.keyframes.size(); ++newer) {
-    for (const std::size_t older :
-         older_near(graph, newer, config.graph.max_edges_rebuild, config.graph.furthest)) {
-      halves.push_back({older, newer, {}});
-      halves.push_back({newer, older, {}});
-    }
-  }
-  const auto by_reference = [](const Half& a, const Half& b) {
-    return std::pair(a.reference, a.live) < std::pair(b.reference, b.live);
-  };
-  std::sort(halves.begin(), halves.end(), by_reference);
-  const auto align_all = [&](std::span<Half> part) {
-    KeyframeCache references(1, PreparedParts::kReference),
-        lives(config.graph.cached_keyframes, PreparedParts::kLive);
-    for (Half& half : part) {
-      const auto a = references.get(half.reference, *graph.keyframes[half.reference].view, config.view);
-      const auto b = lives.get(half.live, *graph.keyframes[half.live].view, config.view);
-      half.live_in_reference =
-          align(b->live, a->reference, relative(graph, half.reference, half.live), config.align);
-    }
-  };
-  const std::span<Half> all(halves);
-  auto second = std::async(std::launch::async, align_all, all.subspan(all.size() / 2));
-  align_all(all.first(all.size() / 2));
-  second.get();
-
-  graph.constraints.clear();
-  graph.loops_found = graph.loops_rejected = 0;
-  for (const Half& there : halves) {
-    if (there.reference > there.live) continue;
-    const auto back =
-        std::lower_bound(halves.begin(), halves.end(), Half{there.live, there.reference, {}}, by_reference);
-    add(graph, there.reference, there.live,
-        agreement(graph, there.reference, there.live, there.live_in_reference, back->live_in_reference,
-                  config.graph));
-  }
 }
 
 void solve(KeyframeGraph& graph) {
@@ -230,7 +167,7 @@ void solve_positions_then_turns(KeyframeGraph& graph) {
 void solve_near_newest(KeyframeGraph& graph, double furthest) {
   if (graph.keyframes.size() < 2) return;
   std::vector<bool> constant(graph.keyframes.size(), true);
-  for (const std::size_t i : keyframes_near(graph, graph.keyframes.back().T_world_camera, furthest))
+  for (const std::size_t i : keyframes_near(graph.keyframes, graph.keyframes.back().T_world_camera, furthest))
     constant[i] = false;
   if (graph.anchors.empty()) constant.front() = true;
   solve_free(graph, graph.constraints, graph.anchors, constant);

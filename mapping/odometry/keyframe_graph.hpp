@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mapping/alignment/align.hpp"
@@ -13,7 +14,7 @@
 namespace roomradar {
 
 struct KeyframeGraphConfig {
-  int max_edges_rebuild = 12;  ///< max number of edges from a keyframe to older ones on a full rebuild
+  int max_edges_rebuild = 12;  ///< max number of edges from a keyframe to older ones in close_loops()
   int max_edges_new = 6;       ///< max number of edges from a new keyframe to older ones while tracking
   double furthest = 1.5;       ///< max view_distance() between two connected keyframes
   double min_overlap = 0.25;   ///< min fraction of a keyframe's points with a correspondence
@@ -52,28 +53,34 @@ double view_distance(const Eigen::Isometry3d& T_a_b);
 
 /// Returns the indices of all keyframes whose view_distance() to a camera pose is less than `furthest`,
 /// nearest first.
-std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen::Isometry3d& T_world_camera,
-                                        double furthest);
+std::vector<std::size_t> keyframes_near(std::span<const Keyframe> keyframes,
+                                        const Eigen::Isometry3d& T_world_camera, double furthest);
 
 /// Returns true if T_older_newer differs from the two keyframes' current relative pose by less than the
 /// assumed drift (drift_m + drift_part * path length).
 bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t newer,
                      const Eigen::Isometry3d& T_older_newer, const KeyframeGraphConfig& config);
 
-/// Aligns two keyframes in both directions, starting from T_older_newer. If the two results agree with each
-/// other and are within the assumed drift of the current poses, adds both as constraints and returns true. A
-/// pair that is at least three keyframes apart in sequence is counted as a loop, in loops_found or
-/// loops_rejected.
+/// Two keyframes, aligned with each other in both directions.
+struct KeyframePair {
+  std::size_t older = 0;
+  std::size_t newer = 0;
+  Tracking newer_in_older;  ///< its pose is T_older_newer
+  Tracking older_in_newer;  ///< its pose is T_newer_older
+};
+
+/// Adds both alignments of a pair as constraints if they agree with each other and are within the assumed
+/// drift of the current poses. Returns whether they were added. A pair that is at least three keyframes apart
+/// in sequence is counted as a loop, in loops_found or loops_rejected.
+bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const KeyframeGraphConfig& config);
+
+/// Aligns two keyframes, starting from T_older_newer, and adds their constraints as add_constraints() does.
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const ConnectConfig& config, KeyframeCache& cache);
 
 /// Connects the newest keyframe to older keyframes near it. If there are more than max_edges_new, chooses
 /// max_edges_new of them, spread evenly over the order of view_distance().
 void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache);
-
-/// Replaces all constraints by new ones, computed from the keyframes' current depth on two threads.
-/// Deterministic.
-void close_loops(KeyframeGraph& graph, const ConnectConfig& config);
 
 /// Optimises all keyframe poses to fit the constraints and anchors.
 void solve(KeyframeGraph& graph);

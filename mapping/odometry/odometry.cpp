@@ -10,6 +10,7 @@
 #include "mapping/alignment/stationary_camera.hpp"
 #include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/keyframe_job.hpp"
+#include "mapping/odometry/keyframe_pairs.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 
 namespace roomradar {
@@ -39,6 +40,7 @@ struct Odometry::State {
   std::future<KeyframeJobResult> job;
   std::optional<KeyframeJobResult> joined;  ///< the job's result, once it has been waited for
   int job_frames = 0;                       ///< frames since the job began
+  PairAligner pairs;                        ///< alignments of keyframes for optimise()
 
   explicit State(const OdometryConfig& chosen) : config(chosen), cache(chosen.graph.cached_keyframes) {}
 
@@ -58,8 +60,7 @@ struct Odometry::State {
 
 Tracking Odometry::State::start(const Frame& frame) {
   Tracking tracking;
-  const auto enough = static_cast<std::size_t>(std::max(config.align.min_points, 1));
-  if (live.levels.front().size() < enough) {
+  if (live.levels.front().size() < static_cast<std::size_t>(std::max(config.align.min_points, 1))) {
     tracking.status = TrackStatus::kTooFewPoints;
     return tracking;
   }
@@ -79,7 +80,7 @@ Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d&
       cache.get(first, *keyframes[first].view, config.view)};
   std::vector<PosedReference> references{{&used[0]->reference, keyframes[first].T_world_camera}};
   bool made_one = false;
-  for (const std::size_t i : keyframes_near(kept.graph, T_world_guess, kUsefulReference)) {
+  for (const std::size_t i : keyframes_near(keyframes, T_world_guess, kUsefulReference)) {
     if (i == first || references.size() >= most) continue;
     auto other = cache.find(i);
     if (!other && std::exchange(made_one, true)) continue;
@@ -118,6 +119,7 @@ bool Odometry::State::is_plausible(const Tracking& tracking) const {
 }
 
 void Odometry::State::improve_current(const Tracking& tracking) {
+  if (kept.current < kept.final_keyframes) return;
   const Keyframe& keyframe = kept.graph.keyframes[kept.current];
   improve_depth(open, open_measured, pyramid, tracking.T_world_camera.inverse() * keyframe.T_world_camera);
   open_is_newer = true;
@@ -140,7 +142,7 @@ bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking
 void Odometry::State::choose_keyframe(const Frame& frame, Tracking& tracking) {
   const bool little_in_common = tracking.overlap < config.keyframe_overlap;
   if (!little_in_common && !is_far_from(kept.current, tracking)) return;
-  const std::vector<std::size_t> near = keyframes_near(kept.graph, tracking.T_world_camera, 1.0);
+  const std::vector<std::size_t> near = keyframes_near(kept.graph.keyframes, tracking.T_world_camera, 1.0);
   if (!near.empty() && near.front() != kept.current && !is_far_from(near.front(), tracking)) {
     take_up(near.front());
     return;
@@ -169,6 +171,7 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking)
                                known.keyframes.empty() ? nullptr : &known},
                    job_config(config));
   job_frames = 0;
+  kept.final_keyframes = pairs.advance(kept.graph.keyframes, job_config(config).join);
 }
 
 /// Makes another keyframe current: frames are aligned with it first, and refine its depth.
@@ -306,7 +309,7 @@ std::vector<TrackedFrame> Odometry::optimise() {
   if (!s.kept.graph.keyframes.empty()) {
     KeyframeGraph graph = s.kept.graph;
     s.cache = KeyframeCache(s.config.graph.cached_keyframes);  // no longer needed, and large
-    close_loops(graph, job_config(s.config).join);
+    close_loops(graph, s.pairs.finish(), job_config(s.config).join);
     solve_positions_then_turns(graph);
     move_keyframes(graph.keyframes, s.kept);
     graph.keyframes = s.kept.graph.keyframes;

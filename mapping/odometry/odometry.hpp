@@ -15,8 +15,8 @@ struct OdometrySnapshot;
 
 /// Tracks a camera against keyframes, closes loops, and returns all poses at the end. The world frame is the
 /// camera frame of the first usable frame, unless frames come with poses (add_posed()) or the camera is
-/// localised in a known map. A second thread connects new keyframes to older ones. The thread's results are
-/// applied after a fixed number of frames, so poses do not depend on timing. Not thread safe.
+/// localised in a known map. Two background threads connect new keyframes to older ones, and align keyframes
+/// for optimise(). Their results are used at fixed frames, so poses do not depend on timing. Not thread safe.
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config = {});
@@ -40,7 +40,7 @@ class Odometry {
   /// optimise.
   void add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Recomputes all constraints from the keyframes' current depth, optimises the keyframes' poses, and
+  /// Replaces all constraints by those of keyframes with final depth, optimises the keyframes' poses, and
   /// returns all frames so far with their final poses.
   std::vector<TrackedFrame> optimise();
 
@@ -49,7 +49,7 @@ class Odometry {
 
   [[nodiscard]] OdometryCounts counts() const;
 
-  /// Waits until the second thread is idle. Call before snapshot() or a fork of the process. Changes no pose.
+  /// Waits until the second thread is idle. Call before snapshot(). Changes no pose.
   /// The thread's result is applied later, at the frame where it is due.
   void finish_jobs();
   /// Returns a copy of the complete state, to which the second thread's result has been applied. Views are

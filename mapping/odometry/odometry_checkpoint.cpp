@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kStateMagic = "RRODOMET", kViewMagic = "RRKEYFRM";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr int kMaxSide_px = 8192;
 
 fs::path view_name(std::size_t number, std::uint32_t revision) {
@@ -250,6 +250,7 @@ void save_odometry(const Odometry& odometry, const fs::path& into, const fs::pat
   for (const MapKeyframe& place : kept.keyframe_database.keyframes) put_pose(out, place.T_world_camera);
   put_frames(out, kept.frames);
   put(out, std::uint64_t{kept.current});
+  put(out, std::uint64_t{kept.final_keyframes});
   put(out, kept.improved);
   put_pose(out, kept.T_world_last);
   put_pose(out, kept.T_last_next);
@@ -276,6 +277,9 @@ Odometry load_odometry(const fs::path& folder, const OdometryConfig& config) {
   const auto current = in.take<std::uint64_t>("keyframe");
   if (keyframes > 0 && current >= keyframes) in.fail("the current keyframe is not there");
   kept.current = keyframes > 0 ? static_cast<std::size_t>(current) : 0;
+  const auto final_keyframes = in.take<std::uint64_t>("final keyframes");
+  if (final_keyframes > keyframes) in.fail("more keyframes are final than there are");
+  kept.final_keyframes = static_cast<std::size_t>(final_keyframes);
   kept.improved = in.take<int>("views");
   kept.T_world_last = take_pose(in, "the last pose");
   kept.T_last_next = take_pose(in, "the last motion");

@@ -34,6 +34,8 @@ struct OdometrySnapshot {
   std::vector<KeptFrame> frames;
   /// Index of the current keyframe: the keyframe with which the next frame is aligned first.
   std::size_t current = 0;
+  /// Number of keyframes whose depth is final: frames no longer refine them.
+  std::size_t final_keyframes = 0;
   /// Number of frames averaged into the current keyframe's depth since its points and normals were last
   /// recomputed.
   int improved = 0;

@@ -133,28 +133,6 @@ TEST(KeyframeGraph, AJoinMustAgreeBothWays) {
   EXPECT_TRUE(trip.graph.constraints.empty());
 }
 
-TEST(KeyframeGraph, JoiningAllAnewDoesNotDependOnThreads) {
-  KeyframeGraph graph;
-  for (int i = 0; i < 6; ++i) {
-    const Eigen::Isometry3d T = on_path(i, 30);
-    graph.keyframes.push_back(keyframe_of(frame_at(T, i), T, 0.1 * i));
-  }
-  KeyframeGraph again = graph;
-  close_loops(graph, {});
-  close_loops(again, {});
-  ASSERT_GT(graph.constraints.size(), 8U);
-  ASSERT_EQ(again.constraints.size(), graph.constraints.size());
-  for (std::size_t i = 0; i < graph.constraints.size(); ++i) {
-    EXPECT_EQ(again.constraints[i].a, graph.constraints[i].a);
-    EXPECT_EQ(again.constraints[i].T_a_b.matrix(), graph.constraints[i].T_a_b.matrix());
-  }
-  KeyframeGraph none, one;
-  close_loops(none, {});
-  one.keyframes.push_back(again.keyframes[0]);
-  close_loops(one, {});
-  EXPECT_TRUE(one.constraints.empty());
-}
-
 /// Keyframes along a curved path, each with exact edges to the next `reach` keyframes, and with disturbed
 /// poses.
 struct Way {

@@ -1,0 +1,52 @@
+// keyframe_pairs.hpp: alignments of keyframes whose depth is final, and the pose graph built from them.
+#pragma once
+#include <cstddef>
+#include <future>
+#include <span>
+#include <vector>
+
+#include "mapping/odometry/keyframe_graph.hpp"
+
+namespace roomradar {
+
+/// Chooses older keyframes to align a keyframe with: at most max_edges_rebuild, with similar views. The
+/// keyframes with similar views are divided, in order of time, into as many groups. One keyframe per group is
+/// chosen, so each visit to a part of the room is represented: the one with the most similar view. Keyframes
+/// that are aligned with `newer` already are preferred.
+/// @param aligned  pairs that are aligned already, sorted by (newer, older)
+std::vector<std::size_t> choose_older(std::span<const Keyframe> keyframes, std::size_t newer,
+                                      std::span<const KeyframePair> aligned,
+                                      const KeyframeGraphConfig& config);
+
+/// Aligns keyframes [first, last) with older ones, which choose_older() chooses. Starts from their current
+/// poses. Returns the pairs sorted by (newer, older). Leaves out pairs that are in `aligned`. Deterministic.
+/// @param threads  number of threads, 1 or 2
+std::vector<KeyframePair> align_pairs(std::span<const Keyframe> keyframes, std::size_t first,
+                                      std::size_t last, std::span<const KeyframePair> aligned,
+                                      const ConnectConfig& config, int threads);
+
+/// Replaces all constraints by those of `aligned`, and of the pairs that choose_older() chooses. Aligns the
+/// latter on two threads. Deterministic.
+/// @param aligned  pairs that are aligned already, sorted by (newer, older)
+void close_loops(KeyframeGraph& graph, std::vector<KeyframePair> aligned, const ConnectConfig& config);
+
+/// Aligns keyframes with older ones on its own thread while more keyframes are added. Not thread safe.
+class PairAligner {
+ public:
+  /// Call whenever a keyframe was added. A keyframe's depth must be final once advance() has returned a
+  /// number above its index. Final keyframes are aligned in batches; waits if the last batch is still being
+  /// aligned.
+  /// @return the number of keyframes whose depth is final. The newest keyframe never is
+  std::size_t advance(const std::vector<Keyframe>& keyframes, const ConnectConfig& config);
+  /// Waits for the last batch, and returns all pairs aligned so far, sorted by (newer, older).
+  std::vector<KeyframePair> finish();
+
+ private:
+  void wait();
+
+  std::vector<KeyframePair> aligned_;
+  std::size_t final_ = 0;  ///< number of keyframes whose pairs are in aligned_ or in batch_
+  std::future<std::vector<KeyframePair>> batch_;
+};
+
+}  // namespace roomradar
