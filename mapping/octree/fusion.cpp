@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
+#include <future>
 #include <span>
+#include <vector>
 
 #include "mapping/octree/leaf_update.hpp"
 #include "mapping/octree/node_visibility.hpp"
@@ -51,8 +54,17 @@ class Descent {
         frame_index_(static_cast<std::uint64_t>(frame.index)) {}
 
   /// @param root_centre  centre of the whole tree in the camera frame, m
-  void run(const Eigen::Vector3d& root_centre, HitRange hits) {
-    tree_.root = update(tree_.root, 0, cell_at(0, root_centre, 0, hits));
+  /// @param threads      1..kMaxLanes; the result does not depend on it
+  void run(const Eigen::Vector3d& root_centre, HitRange hits, unsigned threads) {
+    const Cell root = cell_at(0, root_centre, 0, hits);
+    std::vector<Cell> branches;
+    if (threads > 1) branches_ = &branches;
+    tree_.root = update(tree_.root, 0, root);
+    branches_ = nullptr;
+    if (branches.empty()) return;
+    update_branches(branches, std::min(threads, static_cast<unsigned>(branches.size())));
+    tree_.gather_free();
+    tree_.root = prune_above_branches(tree_.root, 0);
   }
 
  private:
@@ -63,6 +75,10 @@ class Descent {
     HitRange hits;
     NodeVisibility children;
   };
+  // Nodes at this depth are updated on any thread, since they share no block. They have an edge of 64 voxels;
+  // a room has hundreds.
+  static constexpr unsigned kBranchDepth = 10;
+
   Cell cell_at(unsigned depth, const Eigen::Vector3d& centre, std::uint64_t code, HitRange hits) const {
     return {centre, code, hits, judge_children(depth, centre, 1.0F)};
   }
@@ -105,6 +121,39 @@ class Descent {
       update_leaves(coarse_cells_, block, coarse, depth, cell, hits);
       update_children(block, split & ~coarse, depth, cell, hits);
     }
+    return branches_ != nullptr && depth < kBranchDepth ? tree_.kept_open(node, block)
+                                                        : tree_.prune(node, block);
+  }
+
+  void update_branches(std::span<const Cell> branches, unsigned threads) {
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&](unsigned lane) {
+      pool_lane = lane;
+      for (std::size_t i = next++; i < branches.size(); i = next++) {
+        Slot& slot = slot_of(branches[i].code);
+        slot = update(slot, kBranchDepth, branches[i]);
+      }
+      pool_lane = 0;
+    };
+    std::vector<std::future<void>> others;
+    for (unsigned lane = 1; lane < threads; ++lane)
+      others.push_back(std::async(std::launch::async, work, lane));
+    work(0);
+    for (std::future<void>& other : others) other.get();
+  }
+
+  // Returns the node at kBranchDepth with a Morton code. All nodes above it must be inner blocks.
+  Slot& slot_of(std::uint64_t code) {
+    Slot* slot = &tree_.root;
+    for (unsigned depth = 0; depth < kBranchDepth; ++depth)
+      slot = &tree_.inner(*slot).slots[code >> 3U * (kBranchDepth - 1 - depth) & 7U];
+    return *slot;
+  }
+
+  Slot prune_above_branches(Slot node, unsigned depth) {
+    if (!node.is_inner_block() || depth == kBranchDepth) return node;
+    InnerBlock& block = tree_.inner(node);
+    for (Slot& slot : block.slots) slot = prune_above_branches(slot, depth + 1);
     return tree_.prune(node, block);
   }
 
@@ -136,7 +185,10 @@ class Descent {
     }
     for (unsigned open = split; open != 0; open &= open - 1) {
       const auto i = static_cast<unsigned>(std::countr_zero(open));
-      block.slots[i] = update(block.slots[i], depth + 1, cells[i]);
+      if (branches_ != nullptr && depth + 1 == kBranchDepth)
+        branches_->push_back(cells[i]);
+      else
+        block.slots[i] = update(block.slots[i], depth + 1, cells[i]);
     }
   }
   // Updates the children in `split` as leaf blocks. `depth` is that of their parent.
@@ -216,25 +268,26 @@ class Descent {
   LeafUpdate<Float8> voxels_, coarse_cells_;
   float coarse_from_m_;
   std::uint64_t frame_index_;
+  std::vector<Cell>* branches_ = nullptr;  // not null: nodes at kBranchDepth are collected, not updated
 };
 
 template <typename Float8>
 void descend(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-             const FusionConfig& config, const FusionScratch& scratch) {
+             const FusionConfig& config, const FusionScratch& scratch, unsigned threads) {
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   const Eigen::Vector3d world_origin = T_camera_world.translation();  // centre of the tree
-  Descent<Float8>(tree, frame, T_camera_world, config, scratch.pyramid).run(world_origin, scratch.hits);
+  Descent<Float8>(tree, frame, T_camera_world, config, scratch.pyramid)
+      .run(world_origin, scratch.hits, threads);
 }
 
 }  // namespace
 
 void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                const FusionConfig& config, FusionScratch& scratch, Arithmetic arithmetic) {
-  build_pyramid(frame.depth_m, tree.resolution_m(), config, scratch.pyramid);
+                const FusionConfig& config, FusionScratch& scratch, unsigned threads, Arithmetic arithmetic) {
   if (arithmetic == Arithmetic::kFastest)
-    descend<Float8>(tree, frame, T_world_camera, config, scratch);
+    descend<Float8>(tree, frame, T_world_camera, config, scratch, threads);
   else
-    descend<PortableFloat8>(tree, frame, T_world_camera, config, scratch);
+    descend<PortableFloat8>(tree, frame, T_world_camera, config, scratch, threads);
 }
 
 }  // namespace roomradar

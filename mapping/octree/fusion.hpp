@@ -14,16 +14,17 @@ namespace roomradar {
 /// the portable version. Both give bit-identical results.
 enum class Arithmetic { kFastest, kPortable };
 
-/// Fuses the frame in one descent from the root. Call collect_hits() for this frame and `scratch` first. A
-/// node wholly in front of the measured depth is a miss as a whole. A node wholly occluded or outside the
-/// image is unchanged. All other nodes are split down to leaves. A leaf that contains a ray endpoint is a
-/// hit. A leaf whose centre is in front of the depth of the pixel to which it projects is a miss. Hits and
-/// misses add to the log-odds. Signed distance, weight and colour are averaged into leaves within the
-/// truncation band. Sources: Hornung et al., OctoMap, Autonomous Robots 2013, equations (2) and (4) (log-odds
-/// and clamping); Curless and Levoy, SIGGRAPH 1996, equations (3) and (4), with 1/sigma^2 as weight
-/// (projective TSDF).
+/// Fuses the frame in one descent from the root. Call build_pyramid() and collect_hits() for this frame and
+/// `scratch` first. A node wholly in front of the measured depth is a miss as a whole. A node wholly occluded
+/// or outside the image is unchanged. All other nodes are split down to leaves. A leaf that contains a ray
+/// endpoint is a hit. A leaf whose centre is in front of the depth of the pixel to which it projects is a
+/// miss. Hits and misses add to the log-odds. Signed distance, weight and colour are averaged into leaves
+/// within the truncation band. Sources: Hornung et al., OctoMap, Autonomous Robots 2013, equations (2) and
+/// (4) (log-odds and clamping); Curless and Levoy, SIGGRAPH 1996, equations (3) and (4), with 1/sigma^2 as
+/// weight (projective TSDF).
+/// @param threads  1..kMaxLanes; the result does not depend on it
 void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                const FusionConfig& config, FusionScratch& scratch,
+                const FusionConfig& config, FusionScratch& scratch, unsigned threads,
                 Arithmetic arithmetic = Arithmetic::kFastest);
 
 }  // namespace roomradar

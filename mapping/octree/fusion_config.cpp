@@ -21,6 +21,7 @@ void require_valid(const FusionConfig& c) {
   require(c.hit_log_odds > 0.0F && std::isfinite(c.hit_log_odds), "hit_log_odds", c.hit_log_odds, "> 0");
   require(c.miss_log_odds < 0.0F && std::isfinite(c.miss_log_odds), "miss_log_odds", c.miss_log_odds, "< 0");
   require(c.min_log_odds < 0.0F && std::isfinite(c.min_log_odds), "min_log_odds", c.min_log_odds, "< 0");
+  require(c.threads >= 0, "threads", c.threads, ">= 0");
   require(c.max_log_odds > 0.0F && std::isfinite(c.max_log_odds), "max_log_odds", c.max_log_odds, "> 0");
 }
 

@@ -26,6 +26,8 @@ struct FusionConfig {
   float miss_log_odds = -0.405465F;
   float min_log_odds = -2.0F;  ///< lower clamping limit; OctoMap's default, p = 0.12
   float max_log_odds = 3.5F;   ///< upper clamping limit; OctoMap's default, p = 0.97
+  /// Number of threads that fuse a frame, at most 8; 0: one per core. The map does not depend on it.
+  int threads = 0;
 };
 
 /// Throws Error (naming the field, its value and the rule) if a setting is out of range.

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "mapping/octree/fusion.hpp"
@@ -26,6 +28,15 @@ double checked_resolution(double resolution_m) {
   if (!(resolution_m >= 0.001 && resolution_m <= 1.0))
     throw Error("resolution = " + format_number(resolution_m) + " m: must be within 0.001 and 1 m");
   return resolution_m;
+}
+
+/// Returns the number of threads to fuse a frame with. Small images are not worth several.
+unsigned threads_for(const DepthImage& depth_m, const FusionConfig& config) {
+  constexpr std::size_t kWorthAThread_px = 25'000;
+  const std::size_t most =
+      config.threads > 0 ? static_cast<std::size_t>(config.threads) : std::thread::hardware_concurrency();
+  return static_cast<unsigned>(
+      std::clamp<std::size_t>(std::min(most, depth_m.pixels.size() / kWorthAThread_px), 1, kMaxLanes));
 }
 
 }  // namespace
@@ -53,6 +64,10 @@ FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_
     return FuseStatus::kInvalidFrame;
   if (!is_rigid(T_world_camera, 1e-3)) return FuseStatus::kInvalidPose;
   Octree& o = *octree_;
+  const unsigned threads = threads_for(frame.depth_m, o.config);
+  const auto pyramid = std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&] {
+    build_pyramid(frame.depth_m, resolution_m(), o.config, o.scratch.pyramid);
+  });
   switch (collect_hits(frame, T_world_camera, resolution_m(), o.config, o.scratch)) {
     case HitStatus::kNone:
       return FuseStatus::kNothingMeasured;
@@ -61,7 +76,8 @@ FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_
     case HitStatus::kCollected:
       break;
   }
-  fuse_depth(o.tree, frame, T_world_camera, o.config, o.scratch);
+  pyramid.wait();
+  fuse_depth(o.tree, frame, T_world_camera, o.config, o.scratch, threads);
   return FuseStatus::kFused;
 }
 

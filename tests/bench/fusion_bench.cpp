@@ -5,13 +5,16 @@
 // resolution (0.05,0.02,0.01,0.005), including colour. OctoMap inserts all pixels of `judged` of them (10),
 // evenly spaced; a map of ours from just these frames is compared with OctoMap's, voxel by voxel along three
 // million random points. OctoMap is omitted at 0.005 m, where it would need minutes. Times are the thread's
-// CPU time, so other programs affect them only through shared caches; reading is not timed. The first line
+// CPU time with one thread, so other programs affect them only through shared caches; reading is not timed.
+// wall_median_ms and two_threads_wall_median_ms are wall times with one and two threads, frame by frame in
+// turn. The first line
 // names processor, compiler and flags; then follows one JSON row per cell. Settings are the defaults of
 // FusionConfig: changing them breaks the comparison with earlier results.
 #include <octomap/OcTree.h>
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -39,6 +42,12 @@ struct Settings {
 };
 
 constexpr double kFinestJudged_m = 0.0099;
+
+using Clock = std::chrono::steady_clock;
+
+double ms_between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double, std::milli>(end - start).count();
+}
 
 // Calls visit(frame) for `count` frames with a pose, `step` apart.
 template <typename Visit>
@@ -114,15 +123,22 @@ nlohmann::json row(const char* method, double resolution_m, const std::vector<do
 }
 
 void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) {
-  std::vector<double> ours_ms;
-  StaticMap map(resolution_m);
+  std::vector<double> ours_ms, wall_ms, two_threads_ms;
+  StaticMap map(resolution_m, {.threads = 1}), by_two(resolution_m, {.threads = 2});
   for_frames(settings.recording, settings.frames, 1, [&](const Frame& frame) {
-    const double start = test::thread_ms();
+    const double start_ms = test::thread_ms();
+    const Clock::time_point start = Clock::now();
     static_cast<void>(map.fuse(frame, *frame.T_world_camera));
-    ours_ms.push_back(test::thread_ms() - start);
+    const Clock::time_point middle = Clock::now();
+    ours_ms.push_back(test::thread_ms() - start_ms);
+    static_cast<void>(by_two.fuse(frame, *frame.T_world_camera));
+    wall_ms.push_back(ms_between(start, middle));
+    two_threads_ms.push_back(ms_between(middle, Clock::now()));
   });
   const MapCounts counts = map.counts();
   nlohmann::json ours = row("roomradar", resolution_m, ours_ms);
+  ours["wall_median_ms"] = test::quantile(wall_ms, 0.5);
+  ours["two_threads_wall_median_ms"] = test::quantile(two_threads_ms, 0.5);
   ours["memory_mb"] = static_cast<double>(counts.memory_bytes) / 1e6;
   ours["nodes"] = counts.nodes;
   ours["occupied_leaves"] = counts.occupied_leaves;
@@ -135,7 +151,7 @@ void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) 
   if (resolution_m < kFinestJudged_m) return show(ours);
 
   std::vector<double> reference_ms, same_ms;  // times of the same frames
-  StaticMap judged(resolution_m);
+  StaticMap judged(resolution_m, {.threads = 1});
   octomap::OcTree reference(resolution_m);
   const std::int64_t step =
       std::max<std::int64_t>(settings.frames / std::max<std::int64_t>(settings.judged, 1), 1);

@@ -3,8 +3,10 @@
 #include <octomap/OcTree.h>
 
 #include <cmath>
+#include <future>
 #include <memory>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "mapping/octree/block_octree.hpp"
@@ -173,8 +175,9 @@ TEST(FusionEdges, PlainAndFastestArithmeticMakeTheSameMapBitForBit) {
     for (float& depth_m : frame.depth_m.pixels)
       depth_m = random() % 12 == 0 ? 0.0F : std::max(depth_m + noise_m(random), 0.1F);
     ASSERT_EQ(collect_hits(frame, T_world_camera, 0.02, config, scratch), HitStatus::kCollected);
-    fuse_depth(fastest, frame, T_world_camera, config, scratch, Arithmetic::kFastest);
-    fuse_depth(plain, frame, T_world_camera, config, scratch, Arithmetic::kPortable);
+    build_pyramid(frame.depth_m, 0.02, config, scratch.pyramid);
+    fuse_depth(fastest, frame, T_world_camera, config, scratch, 1, Arithmetic::kFastest);
+    fuse_depth(plain, frame, T_world_camera, config, scratch, 3, Arithmetic::kPortable);
   }
   const auto a = content(fastest), b = content(plain);
   EXPECT_GT(a.size(), 50'000U);
@@ -195,6 +198,36 @@ TEST(BlockPool, WithoutNumbersLeftSaysSoAndGoesOnWithThoseGivenBack) {
   EXPECT_EQ(pool.in_use(), 2U);
   EXPECT_EQ(pool.take(), 2U);
   EXPECT_EQ(pool[2].colours[5], Rgb{});  // reset
+}
+
+TEST(BlockPool, ThreadsOfDifferentLanesGetDifferentBlocks) {
+  constexpr unsigned kEach = 5000;
+  BlockPool<ColourBlock> pool;
+  std::vector<std::future<std::vector<std::uint32_t>>> threads;
+  for (unsigned lane = 0; lane < 4; ++lane)
+    threads.push_back(std::async(std::launch::async, [&pool, lane] {
+      pool_lane = lane;
+      std::vector<std::uint32_t> numbers;
+      for (unsigned i = 0; i < 2 * kEach; ++i) {
+        numbers.push_back(pool.take());
+        pool[numbers.back()].colours[0] = {static_cast<std::uint8_t>(lane), 0, 0};
+      }
+      for (; numbers.size() > kEach; numbers.pop_back()) pool.give_back(numbers.back());
+      return numbers;
+    }));
+  std::set<std::uint32_t> all;
+  for (unsigned lane = 0; lane < 4; ++lane)
+    for (const std::uint32_t number : threads[lane].get()) {
+      EXPECT_TRUE(all.insert(number).second);
+      EXPECT_EQ(pool[number].colours[0].r, lane);
+    }
+  EXPECT_EQ(pool.in_use(), all.size());
+  // What other lanes gave back is used before new memory.
+  const std::size_t bytes = pool.memory_bytes();
+  pool.gather_free();
+  for (unsigned i = 0; i < 4 * kEach; ++i) EXPECT_EQ(all.count(pool.take()), 0U);
+  EXPECT_EQ(pool.in_use(), all.size() + 4 * kEach);
+  EXPECT_LE(pool.memory_bytes(), bytes + 4 * 4 * kEach * sizeof(std::uint32_t));  // only longer lists
 }
 
 TEST(BlockOctree, OnePlaceLeavesNothingBehindWhenItIsFreedAgain) {
