@@ -1,11 +1,13 @@
 // keyframe_job.cpp: background processing of a new keyframe: description, place recognition, graph edges.
 #include "mapping/odometry/keyframe_job.hpp"
 
-#include <span>
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/localization/relocalise.hpp"
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -29,15 +31,31 @@ bool join_alike(KeyframeGraph& graph, const MapKeyframe& newest, const KeyframeD
   return joined;
 }
 
+/// Returns true if one of the constraints from `first` on contradicts the current poses: its residual is
+/// above 5 standard deviations.
+bool is_contradicted(const KeyframeGraph& graph, std::size_t first) {
+  constexpr double kMaxSigma = 5.0;
+  const auto is_contradiction = [&](const PoseConstraint& c) {
+    const Eigen::Isometry3d T_a_b =
+        graph.keyframes[c.a].T_world_camera.inverse() * graph.keyframes[c.b].T_world_camera;
+    const Vector6d error = local(c.T_a_b.inverse() * T_a_b);
+    return error.dot(c.information * error) > kMaxSigma * kMaxSigma;
+  };
+  return std::any_of(graph.constraints.begin() + static_cast<std::ptrdiff_t>(first), graph.constraints.end(),
+                     is_contradiction);
+}
+
 }  // namespace
 
 KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config) {
   KeyframeJobResult result;
   KeyframeGraph& graph = job.graph;
   result.place = make_map_keyframe(job.frame, graph.keyframes.back().T_world_camera, config.place);
+  const std::size_t known_constraints = graph.constraints.size();
   const bool came_back = join_alike(graph, result.place, *job.keyframe_database, config.join, job.cache);
+  const bool closes_loop = came_back && is_contradicted(graph, known_constraints);
   connect_newest(graph, config.join, job.cache);
-  if (came_back) {
+  if (closes_loop) {
     solve(graph);
   } else {
     solve_near_newest(graph, config.join.graph.furthest);

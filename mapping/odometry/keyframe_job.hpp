@@ -34,7 +34,7 @@ struct KeyframeJobResult {
 
 /// Connects the newest keyframe to keyframes near it. Also connects it to distant keyframes with similar
 /// features, which may show the same part of the room if the poses have drifted. Then optimises the poses
-/// near the newest keyframe, or all poses if a distant keyframe was connected.
+/// near the newest keyframe, or all poses if a connection to a distant keyframe contradicts them.
 KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config);
 
 }  // namespace roomradar
