@@ -1,4 +1,4 @@
-// brick_projection.hpp: projects the voxels of bricks into one frame.
+// brick_projection.hpp: projects the cells of bricks into one frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <utility>
 
 #include "mapping/octree/static_map.hpp"
 #include "mapping/octree/tsdf_bricks.hpp"
@@ -27,11 +26,17 @@ inline bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_
          pixel.y() < camera.height_px + margin_px;
 }
 
-/// A brick of 8 x 8 x 8 voxels. The caller has a list of voxel entries, in which the entries of each brick
-/// form a contiguous range.
-struct VoxelBrick {
+/// A brick of 8 x 8 x 8 voxels. The caller has a list of cells, in which the cells of each brick form a
+/// contiguous range.
+struct CellBrick {
   VoxelIndex first = VoxelIndex::Zero();
-  std::size_t end = 0;  ///< end of the brick's range, which begins at the previous brick's end
+  std::size_t begin = 0, end = 0;
+};
+
+/// Place of a cell in its brick.
+struct CellInBrick {
+  std::size_t offset = 0;  ///< brick_offset() of its lowest voxel
+  bool coarse = false;     ///< its edge is two voxels, not one
 };
 
 class BrickProjection {
@@ -52,19 +57,18 @@ class BrickProjection {
       for (int i = 0; i < kBrickEdge; ++i)
         steps_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] =
             R_camera_voxels.col(axis) * static_cast<float>(i);
+    to_coarse_centre_ = R_camera_voxels * Eigen::Vector3f::Constant(0.5F);
   }
   [[nodiscard]] float fx() const { return fx_; }
 
-  /// Calls visit(entry index, voxel centre in the camera frame, pixel x, y) for each voxel that projects into
+  /// Calls visit(cell index, cell centre in the camera frame, pixel x, y) for each cell that projects into
   /// the image and is nearer than farthest_m.
-  /// @param offset_of  callable that returns brick_offset() of the voxel at an entry index
-  template <typename OffsetOf, typename Visit>
-  void for_each_nearer(float farthest_m, std::span<const VoxelBrick> bricks, const OffsetOf& offset_of,
+  /// @param cell_at  callable that returns the CellInBrick of a cell index
+  template <typename CellAt, typename Visit>
+  void for_each_nearer(float farthest_m, std::span<const CellBrick> bricks, const CellAt& cell_at,
                        const Visit& visit) const {
     const double brick_radius_m = 0.5 * std::sqrt(3.0) * kBrickEdge * resolution_m_;
-    std::size_t begin = 0;
-    for (const VoxelBrick& brick : bricks) {
-      const std::size_t first = std::exchange(begin, brick.end);
+    for (const CellBrick& brick : bricks) {
       const Eigen::Vector3d low_world = brick.first.cast<double>() * resolution_m_;
       const Eigen::Vector3d middle_camera =
           T_camera_world_ * (low_world + Eigen::Vector3d::Constant(0.5 * kBrickEdge * resolution_m_));
@@ -73,10 +77,11 @@ class BrickProjection {
         continue;
       const Eigen::Vector3f first_camera =
           (T_camera_world_ * (low_world + Eigen::Vector3d::Constant(0.5 * resolution_m_))).cast<float>();
-      for (std::size_t i = first; i < brick.end; ++i) {
-        const std::size_t offset = offset_of(i);
-        const Eigen::Vector3f p_camera =
+      for (std::size_t i = brick.begin; i < brick.end; ++i) {
+        const auto [offset, coarse] = cell_at(i);
+        Eigen::Vector3f p_camera =
             first_camera + steps_[0][offset & 7U] + steps_[1][offset >> 3U & 7U] + steps_[2][offset >> 6U];
+        if (coarse) p_camera += to_coarse_centre_;
         const float z = p_camera.z();
         if (!(z > kNearestProjected_m && z < farthest_m)) continue;
         const float u = fx_ * p_camera.x() / z + cx_ + 0.5F;
@@ -95,6 +100,7 @@ class BrickProjection {
   /// Offsets from the centre of a brick's first voxel to the centres of the voxels along each axis, in the
   /// camera frame, m.
   std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps_;
+  Eigen::Vector3f to_coarse_centre_;  ///< from a coarse cell's lowest voxel's centre to its own, m
 };
 
 }  // namespace roomradar

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
+#include <span>
+#include <thread>
 #include <unordered_map>
 #include <utility>
 
@@ -26,7 +29,9 @@ constexpr double kReach_m = 0.1;
 constexpr int kHardlySeen = 3;  // a voxel connected to such a group is kept only if more frames saw it
 
 constexpr std::size_t kEveryColour =
-    4;  // one voxel in this many has its colour tracked: groups are judged, not single voxels
+    4;  // one cell of one voxel in this many has its colour tracked: groups are judged, not single cells
+
+constexpr std::size_t kMaxThreads = 8;
 
 /// Cells of the image that surface too near to give depth may hide.
 class HiddenCells {
@@ -113,12 +118,15 @@ GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
     : resolution_m_(map.resolution_m()), config_(config) {
   require_valid(config);
   const auto voxel_m = static_cast<float>(resolution_m_);
-  map.visit_samples([&](const SurfaceSample& sample) {
+  const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(map.reach_m());
+  map.visit_cells({-reach_m, reach_m}, [&](const SurfaceSample& sample, int edge_voxels) {
     if (sample.occupancy != Occupancy::kOccupied && std::abs(sample.distance_m) > voxel_m) return;
     const VoxelIndex first = brick_of(sample.voxel);
-    if (bricks_.empty() || bricks_.back().first != first) bricks_.push_back({first, 0});
+    if (bricks_.empty() || bricks_.back().first != first)
+      bricks_.push_back({first, votes_.size(), votes_.size()});
     Votes& votes = votes_.emplace_back();
     votes.offset = brick_offset(sample.voxel - first) & 511U;
+    votes.coarse = edge_voxels > 1 ? 1U : 0U;
     votes.occupied = sample.occupancy == Occupancy::kOccupied ? 1U : 0U;
     bricks_.back().end = votes_.size();
   });
@@ -134,9 +142,11 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   const float least_margin_m =
       std::max(config_.margin_m, config_.margin_voxels * static_cast<float>(resolution_m_));
   const BrickProjection projection(frame, T_world_camera, resolution_m_);
-  const auto offset_of = [this](std::size_t i) -> std::size_t { return votes_[i].offset; };
+  const auto cell_at = [this](std::size_t i) -> CellInBrick {
+    return {votes_[i].offset, votes_[i].coarse != 0};
+  };
   HiddenCells hidden(depth_m.width, depth_m.height);
-  projection.for_each_nearer(kTooNear_m, bricks_, offset_of,
+  projection.for_each_nearer(kTooNear_m, bricks_, cell_at,
                              [&](std::size_t i, const Eigen::Vector3f&, int x, int y) {
                                if (votes_[i].occupied != 0) hidden.hide_around(x, y);
                              });
@@ -150,7 +160,7 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
           static_cast<int>(std::ceil(config_.window_radius_m * projection.fx() / z)), kMaxWindowRadius_px);
       return window_depth(windows_, x, y, radius_px);
     };
-    const bool has_colour = i % kEveryColour == 0;
+    const bool has_colour = votes.coarse != 0 || i % kEveryColour == 0;
     const auto margin_m = [&, this](float depth) {
       return std::max(
           {least_margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
@@ -176,7 +186,18 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
     else if (measured_m - z > margin_m(measured_m))
       ++votes.glimpsed;
   };
-  projection.for_each_nearer(std::numeric_limits<float>::infinity(), bricks_, offset_of, vote);
+  // The votes of a brick concern no other, so the bricks are shared among threads.
+  const auto vote_in = [&](std::span<const CellBrick> bricks) {
+    projection.for_each_nearer(std::numeric_limits<float>::infinity(), bricks, cell_at, vote);
+  };
+  const std::size_t threads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMaxThreads);
+  const std::size_t stride = bricks_.size() / threads + 1;
+  std::vector<std::future<void>> others;
+  for (std::size_t first = stride; first < bricks_.size(); first += stride)
+    others.push_back(std::async(std::launch::async, vote_in,
+                                std::span(bricks_).subspan(first, std::min(stride, bricks_.size() - first))));
+  vote_in(std::span(bricks_).first(std::min(stride, bricks_.size())));
+  for (std::future<void>& other : others) other.get();
 }
 
 bool GhostVotes::is_share(int part, int others) const {
@@ -184,14 +205,23 @@ bool GhostVotes::is_share(int part, int others) const {
          static_cast<float>(part) >= static_cast<float>(part + others) * config_.min_through_share;
 }
 
+template <typename Visit>
+void GhostVotes::for_each_voxel(const Visit& visit) const {
+  for (const CellBrick& brick : bricks_)
+    for (std::size_t i = brick.begin; i < brick.end; ++i) {
+      const VoxelIndex lowest = brick.first + in_brick(votes_[i].offset);
+      const int voxels = votes_[i].coarse != 0 ? 8 : 1;
+      for (int v = 0; v < voxels; ++v)
+        visit(VoxelIndex(lowest + Eigen::Vector3i(v & 1, v >> 1 & 1, v >> 2)), static_cast<std::uint32_t>(i));
+    }
+}
+
 template <typename AreSuch>
 std::vector<VotedVoxel> GhostVotes::those(const AreSuch& are_such) const {
   std::vector<VotedVoxel> found;
-  std::uint32_t next = 0;
-  for (const VoxelBrick& brick : bricks_)
-    for (; next < brick.end; ++next)
-      if (are_such(votes_[next], absence_[next]))
-        found.push_back({brick.first + in_brick(votes_[next].offset), next});
+  for_each_voxel([&](const VoxelIndex& voxel, std::uint32_t i) {
+    if (are_such(votes_[i], absence_[i])) found.push_back({voxel, i});
+  });
   return found;
 }
 
@@ -252,19 +282,17 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
 GhostVotes::Verdicts GhostVotes::verdicts() const {
   const std::vector<Fate> fates = this->fates();
   Verdicts verdicts;
-  std::size_t next = 0;
-  for (const VoxelBrick& brick : bricks_)
-    for (; next < brick.end; ++next) {
-      const VoxelIndex voxel = brick.first + in_brick(votes_[next].offset);
-      if (fates[next] == Fate::kGhost)
-        verdicts.ghosts.push_back(voxel);
-      else if (fates[next] == Fate::kAbsent)
-        verdicts.absent.push_back(voxel);
-      else if (const Votes& v = votes_[next]; v.seen == 0 && v.through == 0 && v.glimpsed == 0)
-        verdicts.unseen.push_back(voxel);
-      else if (votes_[next].occupied != 0)
-        verdicts.still.push_back(voxel);
-    }
+  for_each_voxel([&](const VoxelIndex& voxel, std::uint32_t i) {
+    const Votes& votes = votes_[i];
+    if (fates[i] == Fate::kGhost)
+      verdicts.ghosts.push_back(voxel);
+    else if (fates[i] == Fate::kAbsent)
+      verdicts.absent.push_back(voxel);
+    else if (votes.seen == 0 && votes.through == 0 && votes.glimpsed == 0)
+      verdicts.unseen.push_back(voxel);
+    else if (votes.occupied != 0)
+      verdicts.still.push_back(voxel);
+  });
   return verdicts;
 }
 

@@ -12,13 +12,14 @@
 
 namespace roomradar {
 
-/// For each surface voxel of the map, counts the frames that measure it and the frames that see through it.
+/// For each surface cell of the map, counts the frames that measure it and the frames that see through it.
 /// Example: a hand that rests on a table for half of the recording is measured in as many frames as the
 /// table. Only the frames that see the table through the hand distinguish the hand from static surface.
-/// Frames without depth at the voxel count as AbsenceVotes.
+/// Frames without depth at the cell count as AbsenceVotes. A coarse cell is judged as a whole, as eight
+/// voxels.
 class GhostVotes {
  public:
-  /// Copies the map's surface voxels. These have a sample and are occupied or have a signed distance of at
+  /// Copies the map's surface cells. These have a sample and are occupied or have a signed distance of at
   /// most one voxel. Throws Error if the config is invalid.
   explicit GhostVotes(const StaticMap& map, const GhostConfig& config = {});
 
@@ -41,13 +42,17 @@ class GhostVotes {
   enum class Fate : std::uint8_t { kStill, kGhost, kAbsent };
   [[nodiscard]] std::vector<Fate> fates() const;  // in the order of votes_
   struct Votes {
-    std::uint16_t offset : 9 = 0;  // index in its brick
+    std::uint16_t offset : 9 = 0;  // of the lowest voxel in the brick
+    std::uint16_t coarse : 1 = 0;
     std::uint16_t occupied : 1 = 0;
     std::uint16_t seen = 0;
     std::uint16_t through = 0;
     // Number of frames that see through the voxel in its pixel, but not in the whole window.
     std::uint16_t glimpsed = 0;
   };
+  // Calls visit(voxel, index in votes_) for each voxel of the surface cells, in Morton order.
+  template <typename Visit>
+  void for_each_voxel(const Visit& visit) const;
   // Returns the voxels for which are_such(votes, absence votes) is true.
   template <typename AreSuch>
   [[nodiscard]] std::vector<VotedVoxel> those(const AreSuch& are_such) const;
@@ -56,7 +61,7 @@ class GhostVotes {
 
   double resolution_m_;
   GhostConfig config_;
-  std::vector<VoxelBrick> bricks_;
+  std::vector<CellBrick> bricks_;
   std::vector<Votes> votes_;
   std::vector<AbsenceVotes> absence_;  // in the order of votes_
   AbsenceVoter absence_looks_;

@@ -151,6 +151,33 @@ TEST(Ghosts, ABoxThatWasThereForHalfOfTheFramesVanishesAndTheWallBehindIsThere) 
   EXPECT_GE(behind, 49);
 }
 
+TEST(Ghosts, ABoxInCoarseCellsVanishesAsAWhole) {
+  const Scene far_wall = test::plane(Eigen::Vector3d::UnitY(), 4.5);
+  const Scene with_box = test::nearest_of(
+      far_wall, test::box({Eigen::Vector3d(-0.3, 3.5, -0.3), Eigen::Vector3d(0.3, 3.8, 0.3)}));
+  const std::vector<Frame> frames = record(40, [&](int i) { return i < 20 ? far_wall : with_box; });
+  StaticMap map(kResolution_m);
+  const std::vector<FusedFrame> fused = fuse_all(frames, map);
+  const Eigen::AlignedBox3d round_box(Eigen::Vector3d(-0.5, 3.3, -0.5), Eigen::Vector3d(0.5, 4.0, 0.5));
+  int coarse = 0, fine = 0;
+  map.visit_cells(round_box, [&](const SurfaceSample&, int edge) { ++(edge > 1 ? coarse : fine); });
+  ASSERT_GT(coarse, 500);
+  ASSERT_EQ(fine, 0);
+  FrameList source(frames);
+  StageTimes times;
+  GhostRevision revision = remove_ghosts(source, fused, {}, map, times);
+  EXPECT_GT(revision.voxels(), 8 * 300);
+  refuse_surroundings(source, fused, revision, map, times);
+  int left = 0;
+  map.visit_cells(round_box, [&](const SurfaceSample&, int) { ++left; });
+  EXPECT_LE(left, 2);  // of samples beside the box's edges
+  int wall = 0;
+  map.visit_cells(
+      {Eigen::Vector3d(-0.3, 4.3, -0.3), Eigen::Vector3d(0.3, 4.7, 0.3)},
+      [&](const SurfaceSample& sample, int) { wall += sample.occupancy == Occupancy::kOccupied; });
+  EXPECT_GT(wall, 100);
+}
+
 TEST(Ghosts, WhatCameLaterAndStayedForHalfOfTheFramesVanishesToo) {
   const auto frames = record(40, [](int i) {
     return i >= 20 ? before_wall({-0.1, 1.6, -0.1}, {0.1, 1.8, 0.1}) : wall();
