@@ -92,8 +92,11 @@ Frame render(std::span<const Solid> table, std::span<const Solid> hand,
 
 struct PassResult {
   bool touched = false, entered = false, passed = false;
+  bool entered_unseen = true, entered_pinned = true;  ///< in all frames in which the hand is in the object
   double deepest_m = 0.0;
 };
+
+constexpr double kEntered_m = 0.01;
 
 /// Depth by which the hand is in the object, in steps of 2.5 mm; 0: not deeper than 2.5 mm.
 double depth_in_m(std::span<const Solid> hand, const HandledObject& object,
@@ -107,6 +110,44 @@ double depth_in_m(std::span<const Solid> hand, const HandledObject& object,
     if (clearance_m(hand, {&solid, 1}, T_world_object, 0.1) > 0.0) return depth_m;
     depth_m = smaller_m;
   }
+}
+
+/// Returns true if most of what the hand and the object share lies more than a finger's thickness behind the
+/// hand's front: the camera sees another part of the hand there.
+bool is_unseen(std::span<const Solid> hand, const HandledObject& object,
+               const Eigen::Isometry3d& T_world_object, const Eigen::Isometry3d& T_world_camera) {
+  constexpr double kStep_m = 0.004, kThick_m = 0.03;
+  ViewCaster view;
+  ExactView exact;
+  view.prepare(hand, kCamera, T_world_camera);
+  render_exact(hand, view, kCamera, {}, exact);
+  const Solid solid = object_solid(object, 0.0);
+  const Eigen::Array3i steps = (object.size_m / kStep_m).array().cast<int>();
+  int seen = 0, unseen = 0;
+  for (int x = 0; x <= steps.x(); ++x)
+    for (int y = 0; y <= steps.y(); ++y)
+      for (int z = 0; z <= steps.z(); ++z) {
+        const Vec3 p_object = kStep_m * Vec3(x, y, z) - 0.5 * object.size_m;
+        const Vec3 p_world = T_world_object * p_object;
+        if (signed_distance_m(solid, p_object) > 0.0 ||
+            std::none_of(hand.begin(), hand.end(),
+                         [&](const Solid& part) { return signed_distance_m(part, p_world) < 0.0; }))
+          continue;
+        const Vec3 p_camera = T_world_camera.inverse() * p_world;
+        const Eigen::Vector2i pixel = project(kCamera, p_camera).array().round().cast<int>();
+        const bool is_in_view = exact.depth_m.contains(pixel.x(), pixel.y());
+        const double front_m = is_in_view ? exact.depth_m.at(pixel.x(), pixel.y()) : 0.0;
+        ++(front_m > 0.0 && p_camera.z() - front_m < kThick_m ? seen : unseen);
+      }
+  return unseen > seen;
+}
+
+/// Returns true if the object cannot be translated out of the hand's way: the room is there.
+bool is_pinned(std::span<const Solid> room, const Vec3& way, double depth_m, const HandledObject& object,
+               Eigen::Isometry3d T_world_object) {
+  T_world_object.pretranslate(depth_m * way);
+  const Solid solid = object_solid(object, 0.0);
+  return !(clearance_m(room, {&solid, 1}, T_world_object, 0.1) > 0.0);
 }
 
 PassResult sweep(const Pass& pass) {
@@ -141,7 +182,11 @@ PassResult sweep(const Pass& pass) {
     const double depth_m = depth_in_m(hand, *pass.object, object.body.T_world_object);
     result.touched |= !object.body.asleep;
     result.deepest_m = std::max(result.deepest_m, depth_m);
-    result.entered |= depth_m >= 0.01;
+    if (depth_m < kEntered_m) continue;
+    const Eigen::Isometry3d& T_world_object = object.body.T_world_object;
+    result.entered = true;
+    result.entered_unseen &= is_unseen(hand, *pass.object, T_world_object, T_world_camera);
+    result.entered_pinned &= is_pinned(table, pass.way, depth_m, *pass.object, T_world_object);
   }
   const double end_s = (moving_frames - 1) * kHandFrame_s;  // of the last frame
   const Vec3 hand_end = pass.palm_world(end_s) + 0.09 * pass.fingers;
@@ -157,11 +202,11 @@ PassResult sweep(const Pass& pass) {
 
 void measure_hands(int objects, nlohmann::json& rows) {
   const std::array<double, 10> speeds = {0.1, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.2, 2.6, 3.0};
-  std::printf("a hand through objects on a table\n%6s %8s %8s %8s %8s %11s\n", "m/s", "objects", "touched",
-              "entered", "passed", "deepest mm");
+  std::printf("a hand through objects on a table\n%6s %8s %8s %8s %8s %8s %8s %11s\n", "m/s", "objects",
+              "touched", "entered", "unseen", "pinned", "passed", "deepest mm");
   const int each = std::max(1, objects / static_cast<int>(speeds.size()));
   for (const double speed_mps : speeds) {
-    int touched = 0, entered = 0, passed = 0;
+    int touched = 0, entered = 0, unseen = 0, pinned = 0, passed = 0;
     double deepest_m = 0.0;
     for (int i = 0; i < each; ++i) {
       CounterRandom random(11, static_cast<std::uint64_t>(i));
@@ -174,16 +219,21 @@ void measure_hands(int objects, nlohmann::json& rows) {
       const PassResult result = sweep(pass);
       touched += result.touched;
       entered += result.entered;
+      unseen += result.entered && result.entered_unseen;
+      pinned += result.entered && result.entered_pinned;
       passed += result.passed;
       deepest_m = std::max(deepest_m, result.deepest_m);
     }
-    std::printf("%6.1f %8d %8d %8d %8d %11.1f\n", speed_mps, each, touched, entered, passed, 1e3 * deepest_m);
+    std::printf("%6.1f %8d %8d %8d %8d %8d %8d %11.1f\n", speed_mps, each, touched, entered, unseen, pinned,
+                passed, 1e3 * deepest_m);
     std::fflush(stdout);
     rows.push_back({{"table", "hands"},
                     {"speed_mps", speed_mps},
                     {"objects", each},
                     {"touched", touched},
                     {"entered", entered},
+                    {"unseen", unseen},
+                    {"pinned", pinned},
                     {"passed", passed},
                     {"deepest_mm", 1e3 * deepest_m}});
   }

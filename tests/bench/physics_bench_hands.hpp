@@ -7,7 +7,11 @@ namespace roomradar::bench {
 /// Moves a hand through `objects` objects, one after the other, each in a session of its own with simulated
 /// depth. Prints and appends one row per speed:
 ///   touched     objects that the hand moved or woke
-///   entered     objects that the hand was in by more than 10 mm after a frame
+///   entered     objects that the hand was in by 10 mm or more after a frame
+///   unseen      of these, objects of which the camera saw another part of the hand in front, whenever the
+///   hand
+///               was in them
+///   pinned      of these, objects that the room kept from giving way, whenever the hand was in them
 ///   passed      objects that ended behind the hand's path, or in the hand
 ///   deepest_mm  greatest depth of the hand in an object after a frame, in steps of 2.5 mm
 void measure_hands(int objects, nlohmann::json& rows);
