@@ -59,17 +59,18 @@ void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const s
     system.contacts.push_back(contact);
     system.gap_m.push_back(p.gap_m);
     system.kinds.push_back(p.kind);
-    system.is_push.push_back(false);
+    system.push.push_back(nullptr);
   }
-  if (!moving.push) return;
-  SolverContact& contact = system.contacts.emplace_back();
-  contact.body = index;
-  contact.contact_offset_m = moving.push->point_world - centre;
-  contact.normal = moving.push->normal_world;
-  contact.friction = on_room(moving.body->material, config).friction;
-  system.gap_m.push_back(0.0);
-  system.kinds.push_back(moving.push->touched);
-  system.is_push.push_back(true);
+  for (const Push& push : moving.pushes) {
+    SolverContact& contact = system.contacts.emplace_back();
+    contact.body = index;
+    contact.contact_offset_m = push.point_world - centre;
+    contact.normal = push.normal_world;
+    contact.friction = on_room(moving.body->material, config).friction;
+    system.gap_m.push_back(0.0);
+    system.kinds.push_back(push.touched);
+    system.push.push_back(&push);
+  }
 }
 
 /// Returns true if something hits the body of this solver index faster than kNudge_mps.
@@ -93,7 +94,7 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
   system.contacts.clear();
   system.gap_m.clear();
   system.kinds.clear();
-  system.is_push.clear();
+  system.push.clear();
   system.bodies.clear();
   system.bystanders.clear();
   for (const MovingBody& moving : bodies) system.bodies.push_back(solver_body(*moving.body, moving.velocity));
@@ -144,8 +145,8 @@ void set_masses(std::span<const MovingBody> bodies, Movable movable, ContactSyst
 void allow_closing_gaps(std::span<const MovingBody> bodies, double margin_m, ContactSystem& system) {
   for (std::size_t i = 0; i < system.contacts.size(); ++i) {
     SolverContact& contact = system.contacts[i];
-    contact.leaves_mps = system.is_push[i]
-                             ? bodies[contact.body].push->speed_mps
+    contact.leaves_mps = system.push[i] != nullptr
+                             ? system.push[i]->speed_mps
                              : -std::max(system.gap_m[i] - margin_m, 0.0) / left_s(bodies, contact);
   }
 }

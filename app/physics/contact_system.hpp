@@ -20,7 +20,9 @@ namespace roomradar {
 struct Push {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, towards the body
-  double speed_mps = 0.0;  ///< min speed of the body at point_world along the normal
+  /// Min speed of the body at point_world along the normal. Negative: max approach speed to a surface that
+  /// the body does not reach otherwise.
+  double speed_mps = 0.0;
   SurfaceKind touched = SurfaceKind::kDynamic;
 };
 
@@ -34,8 +36,8 @@ struct MovingBody {
   Body* body = nullptr;
   const CollisionQueries* probe = nullptr;
   double mass_kg = 1.0;
-  bool is_carried = false;  ///< moves without gravity, friction and restitution
-  std::optional<Push> push{};
+  bool is_carried = false;       ///< moves without gravity, friction and restitution
+  std::vector<Push> pushes{};    ///< of dynamic surfaces that overlap the body
   SurfaceKindMask left_out = 0;  ///< kinds that are no contacts, because they push or grip the body
   StepReport* report = nullptr;  ///< the substep adds its contacts
   double dt_s = 0.0;             ///< length of the substep
@@ -79,7 +81,7 @@ struct ContactSystem {
   std::vector<SolverContact> contacts;
   std::vector<double> gap_m;       ///< per contact; 0 for a Push
   std::vector<SurfaceKind> kinds;  ///< of the surface that SolverContact::body touches
-  std::vector<bool> is_push;       ///< the contact is a Push
+  std::vector<const Push*> push;   ///< per contact; null if it is none
   std::vector<SolverBody> bodies;
   std::vector<Bystander> bystanders;
   std::vector<PastContact> past;  ///< contacts of the last support solve, for warm starts

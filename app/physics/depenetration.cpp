@@ -29,6 +29,27 @@ bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const
   return is_deep;
 }
 
+std::vector<Push> push_contacts(const Body& body, const DirectedOverlap& overlap, double push_m, double dt_s,
+                                const CollisionQueries& queries, const PhysicsConfig& config) {
+  const Push single{overlap.contact.point_world, -overlap.direction_world, push_m / dt_s,
+                    overlap.contact.touched};
+  const double margin_m = config.contact_margin_m, out_m = overlap.depth_m + margin_m;
+  const Vec3 out = -out_m * overlap.direction_world;
+  Eigen::Isometry3d T_world_out = body.T_world_object;
+  T_world_out.pretranslate(out);
+  std::vector<ClosestPoint> points;
+  if (queries.near(T_world_out, out_m + margin_m, ~kMovingSurfaces, {}, points) != 0 || points.empty())
+    return {single};
+  std::vector<Push> pushes;
+  for (const ClosestPoint& p : points) {
+    const double way_m = p.normal_world.dot(out) - std::max(p.gap_m - margin_m, 0.0);
+    const double part = way_m > 0.0 ? push_m / out_m : 1.0;
+    pushes.push_back(
+        {p.point_world + p.gap_m * p.normal_world - out, p.normal_world, part * way_m / dt_s, p.kind});
+  }
+  return pushes;
+}
+
 PushDirections depenetration_directions(std::initializer_list<const Mesh*> moving_world,
                                         const Eigen::Vector3d& centre_world, double reach_m,
                                         const Eigen::Vector3d& up_world) {

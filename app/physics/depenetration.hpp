@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <initializer_list>
 #include <span>
+#include <vector>
 
 #include "app/physics/body.hpp"
 #include "app/physics/collision_queries.hpp"
+#include "app/physics/contact_system.hpp"
 #include "app/physics/physics_config.hpp"
 #include "mapping/types/mesh.hpp"
 
@@ -19,6 +21,21 @@ namespace roomradar {
 /// throw the body.
 bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
                  std::span<const Eigen::Vector3d> depenetration_directions_world);
+
+/// An overlap of a body with a surface along a direction.
+struct DirectedOverlap {
+  double depth_m = 0.0;                                       ///< 0: none
+  Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();  ///< unit, towards the surface
+  Contact contact;
+};
+
+/// Returns the contacts at which dynamic surfaces push a body out of an overlap: the closest features after a
+/// translation out of it, each with the speed that it then needs. The pushed body may rotate, but not into
+/// another part of the surfaces. If the translated body still meets a surface, the only contact is that of
+/// the overlap.
+/// @param push_m  displacement by the push during dt_s, at most the depth and the margin
+std::vector<Push> push_contacts(const Body& body, const DirectedOverlap& overlap, double push_m, double dt_s,
+                                const CollisionQueries& queries, const PhysicsConfig& config);
 
 /// Up to three unit directions from a body towards dynamic surfaces near it: horizontal ones to their nearest
 /// vertex and to the mean of their vertices within reach_m, then the one that their motion comes from.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "app/physics/depenetration.hpp"
 #include "app/physics/rigid_motion.hpp"
 #include "app/physics/sliding.hpp"
 
@@ -63,15 +64,9 @@ class Stepper {
 
   void wake();
   [[nodiscard]] bool failed() const { return report_.status == StepStatus::kHeld; }
-  [[nodiscard]] const std::optional<Push>& push() const { return push_; }
+  [[nodiscard]] const std::vector<Push>& pushes() const { return pushes_; }
 
  private:
-  struct Way {
-    double depth_m = 0.0;  // 0: no overlap
-    Vec3 direction = Vec3::Zero();
-    Contact contact;
-  };
-
   Contact ask(const Vec3& direction, double distance_m) {
     return query_travel(body_, direction, distance_m, probe_, report_);
   }
@@ -79,8 +74,11 @@ class Stepper {
   SurfaceKindMask crossed_before();
   /// Returns true if the overlap is only a surface between the body's parts, as in a handle, that crosses
   /// none of them.
-  [[nodiscard]] bool is_in_a_hollow(const Way& way);
-  static Way overlap_in(const Contact& contact, const Vec3& direction);
+  [[nodiscard]] bool is_in_a_hollow(const DirectedOverlap& way);
+  /// Returns up to which depth an overlap is left as it is. A sleeping body does not wait for a surface that
+  /// would be deeper in it than wake_overlap_m by the next call.
+  [[nodiscard]] double allowed_overlap_m(const DirectedOverlap& way, double dt_s) const;
+  static DirectedOverlap overlap_in(const Contact& contact, const Vec3& direction);
   void update_sleep(double dt_s, const SubstepResult& result);
   void tell_moved() const {
     if (advanced_.moved) advanced_.moved();
@@ -94,7 +92,7 @@ class Stepper {
   Vec3 down_ = Vec3::Zero();
   Contact below_;                           // along gravity, before any motion
   std::optional<SurfaceKindMask> crossed_;  // kinds that cross the body before any motion, once queried
-  std::optional<Push> push_;
+  std::vector<Push> pushes_;
   std::vector<ClosestPoint> near_;
 };
 
@@ -104,12 +102,12 @@ void Stepper::wake() {
   body_.asleep = false;
 }
 
-Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) {
+DirectedOverlap Stepper::overlap_in(const Contact& contact, const Vec3& direction) {
   if (contact.status != ContactStatus::kOverlap) return {};
   return {std::max(-contact.contact_distance_m, 0.0), direction, contact};
 }
 
-bool Stepper::is_in_a_hollow(const Way& way) {
+bool Stepper::is_in_a_hollow(const DirectedOverlap& way) {
   const SurfaceKind kind = way.contact.touched;
   if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind)) return false;
   return (crossed_before() & bit_of(kind)) == 0;
@@ -120,9 +118,15 @@ SurfaceKindMask Stepper::crossed_before() {
   return *crossed_;
 }
 
+double Stepper::allowed_overlap_m(const DirectedOverlap& way, double dt_s) const {
+  if (!body_.asleep) return config_.overlap_allowed_m;
+  const double grows_m = is_moving_surface(way.contact.touched) ? advanced_.surface_speed_mps * dt_s : 0.0;
+  return std::max(config_.wake_overlap_m - grows_m, config_.overlap_allowed_m);
+}
+
 void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_directions_world) {
-  Way way;
-  const auto consider = [&](const Way& other) {
+  DirectedOverlap way;
+  const auto consider = [&](const DirectedOverlap& other) {
     if (!(other.depth_m > 0.0) || (way.depth_m > 0.0 && other.depth_m >= way.depth_m)) return;
     if (!is_in_a_hollow(other)) way = other;
   };
@@ -137,7 +141,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_di
     if (direction.allFinite() && direction.norm() > 0.5) look(direction.normalized());
   // A wall that grazes the body's side overlaps deeply along gravity: test sideways before lifting the body
   // onto it.
-  if (way.depth_m > kDoubtful_m && way.direction == down_) {
+  if (way.depth_m > kDoubtful_m && way.direction_world == down_) {
     const Vec3 across = down_.unitOrthogonal();
     const Vec3 other_across = down_.cross(across);
     for (const Vec3& direction : {across, Vec3(-across), other_across, Vec3(-other_across)}) look(direction);
@@ -147,35 +151,34 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_di
   report_.deepest_overlap_m = std::max(report_.deepest_overlap_m, way.depth_m);
   if (way.contact.touched == SurfaceKind::kStatic)
     report_.deepest_static_overlap_m = std::max(report_.deepest_static_overlap_m, way.depth_m);
-  if (way.depth_m <= (body_.asleep ? config_.wake_overlap_m : config_.overlap_allowed_m)) return;
+  if (way.depth_m <= allowed_overlap_m(way, dt_s)) return;
 
   wake();
   const double push_m =
       std::min(way.depth_m + config_.contact_margin_m, config_.max_depenetration_mps * dt_s);
   if (is_moving_surface(way.contact.touched)) {
     if (advanced_.is_gripped) return;
-    const bool is_out_at_once = way.direction == down_ && way.depth_m <= push_m;
-    if (!is_out_at_once)
-      push_ = Push{way.contact.point_world, -way.direction, push_m / dt_s, way.contact.touched};
-    if (way.direction != down_) return;
+    const bool is_out_at_once = way.direction_world == down_ && way.depth_m <= push_m;
+    if (!is_out_at_once) pushes_ = push_contacts(body_, way, push_m, dt_s, probe_, config_);
+    if (way.direction_world != down_) return;
   }
   // A surface behind the body limits the push: the body stays squeezed until the next call.
-  const Contact behind = ask(-way.direction, push_m + config_.contact_margin_m);
+  const Contact behind = ask(-way.direction_world, push_m + config_.contact_margin_m);
   if (failed()) return;
   double free_m = push_m;
   if (behind.status == ContactStatus::kContact)
     free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
   if (behind.status == ContactStatus::kOverlap && behind.touched == SurfaceKind::kStatic) free_m = 0.0;
   Eigen::Isometry3d T_world_pushed = body_.T_world_object;
-  T_world_pushed.translation() -= std::min(push_m, free_m) * way.direction;
+  T_world_pushed.translation() -= std::min(push_m, free_m) * way.direction_world;
   // An overlap behind hides what comes after it: the push may not end in another kind of surface.
   if (behind.status == ContactStatus::kOverlap &&
       (probe_.near(T_world_pushed, kTouching_m, 0, {}, near_) & ~crossed_before()) != 0)
     return;
   body_.T_world_object = T_world_pushed;
   tell_moved();
-  const double inward_mps = body_.velocity_world_mps.dot(way.direction);
-  if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction;
+  const double inward_mps = body_.velocity_world_mps.dot(way.direction_world);
+  if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction_world;
 }
 
 bool Stepper::is_held_up() const {
@@ -226,7 +229,7 @@ void Stepper::end_substep(const MovingBody& moved, const SubstepResult& result) 
   }
   if (result.is_held_up) {
     body_.rests_on = result.rests_on;
-    if (!push_) update_sleep(moved.dt_s, result);
+    if (pushes_.empty()) update_sleep(moved.dt_s, result);
   } else {
     body_.rests_on = SurfaceKind::kNothing;
   }
@@ -265,8 +268,8 @@ void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& confi
          .probe = advanced.probe,
          .mass_kg = advanced.mass_kg,
          .is_carried = advanced.is_carried,
-         .push = stepper.push(),
-         .left_out = stepper.push() || advanced.is_gripped ? kMovingSurfaces : SurfaceKindMask{0},
+         .pushes = stepper.pushes(),
+         .left_out = !stepper.pushes().empty() || advanced.is_gripped ? kMovingSurfaces : SurfaceKindMask{0},
          .report = &advanced.report,
          .dt_s = dt_s,
          .moved = &advanced.moved,

@@ -61,12 +61,14 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 /// set it in motion, unless it sleeps on a dynamic surface.
 ///
 /// If a surface overlaps a body before the step, the body is first translated out of the overlap. If a
-/// dynamic surface overlaps it from the side, the contact point is instead pushed at the speed that removes
-/// the overlap in dt_s. The body then slides, rotates or tips. While a surface other than the pushing one
-/// intersects a body, the body does not rotate. It then moves by radar queries along its path.
+/// dynamic surface overlaps it from the side, the contacts with it are instead pushed at the speeds that
+/// remove the overlap in dt_s, see push_contacts(). The body then slides, rotates or tips. While a surface
+/// other than the pushing one intersects a body, the body does not rotate. It then moves by radar queries
+/// along its path.
 ///
 /// Apart from contacts with moving bodies, a sleeping body is tested only along gravity and
 /// depenetration_directions_world. Overlaps up to wake_overlap_m, such as from sensor noise, do not move it.
+/// For dynamic surfaces that move, the limit is less by the distance that they travel in dt_s.
 /// A body that fell asleep in contact with another body wakes when that other body moves by more than
 /// wake_moved_m or disappears. A sleeping body with a non-zero velocity wakes. At most max_advance_s is
 /// simulated per call.

@@ -31,7 +31,8 @@ struct PhysicsConfig {
   double wake_gap_m = 0.012;
   /// A sleeping body wakes if a body that it touches moves farther than this.
   double wake_moved_m = 0.001;
-  /// A sleeping body wakes and is moved out if it overlaps a surface by more than this.
+  /// A sleeping body wakes and is moved out if it overlaps a surface by more than this; sooner if the surface
+  /// moves (see advance_together()).
   double wake_overlap_m = 0.008;
   double overlap_allowed_m = 0.001;  ///< overlaps of an awake body up to this depth are not corrected
   /// Max speed of depenetration, and of a dynamic surface that pushes a body.

@@ -74,12 +74,12 @@ bool Substep::bounce() {
   bool enters = false, is_fast = false, is_pushed = false;
   for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
     SolverContact& contact = system_.contacts[i];
-    is_pushed |= system_.is_push[i];
+    is_pushed |= system_.push[i] != nullptr;
     const double closing_mps = -slip_at(contact, system_.bodies).dot(contact.normal);
     if (!(closing_mps > -contact.leaves_mps + 1e-9)) continue;
     enters = true;
     const bool is_carried = bodies_[contact.body].is_carried && contact.other == kNoOther;
-    if (system_.is_push[i] || is_carried || !(closing_mps > config_.bounce_mps)) continue;
+    if (system_.push[i] != nullptr || is_carried || !(closing_mps > config_.bounce_mps)) continue;
     is_fast = true;
     contact.leaves_mps = contact.restitution * closing_mps;
   }
@@ -175,8 +175,7 @@ void Substep::find_balanced() {
       system_.bodies[i].velocity.linear_mps = config_.gravity_world_mps2 * bodies_[i].dt_s;
   }
   for (std::size_t i = 0; i < system_.contacts.size(); ++i)
-    system_.contacts[i].leaves_mps =
-        system_.is_push[i] ? bodies_[system_.contacts[i].body].push->speed_mps : 0.0;
+    system_.contacts[i].leaves_mps = system_.push[i] != nullptr ? system_.push[i]->speed_mps : 0.0;
   guess_impulses(bodies_, bodies_.front().dt_s, system_);
   solve(config_.rolling);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -193,7 +192,7 @@ std::vector<Velocity> Substep::corrections() {
   bool is_needed = false;
   for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
     SolverContact& contact = system_.contacts[i];
-    const double missing_m = system_.is_push[i] ? -1.0 : config_.contact_margin_m - system_.gap_m[i];
+    const double missing_m = system_.push[i] != nullptr ? -1.0 : config_.contact_margin_m - system_.gap_m[i];
     is_needed |= missing_m > kLeft * config_.contact_margin_m;
     const double left = left_s(bodies_, contact);
     contact.leaves_mps =
