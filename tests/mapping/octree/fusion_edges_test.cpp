@@ -3,10 +3,8 @@
 #include <octomap/OcTree.h>
 
 #include <cmath>
-#include <future>
 #include <memory>
 #include <random>
-#include <set>
 #include <vector>
 
 #include "mapping/octree/block_octree.hpp"
@@ -182,52 +180,6 @@ TEST(FusionEdges, PlainAndFastestArithmeticMakeTheSameMapBitForBit) {
   const auto a = content(fastest), b = content(plain);
   EXPECT_GT(a.size(), 50'000U);
   EXPECT_EQ(a, b);
-}
-
-TEST(BlockPool, WithoutNumbersLeftSaysSoAndGoesOnWithThoseGivenBack) {
-  BlockPool<ColourBlock> pool(3);
-  EXPECT_EQ(pool.take(), 1U);
-  EXPECT_EQ(pool.take(), 2U);
-  pool[2].colours[5] = {1, 2, 3};
-  EXPECT_EQ(pool.take(), 3U);
-  const std::size_t bytes = pool.memory_bytes();
-  EXPECT_GE(bytes, 3 * sizeof(ColourBlock));
-  EXPECT_NE(error_of([&] { pool.take(); }).find("take a coarser resolution"), std::string::npos);
-  EXPECT_EQ(pool.in_use(), 3U);
-  pool.give_back(2);
-  EXPECT_EQ(pool.in_use(), 2U);
-  EXPECT_EQ(pool.take(), 2U);
-  EXPECT_EQ(pool[2].colours[5], Rgb{});  // reset
-}
-
-TEST(BlockPool, ThreadsOfDifferentLanesGetDifferentBlocks) {
-  constexpr unsigned kEach = 5000;
-  BlockPool<ColourBlock> pool;
-  std::vector<std::future<std::vector<std::uint32_t>>> threads;
-  for (unsigned lane = 0; lane < 4; ++lane)
-    threads.push_back(std::async(std::launch::async, [&pool, lane] {
-      pool_lane = lane;
-      std::vector<std::uint32_t> numbers;
-      for (unsigned i = 0; i < 2 * kEach; ++i) {
-        numbers.push_back(pool.take());
-        pool[numbers.back()].colours[0] = {static_cast<std::uint8_t>(lane), 0, 0};
-      }
-      for (; numbers.size() > kEach; numbers.pop_back()) pool.give_back(numbers.back());
-      return numbers;
-    }));
-  std::set<std::uint32_t> all;
-  for (unsigned lane = 0; lane < 4; ++lane)
-    for (const std::uint32_t number : threads[lane].get()) {
-      EXPECT_TRUE(all.insert(number).second);
-      EXPECT_EQ(pool[number].colours[0].r, lane);
-    }
-  EXPECT_EQ(pool.in_use(), all.size());
-  // What other lanes gave back is used before new memory.
-  const std::size_t bytes = pool.memory_bytes();
-  pool.gather_free();
-  for (unsigned i = 0; i < 4 * kEach; ++i) EXPECT_EQ(all.count(pool.take()), 0U);
-  EXPECT_EQ(pool.in_use(), all.size() + 4 * kEach);
-  EXPECT_LE(pool.memory_bytes(), bytes + 4 * 4 * kEach * sizeof(std::uint32_t));  // only longer lists
 }
 
 TEST(BlockOctree, OnePlaceLeavesNothingBehindWhenItIsFreedAgain) {
