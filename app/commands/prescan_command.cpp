@@ -227,8 +227,9 @@ class ScanProgress {
 };
 
 /// Scans the room; the map to extend is moved from `start`. Errors say whether the scan can be resumed.
+/// @param last_frame_s  out: Report::seconds() when the last frame was tracked
 PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, ScanStart& start,
-                   Report& report) {
+                   Report& report, double& last_frame_s) {
   if (start.checkpoints)
     start.checkpoints->tell_failure([](const std::string& sentence) {
       // On a terminal the progress line has no line end.
@@ -236,8 +237,11 @@ PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, S
     });
   ScanProgress progress(options, start);
   PrescanResult scanned = or_say_what_is_kept(start, [&] {
-    return prescan(*start.source, config, report.times,
-                   [&](const std::string& stage, const std::string& note) { progress.show(stage, note); },
+    const auto show = [&](const std::string& stage, const std::string& note) {
+      if (stage == "track") last_frame_s = report.seconds();
+      progress.show(stage, note);
+    };
+    return prescan(*start.source, config, report.times, show,
                    {start.checkpoints.get(), std::move(start.map)});
   });
   report.frames_read = scanned.counts.frames_read;
@@ -287,7 +291,8 @@ int run(const PrescanOptions& options) {
   if (extends) keep_settings_of_map(options, *start.map, config, report);
   announce_memory(*start.source, config, report);
 
-  const PrescanResult scanned = scan(options, config, start, report);
+  double last_frame_s = 0.0;
+  const PrescanResult scanned = scan(options, config, start, report, last_frame_s);
   const bool was_stopped = scanned.counts.stopped_for_memory;
   const bool keep_frames = was_stopped && !start.spool.empty();
   if (extends && was_stopped) {
@@ -299,6 +304,7 @@ int run(const PrescanOptions& options) {
   }
   or_say_what_is_kept(start,
                       [&] { report.times.timed("save", [&] { save_map(options.map, scanned.map); }); });
+  report.results["ready_after_s"] = report.seconds() - last_frame_s;
 
   const HeldOut held_out = score_map(options, *start.source, scanned, report);
   if (start.checkpoints) finish(*start.checkpoints, keep_frames);

@@ -2,6 +2,7 @@
 //
 // usage: map_bench [--resolution M] [--json FILE] [poses SOURCE]...
 //        map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] whole SOURCE
+//        map_bench [--json FILE] scan SOURCE
 //        poses: recorded (the true ones) or tracked; SOURCE: sim:ROOM?...
 // Default: recorded and tracked on sim:table, 700 frames, once around the room and back.
 //
@@ -11,8 +12,8 @@
 //   precision  fraction of the mesh within 2 cm of the surface; F-score: its harmonic mean with cover
 //   gap        error of the last pose relative to the first
 //
-// `whole` fuses a recording with its own poses, with coarse cells and with voxels only, see
-// map_bench_whole.hpp.
+// `whole` runs the program's prescan of a recording, then fuses it with its own poses, with coarse cells and
+// with voxels only, see map_bench_whole.hpp. `scan` runs the prescan only.
 //
 // Settings are the defaults of PrescanConfig: changing them breaks the comparison with earlier results.
 #include <algorithm>
@@ -106,6 +107,7 @@ int main(int argc, char** argv) {
     std::string json;
     std::vector<Cell> cells;
     roomradar::test::WholeCell whole;
+    bool is_scan = false;
     for (int i = 1; i < argc; ++i) {
       const std::string word = argv[i];
       const std::string value = i + 1 < argc ? argv[++i] : "";
@@ -117,22 +119,30 @@ int main(int argc, char** argv) {
         whole.max_cell_sigmas = std::atof(value.c_str());
       } else if (word == "--truth") {
         whole.truth = value;
-      } else if (word == "whole" && !value.empty()) {
+      } else if ((word == "whole" || word == "scan") && !value.empty()) {
         whole.source = value;
+        is_scan = word == "scan";
       } else if ((word == "recorded" || word == "tracked") && value.starts_with("sim:")) {
         cells.push_back({word, value});
       } else {
         std::fprintf(
             stderr,
             "usage: map_bench [--resolution M] [--json FILE] [recorded|tracked sim:ROOM?...]...\n"
-            "       map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] whole SOURCE\n");
+            "       map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] whole SOURCE\n"
+            "       map_bench [--json FILE] scan SOURCE\n");
         return 2;
       }
     }
     if (!whole.source.empty()) {
       whole.resolution_m = resolution_m;
-      const nlohmann::json rows = roomradar::test::whole_rows(whole);
-      roomradar::test::print_whole(rows);
+      nlohmann::json rows = nlohmann::json::array();
+      rows.push_back(roomradar::test::scan_row(whole.source));
+      std::printf("%s\n", rows.back().dump().c_str());
+      if (!is_scan) {
+        const nlohmann::json cells_rows = roomradar::test::whole_rows(whole);
+        roomradar::test::print_whole(cells_rows);
+        rows.insert(rows.end(), cells_rows.begin(), cells_rows.end());
+      }
       roomradar::test::write_rows(json, rows);
       return 0;
     }

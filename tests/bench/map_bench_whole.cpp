@@ -1,17 +1,22 @@
-// map_bench_whole.cpp: two maps of one recording, judged along held-out rays.
+// map_bench_whole.cpp: a prescan of one recording, and two maps of it that are judged along held-out rays.
 #include "tests/bench/map_bench_whole.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "app/cli/open_source.hpp"
 #include "mapping/octree/static_map.hpp"
+#include "mapping/types/system/error.hpp"
 #include "tests/bench/bench_times.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::test {
 namespace {
@@ -123,6 +128,7 @@ nlohmann::json row_of(const WholeCell& cell, const Fused& fused, const Bins& bin
 
 nlohmann::json whole_rows(const WholeCell& cell) {
   FusionConfig voxels, coarse;
+  voxels.threads = coarse.threads = 1;
   voxels.max_cell_sigmas = 0.0F;
   coarse.max_cell_sigmas = static_cast<float>(cell.max_cell_sigmas);
   std::array<Fused, 2> maps{Fused{StaticMap(cell.resolution_m, voxels), {}},
@@ -143,6 +149,29 @@ nlohmann::json whole_rows(const WholeCell& cell) {
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t i = 0; i < maps.size(); ++i) rows.push_back(row_of(cell, maps[i], bins[i]));
   return rows;
+}
+
+nlohmann::json scan_row(const std::string& source) {
+  const TemporaryFolder folder;
+  const std::filesystem::path map = folder.path() / "map", report = folder.path() / "report.json";
+  const std::string command = std::string("'" ROOMRADAR_PROGRAM "' prescan '") + source + "' --map '" +
+                              map.string() + "' --report '" + report.string() + "' > /dev/null 2>&1";
+  if (std::system(command.c_str()) != 0) throw Error(source + ": fails: " + command);
+  const nlohmann::json told = nlohmann::json::parse(std::ifstream(report));
+  double folder_bytes = 0.0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(map))
+    if (entry.is_regular_file()) folder_bytes += static_cast<double>(entry.file_size());
+  nlohmann::json row = {{"source", source},
+                        {"frames", told["frames_read"]},
+                        {"wall_s", told["wall_s"]},
+                        {"ready_after_s", told["ready_after_s"]},
+                        {"peak_rss_mb", told["peak_rss_mb"]},
+                        {"folder_mb", folder_bytes / 1e6}};
+  if (told.contains("ate_rmse_m")) row["ate_rmse_m"] = told["ate_rmse_m"];
+  for (const char* stage : {"track", "optimise", "fuse", "ghosts", "surface", "coverage", "save"})
+    if (told["stages"].contains(stage))
+      row[std::string(stage) + "_median_ms"] = told["stages"][stage]["median_ms"];
+  return row;
 }
 
 void print_whole(const nlohmann::json& rows) {

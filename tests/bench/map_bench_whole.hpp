@@ -1,4 +1,5 @@
-// map_bench_whole.hpp: cost and accuracy of fusing a whole recording, with coarse cells and with voxels only.
+// map_bench_whole.hpp: cost and accuracy of scanning a whole recording, with coarse cells and with voxels
+// only.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -21,7 +22,12 @@ struct WholeCell {
 /// without a crossing within 15 cm.
 nlohmann::json whole_rows(const WholeCell& cell);
 
-/// Prints the rows as a table.
+/// Runs `roomradar prescan` on a source, with default settings. Returns its time, the time from the last
+/// frame to the saved map, the peak of its memory, the size of the map's folder, the trajectory's error, and
+/// the median time of its stages. Throws Error if the program fails.
+nlohmann::json scan_row(const std::string& source);
+
+/// Prints the rows of whole_rows() as a table.
 void print_whole(const nlohmann::json& rows);
 
 }  // namespace roomradar::test
