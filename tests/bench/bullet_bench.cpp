@@ -2,9 +2,12 @@
 //
 // usage: bullet_bench [--map FOLDER --at X,Y,Z] [--objects N] [--throws N] [--only heap|throws]
 //                     [--engines ours|all] [--seed N] [--json FILE]
-//        FOLDER: a saved map; objects are dropped above the point. Without it: the simulated table room.
+//        FOLDER: a saved map, in which unknown space is solid, as in a run. Objects are dropped from 0.9 m
+//        above the point, which must be known space. Without it: the simulated table room.
 //
-//   heap    N (50) boxes, balls and teapots of 5 to 15 cm, one every second frame, 300 frames
+//   heap    N (50) boxes, balls and teapots of 5 to 15 cm, one every second frame or once its place is free,
+//           300 frames
+//     entered bodies whose place became free
 //     asleep  bodies at rest at the end
 //     crossed bodies whose surface another one's or the room's crosses at the end, and the greatest depth
 //     gone    bodies that have fallen through everything
@@ -27,6 +30,7 @@
 #include "bench_program.hpp"
 #include "bullet_bench_scenes.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/surface/unknown_surface.hpp"
 
 namespace roomradar::bench {
 namespace {
@@ -77,17 +81,17 @@ Options parse(int argc, char** argv) {
 /// A way to simulate a scene.
 struct Engine {
   const char* name;
-  Simulated (*simulate)(const Mesh&, const std::vector<Entry>&, int);
+  Simulated (*simulate)(const Surroundings&, const std::vector<Entry>&, int);
 };
 const std::array<Engine, 3> kEngines = {{
     {"roomradar", &simulate},
     {"Bullet",
-     [](const Mesh& room, const std::vector<Entry>& entries, int frames) {
-       return simulate_with_bullet(room, entries, frames, BulletMotion::kDiscrete);
+     [](const Surroundings& surroundings, const std::vector<Entry>& entries, int frames) {
+       return simulate_with_bullet(surroundings, entries, frames, BulletMotion::kDiscrete);
      }},
     {"Bullet, CCD",
-     [](const Mesh& room, const std::vector<Entry>& entries, int frames) {
-       return simulate_with_bullet(room, entries, frames, BulletMotion::kContinuous);
+     [](const Surroundings& surroundings, const std::vector<Entry>& entries, int frames) {
+       return simulate_with_bullet(surroundings, entries, frames, BulletMotion::kContinuous);
      }},
 }};
 
@@ -110,53 +114,91 @@ double overlap_m(const TreeInstance& object, std::span<const SceneTree> scene, C
   return least_m;
 }
 
-void measure_heap(const Options& options, nlohmann::json& rows) {
-  constexpr int kFrames = 300;
-  const Room table = make_room("table");
-  const Mesh room = options.map.empty() ? room_mesh(table) : load_map_mesh(options.map);
-  const Vec3 at_world = options.map.empty() ? table.focus_world : options.at_world;
-  std::mt19937 random(options.seed);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
+struct Heap {
+  Surroundings surroundings;
+  Vec3 at_world;
   std::list<Thing> things;
   std::vector<Entry> entries;
+};
+
+/// Sets the surfaces of a saved map. Throws Error if an object would enter in unknown space: the border of
+/// unknown space does not stop what comes from behind it.
+void take_map(const std::string& folder, Heap& heap) {
+  const SavedMap map = load_map(folder);
+  const UnknownSurface unknown = *map.unknown ? **map.unknown : unknown_surface(map.octree, map.mesh);
+  for (const Entry& entry : heap.entries)
+    for (const Eigen::Vector3f& v : entry.thing->mesh.vertices)
+      if (is_unknown(unknown, entry.T_world_object * (entry.thing->mesh.origin + v.cast<double>())))
+        throw Error(
+            "--at: an object would enter in space that was not scanned; choose a lower point or another");
+  heap.surroundings = {map.mesh, unknown.mesh_world};
+}
+
+Heap make_heap(const Options& options) {
+  Heap heap;
+  const Room table = make_room("table");
+  heap.at_world = options.map.empty() ? table.focus_world : options.at_world;
+  std::mt19937 random(options.seed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int i = 0; i < options.objects; ++i) {
     const double size_m = 0.05 + 0.1 * unit(random);
     const int kind = i % 4;
-    things.emplace_back("object", kind == 0   ? box_mesh(Vec3::Constant(size_m))
-                                  : kind == 1 ? box_mesh({size_m, 0.6 * size_m, 0.3 * size_m})
-                                  : kind == 2 ? ball_mesh(0.5 * size_m, 8)
-                                              : utah_teapot(10, size_m));
+    heap.things.emplace_back("object", kind == 0   ? box_mesh(Vec3::Constant(size_m))
+                                       : kind == 1 ? box_mesh({size_m, 0.6 * size_m, 0.3 * size_m})
+                                       : kind == 2 ? ball_mesh(0.5 * size_m, 8)
+                                                   : utah_teapot(10, size_m));
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation() = at_world + Vec3(0.17 * (i % 3 - 1) + 0.03 * (unit(random) - 0.5),
-                                      0.17 * (i / 3 % 3 - 1) + 0.03 * (unit(random) - 0.5), 0.9);
-    entries.push_back({&things.back(), kind != 3, 2 * i + 1, T});
+    T.translation() = heap.at_world + Vec3(0.17 * (i % 3 - 1) + 0.03 * (unit(random) - 0.5),
+                                           0.17 * (i / 3 % 3 - 1) + 0.03 * (unit(random) - 0.5), 0.9);
+    heap.entries.push_back({&heap.things.back(), kind != 3, 2 * i + 1, T});
   }
-  std::printf("heap of %d objects, %d frames, thread time\n%-12s %8s %8s %8s %8s %8s %8s %11s %6s\n",
-              options.objects, kFrames, "", "median", "p95", "p99", "mean ms", "asleep", "crossed",
+  if (options.map.empty())
+    heap.surroundings.room = room_mesh(table);
+  else
+    take_map(options.map, heap);
+  return heap;
+}
+
+struct Crossings {
+  int crossed = 0, gone = 0;
+  double deepest_m = 0.0;
+};
+
+/// Tests the bodies at the end against each other and the room.
+Crossings find_crossings(const Heap& heap, const Simulated& result) {
+  TriangleTree room_tree;
+  room_tree.build_by_place(heap.surroundings.room);
+  CyberRadar radar;
+  ProximityQuery field;
+  Crossings found;
+  const std::vector<Entry>& entries = heap.entries;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    found.gone += !(result.T_world_object[i].translation().z() > heap.at_world.z() - 3.0);
+    std::vector<SceneTree> scene{{{&room_tree, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic}};
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      if (k != i)
+        scene.push_back({{&entries[k].thing->tree, result.T_world_object[k]}, SurfaceKind::kObject});
+    const double depth_m =
+        overlap_m({&entries[i].thing->tree, result.T_world_object[i]}, scene, radar, field);
+    found.crossed += depth_m > 0.0;
+    found.deepest_m = std::max(found.deepest_m, depth_m);
+  }
+  return found;
+}
+
+void measure_heap(const Options& options, nlohmann::json& rows) {
+  constexpr int kFrames = 300;
+  const Heap heap = make_heap(options);
+  std::printf("heap of %d objects, %d frames, thread time\n%-12s %8s %8s %8s %8s %8s %8s %8s %11s %6s\n",
+              options.objects, kFrames, "", "median", "p95", "p99", "mean ms", "entered", "asleep", "crossed",
               "deepest mm", "gone");
   for (const Engine& engine : engines_of(options)) {
-    const Simulated result = engine.simulate(room, entries, kFrames);
-    TriangleTree room_tree;
-    room_tree.build_by_place(room);
-    CyberRadar radar;
-    ProximityQuery field;
-    int crossed = 0, gone = 0;
-    double deepest_m = 0.0;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      gone += !(result.T_world_object[i].translation().z() > at_world.z() - 3.0);
-      std::vector<SceneTree> scene{{{&room_tree, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic}};
-      for (std::size_t k = 0; k < entries.size(); ++k)
-        if (k != i)
-          scene.push_back({{&entries[k].thing->tree, result.T_world_object[k]}, SurfaceKind::kObject});
-      const double depth_m =
-          overlap_m({&entries[i].thing->tree, result.T_world_object[i]}, scene, radar, field);
-      crossed += depth_m > 0.0;
-      deepest_m = std::max(deepest_m, depth_m);
-    }
+    const Simulated result = engine.simulate(heap.surroundings, heap.entries, kFrames);
+    const Crossings found = find_crossings(heap, result);
     const test::Times& t = result.frames;
-    std::printf("%-12s %8.2f %8.2f %8.2f %8.2f %8d %8d %11.2f %6d\n", engine.name, t.percentile(0.5),
-                t.percentile(0.95), t.percentile(0.99), t.mean(), result.asleep, crossed, 1e3 * deepest_m,
-                gone);
+    std::printf("%-12s %8.2f %8.2f %8.2f %8.2f %8d %8d %8d %11.2f %6d\n", engine.name, t.percentile(0.5),
+                t.percentile(0.95), t.percentile(0.99), t.mean(), result.entered, result.asleep,
+                found.crossed, 1e3 * found.deepest_m, found.gone);
     std::fflush(stdout);
     rows.push_back({{"table", "heap"},
                     {"engine", engine.name},
@@ -164,10 +206,11 @@ void measure_heap(const Options& options, nlohmann::json& rows) {
                     {"p95_ms", t.percentile(0.95)},
                     {"p99_ms", t.percentile(0.99)},
                     {"mean_ms", t.mean()},
+                    {"entered", result.entered},
                     {"asleep", result.asleep},
-                    {"crossed", crossed},
-                    {"deepest_mm", 1e3 * deepest_m},
-                    {"gone", gone}});
+                    {"crossed", found.crossed},
+                    {"deepest_mm", 1e3 * found.deepest_m},
+                    {"gone", found.gone}});
   }
 }
 
@@ -188,7 +231,7 @@ void measure_throws(const Options& options, nlohmann::json& rows) {
     const auto direction = [&] { return Vec3(normal(random), normal(random), normal(random)).normalized(); };
     for (const char* name : {"table", "shelf", "wall"}) {
       const Room room = make_room(name);
-      const Mesh mesh = room_mesh(room);
+      const Surroundings surroundings{room_mesh(room), {}};
       const Vec3 low = room.interior_min_world, size = room.interior_max_world - low;
       for (int number = 0; number < throws / 3; ++number) {
         const std::size_t which = static_cast<std::size_t>(number) % things.size();
@@ -199,7 +242,7 @@ void measure_throws(const Options& options, nlohmann::json& rows) {
             low + Vec3(0.2 + 0.6 * unit(random), 0.2 + 0.6 * unit(random), 0.8).cwiseProduct(size));
         entry.velocity_world_mps = 10.0 * unit(random) * direction();
         entry.angular_velocity_world_rad_s = 20.0 * unit(random) * direction();
-        const Simulated result = engine.simulate(mesh, {entry}, kFrames);
+        const Simulated result = engine.simulate(surroundings, {entry}, kFrames);
         const Vec3 centre = result.T_world_object[0] * things[which]->mass.centre_object;
         outside[which] += !((centre - low).minCoeff() > 0.0 && (low + size - centre).minCoeff() > 0.0);
         ++count[which];

@@ -3,8 +3,10 @@
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletDynamicsCommon.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include "bullet_bench_scenes.hpp"
 
@@ -75,10 +77,43 @@ PeerBody body_of(const Entry& entry, BulletMotion motion) {
   return peer;
 }
 
+/// A surface at rest.
+struct PeerSurface {
+  std::unique_ptr<btTriangleMesh> triangles;
+  std::unique_ptr<btBvhTriangleMeshShape> shape;
+  std::unique_ptr<btRigidBody> body;
+
+  explicit PeerSurface(const Mesh& mesh) : triangles(triangles_of(mesh, Eigen::Vector3d::Zero())) {
+    shape = std::make_unique<btBvhTriangleMeshShape>(triangles.get(), true);
+    shape->setMargin(kMargin_m);
+    body = std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(0.0, nullptr, shape.get()));
+    body->setFriction(std::sqrt(0.5));
+    body->setRollingFriction(1.0);
+  }
+};
+
+Eigen::Isometry3d pose_of(const btRigidBody& body, const MassProperties& mass) {
+  const btTransform& transform = body.getWorldTransform();
+  const btQuaternion q = transform.getRotation();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized().toRotationMatrix();
+  const btVector3& origin = transform.getOrigin();
+  T.translation() = Eigen::Vector3d(origin.x(), origin.y(), origin.z()) - T.linear() * mass.centre_object;
+  return T;
+}
+
+std::vector<Eigen::Isometry3d> poses_of(const std::vector<PeerBody>& bodies,
+                                        const std::vector<Entry>& entries) {
+  std::vector<Eigen::Isometry3d> T_world_object;
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    T_world_object.push_back(pose_of(*bodies[i].body, entries[i].thing->mass));
+  return T_world_object;
+}
+
 }  // namespace
 
-Simulated simulate_with_bullet(const Mesh& room, const std::vector<Entry>& entries, int frames,
-                               BulletMotion motion) {
+Simulated simulate_with_bullet(const Surroundings& surroundings, const std::vector<Entry>& entries,
+                               int frames, BulletMotion motion) {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);
@@ -86,38 +121,32 @@ Simulated simulate_with_bullet(const Mesh& room, const std::vector<Entry>& entri
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
   world.setGravity({0.0, 0.0, -9.81});
-  const auto room_triangles = triangles_of(room, Eigen::Vector3d::Zero());
-  btBvhTriangleMeshShape room_shape(room_triangles.get(), true);
-  room_shape.setMargin(kMargin_m);
-  btRigidBody room_body(btRigidBody::btRigidBodyConstructionInfo(0.0, nullptr, &room_shape));
-  room_body.setFriction(std::sqrt(0.5));
-  room_body.setRollingFriction(1.0);
-  world.addRigidBody(&room_body);
+  std::vector<PeerSurface> surfaces;
+  for (const Mesh* mesh : {&surroundings.room, &surroundings.unknown})
+    if (!mesh->triangles.empty()) surfaces.emplace_back(*mesh);
+  for (const PeerSurface& surface : surfaces) world.addRigidBody(surface.body.get());
   std::vector<PeerBody> bodies;
   for (const Entry& entry : entries) bodies.push_back(body_of(entry, motion));
   Simulated result;
+  std::vector<bool> is_present(entries.size());
+  ProximityQuery field;
   for (int frame = 0; frame < frames; ++frame) {
-    for (std::size_t i = 0; i < entries.size(); ++i)
-      if (entries[i].frame == frame) world.addRigidBody(bodies[i].body.get());
+    const std::vector<Eigen::Isometry3d> T_world_object = poses_of(bodies, entries);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (is_present[i] || entries[i].frame > frame) continue;
+      is_present[i] = is_place_free(entries[i], entries, T_world_object, is_present, field);
+      if (is_present[i]) world.addRigidBody(bodies[i].body.get());
+    }
     const double start_ms = test::thread_ms();
     world.stepSimulation(kBenchFrame_s, 2, 0.5 * kBenchFrame_s);
     result.frames.samples_ms.push_back(test::thread_ms() - start_ms);
   }
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const btRigidBody& body = *bodies[i].body;
-    const btTransform& transform = body.getWorldTransform();
-    const btQuaternion q = transform.getRotation();
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.linear() = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized().toRotationMatrix();
-    const btVector3& origin = transform.getOrigin();
-    T.translation() = Eigen::Vector3d(origin.x(), origin.y(), origin.z()) -
-                      T.linear() * entries[i].thing->mass.centre_object;
-    result.T_world_object.push_back(T);
-    result.asleep += !body.isActive();
-  }
+  result.T_world_object = poses_of(bodies, entries);
+  for (const PeerBody& peer : bodies) result.asleep += !peer.body->isActive();
+  result.entered = static_cast<int>(std::count(is_present.begin(), is_present.end(), true));
   for (PeerBody& peer : bodies)
     if (peer.body->getBroadphaseHandle() != nullptr) world.removeRigidBody(peer.body.get());
-  world.removeRigidBody(&room_body);
+  for (const PeerSurface& surface : surfaces) world.removeRigidBody(surface.body.get());
   return result;
 }
 

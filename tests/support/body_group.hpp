@@ -29,8 +29,11 @@ class BodyGroup {
   void put(std::size_t body, const Eigen::Vector3d& position_world) {
     bodies[body].T_world_object.translation() = position_world;
   }
-  /// Adds a static surface.
-  void add_surface(const Mesh& mesh) { surfaces_.emplace_back().build_by_place(mesh); }
+  /// Adds a surface at rest.
+  void add_surface(const Mesh& mesh, SurfaceKind kind = SurfaceKind::kStatic) {
+    surfaces_.push_back({{}, kind});
+    surfaces_.back().tree.build_by_place(mesh);
+  }
   void remove_surfaces() { surfaces_.clear(); }
   /// Gives each body the mass of its mesh; before, each has 1 kg.
   void weigh() {
@@ -50,8 +53,8 @@ class BodyGroup {
     radar_scenes.reserve(n);
     probes.reserve(n);
     for (std::size_t i = 0; i < n; ++i) {
-      for (const TriangleTree& surface : surfaces_)
-        scenes[i].push_back({{&surface, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic});
+      for (const Surface& surface : surfaces_)
+        scenes[i].push_back({{&surface.tree, Eigen::Isometry3d::Identity()}, surface.kind});
       others[i].resize(surfaces);
       for (std::size_t j = 0; j < n; ++j) {
         if (j == i) continue;
@@ -110,8 +113,12 @@ class BodyGroup {
   double deepest_m = 0.0;  ///< deepest overlap of a body with anything so far
 
  private:
+  struct Surface {
+    TriangleTree tree;
+    SurfaceKind kind;
+  };
   std::vector<TriangleTree> trees_;
-  std::list<TriangleTree> surfaces_;
+  std::list<Surface> surfaces_;
   CyberRadar radar_;
   ProximityQuery field_;
 };
