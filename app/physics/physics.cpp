@@ -15,7 +15,6 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr double kTouching_m = 1e-6;
 constexpr double kDoubtful_m = 0.003;  // deeper overlap along gravity: sideways exits are tested too
 
 bool is_finite(const Body& body) {
@@ -168,14 +167,13 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_di
   double free_m = push_m;
   if (behind.status == ContactStatus::kContact)
     free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
-  if (behind.status == ContactStatus::kOverlap && behind.touched == SurfaceKind::kStatic) free_m = 0.0;
-  Eigen::Isometry3d T_world_pushed = body_.T_world_object;
-  T_world_pushed.translation() -= std::min(push_m, free_m) * way.direction_world;
-  // An overlap behind hides what comes after it: the push may not end in another kind of surface.
-  if (behind.status == ContactStatus::kOverlap &&
-      (probe_.near(T_world_pushed, kTouching_m, 0, {}, near_) & ~crossed_before()) != 0)
-    return;
-  body_.T_world_object = T_world_pushed;
+  if (behind.status == ContactStatus::kOverlap)  // hides what comes after it
+    free_m =
+        behind.touched == SurfaceKind::kStatic
+            ? 0.0
+            : free_past_overlaps_m(body_, -way.direction_world, push_m,
+                                   bit_of(way.contact.touched) | bit_of(behind.touched), probe_, config_);
+  body_.T_world_object.translation() -= std::min(push_m, free_m) * way.direction_world;
   tell_moved();
   const double inward_mps = body_.velocity_world_mps.dot(way.direction_world);
   if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction_world;

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
+
+#include "app/physics/contact_system.hpp"
 
 namespace roomradar {
 namespace {
@@ -81,6 +84,31 @@ Contact query_travel(Body& body, const Vec3& direction_world, double distance_m,
   body.velocity_world_mps.setZero();
   body.angular_velocity_world_rad_s.setZero();
   return contact;
+}
+
+double free_past_overlaps_m(const Body& body, const Vec3& direction_world, double distance_m,
+                            SurfaceKindMask overlapping, const CollisionQueries& probe,
+                            const PhysicsConfig& config) {
+  const Eigen::Isometry3d& T_world_object = body.T_world_object;
+  constexpr SurfaceKindMask kObjects = bit_of(SurfaceKind::kObject);
+  const std::size_t count = probe.others.size();
+  std::vector<ClosestPoint> unused;
+  SurfaceKindMask left_out = overlapping | probe.near(T_world_object, kTouching_m, 0, {}, unused);
+  if ((left_out & kMovingSurfaces) != 0) left_out |= kMovingSurfaces;
+  TreeStates crossing, all_but_one;
+  crossing.left_out.assign(count, false);
+  all_but_one.left_out.assign(count, true);
+  for (std::size_t tree = 0; tree < count; ++tree) {
+    if (probe.others[tree].body == nullptr) continue;
+    left_out &= ~kObjects;  // each body counts by itself
+    all_but_one.left_out[tree] = false;
+    crossing.left_out[tree] = probe.near(T_world_object, kTouching_m, ~kObjects, all_but_one, unused) != 0;
+    all_but_one.left_out[tree] = true;
+  }
+  RigidMotion motion;
+  motion.linear_m_s = direction_world;  // 1 m/s: the free time is the free distance
+  return probe.free_time(T_world_object, motion, distance_m, config.contact_margin_m, left_out, crossing)
+      .free_s;
 }
 
 bool slide(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,

@@ -427,14 +427,17 @@ TEST(Physics, AnOverlapIsNotLeftIntoASurfaceThatAnotherOverlapHides) {
     return contact;
   };
   bool has_ceiling = true;
-  const auto near = [&](const Eigen::Isometry3d& T_world_object, double, SurfaceKindMask, const TreeStates&,
-                        std::vector<ClosestPoint>& points) {
+  const auto near = [](const Eigen::Isometry3d&, double, SurfaceKindMask, const TreeStates&,
+                       std::vector<ClosestPoint>& points) {
     points.clear();
-    const bool is_in_ceiling = has_ceiling && T_world_object.translation().z() > 1.002;
-    return static_cast<SurfaceKindMask>(bit_of(SurfaceKind::kUnknownFrontier) |
-                                        (is_in_ceiling ? bit_of(SurfaceKind::kStatic) : 0));
+    return bit_of(SurfaceKind::kUnknownFrontier);
   };
-  const auto free_time = [](const auto&...) { return FreeTime{}; };
+  const auto free_time = [&](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
+                             double duration_s, double, SurfaceKindMask left_out, const TreeStates&) {
+    const bool is_in_the_way = has_ceiling && (left_out & bit_of(SurfaceKind::kStatic)) == 0;
+    const double to_ceiling_s = (1.002 - T_world_object.translation().z()) / motion.linear_m_s.z();
+    return FreeTime{is_in_the_way ? std::min(to_ceiling_s, duration_s) : duration_s, {}};
+  };
   for (const bool with_ceiling : {true, false}) {
     has_ceiling = with_ceiling;
     Body body = body_at({0, 0, 1});
