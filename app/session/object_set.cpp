@@ -201,9 +201,18 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
 
 std::vector<Departure> ObjectSet::end_departures() {
   std::vector<Departure> departures;
-  for (const auto& object : objects_)
-    if (auto departure = end_departure(*object, room_.lowest_known_m))
-      departures.push_back(std::move(*departure));
+  for (const auto& object : objects_) {
+    auto departure = end_departure(*object, room_.lowest_known_m);
+    if (!departure) continue;
+    if (departure->is_back) {  // others may have taken its place
+      Body& body = object->body;
+      const double z_m = body.T_world_object.translation().z();
+      raise_over_others(*object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_,
+                        proximity_);
+      body.asleep = body.T_world_object.translation().z() == z_m;
+    }
+    departures.push_back(std::move(*departure));
+  }
   return departures;
 }
 

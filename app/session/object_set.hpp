@@ -71,7 +71,8 @@ class ObjectSet {
   /// Advances each object due in this frame by the time since it was last advanced. Stage timed: radar.
   /// @param dt_s  time since the previous frame
   ContactCounts move(double dt_s, std::int64_t frame_number, StageTimes& times);
-  /// Calls end_departure() for all objects and returns the results. Call after move().
+  /// Calls end_departure() for all objects and returns the results. Places an object on top of others that
+  /// have taken its place, as place() does. Call after move().
   std::vector<Departure> end_departures();
   /// Returns the notices created since the last call.
   std::vector<ObjectNotice> take_notices() { return std::exchange(notices_, {}); }

@@ -692,6 +692,25 @@ std::vector<ObjectNotice> wait(Session& session, std::int64_t from, std::int64_t
   return notices;
 }
 
+TEST(Session, WhatIsSetBackToAPlaceThatIsTakenComesToLieOnWhatTookIt) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  const VirtualObject& pot = thrown(session, {-1.0, 0.0, 0.3}, 0.0).pot;
+  ASSERT_TRUE(pot.body.asleep);
+  const Eigen::Vector3d place_world = pot.body.T_world_object.translation();
+  session.throw_object(pot.body.name, {.position_world = {1.0, 0.0, 0.3}});  // over the half without floor
+  ScriptEvent add = event(Action::kAdd);
+  add.name = "other";
+  apply(session, add);
+  session.throw_object("other", {.position_world = place_world});
+  const VirtualObject& other = *session.objects().back();
+  (void)wait(session, 45, 75);
+  ASSERT_EQ(pot.departures, 1);
+  ASSERT_TRUE(pot.in_room);
+  const Eigen::Vector3d apart_m = middle_world(pot) - middle_world(other);
+  EXPECT_GT(apart_m.norm(), 0.5 * (highest_m(other) - lowest_m(other)));
+}
+
 TEST(Session, WhatIsPlacedInAFloorIsMovedOutOfItAndSaidSo) {
   const SavedMap map = floor_map();
   for (const double depth_m : {0.0, 0.03, 0.08}) {
