@@ -34,6 +34,25 @@ class ChosenFrames {
   std::int64_t position_ = 0;
 };
 
+/// Returns the frames, in order, that have the zone in view and are to be fused again. Of frames with almost
+/// the same view, one in eight is chosen: otherwise a slow scan would be read once more as a whole.
+std::vector<std::size_t> frames_to_fuse_again(const GhostZone& zone, std::span<const FusedFrame> fused) {
+  constexpr double kOtherView_m = 0.04, kOtherView_rad = 0.04;  // of the recorded kitchen, every fourth frame
+  constexpr std::size_t kSameView = 8;
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < fused.size(); ++i) {
+    if (!zone.in_view(fused[i].depth_camera, fused[i].T_world_camera)) continue;
+    if (!chosen.empty() && i < chosen.back() + kSameView) {
+      const Eigen::Isometry3d moved = fused[chosen.back()].T_world_camera.inverse() * fused[i].T_world_camera;
+      if (moved.translation().norm() < kOtherView_m &&
+          Eigen::AngleAxisd(moved.linear()).angle() < kOtherView_rad)
+        continue;
+    }
+    chosen.push_back(i);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fused, const GhostConfig& config,
@@ -69,9 +88,11 @@ void refuse_surroundings(FrameSource& source, std::span<const FusedFrame> fused,
       times.timed("ghosts", [&] { return GhostZone(revision.verdicts, map.resolution_m()); });
   Frame frame;
   ChosenFrames chosen(source, times);
-  while (revision.next < fused.size()) {
-    const FusedFrame& one = fused[revision.next++];
-    if (!zone.in_view(one.depth_camera, one.T_world_camera) || !chosen.read(one, frame)) continue;
+  for (const std::size_t i : frames_to_fuse_again(zone, fused)) {
+    if (i < revision.next) continue;  // before the scan was resumed
+    revision.next = i + 1;
+    const FusedFrame& one = fused[i];
+    if (!chosen.read(one, frame)) continue;
     times.timed("ghosts", [&] {
       zone.mask(frame.depth_camera, one.T_world_camera, frame.depth_m);
       map.fuse(frame, one.T_world_camera);

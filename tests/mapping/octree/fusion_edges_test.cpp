@@ -12,14 +12,12 @@
 #include "mapping/octree/octomap_tree.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::fusion_edges_test {
 namespace {
 
-using test::error_of;
 using test::exact_frame;
 using test::looking_at;
 
