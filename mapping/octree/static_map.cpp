@@ -65,7 +65,7 @@ FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_
   if (!is_rigid(T_world_camera, 1e-3)) return FuseStatus::kInvalidPose;
   Octree& o = *octree_;
   const unsigned threads = threads_for(frame.depth_m, o.config);
-  const auto pyramid = std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&] {
+  auto pyramid = std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&] {
     build_pyramid(frame.depth_m, resolution_m(), o.config, o.scratch.pyramid);
   });
   switch (collect_hits(frame, T_world_camera, resolution_m(), o.config, o.scratch)) {
@@ -76,7 +76,7 @@ FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_
     case HitStatus::kCollected:
       break;
   }
-  pyramid.wait();
+  pyramid.get();
   fuse_depth(o.tree, frame, T_world_camera, o.config, o.scratch, threads);
   return FuseStatus::kFused;
 }
