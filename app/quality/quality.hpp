@@ -41,7 +41,7 @@ struct RunQuality {
 struct QualityField {
   const char* name;
   const char* option;  ///< name on the command line
-  const char* unit;    ///< placeholder of the value in help; "N" for counts
+  const char* unit;    ///< name of the value in help; "N" for counts
   const char* help;
   double low = 0.0, high = 0.0;  ///< range of numbers, inclusive
   const char* old_name = "";     ///< former name, accepted until the next version; empty: none

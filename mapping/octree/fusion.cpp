@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
-#include <future>
 #include <span>
 #include <vector>
 
 #include "mapping/octree/leaf_update.hpp"
 #include "mapping/octree/node_visibility.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {
 namespace {
@@ -62,7 +61,7 @@ class Descent {
     tree_.root = update(tree_.root, 0, root);
     branches_ = nullptr;
     if (branches.empty()) return;
-    update_branches(branches, std::min(threads, static_cast<unsigned>(branches.size())));
+    update_branches(branches, threads);
     tree_.gather_free();
     tree_.root = prune_above_branches(tree_.root, 0);
   }
@@ -126,20 +125,11 @@ class Descent {
   }
 
   void update_branches(std::span<const Cell> branches, unsigned threads) {
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&](unsigned lane) {
-      pool_lane = lane;
-      for (std::size_t i = next++; i < branches.size(); i = next++) {
-        Slot& slot = slot_of(branches[i].code);
-        slot = update(slot, kBranchDepth, branches[i]);
-      }
-      pool_lane = 0;
-    };
-    std::vector<std::future<void>> others;
-    for (unsigned lane = 1; lane < threads; ++lane)
-      others.push_back(std::async(std::launch::async, work, lane));
-    work(0);
-    for (std::future<void>& other : others) other.get();
+    parallel_for(branches.size(), threads, [&](std::size_t i, unsigned thread) {
+      pool_lane = thread;
+      Slot& slot = slot_of(branches[i].code);
+      slot = update(slot, kBranchDepth, branches[i]);
+    });
   }
 
   // Returns the node at kBranchDepth with a Morton code. All nodes above it must be inner blocks.

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <future>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "mapping/octree/fusion.hpp"
@@ -14,6 +13,7 @@
 #include "mapping/octree/static_map_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
@@ -33,8 +33,7 @@ double checked_resolution(double resolution_m) {
 /// Returns the number of threads to fuse a frame with. Small images are not worth several.
 unsigned threads_for(const DepthImage& depth_m, const FusionConfig& config) {
   constexpr std::size_t kWorthAThread_px = 25'000;
-  const std::size_t most =
-      config.threads > 0 ? static_cast<std::size_t>(config.threads) : std::thread::hardware_concurrency();
+  const std::size_t most = config.threads > 0 ? static_cast<std::size_t>(config.threads) : hardware_threads();
   return static_cast<unsigned>(
       std::clamp<std::size_t>(std::min(most, depth_m.pixels.size() / kWorthAThread_px), 1, kMaxLanes));
 }

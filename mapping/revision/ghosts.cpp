@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <span>
-#include <thread>
 #include <unordered_map>
 #include <utility>
 
 #include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 #include "mapping/types/validity.hpp"
 #include "mapping/types/voxel_key.hpp"
 
@@ -28,10 +27,8 @@ constexpr double kSureExtent_m = 0.5;
 constexpr double kReach_m = 0.1;
 constexpr int kHardlySeen = 3;  // a voxel connected to such a group is kept only if more frames saw it
 
-constexpr std::size_t kEveryColour =
-    4;  // one cell of one voxel in this many has its colour tracked: groups are judged, not single cells
-
-constexpr std::size_t kMaxThreads = 8;
+// One voxel in this many has its colour tracked, and each coarse cell: groups are judged, not single cells.
+constexpr std::size_t kEveryColour = 4;
 
 /// Cells of the image that surface too near to give depth may hide.
 class HiddenCells {
@@ -187,17 +184,13 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
       ++votes.glimpsed;
   };
   // The votes of a brick concern no other, so the bricks are shared among threads.
-  const auto vote_in = [&](std::span<const CellBrick> bricks) {
-    projection.for_each_nearer(std::numeric_limits<float>::infinity(), bricks, cell_at, vote);
-  };
-  const std::size_t threads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMaxThreads);
-  const std::size_t stride = bricks_.size() / threads + 1;
-  std::vector<std::future<void>> others;
-  for (std::size_t first = stride; first < bricks_.size(); first += stride)
-    others.push_back(std::async(std::launch::async, vote_in,
-                                std::span(bricks_).subspan(first, std::min(stride, bricks_.size() - first))));
-  vote_in(std::span(bricks_).first(std::min(stride, bricks_.size())));
-  for (std::future<void>& other : others) other.get();
+  constexpr std::size_t kPiece = 64;  // bricks
+  const std::span<const CellBrick> bricks(bricks_);
+  parallel_for((bricks.size() + kPiece - 1) / kPiece, hardware_threads(), [&](std::size_t i, unsigned) {
+    const std::size_t count = std::min(kPiece, bricks.size() - i * kPiece);
+    projection.for_each_nearer(std::numeric_limits<float>::infinity(), bricks.subspan(i * kPiece, count),
+                               cell_at, vote);
+  });
 }
 
 bool GhostVotes::is_share(int part, int others) const {

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {
 
 /// Max number of threads that may change one pool at a time.
-inline constexpr unsigned kMaxLanes = 8;
-/// Lane of the calling thread, below kMaxLanes. Threads that change one octree at a time need different
-/// lanes.
+inline constexpr unsigned kMaxLanes = kMaxThreads;
+/// Lane of the calling thread, below kMaxLanes. Threads that change one pool at a time need different lanes.
 inline thread_local unsigned pool_lane = 0;
 
 /// Pool of equally sized blocks that are addressed by 32-bit numbers. Blocks never move. References thus stay

@@ -1,0 +1,35 @@
+// parallel_for.hpp: shares independent pieces of work among threads.
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <future>
+#include <thread>
+#include <vector>
+
+namespace roomradar {
+
+inline constexpr unsigned kMaxThreads = 8;  ///< more gain nothing: memory access limits the work
+
+/// Returns the number of processors that this process may use, at most kMaxThreads.
+inline unsigned hardware_threads() {
+  return std::clamp(std::thread::hardware_concurrency(), 1U, kMaxThreads);
+}
+
+/// Calls work(piece, thread) for each piece in 0..pieces-1, on up to `threads` threads. The number of a
+/// thread is below `threads`; 0 is the caller's. Each piece goes to the next idle thread, so results must not
+/// depend on the order of the pieces. Waits for all threads, and rethrows an exception of `work`.
+template <typename Work>
+void parallel_for(std::size_t pieces, unsigned threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  const auto run = [&](unsigned thread) {
+    for (std::size_t piece = next++; piece < pieces; piece = next++) work(piece, thread);
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned thread = 1; thread < threads && thread < pieces; ++thread)
+    others.push_back(std::async(std::launch::async, run, thread));
+  run(0);
+  for (std::future<void>& other : others) other.get();
+}
+
+}  // namespace roomradar
