@@ -1,38 +1,12 @@
 // ghost_removal.cpp: two more passes over the recording: finds ghosts, then fuses their surroundings again.
 #include "mapping/revision/ghost_removal.hpp"
 
+#include <utility>
+
 #include "mapping/revision/ghost_zone.hpp"
-#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
-
-// Reads selected frames in recording order; seeks past the frames between if the source can.
-class ChosenFrames {
- public:
-  ChosenFrames(FrameSource& source, StageTimes& times) : source_(source), times_(times) {
-    if (!source.rewind()) throw Error(source.name() + ": cannot be read once more");
-  }
-
-  // Returns false if the source does not deliver the same frame as before.
-  bool read(const FusedFrame& chosen, Frame& frame) {
-    return times_.timed("read", [&] {
-      if (position_ != chosen.position && source_.seek(chosen.position)) position_ = chosen.position;
-      while (position_ <= chosen.position) {
-        const ReadResult result = source_.next(frame);
-        if (result.status == ReadStatus::kEnd) return false;
-        if (position_++ == chosen.position)
-          return result.status == ReadStatus::kFrame && frame.index == chosen.frame_index;
-      }
-      return false;
-    });
-  }
-
- private:
-  FrameSource& source_;
-  StageTimes& times_;
-  std::int64_t position_ = 0;
-};
 
 /// Returns the frames, in order, that have the zone in view and are to be fused again. Of frames with almost
 /// the same view, one in eight is chosen: otherwise a slow scan would be read once more as a whole.
@@ -61,9 +35,10 @@ GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fus
   GhostVotes votes(map, config);
   Frame frame;
   const auto stride = static_cast<std::size_t>(look_stride(static_cast<std::int64_t>(fused.size()), config));
-  ChosenFrames chosen(source, times);
-  for (std::size_t i = 0; i < fused.size(); i += stride) {
-    if (!chosen.read(fused[i], frame)) continue;
+  std::vector<std::size_t> every_nth;
+  for (std::size_t i = 0; i < fused.size(); i += stride) every_nth.push_back(i);
+  ChosenFrames chosen(source, fused, std::move(every_nth), times);
+  for (std::size_t i = 0; chosen.next(frame, i);) {
     times.timed("ghosts", [&] { votes.look(frame, fused[i].T_world_camera); });
     if (progress) progress("looked");
   }
@@ -87,12 +62,12 @@ void refuse_surroundings(FrameSource& source, std::span<const FusedFrame> fused,
   const GhostZone zone =
       times.timed("ghosts", [&] { return GhostZone(revision.verdicts, map.resolution_m()); });
   Frame frame;
-  ChosenFrames chosen(source, times);
-  for (const std::size_t i : frames_to_fuse_again(zone, fused)) {
-    if (i < revision.next) continue;  // before the scan was resumed
+  std::vector<std::size_t> again = frames_to_fuse_again(zone, fused);
+  std::erase_if(again, [&](std::size_t i) { return i < revision.next; });  // before the scan was resumed
+  ChosenFrames chosen(source, fused, std::move(again), times);
+  for (std::size_t i = 0; chosen.next(frame, i);) {
     revision.next = i + 1;
     const FusedFrame& one = fused[i];
-    if (!chosen.read(one, frame)) continue;
     times.timed("ghosts", [&] {
       zone.mask(frame.depth_camera, one.T_world_camera, frame.depth_m);
       map.fuse(frame, one.T_world_camera);

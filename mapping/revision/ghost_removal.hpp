@@ -5,19 +5,10 @@
 #include <span>
 #include <string>
 
+#include "mapping/revision/chosen_frames.hpp"
 #include "mapping/revision/ghosts.hpp"
-#include "mapping/types/frame_source.hpp"
-#include "mapping/types/system/stage_times.hpp"
 
 namespace roomradar {
-
-/// A fused frame, and its position in the source.
-struct FusedFrame {
-  std::int64_t position = 0;  ///< number of frames read from the source before this frame
-  std::int64_t frame_index = 0;
-  Intrinsics depth_camera;
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-};
 
 /// Voxels removed from the map, and the progress of refuse_surroundings() around them.
 struct GhostRevision {
