@@ -9,15 +9,6 @@ namespace {
 
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-// The voxels whose coordinates are all multiples of `spacing`.
-BitGrid lattice_points(const Eigen::Vector3i& size, int spacing) {
-  BitGrid points(size, false);
-  for (int z = 0; z < size.z(); z += spacing)
-    for (int y = 0; y < size.y(); y += spacing)
-      for (int x = 0; x < size.x(); x += spacing) points.set({x, y, z}, true);
-  return points;
-}
-
 }  // namespace
 
 BitGrid::BitGrid(const Eigen::Vector3i& size, bool value)
@@ -72,58 +63,114 @@ BitGrid& BitGrid::subtract(const BitGrid& other) {
   return *this;
 }
 
-BitGrid BitGrid::shifted(int axis, int step) const {
-  BitGrid out(size_, false);
-  if (axis == 0) {
-    for (std::size_t start = 0; start < words_.size(); start += words_a_row_)
-      for (std::size_t i = 0; i < words_a_row_; ++i) {
-        const std::uint64_t own = words_[start + i];
-        if (step > 0)
-          out.words_[start + i] = own >> 1U | (i + 1 < words_a_row_ ? words_[start + i + 1] << 63U : 0);
-        else
-          out.words_[start + i] = own << 1U | (i > 0 ? words_[start + i - 1] >> 63U : 0);
-      }
-    out.clear_row_ends();
-    return out;
-  }
-  const Eigen::Vector3i offset = step * Eigen::Vector3i::Unit(axis);
-  for (int z = std::max(0, -offset.z()); z < size_.z() - std::max(0, offset.z()); ++z)
-    for (int y = std::max(0, -offset.y()); y < size_.y() - std::max(0, offset.y()); ++y)
-      std::copy_n(row(y + offset.y(), z + offset.z()), words_a_row_, out.row(y, z));
-  return out;
+BitGrid& BitGrid::flip() {
+  for (std::uint64_t& word : words_) word = ~word;
+  clear_row_ends();
+  return *this;
 }
 
-bool BitGrid::spread_to_row(const BitGrid& source, const BitGrid& where,
-                            const std::array<BitGrid, 3>& blocked, int y, int z) {
-  std::uint64_t* own = row(y, z);
-  const std::uint64_t *allowed = where.row(y, z), *beside = source.row(y, z), *bars_x = blocked[0].row(y, z);
+BitGrid& BitGrid::shift(int axis, int step) {
+  axis == 0 ? shift_rows(step) : move_rows(axis, step);
+  return *this;
+}
+
+void BitGrid::shift_rows(int step) {
+  for (std::size_t start = 0; start < words_.size(); start += words_a_row_) {
+    std::uint64_t* const words = words_.data() + start;
+    if (step > 0)
+      for (std::size_t i = 0; i < words_a_row_; ++i)
+        words[i] = words[i] >> 1U | (i + 1 < words_a_row_ ? words[i + 1] << 63U : 0);
+    else
+      for (std::size_t i = words_a_row_; i-- > 0;)
+        words[i] = words[i] << 1U | (i > 0 ? words[i - 1] >> 63U : 0);
+  }
+  clear_row_ends();
+}
+
+void BitGrid::move_rows(int axis, int step) {
+  const Eigen::Vector3i offset = step * Eigen::Vector3i::Unit(axis);
+  const auto move_row = [&](int y, int z) {
+    const int from_y = y + offset.y(), from_z = z + offset.z();
+    if (from_y >= 0 && from_y < size_.y() && from_z >= 0 && from_z < size_.z())
+      std::copy_n(row(from_y, from_z), words_a_row_, row(y, z));
+    else
+      std::fill_n(row(y, z), words_a_row_, 0);
+  };
+  const int rows =
+      size_.y() * size_.z();  // in the direction of the offset: no row is overwritten before its use
+  for (int i = 0; i < rows; ++i) {
+    const int at = step > 0 ? i : rows - 1 - i;
+    move_row(at % size_.y(), at / size_.y());
+  }
+}
+
+void BitGrid::keep_multiples_of(int spacing) {
+  std::vector<std::uint64_t> kept(words_a_row_, 0);
+  for (int x = 0; x < size_.x(); x += spacing)
+    kept[static_cast<std::size_t>(x / 64)] |= std::uint64_t{1} << (x % 64);
+  for (int z = 0; z < size_.z(); ++z)
+    for (int y = 0; y < size_.y(); ++y)
+      for (std::size_t i = 0; i < words_a_row_; ++i)
+        row(y, z)[i] &= z % spacing == 0 && y % spacing == 0 ? kept[i] : 0;
+}
+
+/// Rows of a grid: one and those beside it. A null pointer is a row outside the grid.
+struct BitGrid::Rows {
+  const std::uint64_t *own, *y_before, *y_after, *z_before, *z_after;
+};
+
+/// The rows that block steps from or to a row.
+struct BitGrid::Bars {
+  const std::uint64_t *x, *y_before, *y, *z_before, *z;
+};
+
+BitGrid::Bars BitGrid::bars_around(const std::array<BitGrid, 3>& blocked, int y, int z) {
+  return {blocked[0].row(y, z), y > 0 ? blocked[1].row(y - 1, z) : nullptr, blocked[1].row(y, z),
+          z > 0 ? blocked[2].row(y, z - 1) : nullptr, blocked[2].row(y, z)};
+}
+
+/// Sets the voxels of `row` that dilating `source` sets in it. Returns true if a voxel was added.
+bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::uint64_t* where,
+                            const Bars& bars, std::size_t words) {
   bool any = false;
   const auto add = [&](std::size_t i, std::uint64_t word) {
-    word &= allowed[i] & ~own[i];
+    word &= where[i] & ~row[i];
     any = any || word != 0;
-    own[i] |= word;
+    row[i] |= word;
   };
-  const auto add_row = [&](int from_y, int from_z, const std::uint64_t* bars) {
-    const std::uint64_t* from = source.row(from_y, from_z);
-    for (std::size_t i = 0; i < words_a_row_; ++i) add(i, from[i] & ~bars[i]);
+  const auto add_row = [&](const std::uint64_t* from, const std::uint64_t* barred) {
+    for (std::size_t i = 0; from && i < words; ++i) add(i, from[i] & ~barred[i]);
   };
-  if (y > 0) add_row(y - 1, z, blocked[1].row(y - 1, z));
-  if (y + 1 < size_.y()) add_row(y + 1, z, blocked[1].row(y, z));
-  if (z > 0) add_row(y, z - 1, blocked[2].row(y, z - 1));
-  if (z + 1 < size_.z()) add_row(y, z + 1, blocked[2].row(y, z));
-  for (std::size_t i = 0; i < words_a_row_; ++i) {
-    const std::uint64_t up = beside[i] & ~bars_x[i];
-    const std::uint64_t carried = i > 0 ? (beside[i - 1] & ~bars_x[i - 1]) >> 63U : 0;
-    const std::uint64_t next = i + 1 < words_a_row_ ? beside[i + 1] << 63U : 0;
-    add(i, up << 1U | carried | ((beside[i] >> 1U | next) & ~bars_x[i]));
+  add_row(source.y_before, bars.y_before);
+  add_row(source.y_after, bars.y);
+  add_row(source.z_before, bars.z_before);
+  add_row(source.z_after, bars.z);
+  for (std::size_t i = 0; i < words; ++i) {
+    const std::uint64_t up = source.own[i] & ~bars.x[i];
+    const std::uint64_t carried = i > 0 ? (source.own[i - 1] & ~bars.x[i - 1]) >> 63U : 0;
+    const std::uint64_t next = i + 1 < words ? source.own[i + 1] << 63U : 0;
+    add(i, up << 1U | carried | ((source.own[i] >> 1U | next) & ~bars.x[i]));
   }
   return any;
 }
 
+// Of the rows as they were before, only those of two planes must be kept.
 void BitGrid::spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
-  const BitGrid before = *this;
-  for (int z = 0; z < size_.z(); ++z)
-    for (int y = 0; y < size_.y(); ++y) spread_to_row(before, where, blocked, y, z);
+  const std::size_t plane_words = words_a_row_ * static_cast<std::size_t>(size_.y());
+  std::vector<std::uint64_t> below, plane;  // z - 1 and z, as they were before
+  for (int z = 0; z < size_.z(); ++z) {
+    below.swap(plane);
+    plane.assign(row(0, z), row(0, z) + plane_words);
+    const auto of = [&](const std::vector<std::uint64_t>& rows, int y) {
+      return rows.data() + words_a_row_ * static_cast<std::size_t>(y);
+    };
+    for (int y = 0; y < size_.y(); ++y)
+      spread_to_row(
+          row(y, z),
+          {of(plane, y), y > 0 ? of(plane, y - 1) : nullptr, y + 1 < size_.y() ? of(plane, y + 1) : nullptr,
+           z > 0 ? of(below, y) : nullptr, z + 1 < size_.z() ? row(y, z + 1) : nullptr},
+          where.row(y, z), bars_around(blocked, y, z), words_a_row_);
+  }
 }
 
 // In place, alternately upwards and downwards, so a straight path of any length takes one pass.
@@ -131,7 +178,10 @@ void BitGrid::flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked)
   for (bool any = true; any;) {
     any = false;
     const auto flood_row = [&](int y, int z) {
-      while (spread_to_row(*this, where, blocked, y, z)) any = true;
+      const Rows rows{row(y, z), y > 0 ? row(y - 1, z) : nullptr, y + 1 < size_.y() ? row(y + 1, z) : nullptr,
+                      z > 0 ? row(y, z - 1) : nullptr, z + 1 < size_.z() ? row(y, z + 1) : nullptr};
+      const Bars bars = bars_around(blocked, y, z);
+      while (spread_to_row(row(y, z), rows, where.row(y, z), bars, words_a_row_)) any = true;
     };
     for (int z = 0; z < size_.z(); ++z)
       for (int y = 0; y < size_.y(); ++y) flood_row(y, z);
@@ -144,18 +194,12 @@ BitGrid opened(const BitGrid& bits, int edge, int lattice) {
   BitGrid cubes = bits;  // after the loop: the lowest voxels of whole cubes
   for (int axis = 0; axis < 3; ++axis) {
     BitGrid ahead = cubes;
-    for (int i = 1; i < edge; ++i) {
-      ahead = ahead.shifted(axis, 1);
-      cubes &= ahead;
-    }
+    for (int i = 1; i < edge; ++i) cubes &= ahead.shift(axis, 1);
   }
-  if (lattice > 1) cubes &= lattice_points(bits.size(), lattice);
+  if (lattice > 1) cubes.keep_multiples_of(lattice);
   for (int axis = 0; axis < 3; ++axis) {
     BitGrid behind = cubes;
-    for (int i = 1; i < edge; ++i) {
-      behind = behind.shifted(axis, -1);
-      cubes |= behind;
-    }
+    for (int i = 1; i < edge; ++i) cubes |= behind.shift(axis, -1);
   }
   return cubes;
 }

@@ -30,10 +30,15 @@ class BitGrid {
   BitGrid& operator&=(const BitGrid& other);
   BitGrid& operator|=(const BitGrid& other);
   BitGrid& subtract(const BitGrid& other);
+  /// Sets all clear voxels and clears all set ones.
+  BitGrid& flip();
   friend bool operator==(const BitGrid&, const BitGrid&) = default;
 
-  /// Returns a grid in which each voxel has the value of its neighbour `step` (-1 or 1) along the axis.
-  [[nodiscard]] BitGrid shifted(int axis, int step) const;
+  /// Gives each voxel the value of its neighbour `step` (-1 or 1) along the axis.
+  BitGrid& shift(int axis, int step);
+
+  /// Clears all voxels whose coordinates are not all multiples of `spacing` (>= 1).
+  void keep_multiples_of(int spacing);
 
   /// Dilates by one step along the axes, restricted to the voxels set in `where`. A voxel set in
   /// blocked[axis] blocks the steps between it and the next voxel along the axis in both directions. All
@@ -81,10 +86,13 @@ class BitGrid {
     return words_.data() + row_index(y, z) * words_a_row_;
   }
   void clear_row_ends();
-  /// Adds to one row the voxels that dilating `source` sets in it. `source` may be this grid. Returns true if
-  /// a voxel was added.
-  bool spread_to_row(const BitGrid& source, const BitGrid& where, const std::array<BitGrid, 3>& blocked,
-                     int y, int z);
+  void shift_rows(int step);
+  void move_rows(int axis, int step);
+  struct Rows;
+  struct Bars;
+  [[nodiscard]] static Bars bars_around(const std::array<BitGrid, 3>& blocked, int y, int z);
+  static bool spread_to_row(std::uint64_t* row, const Rows& source, const std::uint64_t* where,
+                            const Bars& bars, std::size_t words);
 
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
   std::size_t words_a_row_ = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "mapping/surface/bit_grid.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 using Eigen::Vector3i;
 
-constexpr int kGridsAtOnce = 15;  // bit grids alive at the same time; most while faces are collected
+constexpr int kGridsAtOnce = 8;  // bit grids alive at the same time; most while pockets are sought
 
 // State of the map in cells of one voxel, or of several if the map is very large.
 struct Known {
@@ -66,31 +67,34 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
   return known;
 }
 
-// Removes from `unknown` the components of less than pocket_voxels that are surrounded by free space.
-void leave_out_pockets(const Known& known, const std::array<BitGrid, 3>& blocked,
+// Removes from `unknown` the components of less than pocket_voxels that are surrounded by free space. Uses up
+// `known.unknown`.
+void leave_out_pockets(Known& known, const std::array<BitGrid, 3>& blocked,
                        const UnknownSurfaceConfig& config, BitGrid& unknown) {
-  const BitGrid everywhere(known.grid.size, true);
-  BitGrid held = everywhere;  // connected to something occupied or to the margin
-  held.subtract(known.unknown).subtract(known.free);
-  for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, blocked);
-  held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
-  held &= unknown;
-  held.flood(unknown, blocked);
-  BitGrid hanging = unknown;
-  hanging.subtract(held);
+  BitGrid hanging = unknown;  // not connected to anything occupied or to the margin
+  {
+    const BitGrid everywhere(known.grid.size, true);
+    BitGrid held = std::move(known.unknown);
+    (held |= known.free).flip();
+    for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, blocked);
+    held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
+    held &= unknown;
+    held.flood(unknown, blocked);
+    hanging.subtract(held);
+  }
 
   std::vector<Vector3i> piece;
-  BitGrid seen(known.grid.size, false);
+  BitGrid unseen = hanging;
   hanging.for_each_set([&](const Vector3i& first) {
-    if (seen.at(first)) return;
+    if (!unseen.at(first)) return;
     piece.assign(1, first);
-    seen.set(first, true);
+    unseen.set(first, false);
     for (std::size_t done = 0; done < piece.size(); ++done)
       for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
           const Vector3i next = piece[done] + step * Vector3i::Unit(axis);
-          if (!hanging.at(next) || seen.at(next)) continue;
-          seen.set(next, true);
+          if (!unseen.at(next)) continue;
+          unseen.set(next, false);
           piece.push_back(next);
         }
     if (piece.size() >= static_cast<std::size_t>(config.pocket_voxels)) return;
@@ -110,16 +114,19 @@ BitGrid reachable(const BitGrid& free, const BitGrid& unknown, const std::array<
   return reached;
 }
 
-// Faces of unknown cells towards reached ones, unless a surface separates the two.
-std::vector<VoxelFaces> faces_between(const BitGrid& unknown, const BitGrid& reached,
-                                      const std::array<BitGrid, 3>& blocked) {
-  std::vector<VoxelFaces> faces;
-  for (int axis = 0; axis < 3; ++axis) {
-    const BitGrid& bars = blocked[static_cast<std::size_t>(axis)];
-    faces.push_back({reached.shifted(axis, 1).subtract(bars) &= unknown, axis, 1});
-    faces.push_back({reached.shifted(axis, -1).subtract(bars.shifted(axis, -1)) &= unknown, axis, -1});
-  }
-  return faces;
+// Meshes the faces of unknown cells towards reached ones, unless a surface separates the two.
+Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, const std::array<BitGrid, 3>& blocked,
+                  const CellGrid& grid) {
+  VoxelFaceMesher mesher(grid);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int step : {1, -1}) {
+      BitGrid faces = reached;
+      BitGrid bars = blocked[static_cast<std::size_t>(axis)];
+      if (step < 0) bars.shift(axis, -1);
+      faces.shift(axis, step).subtract(bars) &= unknown;
+      mesher.add({std::move(faces), axis, step});
+    }
+  return mesher.take();
 }
 
 }  // namespace
@@ -148,8 +155,9 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
   const std::array<BitGrid, 3> blocked = blocked_neighbours(surface_world, known.grid);
   leave_out_pockets(known, blocked, config, result.unknown);
   const BitGrid reached = reachable(known.free, result.unknown, blocked, config);
-  result.mesh_world = mesh_of(faces_between(result.unknown, reached, blocked), known.grid);
-  result.memory_bytes = kGridsAtOnce * known.free.memory_bytes();
+  known.free = {};
+  result.mesh_world = mesh_between(result.unknown, reached, blocked, known.grid);
+  result.memory_bytes = kGridsAtOnce * reached.memory_bytes();
   return result;
 }
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
-#include <unordered_map>
+#include <vector>
 
 namespace roomradar {
 namespace {
@@ -61,66 +61,54 @@ class OpenFaces {
   std::vector<std::uint8_t> open_;
 };
 
-class MeshMaker {
- public:
-  explicit MeshMaker(const CellGrid& grid) : middle_(grid.size / 2), cell_m_(grid.cell_m) {
-    mesh_.origin = (grid.first_cell + middle_).cast<double>() * grid.cell_m;
-  }
-
-  void add_rectangle(const VoxelFaces& faces, int plane, int from_u, int to_u, int from_v, int to_v) {
-    const auto corner = [&](int u, int v) {
-      Vector3i p;
-      p[faces.axis] = faces.step > 0 ? plane + 1 : plane;
-      p[(faces.axis + 1) % 3] = u;
-      p[(faces.axis + 2) % 3] = v;
-      return vertex(p);
-    };
-    const std::uint32_t a = corner(from_u, from_v), c = corner(to_u, to_v);
-    std::uint32_t b = corner(to_u, from_v), d = corner(from_u, to_v);
-    if (faces.step < 0) std::swap(b, d);
-    mesh_.triangles.push_back({a, b, c});
-    mesh_.triangles.push_back({a, c, d});
-  }
-  Mesh take() { return std::move(mesh_); }
-
- private:
-  std::uint32_t vertex(const Vector3i& p) {
-    constexpr unsigned kBits = 21;
-    const std::uint64_t code = static_cast<std::uint64_t>(p.z()) << 2 * kBits |
-                               static_cast<std::uint64_t>(p.y()) << kBits | static_cast<std::uint64_t>(p.x());
-    const auto number = static_cast<std::uint32_t>(mesh_.vertices.size());
-    const auto [found, is_new] = numbers_.try_emplace(code, number);
-    if (is_new) mesh_.vertices.push_back(((p - middle_).cast<double>() * cell_m_).cast<float>());
-    return found->second;
-  }
-
-  Vector3i middle_;
-  double cell_m_;
-  Mesh mesh_;
-  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
-};
-
 }  // namespace
 
-Mesh mesh_of(const std::vector<VoxelFaces>& faces, const CellGrid& grid) {
-  MeshMaker maker(grid);
-  for (const VoxelFaces& way : faces) {
-    const std::vector<Face> sorted = sorted_faces(way);
-    OpenFaces plane(grid.size[(way.axis + 1) % 3], grid.size[(way.axis + 2) % 3]);
-    for (auto begin = sorted.begin(); begin != sorted.end();) {
-      const auto end =
-          std::find_if(begin, sorted.end(), [&](const Face& face) { return face.plane != begin->plane; });
-      std::for_each(begin, end, [&](const Face& face) { plane.open(face.u, face.v); });
-      for (; begin != end; ++begin) {
-        if (!plane.is_open(begin->u, begin->v)) continue;
-        const int to_u = plane.row_end(begin->u, begin->v);
-        const int to_v = plane.column_end(begin->u, to_u, begin->v);
-        plane.close(begin->u, to_u, begin->v, to_v);
-        maker.add_rectangle(way, begin->plane, begin->u, to_u, begin->v, to_v);
-      }
+VoxelFaceMesher::VoxelFaceMesher(const CellGrid& grid) : grid_(grid) {
+  mesh_.origin = (grid.first_cell + grid.size / 2).cast<double>() * grid.cell_m;
+}
+
+void VoxelFaceMesher::add(const VoxelFaces& faces) {
+  const std::vector<Face> sorted = sorted_faces(faces);
+  OpenFaces plane(grid_.size[(faces.axis + 1) % 3], grid_.size[(faces.axis + 2) % 3]);
+  for (auto begin = sorted.begin(); begin != sorted.end();) {
+    const auto end =
+        std::find_if(begin, sorted.end(), [&](const Face& face) { return face.plane != begin->plane; });
+    std::for_each(begin, end, [&](const Face& face) { plane.open(face.u, face.v); });
+    for (; begin != end; ++begin) {
+      if (!plane.is_open(begin->u, begin->v)) continue;
+      const int to_u = plane.row_end(begin->u, begin->v);
+      const int to_v = plane.column_end(begin->u, to_u, begin->v);
+      plane.close(begin->u, to_u, begin->v, to_v);
+      add_rectangle(faces, begin->plane, begin->u, to_u, begin->v, to_v);
     }
   }
-  return maker.take();
+}
+
+void VoxelFaceMesher::add_rectangle(const VoxelFaces& faces, int plane, int from_u, int to_u, int from_v,
+                                    int to_v) {
+  const auto corner = [&](int u, int v) {
+    Vector3i cell;
+    cell[faces.axis] = faces.step > 0 ? plane + 1 : plane;
+    cell[(faces.axis + 1) % 3] = u;
+    cell[(faces.axis + 2) % 3] = v;
+    return vertex(cell);
+  };
+  const std::uint32_t a = corner(from_u, from_v), c = corner(to_u, to_v);
+  std::uint32_t b = corner(to_u, from_v), d = corner(from_u, to_v);
+  if (faces.step < 0) std::swap(b, d);
+  mesh_.triangles.push_back({a, b, c});
+  mesh_.triangles.push_back({a, c, d});
+}
+
+std::uint32_t VoxelFaceMesher::vertex(const Vector3i& cell) {
+  constexpr unsigned kBits = 21;
+  const std::uint64_t code = static_cast<std::uint64_t>(cell.z()) << 2 * kBits |
+                             static_cast<std::uint64_t>(cell.y()) << kBits |
+                             static_cast<std::uint64_t>(cell.x());
+  const auto number = static_cast<std::uint32_t>(mesh_.vertices.size());
+  const auto [found, is_new] = vertex_at_.try_emplace(code, number);
+  if (is_new) mesh_.vertices.push_back(((cell - grid_.size / 2).cast<double>() * grid_.cell_m).cast<float>());
+  return found->second;
 }
 
 }  // namespace roomradar

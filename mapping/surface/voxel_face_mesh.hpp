@@ -1,5 +1,9 @@
 // voxel_face_mesh.hpp: meshes faces of grid cells with few triangles.
 #pragma once
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+
 #include "mapping/surface/bit_grid.hpp"
 #include "mapping/types/mesh.hpp"
 
@@ -20,10 +24,24 @@ struct VoxelFaces {
   int step = 1;
 };
 
-/// Meshes the faces by greedy meshing. Merges the faces of a plane into rectangles, extended first in length,
-/// then in width. Triangles face in the direction of `step`. The mesh has no normals and no colours.
-/// T-junctions between rectangles leave no gaps. The corner of one rectangle is exactly on the side of the
-/// other, since both share two coordinates.
-Mesh mesh_of(const std::vector<VoxelFaces>& faces, const CellGrid& grid);
+/// Meshes faces by greedy meshing. Merges the faces of a plane into rectangles, extended first in length,
+/// then in width. Triangles face in the direction of VoxelFaces::step. The mesh has no normals and no
+/// colours. T-junctions between rectangles leave no gaps. The corner of one rectangle is exactly on the side
+/// of the other, since both share two coordinates.
+class VoxelFaceMesher {
+ public:
+  explicit VoxelFaceMesher(const CellGrid& grid);
+  void add(const VoxelFaces& faces);
+  /// Returns the mesh of all faces added.
+  Mesh take() { return std::move(mesh_); }
+
+ private:
+  CellGrid grid_;
+  Mesh mesh_;
+  std::unordered_map<std::uint64_t, std::uint32_t> vertex_at_;  ///< index by position in cells
+
+  void add_rectangle(const VoxelFaces& faces, int plane, int from_u, int to_u, int from_v, int to_v);
+  std::uint32_t vertex(const Eigen::Vector3i& cell);
+};
 
 }  // namespace roomradar

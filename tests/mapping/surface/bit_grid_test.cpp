@@ -42,7 +42,8 @@ TEST(BitGrid, ShiftingTakesTheNeighboursValueAndClearPastTheEnd) {
   const BitGrid bits = random_bits(random, 4);
   for (int axis = 0; axis < 3; ++axis)
     for (const int step : {-1, 1}) {
-      const BitGrid shifted = bits.shifted(axis, step);
+      BitGrid shifted = bits;
+      shifted.shift(axis, step);
       int wrong = 0;
       for_each_voxel(kSize, [&](const Vector3i& p) {
         wrong += shifted.at(p) != bits.at(p + step * Vector3i::Unit(axis)) ? 1 : 0;
@@ -132,7 +133,9 @@ TEST(VoxelFaces, RectanglesCoverEachFaceOnce) {
   for (int axis = 0; axis < 3; ++axis)
     for (const int step : {-1, 1}) {
       const BitGrid cells = random_bits(random, 6);
-      const Mesh mesh = mesh_of({{cells, axis, step}}, grid);
+      VoxelFaceMesher mesher(grid);
+      mesher.add({cells, axis, step});
+      const Mesh mesh = mesher.take();
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
       BitGrid covered(kSize, false);
       for (std::size_t i = 0; i < mesh.triangles.size(); i += 2) {
