@@ -85,7 +85,8 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
                       const PrescanProgress& progress, PrescanInput start) {
   const double reach_m = start.map ? start.map->octree->reach_m() : StaticMap(config.resolution_m).reach_m();
   const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
-  PrescanWork work{source, config, times, progress, start.checkpoints, reach_m, maps_recorded_world};
+  PrescanWork work{source, config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
+                   start.observer};
   PrescanResult result;
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;

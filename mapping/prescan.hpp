@@ -13,6 +13,7 @@
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/prescan_counts.hpp"
 #include "mapping/revision/ghosts.hpp"
+#include "mapping/scan_observer.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/frame_source.hpp"
 #include "mapping/types/pose_origin.hpp"
@@ -60,13 +61,14 @@ using PrescanProgress = std::function<void(const std::string& stage, const std::
 
 class Checkpoints;
 
-/// Optional inputs: checkpoints to resume from, and a map to extend.
+/// Optional inputs: checkpoints to resume from, a map to extend, and an observer.
 struct PrescanInput {
   /// Receives the prescan's state at intervals. If a checkpoint exists already, the prescan resumes from it.
   /// The source must then deliver the same frames again. Null: no checkpoints.
   Checkpoints* checkpoints = nullptr;
   /// Map to extend with the source's frames. The map's world frame and resolution are kept.
   std::optional<SavedMap> map;
+  ScanObserver* observer = nullptr;  ///< follows the first pass; null: none
 };
 
 /// Scans a room. Reads the source once to track the camera, and a second time to fuse the frames with their

@@ -9,6 +9,7 @@
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/registration.hpp"
 #include "mapping/map/surface_points.hpp"
+#include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/revision/ghost_removal.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/storage/checkpoints.hpp"
@@ -112,6 +113,7 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, TrackingPass& pass) {
     work.track_ms[frame.index] = ms_since(start);
     work.times.add_ms("track", work.track_ms[frame.index]);
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
+    if (work.observer) work.observer->after_frame(frame, tracking, pass.odometry);
     if (work.progress) {  // only `progress` reports the observed area
       if (tracking) seen.add(frame, tracking.T_world_camera);
       work.progress(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
@@ -155,7 +157,7 @@ Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEst
   RegistrationConfig located;
   located.min_overlap = 0.01;
   const Registration placed =
-      odometry.is_located()
+      odometry.state().located
           ? verify_registration(map.octree, surface, Eigen::Isometry3d::Identity(), located)
           : register_to(map.octree, map.keyframe_database, found.keyframe_database, surface);
   if (!placed)

@@ -81,4 +81,18 @@ GlfwWindow::~GlfwWindow() {
   glfwTerminate();
 }
 
+std::shared_ptr<GlfwWindow> open_window(const std::string& title) {
+  static std::weak_ptr<GlfwWindow> open;
+  std::shared_ptr<GlfwWindow> window = open.lock();
+  if (!window) {
+    window = std::make_shared<GlfwWindow>(title);
+    open = window;
+    return window;
+  }
+  glfwSetWindowTitle(window->get(), title.c_str());
+  glfwSetWindowShouldClose(window->get(), GLFW_FALSE);
+  glfwShowWindow(window->get());
+  return window;
+}
+
 }  // namespace roomradar

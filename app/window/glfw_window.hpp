@@ -1,5 +1,6 @@
 // glfw_window.hpp: desktop window with an OpenGL context. Stores key presses and files dropped on the window.
 #pragma once
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,7 @@ struct Key {
 };
 
 /// GLFW window with a current context. Stores key presses and dropped files until take_keys() and
-/// take_files(). At most one instance may exist, on the main thread.
+/// take_files(). At most one instance may exist, on the main thread: see open_window().
 class GlfwWindow {
  public:
   /// @throws Error with advice if there is no display or it does not support OpenGL 3.3
@@ -34,5 +35,9 @@ class GlfwWindow {
   std::vector<Key> keys_;
   std::vector<std::string> files_;
 };
+
+/// Returns the window that is open, with a new title, or opens one. It closes when its last owner is gone.
+/// @throws Error as GlfwWindow() does
+std::shared_ptr<GlfwWindow> open_window(const std::string& title);
 
 }  // namespace roomradar

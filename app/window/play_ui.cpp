@@ -17,6 +17,23 @@ namespace {
 
 constexpr double kMessage_s = 5.0;
 
+/// Returns true if a key's action is repeated while the key is held down.
+bool repeats(int key) {
+  switch (key) {
+    case GLFW_KEY_PERIOD:
+    case GLFW_KEY_KP_DECIMAL:
+    case GLFW_KEY_TAB:
+    case '+':
+    case GLFW_KEY_EQUAL:
+    case GLFW_KEY_KP_ADD:
+    case GLFW_KEY_MINUS:
+    case GLFW_KEY_KP_SUBTRACT:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 PlayUi::PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<ObjectSource>& meshes,
@@ -26,21 +43,20 @@ PlayUi::PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<Obje
   settings_.meshes.insert(settings_.meshes.end(), meshes.begin(), meshes.end());
 }
 
-bool PlayUi::take_news() {
+void PlayUi::take_news() {
   const std::string message = link_.take_message();
   if (!message.empty()) {
     message_.text = message;
     message_.until_s = ImGui::GetTime() + kMessage_s;
   }
   const std::int64_t before = shown_.run_frame;
-  if (!link_.take(shown_)) return !message.empty();
+  if (!link_.take(shown_)) return;
   picture_.upload(shown_);
   models_.upload(shown_);
   radar_.upload(shown_.shown_radar);
   if (shown_.run_frame != before) timing_.add(shown_);
   newest_s_ = ImGui::GetTime();
   count_rate();
-  return true;
 }
 
 void PlayUi::count_rate() {
@@ -172,20 +188,8 @@ void PlayUi::set_speed(double speed) {
   link_.set_speed(speed_);
 }
 
-bool PlayUi::repeats(int key) {
-  switch (key) {
-    case GLFW_KEY_PERIOD:
-    case GLFW_KEY_KP_DECIMAL:
-    case GLFW_KEY_TAB:
-    case '+':
-    case GLFW_KEY_EQUAL:
-    case GLFW_KEY_KP_ADD:
-    case GLFW_KEY_MINUS:
-    case GLFW_KEY_KP_SUBTRACT:
-      return true;
-    default:
-      return false;
-  }
+void PlayUi::press(const Key& key) {
+  if (!key.is_repeat || repeats(key.key)) press(key.key, key.modifiers);
 }
 
 void PlayUi::press(int key, int modifiers) {

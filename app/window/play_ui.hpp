@@ -1,10 +1,10 @@
 // play_ui.hpp: content of the window, and the actions of keys.
 #pragma once
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/window/imgui_window.hpp"
 #include "app/window/link/ui_channel.hpp"
 #include "app/window/panes/model_view.hpp"
 #include "app/window/panes/picture_pane.hpp"
@@ -18,24 +18,18 @@ namespace roomradar {
 
 /// Draws the window and handles its keys. All calls must come from the window's thread, within Dear ImGui's
 /// frames.
-class PlayUi {
+class PlayUi final : public WindowContent {
  public:
   /// @param meshes     objects that can be added, in addition to the built-in teapot
   /// @param budget_ms  the run's time limit per frame; unset: none
   PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<ObjectSource>& meshes,
          std::optional<double> budget_ms);
 
-  /// Takes the newest snapshot and message. Returns true if either is new.
-  bool take_news();
-  void draw(float width, float height);
-  /// @param key        result of key_meant()
-  /// @param modifiers  GLFW's bits
-  void press(int key, int modifiers = 0);
-  /// Returns true if a key's action is repeated while the key is held down.
-  static bool repeats(int key);
-  /// Adds an object from a mesh file, and adds the file to the list of objects.
-  void take_file(const std::string& path);
-  [[nodiscard]] bool wants_to_quit() const { return quits_; }
+  void take_news() override;
+  void press(const Key& key) override;
+  void take_file(const std::string& path) override;
+  void draw(float width, float height) override;
+  [[nodiscard]] bool wants_to_quit() const override { return quits_; }
 
  private:
   struct Message {
@@ -67,6 +61,7 @@ class PlayUi {
   void ask_at_mouse(UserCommandKind kind);
   void add_object();
   void choose_next();
+  void press(int key, int modifiers = 0);
   // Each function handles one group of keys and returns false for other keys.
   bool press_run_key(int key);
   bool press_object_key(int key);

@@ -9,109 +9,24 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
-#include <imgui.h>
-#define GL_GLEXT_PROTOTYPES
-#include <GL/glcorearb.h>
 
-#include <algorithm>
-#include <chrono>
 #include <exception>
+#include <memory>
 #include <thread>
 #include <vector>
 
 #include "app/cli/interrupt.hpp"
 #include "app/window/glfw_window.hpp"
-#include "app/window/panes/theme.hpp"
-#include "app/window/panes/window_layout.hpp"
+#include "app/window/imgui_window.hpp"
 #include "app/window/play_ui.hpp"
 
 namespace roomradar {
-namespace {
-
-struct ImGuiOfWindow {
-  look::Fonts fonts;
-
-  ImGuiOfWindow(GLFWwindow* window, std::optional<double> ui_scale) {
-    ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;
-    float scale = 1.0F;
-    glfwGetWindowContentScale(window, &scale, nullptr);
-    wanted_scale_ = ui_scale ? static_cast<float>(*ui_scale) : std::clamp(scale, 1.0F, 3.0F);
-    ImGui_ImplGlfw_InitForOpenGL(window, /*install_callbacks=*/true);  // calls the callbacks installed
-                                                                       // before, too
-    ImGui_ImplOpenGL3_Init("#version 330 core");
-  }
-  ~ImGuiOfWindow() {
-    ImGui_ImplOpenGL3_Shutdown();
-    ImGui_ImplGlfw_Shutdown();
-    ImGui::DestroyContext();
-  }
-  ImGuiOfWindow(const ImGuiOfWindow&) = delete;
-  ImGuiOfWindow& operator=(const ImGuiOfWindow&) = delete;
-
-  /// Begins a frame, with style and fonts of the scale that the window's size allows.
-  void begin_frame(GLFWwindow* window) {
-    int width = 0, height = 0;
-    glfwGetWindowSize(window, &width, &height);
-    const float scale = scale_in_window(wanted_scale_, static_cast<float>(width), static_cast<float>(height));
-    if (scale != scale_) {
-      ImGui_ImplOpenGL3_DestroyFontsTexture();
-      ImGui::GetIO().Fonts->Clear();
-      fonts = look::apply(scale);
-      const bool is_first = scale_ == 0.0F;  // then the next call creates the texture
-      if (!is_first) ImGui_ImplOpenGL3_CreateFontsTexture();
-      scale_ = scale;
-    }
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-  }
-
- private:
-  float wanted_scale_ = 1.0F;
-  float scale_ = 0.0F;  // of style and fonts; 0: not loaded
-};
-
-/// Draws after every event, otherwise every kIdle_s.
-void show(GlfwWindow& window, UiChannel& link, const std::vector<ObjectSource>& meshes,
-          std::optional<double> budget_ms, std::optional<double> ui_scale) {
-  ImGuiOfWindow imgui(window.get(), ui_scale);
-  PlayUi ui(link, imgui.fonts, meshes, budget_ms);
-  constexpr double kLeastFrame_s = 1.0 / 60.0, kIdle_s = 0.25;
-  while (glfwWindowShouldClose(window.get()) == GLFW_FALSE && !ui.wants_to_quit()) {
-    glfwWaitEventsTimeout(kIdle_s);
-    const double began_s = glfwGetTime();
-    ui.take_news();
-    imgui.begin_frame(window.get());
-    const std::vector<Key> keys = window.take_keys();
-    if (!ImGui::GetIO().WantTextInput)
-      for (const Key& key : keys)
-        if (!key.is_repeat || PlayUi::repeats(key.key)) ui.press(key.key, key.modifiers);
-    for (const std::string& file : window.take_files()) ui.take_file(file);
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ui.draw(size.x, size.y);
-    ImGui::Render();
-    int width_px = 0, height_px = 0;
-    glfwGetFramebufferSize(window.get(), &width_px, &height_px);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, width_px, height_px);
-    glClearColor(0.063F, 0.075F, 0.094F, 1.0F);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    glfwSwapBuffers(window.get());
-    const double left_s = kLeastFrame_s - (glfwGetTime() - began_s);
-    if (left_s > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(left_s));
-  }
-}
-
-}  // namespace
 
 int run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,
                   std::optional<double> budget_ms, std::optional<double> ui_scale,
                   const std::function<int(UiChannel&)>& work) {
-  GlfwWindow window(title);
+  const std::shared_ptr<GlfwWindow> open = open_window(title);
+  GlfwWindow& window = *open;
   UiChannel link([] { glfwPostEmptyEvent(); });
   int status = 0;
   std::exception_ptr fault;
@@ -126,7 +41,9 @@ int run_in_window(const std::string& title, const std::vector<ObjectSource>& mes
     link.finish();
   });
   try {
-    show(window, link, meshes, budget_ms, ui_scale);
+    show_until_closed(window, ui_scale, [&](const look::Fonts& fonts) {
+      return std::make_unique<PlayUi>(link, fonts, meshes, budget_ms);
+    });
   } catch (...) {
     link.close();
     session.join();

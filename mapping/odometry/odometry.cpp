@@ -225,7 +225,7 @@ void Odometry::set_prior_map(KeyframeDatabase known) {
   update_index(state_->known);
 }
 
-bool Odometry::is_located() const { return state_->kept.located; }
+const OdometrySnapshot& Odometry::state() const { return state_->kept; }
 
 Tracking Odometry::track(const Frame& frame) {
   State& s = *state_;

@@ -28,8 +28,6 @@ class Odometry {
   /// localised in the earlier map if possible. Once a keyframe was localised, all poses are in the earlier
   /// map's world. This includes poses of earlier frames. The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
-  /// Returns true if poses are in the world of the map given to set_prior_map().
-  [[nodiscard]] bool is_located() const;
 
   /// Tracks the next frame and returns its current pose estimate. While tracking is lost, tries the last pose
   /// first, then a search over all keyframes (relocalise()). The images must have the sizes of the frame's
@@ -48,6 +46,8 @@ class Odometry {
   KeyframeDatabase take_keyframe_database();
 
   [[nodiscard]] OdometryCounts counts() const;
+  /// Returns the state after the last frame, without the second thread's next result.
+  [[nodiscard]] const OdometrySnapshot& state() const;
 
   /// Waits until the second thread is idle. Call before snapshot(). Changes no pose.
   /// The thread's result is applied later, at the frame where it is due.

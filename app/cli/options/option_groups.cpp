@@ -27,8 +27,8 @@ struct CommandHelp {
 std::vector<CommandHelp> command_helps() {
   return {
       {"prescan",
-       {{"Everyday options", {"--map", "--resume", "--preset", "--report"}},
-        {"Source", {"--frames", "--calibration", "--poses"}},
+       {{"Everyday options", {"--map", "--window", "--resume", "--preset", "--report"}},
+        {"Source and window", {"--frames", "--calibration", "--poses", "--ui-scale"}},
         {"World", {"--up"}},
         {"Accuracy, time and memory",
          {"--resolution", "--deviation", "--tracking-px", "--fuse-every", "--max-memory", "--presets"}},

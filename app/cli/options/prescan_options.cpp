@@ -32,6 +32,9 @@ void add_options(CLI::App& command, PrescanOptions& options) {
       .add_option("--map", options.map, "folder for the map; an existing map there is replaced (required)")
       ->required()
       ->type_name("DIR");
+  command.add_flag("--window", options.window,
+                   "open a window: watch the model grow, see what is known and what is wrong; pause, finish\n"
+                   "(default: off)");
   add_poses_option(command, options.poses,
                    "estimate the camera poses (tracked), or use those of the recording (recorded)\n"
                    "(default: tracked)");
@@ -67,6 +70,7 @@ void add_options(CLI::App& command, PrescanOptions& options) {
           "(default: no limit)")
       ->check(within(1.0, 1e7, "megabytes"))
       ->type_name("MB");
+  add_ui_scale_option(command, options.ui_scale);
   add_preset_options(command, options.preset, options.presets);
   add_scan_quality_options(command, options.fixed);
   add_report_option(command, options.report);

@@ -44,6 +44,10 @@ struct PrescanOptions {
   double checkpoint_every_s = 2.5;
   /// Max memory of the process, 10^6 bytes; 0: unlimited.
   double max_memory_mb = 0.0;
+  /// True: opens a window that shows the scan.
+  bool window = false;
+  /// Scale of the window's text and panes; unset: the monitor's.
+  std::optional<double> ui_scale;
   /// JSON file to write; empty: not written.
   std::string report;
 };

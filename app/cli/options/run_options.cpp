@@ -62,12 +62,7 @@ void add_playback_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--window", options.window,
                    "open a window: pick, drop, throw and rotate objects, and watch the radar's pictures\n"
                    "(default: off)");
-  command
-      .add_option("--ui-scale", options.ui_scale,
-                  "scale of the window's text and panes, reduced in a window that is too small for it "
-                  "(default: the monitor's)")
-      ->check(within(0.5, 4.0, "times"))
-      ->type_name("X");
+  add_ui_scale_option(command, options.ui_scale);
   command
       .add_option("--record-session", options.record_session,
                   "folder for frames, events and settings; `run DIR` replays them with identical results\n"

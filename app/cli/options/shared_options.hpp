@@ -25,6 +25,7 @@ void add_poses_option(CLI::App& command, PoseOrigin& poses, const std::string& h
 void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames);
 void add_calibration_option(CLI::App& command, std::string& calibration);
 void add_format_option(CLI::App& command, RecordingFormat& format);
+void add_ui_scale_option(CLI::App& command, std::optional<double>& ui_scale);
 void add_report_option(CLI::App& command, std::string& report);
 
 }  // namespace roomradar

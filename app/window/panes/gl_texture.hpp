@@ -1,5 +1,7 @@
 // gl_texture.hpp: texture in the window's OpenGL context.
 #pragma once
+#include <cstdint>
+
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
@@ -14,6 +16,8 @@ class GlTexture {
   GlTexture& operator=(const GlTexture&) = delete;
 
   void upload(const ColourImage& picture);
+  /// @param picture  RGBA, red in the lowest byte
+  void upload(const Image<std::uint32_t>& picture);
   /// Returns the texture in the form that Dear ImGui expects.
   [[nodiscard]] void* id() const;
   [[nodiscard]] int width() const { return width_; }
@@ -23,6 +27,8 @@ class GlTexture {
   bool smooth_;
   unsigned texture_ = 0;
   int width_ = 0, height_ = 0;
+
+  void bind();
 };
 
 }  // namespace roomradar

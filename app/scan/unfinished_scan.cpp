@@ -1,5 +1,5 @@
 // unfinished_scan.cpp: decides how a prescan begins, by the existing map and the interrupted scan beside it.
-#include "app/commands/unfinished_scan.hpp"
+#include "app/scan/unfinished_scan.hpp"
 
 #include <cmath>
 #include <cstdio>

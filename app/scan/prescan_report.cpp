@@ -1,5 +1,5 @@
 // prescan_report.cpp: results of a prescan as JSON and as text.
-#include "app/commands/prescan_report.hpp"
+#include "app/scan/prescan_report.hpp"
 
 #include <algorithm>
 #include <cstdio>

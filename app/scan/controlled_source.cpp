@@ -1,0 +1,46 @@
+// controlled_source.cpp: asks the channel before each frame of the first pass.
+#include "app/scan/controlled_source.hpp"
+
+#include <utility>
+
+namespace roomradar {
+namespace {
+
+class ControlledSource final : public FrameSource {
+ public:
+  ControlledSource(std::unique_ptr<FrameSource> source, ScanChannel& channel)
+      : source_(std::move(source)), channel_(channel) {}
+
+  ReadResult next(Frame& frame) override {
+    if (is_controlled_) {
+      channel_.wait_while_paused();
+      throw_if_discarded(channel_);
+      if (channel_.requested() == ScanRequest::kFinish) return {ReadStatus::kEnd, {}};
+    }
+    return source_->next(frame);
+  }
+  bool rewind() override {
+    is_controlled_ = false;
+    return source_->rewind();
+  }
+  bool seek(std::int64_t index) override { return source_->seek(index); }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
+  [[nodiscard]] std::string name() const override { return source_->name(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  ScanChannel& channel_;
+  bool is_controlled_ = true;
+};
+
+}  // namespace
+
+void throw_if_discarded(const ScanChannel& channel) {
+  if (channel.requested() == ScanRequest::kDiscard) throw ScanDiscarded("the scan was discarded");
+}
+
+std::unique_ptr<FrameSource> controlled(std::unique_ptr<FrameSource> source, ScanChannel& channel) {
+  return std::make_unique<ControlledSource>(std::move(source), channel);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,65 @@
+// scan_advice.hpp: states in words what is wrong with a running scan.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "mapping/alignment/align.hpp"
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+/// Faults of a running scan, the most urgent first.
+enum class ScanFault : std::uint8_t {
+  kSilent,    ///< the device delivers no frames
+  kLost,      ///< the camera's pose is unknown
+  kTooNear,   ///< most of the view is too near to be measured
+  kTooFar,    ///< most of the view is too far, or has no depth
+  kOneWall,   ///< too little shape in view to constrain the pose
+  kTooFast,   ///< the camera moves faster than the tracking bears
+  kMovement,  ///< something moves in view
+  kTooDark,   ///< the colour picture is dark
+};
+inline constexpr std::size_t kScanFaults = 8;
+
+/// Returns a sentence: what is wrong, and what to do.
+std::string_view to_sentence(ScanFault fault);
+
+/// Facts on a frame and the camera's motion that decide on faults.
+struct ScanFacts {
+  double depth_fraction = 0.0;   ///< fraction of the pixels that have depth
+  double near_fraction = 0.0;    ///< fraction of the pixels with depth below 0.6 m
+  double far_fraction = 0.0;     ///< fraction of the pixels with depth above 4 m
+  double brightness = -1.0;      ///< mean of the colour picture, 0..255; < 0: no picture
+  double inlier_fraction = 1.0;  ///< of the alignment; see Tracking
+  TrackStatus status = TrackStatus::kTracked;
+  double speed_mps = 0.0, speed_rad_s = 0.0;  ///< of the camera, smoothed; 0 if unknown
+};
+
+/// Returns the facts on a frame, without speeds. Uses every 8th pixel in both directions.
+ScanFacts facts_of(const Frame& frame, const Tracking& tracking);
+
+/// Returns the camera's speed relative to the greatest that the tracking bears: 1 at kMostSpeed_mps or
+/// kMostSpeed_rad_s.
+double relative_speed(const ScanFacts& facts);
+inline constexpr double kMostSpeed_mps = 1.0, kMostSpeed_rad_s = 1.2;
+
+/// Decides which fault to state. A fault must last for kLasts_s, so that single frames do not flicker, and is
+/// stated for at least kStated_s.
+class ScanAdvice {
+ public:
+  /// @param stamp_s  the frame's time; must not decrease
+  void add(const ScanFacts& facts, double stamp_s);
+  /// Returns the most urgent fault at present, without kSilent; nullopt: none.
+  [[nodiscard]] std::optional<ScanFault> fault() const { return fault_; }
+
+  static constexpr double kLasts_s = 0.25, kStated_s = 1.5;
+
+ private:
+  std::array<std::optional<double>, kScanFaults> since_s_;  ///< stamp at which each fault began
+  std::optional<ScanFault> fault_;
+  double stated_s_ = 0.0;  ///< stamp at which fault_ was last true
+};
+
+}  // namespace roomradar

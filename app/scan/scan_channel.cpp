@@ -1,0 +1,85 @@
+// scan_channel.cpp: a mutex around the newest state.
+#include "app/scan/scan_channel.hpp"
+
+namespace roomradar {
+
+void ScanChannel::set_paused(bool is_paused) {
+  {
+    const std::lock_guard lock(mutex_);
+    is_paused_ = is_paused;
+  }
+  changed_.notify_all();
+}
+
+bool ScanChannel::is_paused() const {
+  const std::lock_guard lock(mutex_);
+  return is_paused_;
+}
+
+void ScanChannel::request(ScanRequest request) {
+  {
+    const std::lock_guard lock(mutex_);
+    request_ = request;
+  }
+  changed_.notify_all();
+}
+
+bool ScanChannel::take(ShownScan& shown) {
+  const std::lock_guard lock(mutex_);
+  if (!std::exchange(is_fresh_, false)) return false;
+  std::swap(newest_, shown);
+  return true;
+}
+
+ScanStage ScanChannel::stage() const {
+  const std::lock_guard lock(mutex_);
+  return stage_;
+}
+
+std::string ScanChannel::outcome() const {
+  const std::lock_guard lock(mutex_);
+  return outcome_;
+}
+
+std::shared_ptr<const Mesh> ScanChannel::surface() const {
+  const std::lock_guard lock(mutex_);
+  return surface_;
+}
+
+ScanRequest ScanChannel::requested() const {
+  const std::lock_guard lock(mutex_);
+  return request_;
+}
+
+void ScanChannel::wait_while_paused() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return !is_paused_ || request_ != ScanRequest::kGoOn; });
+}
+
+void ScanChannel::publish(ShownScan& filled) {
+  {
+    const std::lock_guard lock(mutex_);
+    std::swap(newest_, filled);
+    is_fresh_ = true;
+  }
+  wake_();
+}
+
+void ScanChannel::set_stage(ScanStage stage) {
+  {
+    const std::lock_guard lock(mutex_);
+    stage_ = std::move(stage);
+  }
+  wake_();
+}
+
+void ScanChannel::finish(std::string outcome, std::shared_ptr<const Mesh> surface) {
+  {
+    const std::lock_guard lock(mutex_);
+    outcome_ = std::move(outcome);
+    surface_ = std::move(surface);
+  }
+  wake_();
+}
+
+}  // namespace roomradar

@@ -1,0 +1,108 @@
+// scan_channel.hpp: thread-safe channel between the scan window's thread and the scan's thread.
+#pragma once
+#include <Eigen/Geometry>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/scan/scan_advice.hpp"
+#include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// A part of the live model, and where it is.
+struct ShownPart {
+  std::shared_ptr<const Mesh> mesh;
+  Eigen::Isometry3d T_world_mesh = Eigen::Isometry3d::Identity();
+};
+
+struct ScanCounts {
+  std::int64_t frames = 0;
+  double frames_per_s = 0.0;
+  std::int64_t keyframes = 0;
+  std::int64_t loops = 0;
+  double seen_m2 = 0.0;
+  double well_known = 0.0;  ///< fraction of the surface seen so far
+  std::size_t memory_bytes = 0;
+};
+
+/// State of a scan after a frame. The world's +z is up, as far as the scan can tell so far.
+struct ShownScan {
+  std::int64_t frame_index = -1;  ///< -1: no frame so far
+  double stamp_s = 0.0;
+  ColourImage picture;        ///< colour; depth as grey if there is no colour
+  Image<std::uint32_t> tint;  ///< over the whole picture: RGBA, red in the lowest byte; coarser than it
+  TrackStatus status = TrackStatus::kTracked;
+  std::optional<ScanFault> fault;
+  double relative_speed = 0.0;  ///< 1: the most that the tracking bears
+  Intrinsics camera;            ///< depth camera
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::vector<ShownPart> parts;
+  std::vector<Eigen::Vector3f> path_world;  ///< positions of the keyframes and of the camera
+  ScanCounts counts;
+};
+
+/// Work of a scan after its last frame.
+struct ScanStage {
+  std::string name;                   ///< as in PrescanProgress; empty: frames are still tracked
+  std::int64_t done = 0;              ///< frames
+  std::optional<std::int64_t> total;  ///< unset: unknown
+};
+
+/// Requests of the user to a scan.
+enum class ScanRequest {
+  kGoOn,
+  kFinish,   ///< make the map of the frames so far
+  kDiscard,  ///< end without a map
+  kPlay,     ///< the scan is over; play in its map
+};
+
+/// Connects one window and one scan. Thread safe.
+class ScanChannel {
+ public:
+  /// @param wake  called after each new state
+  explicit ScanChannel(std::function<void()> wake = [] {}) : wake_(std::move(wake)) {}
+
+  // For the window's thread.
+  void set_paused(bool is_paused);
+  [[nodiscard]] bool is_paused() const;
+  void request(ScanRequest request);
+  /// Swaps the newest state with `shown`. Returns false if there is none since the last call.
+  bool take(ShownScan& shown);
+  [[nodiscard]] ScanStage stage() const;
+  /// Returns the result's sentence once the scan is over; empty before.
+  [[nodiscard]] std::string outcome() const;
+  /// Returns the map's surface once the scan is over; null before, and if there is no map.
+  [[nodiscard]] std::shared_ptr<const Mesh> surface() const;
+
+  // For the scan's thread.
+  [[nodiscard]] ScanRequest requested() const;
+  /// Waits while the window is paused. Returns at a request.
+  void wait_while_paused();
+  /// Publishes `filled`, and swaps it with an old state whose memory can be reused.
+  void publish(ShownScan& filled);
+  void set_stage(ScanStage stage);
+  /// @param surface  mesh of the saved map; null: there is no map
+  void finish(std::string outcome, std::shared_ptr<const Mesh> surface);
+
+ private:
+  std::function<void()> wake_;
+  mutable std::mutex mutex_;  ///< guards the members below
+  std::condition_variable changed_;
+  ShownScan newest_;
+  ScanStage stage_;
+  std::string outcome_;
+  std::shared_ptr<const Mesh> surface_;
+  ScanRequest request_ = ScanRequest::kGoOn;
+  bool is_fresh_ = false, is_paused_ = false;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,53 @@
+// scan_end.hpp: what is kept when a scan ends, and the sentences about it.
+#pragma once
+#include <exception>
+#include <new>
+#include <string>
+
+#include "app/cli/options/prescan_options.hpp"
+#include "app/scan/controlled_source.hpp"
+#include "app/scan/unfinished_scan.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+
+struct StoppedByUser : Error {
+  using Error::Error;
+};
+
+/// Throws StoppedByUser, with advice on how to continue.
+/// @param checkpoints  may be null
+[[noreturn]] void stop(const std::string& map, Checkpoints* checkpoints);
+
+/// Throws Error with the fault and, if the scan is not lost, advice on how to continue.
+[[noreturn]] void fail(const std::string& fault, const ScanStart& start);
+
+/// Calls act(), which scans or saves. Errors say whether the scan can be resumed. A discarded scan is
+/// deleted.
+template <typename Act>
+auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
+  try {
+    return act();
+  } catch (const StoppedByUser&) {
+    throw;
+  } catch (const ScanDiscarded&) {
+    if (start.checkpoints) start.checkpoints->remove();
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail("memory ran out; close other programs, or give --max-memory", start);
+  } catch (const std::exception& error) {  // also those of libraries
+    fail(error.what(), start);
+  }
+}
+
+/// Call once the map is saved, or will not be: deletes the checkpoints and, unless keep_frames, the stored
+/// frames of a live scan.
+void finish(Checkpoints& checkpoints, bool keep_frames);
+
+/// Throws Error: a map that was to be extended is unchanged, because --max-memory stopped the scan.
+[[noreturn]] void fail_to_extend(const PrescanOptions& options, bool keep_frames);
+/// Throws Error: --max-memory stopped the scan, and the map of the frames so far is saved.
+[[noreturn]] void say_stopped_for_memory(const PrescanOptions& options, std::int64_t frames_fused,
+                                         bool keep_frames);
+
+}  // namespace roomradar

@@ -1,0 +1,66 @@
+// scan_progress.cpp: titles and totals of the stages.
+#include "app/scan/scan_progress.hpp"
+
+#include <cstdio>
+
+#include "app/cli/interrupt.hpp"
+#include "app/scan/controlled_source.hpp"
+#include "app/scan/scan_end.hpp"
+#include "mapping/octree/static_map.hpp"
+#include "mapping/revision/ghosts.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr const char* kLookedAt = "looked";  // the note of each frame in which ghosts are searched
+
+}  // namespace
+
+void ScanProgress::show(const std::string& stage, const std::string& note) {
+  if (stage_.empty() && start_.checkpoints)  // the checkpoints have been read
+    for (const std::string& fault : start_.checkpoints->faults())
+      std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
+  if (stage == "surface") {
+    show_in_window(stage);
+    progress_.reset();
+    std::fprintf(stderr,
+                 "surface: is extracted; then what the scan missed is listed, and the map is saved\n");
+    return;
+  }
+  const bool is_again = stage == "ghosts" && note != kLookedAt;
+  if (const std::string title = is_again ? "fuse again" : stage; title != stage_) begin(title);
+  if (stage == "fuse" && note == to_string(FuseStatus::kFused)) ++fused_;
+  progress_->step(is_again && fused_ > 0 ? note + ", of at most " + std::to_string(fused_) : note);
+  if (stage != "track") show_in_window(stage_);
+  const bool ends_by_itself = start_.is_live && stage == "track";
+  if (is_stopping_) stop(map_, start_.checkpoints.get());
+  is_stopping_ = !ends_by_itself && Interrupt::take();
+  if (is_stopping_ && start_.checkpoints) start_.checkpoints->write_soon();
+}
+
+/// Returns the number of frames of a stage. The search for ghosts looks at evenly spaced fused frames;
+/// after a resumed scan their number is not known here.
+std::optional<std::int64_t> ScanProgress::total_of(const std::string& stage) const {
+  if (stage == "fuse again" || (stage == "ghosts" && fused_ == 0)) return std::nullopt;
+  if (stage != "ghosts") return start_.source->frame_count();
+  const std::int64_t stride = look_stride(fused_, GhostConfig{});
+  return (fused_ + stride - 1) / stride;
+}
+
+void ScanProgress::show_in_window(const std::string& stage) {
+  if (!window_.channel) return;
+  throw_if_discarded(*window_.channel);
+  window_.view.reset();  // the first pass is over
+  const bool has_frames = stage != "surface";
+  window_.channel->set_stage({stage, has_frames ? ++shown_ : 0, has_frames ? total_of(stage) : std::nullopt});
+}
+
+void ScanProgress::begin(const std::string& stage) {
+  progress_.reset();
+  shown_ = 0;
+  progress_ = std::make_unique<Progress>(stage, total_of(stage));
+  stage_ = stage;
+  if (stage != "track") Interrupt::say(kStopsWithoutMap);
+}
+
+}  // namespace roomradar

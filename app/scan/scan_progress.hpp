@@ -1,0 +1,53 @@
+// scan_progress.hpp: shows the stages of a scan on stderr and in its window, and ends the scan on Ctrl-C.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/cli/progress.hpp"
+#include "app/scan/scan_channel.hpp"
+#include "app/scan/scan_view.hpp"
+#include "app/scan/unfinished_scan.hpp"
+
+namespace roomradar {
+
+/// What Ctrl-C says in a scan that is then left without a map.
+inline constexpr const char* kStopsWithoutMap =
+    "\nroomradar: stops after the next frame, without a map; after the last frame the map is still made. "
+    "Press Ctrl-C again to end at once\n";
+
+/// The window of a scan, and what it shows of the first pass. Both null: there is no window.
+struct ScanWindow {
+  ScanChannel* channel = nullptr;
+  std::unique_ptr<ScanView> view{};
+};
+
+class ScanProgress {
+ public:
+  /// @param map  name of the map, for messages
+  /// All arguments must outlive this object.
+  ScanProgress(const std::string& map, const ScanStart& start, ScanWindow& window)
+      : map_(map), start_(start), window_(window) {}
+
+  /// Call after each frame of a stage. After Ctrl-C it requests a checkpoint of the frames read so far, and
+  /// the call after the next frame throws StoppedByUser. No effect in a stage whose source ends by itself.
+  /// Throws ScanDiscarded if the window requests it.
+  void show(const std::string& stage, const std::string& note);
+
+ private:
+  const std::string& map_;
+  const ScanStart& start_;
+  ScanWindow& window_;
+  std::unique_ptr<Progress> progress_;
+  std::string stage_;
+  std::int64_t shown_ = 0;  ///< calls of show_in_window() in this stage
+  std::int64_t fused_ = 0;  ///< frames fused in this process
+  bool is_stopping_ = false;
+
+  [[nodiscard]] std::optional<std::int64_t> total_of(const std::string& stage) const;
+  void show_in_window(const std::string& stage);
+  void begin(const std::string& stage);
+};
+
+}  // namespace roomradar

@@ -1,0 +1,83 @@
+// scan_view.hpp: follows a scan and publishes what the scan window shows.
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "app/scan/anchors.hpp"
+#include "app/scan/knowledge_grid.hpp"
+#include "app/scan/live_model.hpp"
+#include "app/scan/scan_advice.hpp"
+#include "app/scan/scan_channel.hpp"
+#include "mapping/coverage/observed_area.hpp"
+#include "mapping/odometry/up_direction.hpp"
+#include "mapping/scan_observer.hpp"
+
+namespace roomradar {
+
+/// Prepares pictures, tint, advice and the live model on threads of its own, so that the scan does not wait.
+/// A frame that comes while the view is busy is not shown.
+class ScanView final : public ScanObserver {
+ public:
+  /// @param channel  must outlive the view
+  explicit ScanView(ScanChannel& channel);
+  ~ScanView() override;
+
+  void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) override;
+
+ private:
+  /// One frame, and the odometry's state after it.
+  struct Work {
+    std::shared_ptr<Frame> frame;
+    Tracking tracking;
+    ScanFacts facts;
+    std::size_t anchor = 0;
+    std::vector<Eigen::Isometry3d> T_world_anchor;
+    bool has_moved = false;  ///< anchors moved since the last work
+    std::vector<Eigen::Vector3f> path_world;
+    ScanCounts counts;
+  };
+  struct Pose {
+    double stamp_s = 0.0;
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  };
+
+  // For the scan's thread.
+  Anchors anchors_;
+  bool has_moved_ = false;
+  std::optional<Pose> last_;
+  double speed_mps_ = 0.0, speed_rad_s_ = 0.0;
+  std::int64_t frames_ = 0;
+  std::deque<double> seen_s_;  ///< times at which the last frames came
+
+  // For the view's thread.
+  ScanChannel& channel_;
+  KnowledgeGrid knowledge_;
+  ObservedArea seen_;
+  ScanAdvice advice_;
+  ShownScan shown_;
+  ColourImage last_good_;
+  UpEstimator up_;
+  std::int64_t up_frames_ = 0, up_due_ = 1;
+  Eigen::Isometry3d T_shown_world_ = Eigen::Isometry3d::Identity();  ///< rotates up to +z
+  double well_known_ = 0.0;
+  std::int64_t since_counted_ = 0;  ///< frames since well_known_ was counted
+  LiveModel model_;
+
+  std::mutex mutex_;  ///< guards the members below
+  std::condition_variable changed_;
+  std::optional<Work> work_;
+  bool is_busy_ = false, is_closed_ = false;
+  std::thread thread_;  ///< declared last because it uses the members above
+
+  void measure_speed(const Frame& frame, const Tracking& tracking);
+  void serve();
+  void show(const Work& work);
+  void estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+};
+
+}  // namespace roomradar

@@ -1,0 +1,37 @@
+// imgui_window.hpp: draws a window's content with Dear ImGui until the window is closed.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/window/glfw_window.hpp"
+#include "app/window/panes/theme.hpp"
+
+namespace roomradar {
+
+/// Content of a window. All calls come from the window's thread.
+class WindowContent {
+ public:
+  WindowContent() = default;
+  WindowContent(const WindowContent&) = delete;
+  WindowContent& operator=(const WindowContent&) = delete;
+  virtual ~WindowContent() = default;
+
+  /// Takes what is new since the last call. Called before each drawing.
+  virtual void take_news() = 0;
+  virtual void press(const Key& key) = 0;
+  /// Called for each file that is dropped onto the window.
+  virtual void take_file(const std::string& /*path*/) {}
+  /// Draws within a Dear ImGui frame.
+  virtual void draw(float width, float height) = 0;
+  [[nodiscard]] virtual bool wants_to_quit() const = 0;
+};
+
+/// Shows a content, with the fonts that it is given, until it wants to quit or the window is closed. Draws
+/// after every event, otherwise four times a second.
+/// @param ui_scale  scale of text and panes; unset: that of the monitor
+void show_until_closed(GlfwWindow& window, std::optional<double> ui_scale,
+                       const std::function<std::unique_ptr<WindowContent>(const look::Fonts&)>& make_content);
+
+}  // namespace roomradar

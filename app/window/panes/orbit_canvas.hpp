@@ -1,0 +1,87 @@
+// orbit_canvas.hpp: renders meshes, seen by an orbiting eye, into a texture of the window.
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <memory>
+
+#include "app/window/panes/annotate.hpp"
+#include "app/window/panes/window_layout.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// Position of an eye that orbits a target. Azimuth is the angle about +z, elevation the angle above the
+/// horizontal plane.
+struct Orbit {
+  Eigen::Vector3d target_world = Eigen::Vector3d::Zero();
+  double azimuth_rad = 0.8;
+  double elevation_rad = 0.7;
+  double distance_m = 4.0;
+};
+/// Returns the eye's pose: x right, y up, looking along -z (OpenGL).
+Eigen::Isometry3d eye_of(const Orbit& orbit);
+
+/// A mesh in the window's OpenGL context, which must be current for all calls.
+class DrawnMesh {
+ public:
+  DrawnMesh();
+  ~DrawnMesh();
+  DrawnMesh(const DrawnMesh&) = delete;
+  DrawnMesh& operator=(const DrawnMesh&) = delete;
+
+  /// @param changes_often  true: the mesh is replaced every few frames
+  void upload(const Mesh& mesh, bool changes_often);
+
+ private:
+  friend class OrbitCanvas;
+  unsigned vertex_array_ = 0;
+  std::array<unsigned, 3> buffers_{};  // positions, colours, indices
+  int index_count_ = 0;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  bool has_colours_ = false;
+};
+
+/// Colour of a mesh without colours, and its fraction in the colours of a mesh that has some.
+struct Tint {
+  std::array<float, 3> rgb{};
+  float fraction = 1.0F;
+};
+
+/// A texture that meshes are drawn into. The window's OpenGL context must be current for all calls.
+class OrbitCanvas {
+ public:
+  OrbitCanvas();
+  ~OrbitCanvas();
+  OrbitCanvas(const OrbitCanvas&) = delete;
+  OrbitCanvas& operator=(const OrbitCanvas&) = delete;
+
+  Orbit orbit;
+
+  /// Handles the mouse in the area: a left drag turns, a right drag shifts, the wheel zooms. Call within a
+  /// Dear ImGui frame, after the window's pane has begun. Returns true if the orbit has changed.
+  bool steer(const Area& area);
+
+  /// Begins a rendering of this size, in pixels. Returns true if the size has changed since the last call.
+  bool fit(int width_px, int height_px);
+  void begin();
+  /// @param is_transparent_behind  true: triangles that face away from the eye are not drawn
+  void draw(const DrawnMesh& mesh, const Eigen::Isometry3d& T_world_mesh, const Tint& tint,
+            bool is_transparent_behind = false);
+  void end();
+
+  /// Adds the texture to the window's drawing, over the area.
+  void show(const Area& area) const;
+  /// Returns the projection of world points to the window, if the texture covers the area.
+  [[nodiscard]] ToWindow to_window(const Area& area) const;
+
+ private:
+  unsigned program_ = 0, framebuffer_ = 0, colour_ = 0, depth_ = 0;
+  int width_px_ = 0, height_px_ = 0;
+  Eigen::Isometry3d T_eye_world_ = Eigen::Isometry3d::Identity();
+  Eigen::Matrix4d clip_from_eye_ = Eigen::Matrix4d::Identity();
+};
+
+/// Returns the bounding box of a mesh in the world; empty if the mesh has no vertices.
+Eigen::AlignedBox3d bounds_of(const Mesh& mesh);
+
+}  // namespace roomradar

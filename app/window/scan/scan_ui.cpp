@@ -1,0 +1,258 @@
+// scan_ui.cpp: draws the scan window's panes, and executes keys.
+#include "app/window/scan/scan_ui.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+namespace roomradar {
+namespace {
+
+constexpr double kSilent_s = 1.5;
+
+std::string text_of(const char* form, auto... values) {
+  char text[160];
+  std::snprintf(text, sizeof text, form, values...);
+  return text;
+}
+
+/// Draws a sentence over the area, in its upper part, on a dark ground.
+void draw_sentence(const Area& area, const std::string& sentence, ImU32 colour, ImFont* font) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float wrap = 0.85F * area.width;
+  const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e4F, wrap, sentence.c_str());
+  const ImVec2 at{area.x + 0.5F * (area.width - size.x), area.y + look::px(22.0F)};
+  const float beside = look::px(14.0F), above = look::px(8.0F);
+  list.AddRectFilled({at.x - beside, at.y - above}, {at.x + size.x + beside, at.y + size.y + above},
+                     IM_COL32(16, 19, 24, 225), look::px(8.0F));
+  list.AddText(font, font->FontSize, at, colour, sentence.c_str(), nullptr, wrap);
+}
+
+const char* words_of(const std::string& stage) {
+  if (stage == "fuse") return "Making the map: fusing the frames";
+  if (stage == "ghosts") return "Making the map: looking for what has moved";
+  if (stage == "fuse again") return "Making the map: fusing again where something moved";
+  if (stage == "surface") return "Making the map: surface, and what the scan missed";
+  return "Making the map";
+}
+
+}  // namespace
+
+ScanUi::ScanUi(ScanChannel& channel, const look::Fonts& fonts) : channel_(channel), fonts_(fonts) {}
+
+void ScanUi::take_news() {
+  stage_ = channel_.stage();
+  outcome_ = channel_.outcome();
+  if (channel_.surface() && !surface_) show_result();
+  if (surface_ || !channel_.take(shown_)) return;
+  newest_s_ = ImGui::GetTime();
+  picture_.upload(shown_.picture);
+  if (!shown_.tint.empty()) tint_.upload(shown_.tint);
+  model_.upload(shown_);
+}
+
+/// Shows the map's surface in place of the live model.
+void ScanUi::show_result() {
+  surface_ = channel_.surface();
+  shown_.parts = {{surface_, Eigen::Isometry3d::Identity()}};
+  shown_.path_world.clear();
+  shown_.frame_index = -1;  // the camera's pose is in another world
+  model_.upload(shown_);
+  model_.look_at(*surface_);
+}
+
+void ScanUi::press(const Key& key) {
+  if (!key.is_repeat) press_key(key.key, key.modifiers);
+}
+
+void ScanUi::press_key(int key, int modifiers) {
+  const bool is_enter = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER;
+  if (asks_to_discard_) {
+    if (is_enter) channel_.request(ScanRequest::kDiscard);
+    if (is_enter || key == GLFW_KEY_ESCAPE) asks_to_discard_ = false;
+    return;
+  }
+  if (!outcome_.empty()) {
+    if (key == GLFW_KEY_P && surface_) {
+      channel_.request(ScanRequest::kPlay);
+      quits_ = true;
+    }
+    quits_ = quits_ || is_enter || key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q;
+    return;
+  }
+  if (key == GLFW_KEY_SPACE && is_tracking()) channel_.set_paused(!channel_.is_paused());
+  if (is_enter && is_tracking() && shown_.frame_index >= 0) channel_.request(ScanRequest::kFinish);
+  if (key == GLFW_KEY_DELETE) asks_to_discard_ = true;
+  if (key == GLFW_KEY_F) model_.set_following(!model_.follows());
+  if (key == GLFW_KEY_Q && (modifiers & GLFW_MOD_CONTROL) != 0) quits_ = true;
+}
+
+void ScanUi::draw(float width, float height) {
+  const ScanLayout layout = scan_layout(width, height, look::px(1.0F));
+  draw_bar(layout.bar);
+  draw_picture(layout.camera);
+  model_.draw(layout.model, shown_, fonts_);
+  if (is_tracking())
+    draw_counts(layout.counts);
+  else
+    draw_work(layout.counts);
+  if (asks_to_discard_) draw_question(width, height);
+}
+
+void ScanUi::draw_bar(const Area& area) {
+  look::begin_pane("bar", area, look::kPanel);
+  const bool is_narrow = area.width < look::px(900.0F);
+  if (!is_narrow) {
+    ImGui::PushFont(fonts_.large);
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushStyleColor(ImGuiCol_Text, look::kAccent);
+    ImGui::TextUnformatted("roomradar scan");
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+    ImGui::SameLine(0.0F, look::px(22.0F));
+  }
+  const auto button = [&](const char* label, const char* key_name, int key, bool is_lit, bool enabled) {
+    if (look::button(label, is_narrow ? "" : key_name, is_lit, {0, 0}, enabled)) press_key(key, 0);
+    ImGui::SameLine(0.0F, look::px(8.0F));
+  };
+  const bool is_paused = channel_.is_paused(), tracks = is_tracking();
+  if (outcome_.empty()) {
+    button(is_paused ? "Go on" : "Pause", "Space", GLFW_KEY_SPACE, is_paused, tracks);
+    button("Finish", "Enter", GLFW_KEY_ENTER, false, tracks && shown_.frame_index >= 0);
+    button("Discard", "Del", GLFW_KEY_DELETE, false, true);
+    button("Follow", "F", GLFW_KEY_F, model_.follows(), true);
+  } else {
+    if (surface_) button("Play in this map", "P", GLFW_KEY_P, true, true);
+    button("Close", "Enter", GLFW_KEY_ENTER, false, true);
+  }
+  ImGui::SameLine(0.0F, look::px(16.0F));
+  ImGui::AlignTextToFramePadding();
+  if (!outcome_.empty())
+    look::pill(look::kGood, "over");
+  else if (!tracks)
+    look::pill(look::kAccent, "making the map");
+  else if (is_paused)
+    look::pill(look::kWarn, "paused");
+  else if (shown_.frame_index < 0)
+    look::pill(look::kDim, "waiting for the first frame");
+  else
+    look::pill(shown_.status == TrackStatus::kTracked ? look::kGood : look::kBad,
+               std::string(to_string(shown_.status)));
+  look::end_pane();
+}
+
+void ScanUi::draw_picture(const Area& area) {
+  look::begin_pane("camera", area, look::kGround);
+  if (picture_.width() > 0) {
+    const Area image = fitted(area, picture_.width(), picture_.height());
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 low{image.x, image.y}, high{image.x + image.width, image.y + image.height};
+    list.AddImage(picture_.id(), low, high);
+    if (!shown_.tint.empty()) list.AddImage(tint_.id(), low, high);
+    if (is_tracking()) {
+      draw_advice(image);
+      draw_speed(image);
+    }
+  }
+  look::end_pane();
+}
+
+void ScanUi::draw_advice(const Area& area) {
+  std::optional<ScanFault> fault = shown_.fault;
+  if (newest_s_ >= 0.0 && ImGui::GetTime() - newest_s_ > kSilent_s) fault = ScanFault::kSilent;
+  if (channel_.is_paused())
+    draw_sentence(area, "Paused. Frames are left out until you go on.", look::kText, fonts_.large);
+  else if (fault)
+    draw_sentence(area, std::string(to_sentence(*fault)),
+                  *fault == ScanFault::kLost ? look::kBad : look::kWarn, fonts_.large);
+}
+
+/// Draws the camera's speed as a bar along the picture's lower edge; its right end is the most that the
+/// tracking bears.
+void ScanUi::draw_speed(const Area& area) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float high = look::px(8.0F), margin = look::px(14.0F),
+              width = std::min(look::px(260.0F), 0.5F * area.width);
+  const ImVec2 at{area.x + margin, area.y + area.height - margin - high};
+  const float share = std::clamp(static_cast<float>(shown_.relative_speed), 0.0F, 1.0F);
+  const ImU32 colour = share < 0.6F ? look::kGood : share < 1.0F ? look::kWarn : look::kBad;
+  list.AddText(fonts_.small, fonts_.small->FontSize, {at.x, at.y - look::px(17.0F)}, look::kText, "speed");
+  list.AddRectFilled(at, {at.x + width, at.y + high}, IM_COL32(16, 19, 24, 200), look::px(4.0F));
+  list.AddRectFilled(at, {at.x + share * width, at.y + high}, colour, look::px(4.0F));
+}
+
+void ScanUi::draw_counts(const Area& area) {
+  look::begin_pane("counts", area, look::kPanel);
+  const ScanCounts& counts = shown_.counts;
+  const bool is_narrow = area.width < look::px(1000.0F);
+  int shown = 0;
+  const auto fact = [&](const std::string& value, const char* what) {
+    if (shown > 0 && !(is_narrow && shown == 4)) ImGui::SameLine(0.0F, look::px(26.0F));
+    ++shown;
+    ImGui::BeginGroup();
+    ImGui::PushFont(fonts_.large);
+    ImGui::TextUnformatted(value.c_str());
+    ImGui::PopFont();
+    if (is_narrow) ImGui::SameLine(0.0F, look::px(5.0F));
+    ImGui::PushFont(fonts_.small);
+    ImGui::TextDisabled("%s", what);
+    ImGui::PopFont();
+    ImGui::EndGroup();
+  };
+  fact(text_of("%.0f", counts.frames_per_s), "frames/s");
+  fact(text_of("%lld", static_cast<long long>(counts.frames)), "frames");
+  fact(text_of("%.1f m\u00B2", counts.seen_m2), "surface seen");
+  fact(text_of("%.0f %%", 100.0 * counts.well_known), "of it known well");
+  fact(text_of("%lld", static_cast<long long>(counts.loops)), "loops closed");
+  fact(text_of("%.0f MB", static_cast<double>(counts.memory_bytes) / 1e6), "memory");
+  look::end_pane();
+}
+
+/// Draws the progress of the work after the last frame, or its result.
+void ScanUi::draw_work(const Area& area) {
+  look::begin_pane("counts", area, look::kPanel);
+  if (!outcome_.empty()) {
+    ImGui::PushTextWrapPos(area.width - look::px(14.0F));
+    ImGui::TextUnformatted(outcome_.c_str());
+    ImGui::PopTextWrapPos();
+  } else {
+    ImGui::TextUnformatted(words_of(stage_.name));
+    const bool is_known = stage_.total && *stage_.total > 0;
+    const float share =
+        is_known ? static_cast<float>(stage_.done) / static_cast<float>(*stage_.total) : -1.0F;
+    const std::string frames =
+        is_known
+            ? text_of("%lld of %lld frames", static_cast<long long>(stage_.done),
+                      static_cast<long long>(*stage_.total))
+            : std::string(stage_.done > 0 ? text_of("%lld frames", static_cast<long long>(stage_.done)) : "");
+    ImGui::PushStyleColor(ImGuiCol_PlotHistogram, look::kAccent);
+    ImGui::ProgressBar(std::clamp(share, 0.0F, 1.0F),
+                       {std::min(look::px(520.0F), area.width - look::px(28.0F)), 0.0F}, frames.c_str());
+    ImGui::PopStyleColor();
+  }
+  look::end_pane();
+}
+
+void ScanUi::draw_question(float width, float height) {
+  const float wide = std::min(look::px(420.0F), 0.9F * width), high = look::px(110.0F);
+  ImGui::SetNextWindowPos({0.5F * (width - wide), 0.5F * (height - high)});
+  ImGui::SetNextWindowSize({wide, high});
+  ImGui::SetNextWindowFocus();
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, look::kRaised);
+  ImGui::Begin("question", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::TextWrapped("Discard the scan? Its frames are deleted, and no map is saved.");
+  if (look::button("Discard", "Enter", true)) press_key(GLFW_KEY_ENTER, 0);
+  ImGui::SameLine();
+  if (look::button("Go on", "Esc", false)) press_key(GLFW_KEY_ESCAPE, 0);
+  ImGui::End();
+  ImGui::PopStyleColor();
+}
+
+}  // namespace roomradar

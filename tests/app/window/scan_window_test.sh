@@ -1,0 +1,107 @@
+#!/usr/bin/env bash
+# Operates the scan window by real keys on a virtual screen: pause, finish, discard, close. Checks that the finished map is
+# the one of the same scan without a window.
+#
+# usage: scan_window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
+set -euo pipefail
+program=$1
+for tool in Xvfb xdotool import identify; do
+  command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (packages xvfb xdotool imagemagick)"; exit 77; }
+done
+work=$(mktemp -d)
+shots=${2:-$work}
+mkdir -p "$shots"
+trap 'kill $(jobs -p) 2> /dev/null || true; wait; rm -rf "$work"' EXIT
+
+fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" >&2 || true; exit 1; }
+until_true() {
+  for _ in $(seq 1800); do
+    "$@" && return
+    kill -0 "$scanner" 2> /dev/null || fail "the window is gone, while waiting for: $*"
+    sleep 0.1
+  done
+  fail "in vain waited for: $*"
+}
+has_focus() { xdotool windowfocus "$(xdotool search --onlyvisible --name '^roomradar scan - ' | head -n 1)" 2> /dev/null; }
+tracked() { tr '\r' '\n' < "$work/log" | sed -n 's/^track \([0-9]*\)\/.*/\1/p' | tail -n 1; }
+has_tracked() { [[ $(tracked || true) -ge $1 ]]; }
+says() { grep -q "$1" "$work/log"; }
+shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 500 ]] || fail "$1.png is empty"; }
+# scan NAME SOURCE [OPTION...]: starts a scan in a window.
+scan() {
+  "$program" prescan "$2" --map "$work/$1" --resolution 0.03 --window "${@:3}" > "$work/log" 2>&1 &
+  scanner=$!
+  until_true has_focus
+}
+over() { local status=0; wait "$scanner" || status=$?; [[ $status -eq $1 ]] || fail "exit status $status instead of $1"; }
+
+Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp -noreset 3> "$work/display" > /dev/null 2>&1 &
+for _ in $(seq 600); do [[ -s $work/display ]] && break; sleep 0.1; done
+DISPLAY=:$(cat "$work/display")
+export DISPLAY
+
+echo "== a scan that runs to its end gives the map of the same scan without a window"
+short='sim:table?seed=3&frames=40&width=160&rate=10'
+"$program" prescan "$short" --map "$work/plain" --resolution 0.03 > "$work/log" 2>&1 || fail "prescan without a window"
+scan watched "$short"
+until_true test -e "$work/watched/map.json"
+for part in "$work"/plain/*; do
+  [[ $part == */map.json ]] || cmp "$part" "$work/watched/${part##*/}" || fail "$part differs"
+done
+until_true says '^holes'
+shot over
+xdotool key Return
+over 0
+
+echo "== Space pauses, Space goes on, Return finishes"
+long='sim:table?seed=3&frames=4000&width=320&rate=10'
+scan finished "$long"
+until_true has_tracked 20
+shot scanning
+xdotool key space
+sleep 1.5
+before=$(tracked)
+sleep 1.5
+[[ $(tracked) == "$before" ]] || fail "the scan goes on while it is paused"
+shot paused
+xdotool key space
+until_true has_tracked $((before + 5))
+xdotool key Return
+until_true says 'frames tracked'
+[[ -e $work/finished/map.json ]] || fail "no map was saved"
+
+echo "== P plays in the map just made, in the same window"
+window=$(xdotool search --onlyvisible --name '^roomradar scan - ')
+xdotool key p
+plays() { [[ $(xdotool getwindowname "$window" 2> /dev/null) == "roomradar - "* ]]; }
+until_true plays
+until_true says '^run'
+xdotool windowfocus "$window"
+sleep 1
+shot play
+xdotool key ctrl+q
+over 0
+
+echo "== Delete asks, Escape goes on, Delete and Return discard the scan"
+scan discarded "$long"
+until_true has_tracked 10
+xdotool key Delete
+sleep 0.5
+shot asks
+xdotool key Escape
+before=$(tracked)
+until_true has_tracked $((before + 5))
+xdotool key Delete
+sleep 0.5
+xdotool key Return
+over 1
+says 'was discarded' || fail "nothing is said about the end"
+[[ ! -e $work/discarded && ! -e $work/discarded.unfinished ]] || fail "something is left of the discarded scan"
+
+echo "== a window that is closed leaves a scan that can be resumed"
+scan closed "$long" --checkpoint-every 0.5
+until_true has_tracked 40
+xdotool key ctrl+q
+over 1
+[[ -d $work/closed.unfinished ]] || fail "nothing to resume is left"
+echo "passed"
