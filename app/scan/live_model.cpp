@@ -18,7 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kOpenParts = 4;
 constexpr auto kBetweenMeshes = std::chrono::milliseconds(500);
-constexpr int kLowPriority = 10;  // the tracking must not wait for the model
 
 FusionConfig fusion_config() {
   FusionConfig config;
@@ -30,10 +29,16 @@ FusionConfig fusion_config() {
 SurfaceConfig surface_config() {
   SurfaceConfig config;
   config.max_deviation_m = 6e-3F;
+  config.min_weight = 4e-3F;  // places that were seen once or twice appear, too
   return config;
 }
 
 }  // namespace
+
+void lower_priority() {
+  constexpr int kLow = 10;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLow);
+}
 
 LiveModel::LiveModel(double cell_m) : cell_m_(cell_m), thread_([this] { serve(); }) {}
 
@@ -70,7 +75,7 @@ void LiveModel::finish() {
 }
 
 void LiveModel::serve() {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLowPriority);
+  lower_priority();
   Clock::time_point meshed = Clock::now();
   const auto is_changed = [](const Part& part) { return part.is_changed; };
   for (std::unique_lock lock(mutex_);;) {

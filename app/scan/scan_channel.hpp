@@ -24,6 +24,12 @@ struct ShownPart {
   Eigen::Isometry3d T_world_mesh = Eigen::Isometry3d::Identity();
 };
 
+/// Where the scan finds most of what it has not seen.
+struct ShownNextView {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::string way;  ///< from the camera to there, in words
+};
+
 struct ScanCounts {
   std::int64_t frames = 0;
   double frames_per_s = 0.0;
@@ -47,6 +53,7 @@ struct ShownScan {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<ShownPart> parts;
   std::vector<Eigen::Vector3f> path_world;  ///< positions of the keyframes and of the camera
+  std::optional<ShownNextView> next_view;   ///< unset: not known, or nothing unseen is near
   ScanCounts counts;
 };
 

@@ -85,6 +85,7 @@ void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const O
   work.T_world_anchor = anchors_.T_world_anchor;
   work.has_moved = std::exchange(has_moved_, false);
   work.path_world = path_of(state, tracking);
+  if (tracking && wants_keyframes_.exchange(false)) work.keyframes = state.graph.keyframes;
   work.counts.frames = frames_;
   if (seen_s_.size() > 1)
     work.counts.frames_per_s =
@@ -119,6 +120,30 @@ void ScanView::estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_
   T_shown_world_ = level_rotation(up_.estimate().up_world);
 }
 
+/// Searches for the next view on a thread of its own, about once a second.
+void ScanView::search_next_view(const Work& work) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kEvery = std::chrono::seconds(1);
+  constexpr double kReached_m = 0.25, kReached_rad = 0.35;
+  if (search_.valid() && search_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+    next_view_ = search_.get();
+  if (!search_.valid() && !work.keyframes.empty()) {
+    searched_ = Clock::now();
+    const Eigen::Vector3d up_world = T_shown_world_.linear().row(2).transpose();
+    search_ = std::async(std::launch::async, [keyframes = work.keyframes, up_world,
+                                              T_world_camera = work.tracking.T_world_camera] {
+      lower_priority();
+      return best_next_view(explored_around(T_world_camera.translation(), keyframes), T_world_camera,
+                            up_world);
+    });
+  }
+  if (!search_.valid() && Clock::now() - searched_ > kEvery) wants_keyframes_ = true;
+  if (!next_view_ || !work.tracking) return;
+  const Eigen::Isometry3d left = next_view_->T_world_camera.inverse() * work.tracking.T_world_camera;
+  if (left.translation().norm() < kReached_m && Eigen::AngleAxisd(left.linear()).angle() < kReached_rad)
+    next_view_.reset();
+}
+
 void ScanView::show(const Work& work) {
   constexpr std::int64_t kCountedEvery = 30;
   constexpr double kWorthFusing = 0.1;
@@ -142,6 +167,7 @@ void ScanView::show(const Work& work) {
   }
   if (since_counted_++ % kCountedEvery == 0) well_known_ = knowledge_.well_known_fraction();
   advice_.add(work.facts, frame.stamp_s);
+  search_next_view(work);
 
   shown_.frame_index = frame.index;
   shown_.stamp_s = frame.stamp_s;
@@ -153,6 +179,11 @@ void ScanView::show(const Work& work) {
   shown_.path_world = work.path_world;
   for (Eigen::Vector3f& position : shown_.path_world)
     position = T_shown_world_.linear().cast<float>() * position;
+  shown_.next_view.reset();
+  if (next_view_ && work.tracking)
+    shown_.next_view =
+        ShownNextView{T_shown_world_ * next_view_->T_world_camera,
+                      way_to(*next_view_, T_world_camera, T_shown_world_.linear().row(2).transpose())};
   shown_.parts.clear();
   for (const LiveModelPart& part : model_.parts())
     if (part.anchor < work.T_world_anchor.size())

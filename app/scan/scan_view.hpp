@@ -1,7 +1,10 @@
 // scan_view.hpp: follows a scan and publishes what the scan window shows.
 #pragma once
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +14,7 @@
 #include "app/scan/anchors.hpp"
 #include "app/scan/knowledge_grid.hpp"
 #include "app/scan/live_model.hpp"
+#include "app/scan/next_view.hpp"
 #include "app/scan/scan_advice.hpp"
 #include "app/scan/scan_channel.hpp"
 #include "mapping/coverage/observed_area.hpp"
@@ -39,6 +43,7 @@ class ScanView final : public ScanObserver {
     std::vector<Eigen::Isometry3d> T_world_anchor;
     bool has_moved = false;  ///< anchors moved since the last work
     std::vector<Eigen::Vector3f> path_world;
+    std::vector<Keyframe> keyframes;  ///< only if the next view is to be searched
     ScanCounts counts;
   };
   struct Pose {
@@ -67,7 +72,11 @@ class ScanView final : public ScanObserver {
   double well_known_ = 0.0;
   std::int64_t since_counted_ = 0;  ///< frames since well_known_ was counted
   LiveModel model_;
+  std::optional<NextView> next_view_;  ///< in the odometry's world
+  std::chrono::steady_clock::time_point searched_{};
+  std::future<std::optional<NextView>> search_;
 
+  std::atomic<bool> wants_keyframes_ = true;
   std::mutex mutex_;  ///< guards the members below
   std::condition_variable changed_;
   std::optional<Work> work_;
@@ -77,6 +86,7 @@ class ScanView final : public ScanObserver {
   void measure_speed(const Frame& frame, const Tracking& tracking);
   void serve();
   void show(const Work& work);
+  void search_next_view(const Work& work);
   void estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 };
 

@@ -86,6 +86,12 @@ void LiveModelView::draw(const Area& area, const ShownScan& shown, const look::F
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ToWindow to_window = canvas_.to_window(area);
   draw_path(list, shown, to_window);
+  if (shown.next_view) {
+    draw_camera(list, {shown.camera, shown.next_view->T_world_camera}, 0.25, to_window);
+    const std::optional<ImVec2> from = to_window(shown.T_world_camera.translation()),
+                                to = to_window(shown.next_view->T_world_camera * Eigen::Vector3d(0, 0, 0.25));
+    if (from && to) list.AddLine(*from, *to, look::kWarn, look::px(2.0F));
+  }
   if (shown.frame_index >= 0) draw_camera(list, {shown.camera, shown.T_world_camera}, 0.35, to_window);
   if (shown.parts.empty())
     list.AddText(fonts.text, fonts.text->FontSize, {area.x + look::px(16.0F), area.y + look::px(16.0F)},

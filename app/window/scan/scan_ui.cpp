@@ -61,6 +61,7 @@ void ScanUi::show_result() {
   surface_ = channel_.surface();
   shown_.parts = {{surface_, Eigen::Isometry3d::Identity()}};
   shown_.path_world.clear();
+  shown_.next_view.reset();
   shown_.frame_index = -1;  // the camera's pose is in another world
   model_.upload(shown_);
   model_.look_at(*surface_);
@@ -155,6 +156,7 @@ void ScanUi::draw_picture(const Area& area) {
     list.AddImage(picture_.id(), low, high);
     if (!shown_.tint.empty()) list.AddImage(tint_.id(), low, high);
     if (is_tracking()) {
+      draw_next_view(image);
       draw_advice(image);
       draw_speed(image);
     }
@@ -170,6 +172,32 @@ void ScanUi::draw_advice(const Area& area) {
   else if (fault)
     draw_sentence(area, std::string(to_sentence(*fault)),
                   *fault == ScanFault::kLost ? look::kBad : look::kWarn, fonts_.large);
+}
+
+/// Draws an arrow from the picture's middle towards the next view, and the way there in words.
+void ScanUi::draw_next_view(const Area& area) {
+  if (!shown_.next_view) return;
+  const ShownNextView& next = *shown_.next_view;
+  const Eigen::Isometry3d T_camera_next = shown_.T_world_camera.inverse() * next.T_world_camera;
+  // The direction to what the next view looks at; beside the camera's axis it is the way to turn.
+  const Eigen::Vector3d towards = T_camera_next * Eigen::Vector3d(0.0, 0.0, 2.0);
+  const Eigen::Vector2f aside = towards.head<2>().cast<float>();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float y = area.y + area.height - look::px(46.0F);
+  const ImVec2 size = ImGui::CalcTextSize(next.way.c_str());
+  const float x = area.x + 0.5F * (area.width - size.x), pad = look::px(8.0F);
+  list.AddRectFilled({x - pad, y - pad}, {x + size.x + pad, y + size.y + pad}, IM_COL32(16, 19, 24, 200),
+                     look::px(6.0F));
+  list.AddText({x, y}, look::kText, next.way.c_str());
+  if (aside.norm() < 0.15F && towards.z() > 0.0) return;  // straight ahead
+  const Eigen::Vector2f along = aside.normalized(), across(-along.y(), along.x());
+  const Eigen::Vector2f middle(area.x + 0.5F * area.width, area.y + 0.5F * area.height);
+  const Eigen::Vector2f from = middle + look::px(40.0F) * along, tip = from + look::px(110.0F) * along;
+  const auto at = [](const Eigen::Vector2f& p) { return ImVec2(p.x(), p.y()); };
+  constexpr ImU32 kArrow = IM_COL32(64, 196, 172, 230);
+  list.AddLine(at(from), at(tip - look::px(24.0F) * along), kArrow, look::px(12.0F));
+  list.AddTriangleFilled(at(tip), at(tip - look::px(34.0F) * along + look::px(24.0F) * across),
+                         at(tip - look::px(34.0F) * along - look::px(24.0F) * across), kArrow);
 }
 
 /// Draws the camera's speed as a bar along the picture's lower edge; its right end is the most that the

@@ -39,6 +39,7 @@ class ScanUi final : public WindowContent {
   void draw_bar(const Area& area);
   void draw_picture(const Area& area);
   void draw_advice(const Area& area);
+  void draw_next_view(const Area& area);
   void draw_speed(const Area& area);
   void draw_counts(const Area& area);
   void draw_work(const Area& area);

@@ -1,0 +1,80 @@
+// exploration_grid.cpp: walks along the rays of keyframes in steps of half a cell.
+#include "app/scan/exploration_grid.hpp"
+
+#include <algorithm>
+
+namespace roomradar {
+namespace {
+
+constexpr std::int64_t kEdge = 256;  // cells
+constexpr double kFarthestCell_m = 5.0;
+// A Kinect measures between these depths. A ray without depth that crosses a cell between them means that the
+// cell cannot be measured from there.
+constexpr double kSurelyFrom_m = 0.7, kSurelyTo_m = 2.5;
+constexpr std::uint8_t kFreeBit = 1, kOccupiedBit = 2, kOneTry = 4;
+constexpr std::uint8_t kManyTries = 24;
+
+}  // namespace
+
+ExplorationGrid::ExplorationGrid(const Eigen::Vector3d& centre_world)
+    : lowest_world_(centre_world - Eigen::Vector3d::Constant(0.5 * kEdge * kCell_m)),
+      cells_(static_cast<std::size_t>(kEdge * kEdge * kEdge), 0) {}
+
+std::int64_t ExplorationGrid::index_of(const Eigen::Vector3d& p_world) const {
+  const Eigen::Array3d cell = ((p_world - lowest_world_) / kCell_m).array().floor();
+  if (!(cell >= 0.0).all() || !(cell < static_cast<double>(kEdge)).all()) return -1;
+  return (static_cast<std::int64_t>(cell.z()) * kEdge + static_cast<std::int64_t>(cell.y())) * kEdge +
+         static_cast<std::int64_t>(cell.x());
+}
+
+void ExplorationGrid::add(const StoredView& view, const Eigen::Isometry3d& T_world_camera) {
+  const int step_px = std::max(1, view.camera.width_px / 40);
+  const auto mark = [&](const Eigen::Vector3d& ray_world, double from_m, double to_m, const auto& change) {
+    for (double depth_m = from_m; depth_m < to_m; depth_m += 0.5 * kCell_m) {
+      const std::int64_t index = index_of(T_world_camera.translation() + depth_m * ray_world);
+      if (index >= 0) change(cells_[static_cast<std::size_t>(index)]);
+    }
+  };
+  for (int y = step_px / 2; y < view.camera.height_px; y += step_px)
+    for (int x = step_px / 2; x < view.camera.width_px; x += step_px) {
+      const Eigen::Vector3d ray_world = T_world_camera.linear() * back_project(view.camera, x, y, 1.0);
+      const std::uint16_t inverse = view.inverse_depth.at(x, y);
+      if (inverse == 0) {
+        mark(ray_world, kSurelyFrom_m, kSurelyTo_m, [](std::uint8_t& cell) {
+          if (cell < 256 - kOneTry) cell = static_cast<std::uint8_t>(cell + kOneTry);
+        });
+        continue;
+      }
+      const double depth_m = 1.0 / static_cast<double>(static_cast<float>(inverse) * kInverseDepthStep_per_m);
+      mark(ray_world, 0.3, std::min(depth_m - kCell_m, kFarthestCell_m),
+           [](std::uint8_t& cell) { cell |= kFreeBit; });
+      if (depth_m <= kFarthestCell_m)
+        mark(ray_world, depth_m, depth_m + 0.25 * kCell_m, [](std::uint8_t& cell) { cell |= kOccupiedBit; });
+    }
+}
+
+CellState ExplorationGrid::at(const Eigen::Vector3d& p_world) const {
+  const std::int64_t index = index_of(p_world);
+  if (index < 0) return CellState::kUnmeasurable;
+  const std::uint8_t cell = cells_[static_cast<std::size_t>(index)];
+  if ((cell & kOccupiedBit) != 0) return CellState::kOccupied;
+  if ((cell & kFreeBit) != 0) return CellState::kFree;
+  return cell / kOneTry >= kManyTries ? CellState::kUnmeasurable : CellState::kUnknown;
+}
+
+ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes) {
+  constexpr std::size_t kMost = 200;
+  std::vector<const Keyframe*> nearest;
+  for (const Keyframe& keyframe : keyframes) nearest.push_back(&keyframe);
+  const auto distance = [&](const Keyframe* keyframe) {
+    return (keyframe->T_world_camera.translation() - camera_world).squaredNorm();
+  };
+  const std::size_t count = std::min(kMost, nearest.size());
+  std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count), nearest.end(),
+                    [&](const Keyframe* a, const Keyframe* b) { return distance(a) < distance(b); });
+  ExplorationGrid grid(camera_world);
+  for (std::size_t i = 0; i < count; ++i) grid.add(*nearest[i]->view, nearest[i]->T_world_camera);
+  return grid;
+}
+
+}  // namespace roomradar

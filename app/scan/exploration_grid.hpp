@@ -1,0 +1,44 @@
+// exploration_grid.hpp: coarse grid of free, occupied and unknown space around the camera of a running scan.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "mapping/alignment/keyframe.hpp"
+
+namespace roomradar {
+
+enum class CellState : std::uint8_t {
+  kUnknown,
+  kFree,
+  kOccupied,
+  kUnmeasurable,  ///< unknown, although seen from near several times: glass, or dark
+};
+
+/// A cube of cells of 10 cm, 25.6 m wide, centred at the camera. Takes 16 MB.
+class ExplorationGrid {
+ public:
+  static constexpr double kCell_m = 0.1;
+
+  explicit ExplorationGrid(const Eigen::Vector3d& centre_world);
+
+  /// Marks the cells along the rays of a keyframe as free, and their ends as occupied. Uses every 8th pixel
+  /// in both directions of an image of 320 x 240, up to 5 m.
+  void add(const StoredView& view, const Eigen::Isometry3d& T_world_camera);
+
+  /// Returns the state of the cell that contains a point; kUnmeasurable outside the grid.
+  [[nodiscard]] CellState at(const Eigen::Vector3d& p_world) const;
+
+ private:
+  Eigen::Vector3d lowest_world_;
+  /// Bit 0: a ray has crossed the cell. Bit 1: a ray has ended in it. Bits 2 to 7: number of rays without
+  /// depth, at most 63.
+  std::vector<std::uint8_t> cells_;
+
+  [[nodiscard]] std::int64_t index_of(const Eigen::Vector3d& p_world) const;
+};
+
+/// Returns the grid around a camera, from the nearest 200 keyframes at most.
+ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes);
+
+}  // namespace roomradar
