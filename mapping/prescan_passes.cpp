@@ -93,8 +93,26 @@ Eigen::Vector3d middle_of_recorded(const PrescanWork& work, const TrackingPass& 
                                : pass.recorded.front().T_world_camera.translation();
 }
 
+/// Removes the last seconds of the scan: the frames' poses, and the keyframes made of them. The frames remain
+/// counted as read, and are not fused since they have no pose.
+/// @param known  keyframes of the map that is extended; null: a new map
+void undo(PrescanWork& work, TrackingPass& pass, const KeyframeDatabase* known, double from_s) {
+  pass.odometry.finish_jobs();
+  OdometrySnapshot kept = pass.odometry.snapshot();
+  const auto first = std::find_if(kept.frames.begin(), kept.frames.end(),
+                                  [&](const KeptFrame& frame) { return frame.stamp_s >= from_s; });
+  if (first == kept.frames.end()) return;
+  const std::int64_t from_index = first->frame_index;
+  forget_frames_from(from_index, kept);
+  pass.odometry = Odometry(work.config.odometry, std::move(kept));
+  if (known) pass.odometry.set_prior_map(*known);
+  std::erase_if(pass.recorded, [&](const TimedPose& pose) { return pose.frame_index >= from_index; });
+  work.observer->forgot_frames(from_index);
+}
+
 /// Reads the source to its end and returns the camera pose of each frame.
-TrajectoryEstimate estimate_trajectory(PrescanWork& work, TrackingPass& pass) {
+/// @param known  keyframes of the map that is extended; null: a new map
+TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase* known, TrackingPass& pass) {
   const PrescanConfig& config = work.config;
   Frame frame;
   ObservedArea seen;
@@ -113,7 +131,11 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, TrackingPass& pass) {
     work.track_ms[frame.index] = ms_since(start);
     work.times.add_ms("track", work.track_ms[frame.index]);
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
-    if (work.observer) work.observer->after_frame(frame, tracking, pass.odometry);
+    if (work.observer) {
+      work.observer->after_frame(frame, tracking, pass.odometry);
+      if (const double undo_s = work.observer->take_undo_s(); undo_s > 0.0)
+        undo(work, pass, known, frame.stamp_s - undo_s);
+    }
     if (work.progress) {  // only `progress` reports the observed area
       if (tracking) seen.add(frame, tracking.T_world_camera);
       work.progress(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
@@ -181,9 +203,11 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
     pass.counts.frames_resumed = pass.counts.frames_read;
     skip_frames(work.source, pass.counts.frames_read, kTrackingStage, work.progress);
   }
-  if (map && work.config.poses == PoseOrigin::kTracked) pass.odometry.set_prior_map(map->keyframe_database);
+  const KeyframeDatabase* const known =
+      map && work.config.poses == PoseOrigin::kTracked ? &map->keyframe_database : nullptr;
+  if (known) pass.odometry.set_prior_map(*known);
   FusionPass fusing;
-  fusing.found = estimate_trajectory(work, pass);
+  fusing.found = estimate_trajectory(work, known, pass);
   fusing.counts = pass.counts;
   if (fusing.counts.frames_read == fusing.counts.frames_skipped)
     throw Error(work.source.name() + ": there is not one readable frame" +

@@ -1,12 +1,14 @@
 // scan_observer.hpp: interface that follows a prescan while it tracks the camera.
 #pragma once
+#include <cstdint>
+
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
 
-/// Follows the first pass of a prescan. Calls come from the prescan's thread. They cannot change the scan, but
-/// their time is added to that of the frame.
+/// Follows the first pass of a prescan. Calls come from the prescan's thread. They cannot change the scan,
+/// but their time is added to that of the frame.
 class ScanObserver {
  public:
   ScanObserver() = default;
@@ -16,6 +18,12 @@ class ScanObserver {
 
   /// Called after each readable frame, with its tracking result and the state of the odometry after it.
   virtual void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) = 0;
+
+  /// Called after after_frame(). Returns how many seconds of the scan are to be undone, by the frames'
+  /// stamps; 0: none. The camera must then go back to where it was.
+  virtual double take_undo_s() { return 0.0; }
+  /// Called when the frames from this index on have been removed from the scan.
+  virtual void forgot_frames(std::int64_t /*from_index*/) {}
 };
 
 }  // namespace roomradar

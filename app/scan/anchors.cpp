@@ -20,7 +20,8 @@ bool correct(const OdometrySnapshot& odometry, Anchors& anchors) {
   bool is_moved = false;
   for (std::size_t i = 0; i < anchors.anchors.size(); ++i) {
     const Anchor& anchor = anchors.anchors[i];
-    Eigen::Isometry3d& T_world_anchor = anchors.T_world_anchor[i];
+    if (!anchors.T_world_anchor[i]) continue;
+    Eigen::Isometry3d& T_world_anchor = *anchors.T_world_anchor[i];
     const Eigen::Isometry3d now = T_world_keyframe(odometry, anchor.keyframe) * anchor.T_keyframe_anchor;
     const Eigen::Isometry3d change = T_world_anchor.inverse() * now;
     is_moved = is_moved || change.translation().norm() > kMoved_m ||
@@ -30,28 +31,39 @@ bool correct(const OdometrySnapshot& odometry, Anchors& anchors) {
   return is_moved;
 }
 
-std::size_t anchor_for(const Eigen::Isometry3d& T_world_camera, const OdometrySnapshot& odometry,
-                       Anchors& anchors) {
+std::size_t anchor_for(std::int64_t frame_index, const Eigen::Isometry3d& T_world_camera,
+                       const OdometrySnapshot& odometry, Anchors& anchors) {
   std::size_t best = anchors.anchors.size();
   double least = 1.0;
   for (std::size_t i = 0; i < anchors.anchors.size(); ++i) {
+    if (!anchors.T_world_anchor[i]) continue;
     const Eigen::Isometry3d apart =
-        (anchors.T_world_anchor[i] * anchors.anchors[i].T_anchor_camera).inverse() * T_world_camera;
+        (*anchors.T_world_anchor[i] * anchors.anchors[i].T_anchor_camera).inverse() * T_world_camera;
     const double distance = std::max(apart.translation().norm() / kReach_m,
                                      Eigen::AngleAxisd(apart.linear()).angle() / kReach_rad);
     if (distance >= least) continue;
     least = distance;
     best = i;
   }
-  if (best < anchors.anchors.size()) return best;
+  if (best < anchors.anchors.size()) {
+    anchors.anchors[best].last_frame = frame_index;
+    return best;
+  }
   const bool has_keyframe = !odometry.graph.keyframes.empty();
-  Anchor made{has_keyframe ? std::optional(odometry.current) : std::nullopt};
+  Anchor made;
+  if (has_keyframe) made.keyframe = odometry.current;
+  made.last_frame = frame_index;
   const Eigen::Isometry3d T_world_anchor(Eigen::Translation3d(T_world_camera.translation()));
   made.T_keyframe_anchor = T_world_keyframe(odometry, made.keyframe).inverse() * T_world_anchor;
   made.T_anchor_camera = T_world_anchor.inverse() * T_world_camera;
   anchors.anchors.push_back(made);
-  anchors.T_world_anchor.push_back(T_world_anchor);
+  anchors.T_world_anchor.emplace_back(T_world_anchor);
   return best;
+}
+
+void forget_frames_from(std::int64_t frame_index, Anchors& anchors) {
+  for (std::size_t i = 0; i < anchors.anchors.size(); ++i)
+    if (anchors.anchors[i].last_frame >= frame_index) anchors.T_world_anchor[i].reset();
 }
 
 }  // namespace roomradar

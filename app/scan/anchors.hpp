@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -16,12 +17,16 @@ struct Anchor {
   Eigen::Isometry3d T_keyframe_anchor = Eigen::Isometry3d::Identity();
   /// View that the anchor was made for; decides which frames belong to it.
   Eigen::Isometry3d T_anchor_camera = Eigen::Isometry3d::Identity();
+  std::int64_t last_frame = 0;  ///< index of the last frame that belongs to the anchor
 };
+
+/// Current poses of anchors; unset: the anchor is gone.
+using AnchorPoses = std::vector<std::optional<Eigen::Isometry3d>>;
 
 /// Anchors, and their current poses.
 struct Anchors {
   std::vector<Anchor> anchors;
-  std::vector<Eigen::Isometry3d> T_world_anchor;
+  AnchorPoses T_world_anchor;
 };
 
 /// Sets the anchors' poses to those of their keyframes. Returns true if a point 2 m from an anchor moved by
@@ -30,7 +35,11 @@ bool correct(const OdometrySnapshot& odometry, Anchors& anchors);
 
 /// Returns the anchor with the view most similar to the camera's, or makes a new anchor if none was made
 /// within 0.8 m and 40 degrees.
-std::size_t anchor_for(const Eigen::Isometry3d& T_world_camera, const OdometrySnapshot& odometry,
-                       Anchors& anchors);
+/// @param frame_index  the frame's index
+std::size_t anchor_for(std::int64_t frame_index, const Eigen::Isometry3d& T_world_camera,
+                       const OdometrySnapshot& odometry, Anchors& anchors);
+
+/// Removes the anchors of frames from this index on.
+void forget_frames_from(std::int64_t frame_index, Anchors& anchors);
 
 }  // namespace roomradar

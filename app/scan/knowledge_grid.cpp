@@ -65,11 +65,11 @@ void KnowledgeGrid::add(const Frame& frame, std::size_t anchor, const Eigen::Iso
   });
 }
 
-void KnowledgeGrid::move(const std::vector<Eigen::Isometry3d>& T_world_anchor) {
+void KnowledgeGrid::move(const AnchorPoses& T_world_anchor) {
   in_world_.clear();
   for (std::size_t i = 0; i < in_anchor_.size() && i < T_world_anchor.size(); ++i)
     for (const auto& [cell, weight] : in_anchor_[i])
-      in_world_[cell_of(T_world_anchor[i] * centre_of(cell))] += weight;
+      if (T_world_anchor[i]) in_world_[cell_of(*T_world_anchor[i] * centre_of(cell))] += weight;
 }
 
 Image<Knowledge> KnowledgeGrid::knowledge_of(const Frame& frame,

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "app/scan/anchors.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
@@ -28,8 +29,8 @@ class KnowledgeGrid {
   /// @param anchor  index of the frame's anchor; the measurements move with it
   void add(const Frame& frame, std::size_t anchor, const Eigen::Isometry3d& T_anchor_camera,
            const Eigen::Isometry3d& T_world_anchor);
-  /// Moves all measurements to the anchors' current poses.
-  void move(const std::vector<Eigen::Isometry3d>& T_world_anchor);
+  /// Moves all measurements to the anchors' current poses. Those of anchors that are gone are left out.
+  void move(const AnchorPoses& T_world_anchor);
 
   /// Returns the knowledge at every kStep_px-th pixel of the depth image, from pixel kStep_px / 2 on.
   [[nodiscard]] Image<Knowledge> knowledge_of(const Frame& frame,

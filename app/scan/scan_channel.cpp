@@ -24,6 +24,16 @@ void ScanChannel::request(ScanRequest request) {
   changed_.notify_all();
 }
 
+void ScanChannel::undo(double seconds) {
+  const std::lock_guard lock(mutex_);
+  undo_s_ += seconds;
+}
+
+double ScanChannel::take_undo_s() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(undo_s_, 0.0);
+}
+
 bool ScanChannel::take(ShownScan& shown) {
   const std::lock_guard lock(mutex_);
   if (!std::exchange(is_fresh_, false)) return false;

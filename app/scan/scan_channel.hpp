@@ -82,6 +82,8 @@ class ScanChannel {
   void set_paused(bool is_paused);
   [[nodiscard]] bool is_paused() const;
   void request(ScanRequest request);
+  /// Asks to undo the last seconds of the scan.
+  void undo(double seconds);
   /// Swaps the newest state with `shown`. Returns false if there is none since the last call.
   bool take(ShownScan& shown);
   [[nodiscard]] ScanStage stage() const;
@@ -92,6 +94,8 @@ class ScanChannel {
 
   // For the scan's thread.
   [[nodiscard]] ScanRequest requested() const;
+  /// Returns how much is to be undone since the last call, s.
+  double take_undo_s();
   /// Waits while the window is paused. Returns at a request.
   void wait_while_paused();
   /// Publishes `filled`, and swaps it with an old state whose memory can be reused.
@@ -109,6 +113,7 @@ class ScanChannel {
   std::string outcome_;
   std::shared_ptr<const Mesh> surface_;
   ScanRequest request_ = ScanRequest::kGoOn;
+  double undo_s_ = 0.0;
   bool is_fresh_ = false, is_paused_ = false;
 };
 

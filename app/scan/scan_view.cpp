@@ -81,7 +81,7 @@ void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const O
   work.facts = facts_of(frame, tracking);
   work.facts.speed_mps = speed_mps_;
   work.facts.speed_rad_s = speed_rad_s_;
-  if (tracking) work.anchor = anchor_for(tracking.T_world_camera, state, anchors_);
+  if (tracking) work.anchor = anchor_for(frame.index, tracking.T_world_camera, state, anchors_);
   work.T_world_anchor = anchors_.T_world_anchor;
   work.has_moved = std::exchange(has_moved_, false);
   work.path_world = path_of(state, tracking);
@@ -97,6 +97,12 @@ void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const O
     work_ = std::move(work);
   }
   changed_.notify_all();
+}
+
+void ScanView::forgot_frames(std::int64_t from_index) {
+  forget_frames_from(from_index, anchors_);
+  has_moved_ = true;
+  last_.reset();
 }
 
 void ScanView::serve() {
@@ -153,7 +159,7 @@ void ScanView::show(const Work& work) {
   make_picture(frame, shown_.picture);
   shown_.tint.resize(0, 0);
   if (work.tracking) {
-    const Eigen::Isometry3d& T_world_anchor = work.T_world_anchor[work.anchor];
+    const Eigen::Isometry3d& T_world_anchor = *work.T_world_anchor[work.anchor];
     const Eigen::Isometry3d T_anchor_camera = T_world_anchor.inverse() * T_world_camera;
     const Image<Knowledge> knowledge = knowledge_.knowledge_of(frame, T_world_camera);
     knowledge_.add(frame, work.anchor, T_anchor_camera, T_world_anchor);
@@ -186,8 +192,8 @@ void ScanView::show(const Work& work) {
                       way_to(*next_view_, T_world_camera, T_shown_world_.linear().row(2).transpose())};
   shown_.parts.clear();
   for (const LiveModelPart& part : model_.parts())
-    if (part.anchor < work.T_world_anchor.size())
-      shown_.parts.push_back({part.mesh_anchor, T_shown_world_ * work.T_world_anchor[part.anchor]});
+    if (part.anchor < work.T_world_anchor.size() && work.T_world_anchor[part.anchor])
+      shown_.parts.push_back({part.mesh_anchor, T_shown_world_ * *work.T_world_anchor[part.anchor]});
   shown_.counts = work.counts;
   shown_.counts.seen_m2 = seen_.total_m2();
   shown_.counts.well_known = well_known_;

@@ -32,6 +32,8 @@ class ScanView final : public ScanObserver {
   ~ScanView() override;
 
   void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) override;
+  double take_undo_s() override { return channel_.take_undo_s(); }
+  void forgot_frames(std::int64_t from_index) override;
 
  private:
   /// One frame, and the odometry's state after it.
@@ -40,7 +42,7 @@ class ScanView final : public ScanObserver {
     Tracking tracking;
     ScanFacts facts;
     std::size_t anchor = 0;
-    std::vector<Eigen::Isometry3d> T_world_anchor;
+    AnchorPoses T_world_anchor;
     bool has_moved = false;  ///< anchors moved since the last work
     std::vector<Eigen::Vector3f> path_world;
     std::vector<Keyframe> keyframes;  ///< only if the next view is to be searched

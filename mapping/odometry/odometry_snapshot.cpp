@@ -1,6 +1,7 @@
 // odometry_snapshot.cpp: moves of keyframes, and the poses that move with them.
 #include "mapping/odometry/odometry_snapshot.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "mapping/types/linear_algebra.hpp"
@@ -62,6 +63,34 @@ void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking) 
         kept.graph.keyframes[kept.current].T_world_camera.inverse() * tracking.T_world_camera;
   }
   kept.frames.push_back(frame_kept);
+}
+
+void forget_frames_from(std::int64_t frame_index, OdometrySnapshot& kept) {
+  std::erase_if(kept.frames, [&](const KeptFrame& frame) { return frame.frame_index >= frame_index; });
+  KeyframeGraph& graph = kept.graph;
+  std::erase_if(graph.keyframes,
+                [&](const Keyframe& keyframe) { return keyframe.frame_index >= frame_index; });
+  std::erase_if(kept.keyframe_database.keyframes,
+                [&](const MapKeyframe& keyframe) { return keyframe.frame_index >= frame_index; });
+  kept.keyframe_database.index = {};
+  if (kept.frames.empty() || (graph.keyframes.empty() && kept.keyframe_database.keyframes.empty())) {
+    kept = {};
+    return;
+  }
+  const std::size_t left = graph.keyframes.size();
+  std::erase_if(graph.constraints, [&](const PoseConstraint& constraint) {
+    return constraint.a >= left || constraint.b >= left;
+  });
+  std::erase_if(graph.anchors, [&](const PoseAnchor& anchor) { return anchor.pose >= left; });
+  kept.counts.keyframes = std::ssize(kept.keyframe_database.keyframes);
+  kept.final_keyframes = std::min(kept.final_keyframes, left);
+  const KeptFrame& last = kept.frames.back();
+  kept.current = last.keyframe.value_or(0);
+  kept.improved = 0;
+  kept.T_world_last = last.keyframe ? graph.keyframes[*last.keyframe].T_world_camera * last.T_keyframe_camera
+                                    : last.T_keyframe_camera;
+  kept.T_last_next.setIdentity();
+  kept.last_moved_grey.resize(0, 0);
 }
 
 std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept) {

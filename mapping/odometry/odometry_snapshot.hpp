@@ -64,6 +64,11 @@ Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);
 /// Adds a frame whose pose is stored relative to the current keyframe.
 void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking);
 
+/// Removes the frames from this index on, and the keyframes made of them with their constraints. The next
+/// frame is then aligned with the keyframe of the last frame that is left. Depth that removed frames had
+/// averaged into older keyframes stays.
+void forget_frames_from(std::int64_t frame_index, OdometrySnapshot& kept);
+
 /// Returns all frames, with their present poses in the world.
 std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept);
 

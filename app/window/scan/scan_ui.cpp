@@ -14,6 +14,7 @@ namespace roomradar {
 namespace {
 
 constexpr double kSilent_s = 1.5;
+constexpr double kUndo_s = 5.0;
 
 std::string text_of(const char* form, auto... values) {
   char text[160];
@@ -88,6 +89,10 @@ void ScanUi::press_key(int key, int modifiers) {
   }
   if (key == GLFW_KEY_SPACE && is_tracking()) channel_.set_paused(!channel_.is_paused());
   if (is_enter && is_tracking() && shown_.frame_index >= 0) channel_.request(ScanRequest::kFinish);
+  if (key == GLFW_KEY_BACKSPACE && is_tracking() && shown_.frame_index >= 0) {
+    channel_.undo(kUndo_s);
+    channel_.set_paused(false);
+  }
   if (key == GLFW_KEY_DELETE) asks_to_discard_ = true;
   if (key == GLFW_KEY_F) model_.set_following(!model_.follows());
   if (key == GLFW_KEY_Q && (modifiers & GLFW_MOD_CONTROL) != 0) quits_ = true;
@@ -125,6 +130,7 @@ void ScanUi::draw_bar(const Area& area) {
   if (outcome_.empty()) {
     button(is_paused ? "Go on" : "Pause", "Space", GLFW_KEY_SPACE, is_paused, tracks);
     button("Finish", "Enter", GLFW_KEY_ENTER, false, tracks && shown_.frame_index >= 0);
+    button("Undo 5 s", "Backspace", GLFW_KEY_BACKSPACE, false, tracks && shown_.frame_index >= 0);
     button("Discard", "Del", GLFW_KEY_DELETE, false, true);
     button("Follow", "F", GLFW_KEY_F, model_.follows(), true);
   } else {

@@ -32,25 +32,40 @@ TEST(Anchors, MoveWithTheirKeyframe) {
   odometry.graph.keyframes[1].T_world_camera = at(1.0);
   Anchors anchors;
   odometry.current = 0;
-  EXPECT_EQ(anchor_for(at(0.1), odometry, anchors), 0U);
+  EXPECT_EQ(anchor_for(0, at(0.1), odometry, anchors), 0U);
   odometry.current = 1;
-  EXPECT_EQ(anchor_for(at(1.1), odometry, anchors), 1U);
-  EXPECT_EQ(anchor_for(at(0.3), odometry, anchors), 0U);  // nearer to the first than to the second
+  EXPECT_EQ(anchor_for(0, at(1.1), odometry, anchors), 1U);
+  EXPECT_EQ(anchor_for(0, at(0.3), odometry, anchors), 0U);  // nearer to the first than to the second
   EXPECT_FALSE(correct(odometry, anchors));
 
-  const Isometry3d before = anchors.T_world_anchor[1];
+  const Isometry3d before = *anchors.T_world_anchor[1];
   odometry.graph.keyframes[1].T_world_camera.pretranslate(Vector3d(0.0, 0.0, 0.05));
   EXPECT_TRUE(correct(odometry, anchors));
-  EXPECT_NEAR((anchors.T_world_anchor[1].translation() - before.translation() - Vector3d(0, 0, 0.05)).norm(),
+  EXPECT_NEAR((anchors.T_world_anchor[1]->translation() - before.translation() - Vector3d(0, 0, 0.05)).norm(),
               0.0, 1e-12);
-  EXPECT_TRUE(anchors.T_world_anchor[0].isApprox(Isometry3d(Eigen::Translation3d(at(0.1).translation()))));
+  EXPECT_TRUE(anchors.T_world_anchor[0]->isApprox(Isometry3d(Eigen::Translation3d(at(0.1).translation()))));
+}
+
+TEST(Anchors, OfForgottenFramesAreGone) {
+  OdometrySnapshot odometry;
+  odometry.graph.keyframes.resize(1);
+  Anchors anchors;
+  EXPECT_EQ(anchor_for(3, at(0.0), odometry, anchors), 0U);
+  EXPECT_EQ(anchor_for(8, at(5.0), odometry, anchors), 1U);
+  forget_frames_from(8, anchors);
+  EXPECT_TRUE(anchors.T_world_anchor[0]);
+  EXPECT_FALSE(anchors.T_world_anchor[1]);
+  odometry.graph.keyframes.clear();  // the anchor's keyframe is not looked up
+  anchors.anchors[0].keyframe.reset();
+  EXPECT_FALSE(correct(odometry, anchors));
+  EXPECT_EQ(anchor_for(9, at(5.0), odometry, anchors), 2U);  // a new one
 }
 
 TEST(Anchors, WithoutKeyframesStay) {
   const OdometrySnapshot odometry;
   Anchors anchors;
-  EXPECT_EQ(anchor_for(at(0.0), odometry, anchors), 0U);
-  EXPECT_EQ(anchor_for(at(5.0), odometry, anchors), 1U);
+  EXPECT_EQ(anchor_for(0, at(0.0), odometry, anchors), 0U);
+  EXPECT_EQ(anchor_for(0, at(5.0), odometry, anchors), 1U);
   EXPECT_FALSE(correct(odometry, anchors));
 }
 
@@ -78,7 +93,7 @@ TEST(KnowledgeGrid, MovesWithItsAnchors) {
   const Frame frame = seen(at(0.0));
   for (int i = 0; i < 200; ++i) grid.add(frame, 1, at(0.0), Isometry3d::Identity());
   const Isometry3d away(Eigen::Translation3d(10.0, 0.0, 0.0));
-  grid.move({Isometry3d::Identity(), away});
+  grid.move({std::nullopt, away});
   const auto well = [&](const Isometry3d& T_world_camera) {
     std::size_t count = 0;
     for (const Knowledge k : grid.knowledge_of(frame, T_world_camera).pixels)

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <set>
 #include <thread>
 
 #include "app/scan/controlled_source.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
+#include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/prescan.hpp"
+#include "tests/support/kept_source.hpp"
 
 namespace roomradar::scan_view_test {
 namespace {
@@ -77,6 +80,66 @@ TEST(ScanView, ShowsPictureTintModelPathAndCounts) {
   EXPECT_GT(shown.relative_speed, 0.0);
   // The world's +z is up: the camera's image rows go down.
   EXPECT_LT(shown.T_world_camera.linear().col(1).z(), -0.5);
+}
+
+/// Undoes two seconds after frame 30.
+class UndoOnce final : public ScanObserver {
+ public:
+  void after_frame(const Frame& frame, const Tracking& /*tracking*/, const Odometry& odometry) override {
+    last_index = frame.index;
+    for (const Keyframe& keyframe : odometry.state().graph.keyframes)
+      EXPECT_TRUE(forgotten_from < 0 || keyframe.frame_index < forgotten_from || keyframe.frame_index > 30);
+  }
+  double take_undo_s() override { return last_index == 30 && forgotten_from < 0 ? 2.0 : 0.0; }
+  void forgot_frames(std::int64_t from_index) override { forgotten_from = from_index; }
+
+  std::int64_t last_index = -1, forgotten_from = -1;
+};
+
+/// Frames 0 to 30 of a scan, then the camera is back where it was at frame 8, and goes on from there.
+test::KeptSource going_back() {
+  const auto source = room(60);
+  std::vector<Frame> all, frames;
+  for (Frame frame; source->next(frame).status == ReadStatus::kFrame;) all.push_back(frame);
+  for (std::size_t i = 0; i < 70; ++i) {
+    frames.push_back(all[i <= 30 ? i : i - 23]);
+    frames.back().index = static_cast<std::int64_t>(i);
+    frames.back().stamp_s = 0.1 * static_cast<double>(i);
+  }
+  return test::KeptSource(std::move(frames));
+}
+
+TEST(ScanObserver, UndoneFramesHaveNoPoseAndTheScanGoesOn) {
+  StageTimes times;
+  test::KeptSource source = going_back();
+  UndoOnce observer;
+  const PrescanResult scanned = prescan(source, coarse(), times, {}, {nullptr, std::nullopt, &observer});
+  EXPECT_EQ(observer.forgotten_from, 10);  // ten frames a second
+  std::set<std::int64_t> posed;
+  for (const TimedPose& pose : scanned.map.trajectory) posed.insert(pose.frame_index);
+  for (std::int64_t i = 0; i < 10; ++i) EXPECT_TRUE(posed.contains(i)) << i;
+  for (std::int64_t i = 10; i <= 30; ++i) EXPECT_FALSE(posed.contains(i)) << i;
+  for (std::int64_t i = 31; i < 70; ++i) EXPECT_TRUE(posed.contains(i)) << i;
+  EXPECT_EQ(scanned.counts.frames_read, 70);
+  EXPECT_EQ(scanned.counts.frames_fused, scanned.counts.frames_tracked);
+}
+
+TEST(ScanObserver, UndoingEverythingBeginsAgain) {
+  OdometrySnapshot kept;
+  kept.frames.resize(2);
+  kept.frames[0].frame_index = 4;
+  kept.frames[1].frame_index = 5;
+  kept.graph.keyframes.resize(1);
+  kept.graph.keyframes[0].frame_index = 4;
+  kept.keyframe_database.keyframes.resize(1);
+  kept.keyframe_database.keyframes[0].frame_index = 4;
+  forget_frames_from(5, kept);
+  EXPECT_EQ(kept.frames.size(), 1U);
+  EXPECT_EQ(kept.graph.keyframes.size(), 1U);
+  forget_frames_from(0, kept);
+  EXPECT_TRUE(kept.frames.empty());
+  EXPECT_TRUE(kept.graph.keyframes.empty());
+  EXPECT_TRUE(kept.keyframe_database.keyframes.empty());
 }
 
 TEST(ControlledSource, EndsAtARequestToFinishAndDeliversTheRestOnceRewound) {
