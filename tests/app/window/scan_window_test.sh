@@ -23,7 +23,7 @@ until_true() {
   fail "in vain waited for: $*"
 }
 has_focus() { xdotool windowfocus "$(xdotool search --onlyvisible --name '^roomradar scan - ' | head -n 1)" 2> /dev/null; }
-tracked() { tr '\r' '\n' < "$work/log" | sed -n 's/^track \([0-9]*\)\/.*/\1/p' | tail -n 1; }
+tracked() { tr '\r' '\n' < "$work/log" | sed -n 's/^track \([0-9]*\).*/\1/p' | tail -n 1; }
 has_tracked() { [[ $(tracked || true) -ge $1 ]]; }
 says() { grep -q "$1" "$work/log"; }
 shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 500 ]] || fail "$1.png is empty"; }
@@ -104,4 +104,18 @@ until_true has_tracked 40
 xdotool key ctrl+q
 over 1
 [[ -d $work/closed.unfinished ]] || fail "nothing to resume is left"
+if command -v fakenect > /dev/null; then
+  echo "== a Kinect's driver, with fakenect in the device's place"
+  "$program" record 'sim:table?seed=3&frames=60&rate=10' "$work/kinect" --format fakenect > "$work/log" 2>&1 || fail record
+  FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" prescan kinect:0 --map "$work/live" --resolution 0.03 --window \
+    > "$work/log" 2>&1 &
+  scanner=$!
+  until_true has_focus
+  until_true has_tracked 1
+  shot live
+  xdotool key Return
+  until_true says 'frames tracked'
+  xdotool key Return
+  over 0
+fi
 echo "passed"
