@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string_view>
@@ -172,6 +173,10 @@ void ScanUi::draw_picture(const Area& area) {
 
 void ScanUi::draw_advice(const Area& area) {
   std::optional<ScanFault> fault = shown_.fault;
+  const bool is_bright = std::fmod(ImGui::GetTime(), 0.8) < 0.4;
+  if (fault == ScanFault::kLost && is_bright && !channel_.is_paused())
+    ImGui::GetWindowDrawList()->AddRect({area.x, area.y}, {area.x + area.width, area.y + area.height},
+                                        look::kBad, 0.0F, 0, look::px(8.0F));
   if (newest_s_ >= 0.0 && ImGui::GetTime() - newest_s_ > kSilent_s) fault = ScanFault::kSilent;
   if (channel_.is_paused())
     draw_sentence(area, "Paused. Frames are left out until you go on.", look::kText, fonts_.large);
