@@ -194,7 +194,9 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   ScanWindow window{channel};
   if (channel) {
     start.source = controlled(std::move(start.source), *channel);
-    window.view = std::make_unique<ScanView>(*channel);
+    const std::filesystem::path folder = std::filesystem::absolute(options.map).parent_path();
+    window.view = std::make_unique<ScanView>(*channel, config.max_memory_bytes,
+                                             start.spool.empty() ? folder : start.spool);
   }
 
   double last_frame_s = 0.0;

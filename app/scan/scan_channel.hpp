@@ -38,6 +38,7 @@ struct ScanCounts {
   double seen_m2 = 0.0;
   double well_known = 0.0;  ///< fraction of the surface seen so far
   std::size_t memory_bytes = 0;
+  std::optional<double> left_s{};  ///< until memory or disk run out; unset: not known, or not in sight
 };
 
 /// State of a scan after a frame. The world's +z is up, as far as the scan can tell so far.

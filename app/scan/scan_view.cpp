@@ -36,7 +36,11 @@ double new_fraction(const Image<Knowledge>& knowledge) {
 
 }  // namespace
 
-ScanView::ScanView(ScanChannel& channel) : channel_(channel), thread_([this] { serve(); }) {}
+ScanView::ScanView(ScanChannel& channel, std::size_t max_memory_bytes, std::filesystem::path folder)
+    : channel_(channel),
+      max_memory_bytes_(max_memory_bytes),
+      folder_(std::move(folder)),
+      thread_([this] { serve(); }) {}
 
 ScanView::~ScanView() {
   {
@@ -171,7 +175,10 @@ void ScanView::show(const Work& work) {
   } else if (!has_pose(work.tracking)) {
     mix_half(last_good_, shown_.picture);
   }
-  if (since_counted_++ % kCountedEvery == 0) well_known_ = knowledge_.well_known_fraction();
+  if (since_counted_++ % kCountedEvery == 0) {
+    well_known_ = knowledge_.well_known_fraction();
+    forecast_.add(resources_now(now_s(), max_memory_bytes_, folder_));
+  }
   advice_.add(work.facts, frame.stamp_s);
   search_next_view(work);
 
@@ -198,6 +205,7 @@ void ScanView::show(const Work& work) {
   shown_.counts.seen_m2 = seen_.total_m2();
   shown_.counts.well_known = well_known_;
   shown_.counts.memory_bytes = resident_bytes();
+  shown_.counts.left_s = forecast_.left_s();
   channel_.publish(shown_);
 }
 

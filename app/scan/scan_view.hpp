@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -17,6 +18,7 @@
 #include "app/scan/next_view.hpp"
 #include "app/scan/scan_advice.hpp"
 #include "app/scan/scan_channel.hpp"
+#include "app/scan/scan_resources.hpp"
 #include "mapping/coverage/observed_area.hpp"
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/scan_observer.hpp"
@@ -28,7 +30,9 @@ namespace roomradar {
 class ScanView final : public ScanObserver {
  public:
   /// @param channel  must outlive the view
-  explicit ScanView(ScanChannel& channel);
+  /// @param max_memory_bytes, folder  see resources_now()
+  explicit ScanView(ScanChannel& channel, std::size_t max_memory_bytes = 0,
+                    std::filesystem::path folder = ".");
   ~ScanView() override;
 
   void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) override;
@@ -73,6 +77,9 @@ class ScanView final : public ScanObserver {
   Eigen::Isometry3d T_shown_world_ = Eigen::Isometry3d::Identity();  ///< rotates up to +z
   double well_known_ = 0.0;
   std::int64_t since_counted_ = 0;  ///< frames since well_known_ was counted
+  const std::size_t max_memory_bytes_;
+  const std::filesystem::path folder_;
+  ResourceForecast forecast_;
   LiveModel model_;
   std::optional<NextView> next_view_;  ///< in the odometry's world
   std::chrono::steady_clock::time_point searched_{};

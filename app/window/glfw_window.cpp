@@ -38,10 +38,11 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   if (glfwInit() != GLFW_TRUE) {
     const std::string fault = last_glfw_error();
     const char* display = std::getenv("DISPLAY");
-    throw Error("--window: there is no display to open it on (" + fault +
-                (display == nullptr ? "; DISPLAY is not set" : std::string("; DISPLAY is ") + display) +
-                "). Over ssh connect with ssh -X, or leave --window out and write what it would show with "
-                "--video FILE.mp4");
+    throw Error(
+        "--window: there is no display to open it on (" + fault +
+        (display == nullptr ? "; DISPLAY is not set" : std::string("; DISPLAY is ") + display) +
+        "). Over ssh connect with ssh -X, or leave --window out; `run --video FILE.mp4` writes what its "
+        "window would show");
   }
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
@@ -58,7 +59,7 @@ GlfwWindow::GlfwWindow(const std::string& title) {
     const std::string fault = last_glfw_error();
     glfwTerminate();
     throw Error("--window: the display gives no window with OpenGL 3.3 (" + fault +
-                "); leave --window out and write what it would show with --video FILE.mp4");
+                "); leave --window out; `run --video FILE.mp4` writes what its window would show");
   }
   glfwSetWindowSizeLimits(window_, kLeastWidth_px, kLeastHeight_px, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(window_);

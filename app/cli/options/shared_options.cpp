@@ -55,7 +55,7 @@ void add_format_option(CLI::App& command, RecordingFormat& format) {
 void add_ui_scale_option(CLI::App& command, std::optional<double>& ui_scale) {
   command
       .add_option("--ui-scale", ui_scale,
-                  "scale of the window's text and panes, reduced in a window that is too small for it "
+                  "scale of the window's text and panes, reduced in a window that is too small for it\n"
                   "(default: the monitor's)")
       ->check(within(0.5, 4.0, "times"))
       ->type_name("X");

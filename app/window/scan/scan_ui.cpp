@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kSilent_s = 1.5;
 constexpr double kUndo_s = 5.0;
+constexpr double kWorthSaying_s = 3600.0;  // less memory or disk than this is said
 
 std::string text_of(const char* form, auto... values) {
   char text[160];
@@ -249,6 +250,8 @@ void ScanUi::draw_counts(const Area& area) {
   fact(text_of("%.0f %%", 100.0 * counts.well_known), "of it known well");
   fact(text_of("%lld", static_cast<long long>(counts.loops)), "loops closed");
   fact(text_of("%.0f MB", static_cast<double>(counts.memory_bytes) / 1e6), "memory");
+  if (counts.left_s && *counts.left_s < kWorthSaying_s)
+    fact(text_of("%.0f min", std::floor(*counts.left_s / 60.0)), "left at this rate");
   look::end_pane();
 }
 

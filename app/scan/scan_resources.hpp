@@ -1,0 +1,36 @@
+// scan_resources.hpp: how long a scan can go on until memory or disk run out.
+#pragma once
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <optional>
+
+namespace roomradar {
+
+/// Resources at one time, bytes.
+struct ScanResources {
+  double time_s = 0.0;
+  double memory_used = 0.0;
+  double memory_limit = 0.0;
+  double disk_free = 0.0;
+};
+
+/// Returns the resources of this process now.
+/// @param max_memory_bytes  cap on its memory; 0: what the machine has free
+/// @param folder  an existing folder on the disk that the scan writes to
+ScanResources resources_now(double time_s, std::size_t max_memory_bytes, const std::filesystem::path& folder);
+
+/// Extrapolates the use of memory and disk over the last minute.
+class ResourceForecast {
+ public:
+  /// Call about every second; times must not decrease.
+  void add(const ScanResources& now);
+  /// Returns the time until memory or disk run out at the present rate, s; nullopt: within the first 20 s, or
+  /// neither shrinks noticeably.
+  [[nodiscard]] std::optional<double> left_s() const;
+
+ private:
+  std::deque<ScanResources> last_minute_;
+};
+
+}  // namespace roomradar
