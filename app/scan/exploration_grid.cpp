@@ -62,6 +62,28 @@ CellState ExplorationGrid::at(const Eigen::Vector3d& p_world) const {
   return cell / kOneTry >= kManyTries ? CellState::kUnmeasurable : CellState::kUnknown;
 }
 
+double moved_fraction(const ExplorationGrid& grid, const Frame& frame,
+                      const Eigen::Isometry3d& T_world_camera) {
+  constexpr int kStep_px = 8;
+  constexpr float kMost_m = 4.0F;
+  const auto is_amid_free = [&](const Eigen::Vector3d& p_world) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-ExplorationGrid::kCell_m, 0.0, ExplorationGrid::kCell_m})
+        if (grid.at(p_world + side * Eigen::Vector3d::Unit(axis)) != CellState::kFree) return false;
+    return true;
+  };
+  std::size_t pixels = 0, moved = 0;
+  for (int y = kStep_px / 2; y < frame.depth_m.height; y += kStep_px)
+    for (int x = kStep_px / 2; x < frame.depth_m.width; x += kStep_px) {
+      ++pixels;
+      const float depth_m = frame.depth_m.at(x, y);
+      if (depth_m > 0.0F && depth_m < kMost_m &&
+          is_amid_free(T_world_camera * back_project(frame.depth_camera, x, y, static_cast<double>(depth_m))))
+        ++moved;
+    }
+  return pixels > 0 ? static_cast<double>(moved) / static_cast<double>(pixels) : 0.0;
+}
+
 ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes) {
   constexpr std::size_t kMost = 200;
   std::vector<const Keyframe*> nearest;

@@ -24,7 +24,7 @@ bool is_true(ScanFault fault, const ScanFacts& facts) {
     case ScanFault::kTooFast:
       return relative_speed(facts) > 1.0;
     case ScanFault::kMovement:
-      return !is_lost && facts.inlier_fraction < 0.6;
+      return !is_lost && facts.moved_fraction > 0.01;
     case ScanFault::kTooDark:
       return facts.brightness >= 0.0 && facts.brightness < 25.0;
   }
@@ -81,7 +81,6 @@ ScanFacts facts_of(const Frame& frame, const Tracking& tracking) {
       sum += (pixel.r + pixel.g + pixel.b) / 3.0;
     }
   if (colours > 0) facts.brightness = sum / static_cast<double>(colours);
-  facts.inlier_fraction = has_pose(tracking) ? tracking.inlier_fraction : 1.0;
   facts.status = tracking.status;
   return facts;
 }

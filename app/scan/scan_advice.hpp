@@ -13,9 +13,9 @@ namespace roomradar {
 /// Faults of a running scan, the most urgent first.
 enum class ScanFault : std::uint8_t {
   kSilent,    ///< the device delivers no frames
-  kLost,      ///< the camera's pose is unknown
   kTooNear,   ///< most of the view is too near to be measured
   kTooFar,    ///< most of the view is too far, or has no depth
+  kLost,      ///< the camera's pose is unknown
   kOneWall,   ///< too little shape in view to constrain the pose
   kTooFast,   ///< the camera moves faster than the tracking bears
   kMovement,  ///< something moves in view
@@ -28,16 +28,16 @@ std::string_view to_sentence(ScanFault fault);
 
 /// Facts on a frame and the camera's motion that decide on faults.
 struct ScanFacts {
-  double depth_fraction = 0.0;   ///< fraction of the pixels that have depth
-  double near_fraction = 0.0;    ///< fraction of the pixels with depth below 0.6 m
-  double far_fraction = 0.0;     ///< fraction of the pixels with depth above 4 m
-  double brightness = -1.0;      ///< mean of the colour picture, 0..255; < 0: no picture
-  double inlier_fraction = 1.0;  ///< of the alignment; see Tracking
+  double depth_fraction = 0.0;  ///< fraction of the pixels that have depth
+  double near_fraction = 0.0;   ///< fraction of the pixels with depth below 0.6 m
+  double far_fraction = 0.0;    ///< fraction of the pixels with depth above 4 m
+  double brightness = -1.0;     ///< mean of the colour picture, 0..255; < 0: no picture
+  double moved_fraction = 0.0;  ///< fraction of the pixels that show something where space was free before
   TrackStatus status = TrackStatus::kTracked;
   double speed_mps = 0.0, speed_rad_s = 0.0;  ///< of the camera, smoothed; 0 if unknown
 };
 
-/// Returns the facts on a frame, without speeds. Uses every 8th pixel in both directions.
+/// Returns the facts on a frame, without moved_fraction and speeds. Uses every 8th pixel in both directions.
 ScanFacts facts_of(const Frame& frame, const Tracking& tracking);
 
 /// Returns the camera's speed relative to the greatest that the tracking bears: 1 at kMostSpeed_mps or

@@ -130,28 +130,29 @@ void ScanView::estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_
   T_shown_world_ = level_rotation(up_.estimate().up_world);
 }
 
-/// Searches for the next view on a thread of its own, about once a second.
-void ScanView::search_next_view(const Work& work) {
+/// Takes up what was explored, and the next view, on a thread of its own about once a second.
+void ScanView::explore(const Work& work) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kEvery = std::chrono::seconds(1);
   constexpr double kReached_m = 0.25, kReached_rad = 0.35;
   if (search_.valid() && search_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-    next_view_ = search_.get();
+    explored_ = search_.get();
   if (!search_.valid() && !work.keyframes.empty()) {
     searched_ = Clock::now();
     const Eigen::Vector3d up_world = T_shown_world_.linear().row(2).transpose();
     search_ = std::async(std::launch::async, [keyframes = work.keyframes, up_world,
                                               T_world_camera = work.tracking.T_world_camera] {
       lower_priority();
-      return best_next_view(explored_around(T_world_camera.translation(), keyframes), T_world_camera,
-                            up_world);
+      Explored explored{explored_around(T_world_camera.translation(), keyframes), std::nullopt};
+      explored.next_view = best_next_view(*explored.grid, T_world_camera, up_world);
+      return explored;
     });
   }
   if (!search_.valid() && Clock::now() - searched_ > kEvery) wants_keyframes_ = true;
-  if (!next_view_ || !work.tracking) return;
-  const Eigen::Isometry3d left = next_view_->T_world_camera.inverse() * work.tracking.T_world_camera;
+  if (!explored_.next_view || !work.tracking) return;
+  const Eigen::Isometry3d left = explored_.next_view->T_world_camera.inverse() * work.tracking.T_world_camera;
   if (left.translation().norm() < kReached_m && Eigen::AngleAxisd(left.linear()).angle() < kReached_rad)
-    next_view_.reset();
+    explored_.next_view.reset();
 }
 
 void ScanView::show(const Work& work) {
@@ -179,8 +180,11 @@ void ScanView::show(const Work& work) {
     well_known_ = knowledge_.well_known_fraction();
     forecast_.add(resources_now(now_s(), max_memory_bytes_, folder_));
   }
-  advice_.add(work.facts, frame.stamp_s);
-  search_next_view(work);
+  explore(work);
+  ScanFacts facts = work.facts;
+  if (explored_.grid && work.tracking)
+    facts.moved_fraction = moved_fraction(*explored_.grid, frame, T_world_camera);
+  advice_.add(facts, frame.stamp_s);
 
   shown_.frame_index = frame.index;
   shown_.stamp_s = frame.stamp_s;
@@ -193,10 +197,10 @@ void ScanView::show(const Work& work) {
   for (Eigen::Vector3f& position : shown_.path_world)
     position = T_shown_world_.linear().cast<float>() * position;
   shown_.next_view.reset();
-  if (next_view_ && work.tracking)
-    shown_.next_view =
-        ShownNextView{T_shown_world_ * next_view_->T_world_camera,
-                      way_to(*next_view_, T_world_camera, T_shown_world_.linear().row(2).transpose())};
+  if (explored_.next_view && work.tracking)
+    shown_.next_view = ShownNextView{
+        T_shown_world_ * explored_.next_view->T_world_camera,
+        way_to(*explored_.next_view, T_world_camera, T_shown_world_.linear().row(2).transpose())};
   shown_.parts.clear();
   for (const LiveModelPart& part : model_.parts())
     if (part.anchor < work.T_world_anchor.size() && work.T_world_anchor[part.anchor])

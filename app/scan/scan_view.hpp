@@ -81,9 +81,13 @@ class ScanView final : public ScanObserver {
   const std::filesystem::path folder_;
   ResourceForecast forecast_;
   LiveModel model_;
-  std::optional<NextView> next_view_;  ///< in the odometry's world
+  struct Explored {
+    std::optional<ExplorationGrid> grid;
+    std::optional<NextView> next_view;
+  };
+  Explored explored_;  ///< in the odometry's world
   std::chrono::steady_clock::time_point searched_{};
-  std::future<std::optional<NextView>> search_;
+  std::future<Explored> search_;
 
   std::atomic<bool> wants_keyframes_ = true;
   std::mutex mutex_;  ///< guards the members below
@@ -95,7 +99,7 @@ class ScanView final : public ScanObserver {
   void measure_speed(const Frame& frame, const Tracking& tracking);
   void serve();
   void show(const Work& work);
-  void search_next_view(const Work& work);
+  void explore(const Work& work);
   void estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 };
 

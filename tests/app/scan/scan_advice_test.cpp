@@ -16,7 +16,7 @@ ScanFacts good() {
   facts.near_fraction = 0.05;
   facts.far_fraction = 0.1;
   facts.brightness = 110.0;
-  facts.inlier_fraction = 0.9;
+  facts.moved_fraction = 0.005;
   facts.speed_mps = 0.3;
   facts.speed_rad_s = 0.4;
   return facts;
@@ -62,7 +62,7 @@ TEST(ScanAdvice, EachFaultIsStatedWithinHalfASecond) {
       {ScanFault::kOneWall, with([](ScanFacts& f) { f.status = TrackStatus::kDegenerate; })},
       {ScanFault::kTooFast, with([](ScanFacts& f) { f.speed_mps = 1.3; })},
       {ScanFault::kTooFast, with([](ScanFacts& f) { f.speed_rad_s = 1.6; })},
-      {ScanFault::kMovement, with([](ScanFacts& f) { f.inlier_fraction = 0.4; })},
+      {ScanFault::kMovement, with([](ScanFacts& f) { f.moved_fraction = 0.08; })},
       {ScanFault::kTooDark, with([](ScanFacts& f) { f.brightness = 8.0; })},
   };
   for (const auto& [fault, facts] : cases) {
