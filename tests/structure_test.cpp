@@ -35,10 +35,10 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"app/session/script"},
     {"app/cli/options"},
     {"app/cli"},
-    {"app/window/link", "app/scan", "app/evaluation/fallthrough"},
+    {"app/window/link", "app/scan", "app/start", "app/evaluation/fallthrough"},
     {"app/window/panes", "app/run", "app/evaluation/trade"},
     {"app/window"},
-    {"app/window/scan"},
+    {"app/window/scan", "app/window/start"},
     {"app/commands"},
     {"app"},
 };

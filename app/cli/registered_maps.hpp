@@ -1,8 +1,10 @@
 // registered_maps.hpp: registers two maps of one room, prints the result and adds it to the report.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "app/cli/report.hpp"
+#include "mapping/map/map_diff.hpp"
 #include "mapping/map/map_merge.hpp"
 
 namespace roomradar {
@@ -12,5 +14,11 @@ namespace roomradar {
 /// @param name_a, name_b names of the maps in messages
 Registration require_registered(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                                 const std::string& name_b, Report& report);
+
+/// Returns the objects that appeared in map b or vanished since map a, largest first. Registers the maps
+/// first, unless map b was saved by a run in map a and so has its world. Throws Error as require_registered()
+/// does.
+std::vector<Change> changes_between(const SavedMap& a, const SavedMap& b, const std::string& name_a,
+                                    const std::string& name_b, Report& report);
 
 }  // namespace roomradar

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,12 +27,20 @@
 #include "app/commands/record_command.hpp"
 #include "app/commands/run_command.hpp"
 #include "app/commands/simulate_command.hpp"
+#include "app/commands/start_command.hpp"
 #include "app/commands/trade_command.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
 namespace {
 
+constexpr const char* kAlone =
+    "roomradar: scan a room once with a depth camera, then run augmented reality in the saved map.\n"
+    "Alone, on a terminal with a display, it opens a window in which to choose. Otherwise begin with\n"
+    "  roomradar doctor                                    # what of the set-up works\n"
+    "  roomradar prescan kinect:0 --map maps/kitchen       # or a recording, or 'sim:table'\n"
+    "  roomradar run kinect:0 --map maps/kitchen --window\n"
+    "roomradar --help lists all commands\n";
 constexpr const char* kMeasure = "Measuring and testing";
 constexpr const char* kFirstSteps =
     "  roomradar doctor                                    # what of the set-up works\n"
@@ -139,6 +148,11 @@ void add_measuring_commands(CLI::App& app, std::function<int()>& work) {
 }
 
 void add_commands(CLI::App& app, std::function<int()>& work) {
+  add_command<StartOptions>(
+      app, "start",
+      "choose sources and maps in a window, scan and play there; also: roomradar alone,\n"
+      "or roomradar NAME with the name of a map or a recording",
+      work);
   add_command<PrescanOptions>(app, "prescan", "scan a room and save it as a map", work);
   add_command<RunOptions>(app, "run", "run augmented reality in a saved map", work);
   add_map_commands(app, work);
@@ -158,9 +172,17 @@ void add_commands(CLI::App& app, std::function<int()>& work) {
     if (command->get_group() != kMeasure) command->group("Commands");
 }
 
+/// Returns true if the command line begins with a file or folder in place of a command.
+bool begins_with_file(CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-' || command_named(app, argv[1]) != nullptr) return false;
+  std::error_code ignored;
+  return std::filesystem::exists(argv[1], ignored);
+}
+
 }  // namespace
 
 ParsedCommand parse_command_line(int argc, const char* const* argv) {
+  if (argc <= 1) return {[] { return run_start_alone(kAlone); }, 0};
   std::function<int()> work;
   CLI::App app(
       "roomradar: prescan a room once with a Kinect, then run augmented reality in the saved map.\n"
@@ -184,8 +206,10 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
   app.footer(kFirstSteps);
   arrange_help(app);
   refuse_other_bases(app);
+  std::vector<const char*> words(argv, argv + argc);
+  if (begins_with_file(app, argc, argv)) words.insert(words.begin() + 1, "start");
   try {
-    app.parse(argc, argv);
+    app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return {{}, app.exit(error)};
     const std::vector<std::string> arguments(argv + 1, argv + std::max(argc, 1));

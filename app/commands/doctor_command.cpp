@@ -2,27 +2,14 @@
 #include "app/commands/doctor_command.hpp"
 
 #include <cstdio>
-#include <cstdlib>
 
-#include "app/commands/doctor.hpp"
-#include "app/sources/kinect/fakenect_replay.hpp"
-#include "app/sources/kinect/kinect_source.hpp"
+#include "app/start/doctor.hpp"
 
 namespace roomradar {
 
 int run_doctor() {
-  const auto replayed = replayed_folder();
-  std::vector<Finding> findings;
-  if (replayed)
-    findings.push_back(judge_replay(*replayed));
-  else
-    findings = judge_kinects(kinects_on_usb(), count_kinects());
-  findings.push_back(judge_renderer());
-  const char* path = std::getenv("PATH");
-  findings.push_back(judge_fakenect(path ? path : ""));
-
   bool is_well = true;
-  for (const Finding& finding : findings) {
+  for (const Finding& finding : check_setup()) {
     const char* mark = finding.health == Health::kGood  ? "good"
                        : finding.health == Health::kBad ? "BAD"
                                                         : "-";

@@ -8,7 +8,6 @@
 #include "app/cli/report.hpp"
 #include "app/media/map_picture.hpp"
 #include "app/media/picture_file.hpp"
-#include "mapping/map/map_diff.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -50,14 +49,7 @@ int run(const MapDiffOptions& options) {
   require_writable(options.picture);
   const SavedMap a = load_map(options.a);
   const SavedMap b = load_map(options.b);
-  // A map saved by `run --save-map` has the keyframes of the map it came from, and so its world.
-  const bool one_world =
-      !a.keyframe_database.keyframes.empty() &&
-      a.info.files.at(kMapKeyframesFile).sha256 == b.info.files.at(kMapKeyframesFile).sha256;
-  const Eigen::Isometry3d T_a_b = one_world ? Eigen::Isometry3d::Identity()
-                                            : require_registered(a, b, options.a, options.b, report).T_a_b;
-  const std::vector<Change> changes =
-      report.times.timed("diff", [&] { return diff_maps(a.octree, b.octree, T_a_b); });
+  const std::vector<Change> changes = changes_between(a, b, options.a, options.b, report);
 
   nlohmann::json rows = nlohmann::json::array();
   if (!changes.empty())

@@ -67,11 +67,11 @@ Rgb paled(Rgb colour, double facing) {
 
 }  // namespace
 
-ColourImage draw_changes(const Mesh& mesh, std::span<const Change> changes, int width_px) {
+ColourImage draw_changes(const Mesh& mesh, std::span<const Change> changes, int width_px, Rgb ground) {
   if (mesh.triangles.empty()) return {};
   int height_px = 0;
   const Eigen::Affine3d to_picture = looking_down(mesh, changes, width_px, height_px);
-  Canvas canvas{ColourImage(width_px, height_px, Rgb{255, 255, 255}),
+  Canvas canvas{ColourImage(width_px, height_px, ground),
                 Image<float>(width_px, height_px, 1e9F)};
   std::vector<Eigen::Vector3d> corners;
   corners.reserve(mesh.vertices.size());

@@ -12,7 +12,9 @@ namespace roomradar {
 /// walls, are culled. The mesh has its own colours, lightened. Appeared surfaces are green, vanished surfaces
 /// red.
 /// @param width_px  width of the picture; its height follows from the map's extent
+/// @param ground    colour of the pixels without surface
 /// @return an empty image for an empty mesh
-ColourImage draw_changes(const Mesh& mesh, std::span<const Change> changes, int width_px = 1200);
+ColourImage draw_changes(const Mesh& mesh, std::span<const Change> changes, int width_px = 1200,
+                         Rgb ground = {255, 255, 255});
 
 }  // namespace roomradar

@@ -39,6 +39,8 @@ struct ImGuiOfWindow {
   ImGuiOfWindow(const ImGuiOfWindow&) = delete;
   ImGuiOfWindow& operator=(const ImGuiOfWindow&) = delete;
 
+  void set_scale(double wanted) { wanted_scale_ = static_cast<float>(wanted); }
+
   /// Begins a frame, with style and fonts of the scale that the window's size allows.
   void begin_frame(GLFWwindow* window) {
     int width = 0, height = 0;
@@ -74,6 +76,7 @@ void show_until_closed(
     glfwWaitEventsTimeout(kIdle_s);
     const double began_s = glfwGetTime();
     content->take_news();
+    if (const auto ui_scale_set = content->ui_scale()) imgui.set_scale(*ui_scale_set);
     imgui.begin_frame(window.get());
     const std::vector<Key> keys = window.take_keys();
     if (!ImGui::GetIO().WantTextInput)

@@ -26,6 +26,8 @@ class WindowContent {
   /// Draws within a Dear ImGui frame.
   virtual void draw(float width, float height) = 0;
   [[nodiscard]] virtual bool wants_to_quit() const = 0;
+  /// Returns the scale of text and panes that the user has set meanwhile; unset: none.
+  [[nodiscard]] virtual std::optional<double> ui_scale() const { return std::nullopt; }
 };
 
 /// Shows a content, with the fonts that it is given, until it wants to quit or the window is closed. Draws

@@ -52,6 +52,7 @@ int run_in_window(const std::string& title, const std::vector<ObjectSource>& mes
   link.close();
   glfwHideWindow(window.get());  // the session may take a while to end
   session.join();
+  if (fault) glfwSetWindowShouldClose(window.get(), GLFW_FALSE);  // the fault closed it, not the user
   if (fault) std::rethrow_exception(fault);
   return status;
 }

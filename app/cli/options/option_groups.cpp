@@ -26,6 +26,9 @@ struct CommandHelp {
 
 std::vector<CommandHelp> command_helps() {
   return {
+      {"start",
+       {{"Options", {"--ui-scale"}}},
+       "  roomradar start maps/kitchen\n  roomradar start recordings/kitchen maps/kitchen\n"},
       {"prescan",
        {{"Everyday options", {"--map", "--window", "--resume", "--preset", "--report"}},
         {"Source and window", {"--frames", "--calibration", "--poses", "--ui-scale"}},

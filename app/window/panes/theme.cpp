@@ -131,6 +131,18 @@ int segments(const char* id, const char* const* words, int count, int lit) {
   return clicked;
 }
 
+std::string shortened(const std::string& text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  std::string cut = text;
+  while (!cut.empty()) {
+    const auto is_continued = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+    while (is_continued(cut.back()) && cut.size() > 1) cut.pop_back();
+    cut.pop_back();
+    if (ImGui::CalcTextSize((cut + "\u2026").c_str()).x <= width) break;
+  }
+  return cut + "\u2026";
+}
+
 void pill(ImU32 colour, const std::string& text) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetTextLineHeight();

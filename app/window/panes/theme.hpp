@@ -45,6 +45,9 @@ bool button(const char* label, const char* key, bool is_lit, ImVec2 size = {0, 0
 /// Draws a row of buttons, with button `lit` highlighted. Returns the index of the clicked button, or -1.
 int segments(const char* id, const char* const* words, int count, int lit);
 
+/// Returns the UTF-8 text, or as much of its beginning as fits in a width in pixels, followed by an ellipsis.
+std::string shortened(const std::string& text, float width);
+
 /// Draws a coloured dot followed by a text.
 void pill(ImU32 colour, const std::string& text);
 

@@ -39,6 +39,8 @@ ScanWindowResult run_in_scan_window(const std::string& title, std::optional<doub
   result.wants_to_play = channel.requested() == ScanRequest::kPlay;
   if (!result.wants_to_play) glfwHideWindow(window->get());  // the work may take a while to end
   scan.join();
+  // The program closed the window after a discarded scan; the user did not.
+  if (channel.requested() == ScanRequest::kDiscard) glfwSetWindowShouldClose(window->get(), GLFW_FALSE);
   if (fault) std::rethrow_exception(fault);
   if (result.wants_to_play) result.window = window;
   return result;

@@ -33,4 +33,7 @@ Finding judge_renderer();
 /// Checks that the program `fakenect` is in a folder of `path`, a list of folders as in $PATH.
 Finding judge_fakenect(const std::string& path);
 
+/// Makes all checks, those of the Kinects or of their replay first. Takes up to a second.
+std::vector<Finding> check_setup();
+
 }  // namespace roomradar

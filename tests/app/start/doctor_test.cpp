@@ -1,5 +1,5 @@
 // doctor_test.cpp: Kinects simulated by files, and the diagnosis of each possible fault.
-#include "app/commands/doctor.hpp"
+#include "app/start/doctor.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

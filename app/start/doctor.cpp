@@ -1,5 +1,5 @@
 // doctor.cpp: one function per check.
-#include "app/commands/doctor.hpp"
+#include "app/start/doctor.hpp"
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <sstream>
 
 #include "app/sources/kinect/fakenect_replay.hpp"
+#include "app/sources/kinect/kinect_source.hpp"
 #include "mapping/types/system/error.hpp"
 #include "radar/gl/gl_context.hpp"
 
@@ -132,6 +134,19 @@ Finding judge_fakenect(const std::string& path) {
   }
   return {Health::kMissing, "fakenect is not installed",
           "install libfreenect-bin to replay recordings through kinect:0"};
+}
+
+std::vector<Finding> check_setup() {
+  const auto replayed = replayed_folder();
+  std::vector<Finding> findings;
+  if (replayed)
+    findings.push_back(judge_replay(*replayed));
+  else
+    findings = judge_kinects(kinects_on_usb(), count_kinects());
+  findings.push_back(judge_renderer());
+  const char* path = std::getenv("PATH");
+  findings.push_back(judge_fakenect(path ? path : ""));
+  return findings;
 }
 
 }  // namespace roomradar

@@ -1,0 +1,59 @@
+// map_list.hpp: the saved maps that a user can choose from, and what is shown of a map.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <ctime>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/types/image.hpp"
+
+namespace roomradar {
+
+struct MapEntry {
+  std::filesystem::path folder;
+  std::time_t saved_at = 0;                          ///< when map.json was written
+  std::uint64_t bytes = 0;                           ///< all files together
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  ///< of the box around all occupied space
+  std::string source;                                ///< recordings or devices that it was scanned from
+  bool has_unfinished_scan = false;                  ///< FOLDER.unfinished exists
+  bool is_saved = true;                              ///< false: only FOLDER.unfinished exists
+  std::string fault;  ///< sentence on why the map cannot be used; empty: it can
+};
+
+/// What takes a while to compute.
+struct MapDetails {
+  ColourImage picture;             ///< the room obliquely from above
+  double surface_m2 = 0.0;         ///< whole surface
+  std::optional<double> floor_m2;  ///< floor; unset: none was found
+  std::size_t holes = 0;           ///< unobserved regions, without the scan's outer borders
+  double largest_hole_m2 = 0.0;
+  std::string fault;  ///< sentence on why the fields above are incomplete; empty: they are complete
+};
+
+/// Returns the folder of an interrupted scan of this map, which need not exist.
+std::filesystem::path unfinished_scan_of(const std::filesystem::path& map);
+
+/// Returns true if a folder is a saved map, or an interrupted scan of one is beside it.
+bool is_map(const std::filesystem::path& folder);
+
+/// Reads map.json. Never throws: MapEntry::fault says what is wrong.
+MapEntry describe_map(const std::filesystem::path& folder);
+
+/// Returns the maps among the subfolders of `folder`/maps and of `folder`, and `folder` itself if it is a
+/// map; newest first. Considers the first 300 subfolders of each.
+std::vector<MapEntry> list_maps(const std::filesystem::path& folder);
+
+/// Loads the map, draws it and looks for holes. Takes about a second for a room. Never throws:
+/// MapDetails::fault says what is wrong.
+/// @param width_px  width of the picture
+/// @param ground    colour around the room
+MapDetails examine_map(const std::filesystem::path& folder, int width_px, Rgb ground);
+
+/// Returns lines of name and value for people: date, size, area, holes, source.
+/// @param details  null: they are not known so far
+std::vector<std::pair<std::string, std::string>> facts_of(const MapEntry& map, const MapDetails* details);
+
+}  // namespace roomradar

@@ -1,0 +1,31 @@
+// map_tasks.hpp: what the start view does with a saved map: name, rename, delete, export, compare.
+#pragma once
+#include <ctime>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace roomradar {
+
+/// Returns a name for a new map that is not taken, such as maps/room-2026-11-26 or maps/room-2026-11-26-2.
+/// @param folder  folder that contains `maps`
+std::string proposed_map_name(const std::filesystem::path& folder, std::time_t now);
+
+/// Renames the map, within its parent folder. Returns the new path. Throws Error, with the map unchanged, if
+/// the name is empty, has a slash or is taken, the map has an interrupted scan, or the system refuses.
+std::filesystem::path rename_map(const std::filesystem::path& map, const std::string& new_name);
+
+/// Deletes the map, and its interrupted scan if there is one. Throws Error, with nothing deleted, if the
+/// folder is no map or holds anything that is no part of one.
+void delete_map(const std::filesystem::path& map);
+
+/// Exports the map's mesh beside the map, to NAME.glb, or NAME-2.glb if that is taken, and so on. Returns the
+/// path. Throws Error as export_map() does.
+/// @param extension  .glb or .ply
+std::filesystem::path export_beside(const std::filesystem::path& map, const std::string& extension);
+
+/// Returns sentences on what appeared in map b and what vanished since map a. Takes several seconds. Throws
+/// Error if a map cannot be read, or the maps do not show one room.
+std::vector<std::string> compare_maps(const std::filesystem::path& a, const std::filesystem::path& b);
+
+}  // namespace roomradar

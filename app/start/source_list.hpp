@@ -1,0 +1,37 @@
+// source_list.hpp: the frame sources that a user can choose from.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace roomradar {
+
+enum class SourceKind { kKinect, kRecording, kSimulated };
+
+struct SourceEntry {
+  SourceKind kind = SourceKind::kSimulated;
+  std::string name;    ///< for a list
+  std::string detail;  ///< a few words, such as "300 frames"
+  std::string source;  ///< as open_source() takes it
+  /// The source to play with, as open_source() takes it; differs from `source` for simulated rooms, whose
+  /// camera then stays at one place.
+  std::string play_source;
+  std::string fault;  ///< sentence on why it cannot be used; empty: it can
+};
+
+/// Returns the Kinects on the USB bus, or the recording that fakenect replays in place of one. Opens none.
+std::vector<SourceEntry> list_kinects();
+
+/// Returns the recordings among the subfolders of `folder` and of `folder`/recordings, by name, and `folder`
+/// itself if it is a recording. Considers the first 300 subfolders. Folders that are not readable or no
+/// recording are left out.
+std::vector<SourceEntry> list_recordings(const std::filesystem::path& folder);
+
+/// Returns the simulated rooms.
+std::vector<SourceEntry> list_simulated_rooms();
+
+/// Returns the entry of any source, with a fault if it is none or cannot be read.
+/// @param source  as open_source() takes it
+SourceEntry describe_source(const std::string& source);
+
+}  // namespace roomradar

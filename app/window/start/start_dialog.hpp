@@ -1,0 +1,51 @@
+// start_dialog.hpp: questions and notices over the start view.
+#pragma once
+#include <imgui.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "app/window/panes/theme.hpp"
+
+namespace roomradar {
+
+enum class DialogKind {
+  kNone,
+  kNewMap,   ///< asks for the name of a new map
+  kRename,   ///< asks for the new name of a map
+  kDelete,   ///< asks before a map is deleted
+  kExport,   ///< asks for a format
+  kCompare,  ///< asks for the second map
+  kNotice,   ///< shows lines
+};
+
+struct DialogLine {
+  std::string text;
+  ImU32 colour = look::kText;
+};
+
+struct StartDialog {
+  DialogKind kind = DialogKind::kNone;
+  std::string heading;
+  std::vector<DialogLine> lines;
+  std::array<char, 256> name{};      ///< text of kNewMap and kRename, null-terminated
+  std::string fault;                 ///< sentence on why the name was refused; empty: none
+  std::vector<std::string> choices;  ///< rows of kCompare
+  int choice = 0;                    ///< chosen row of kCompare
+  bool is_new = true;                ///< true: the text field takes the keyboard when it is drawn
+};
+
+/// What the user answered.
+enum class DialogAnswer { kNone, kYes, kNo, kGlb, kPly };
+
+/// Draws the dialog over a dimmed window. Returns the answer of a click or, while the name is edited, of a
+/// key.
+DialogAnswer draw_dialog(float width, float height, StartDialog& dialog, const look::Fonts& fonts);
+
+/// Returns the answer of a key that was pressed while the dialog is open and no text is edited. Moves
+/// StartDialog::choice by the arrow keys.
+/// @param key  result of key_meant()
+DialogAnswer answer_of_key(int key, StartDialog& dialog);
+
+}  // namespace roomradar
