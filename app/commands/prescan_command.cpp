@@ -82,9 +82,13 @@ PrescanConfig config_of(const PrescanOptions& options) {
 }
 
 /// Reports that the map already contains the recording to resume; returns the exit status.
-int report_held_already(const PrescanOptions& options, Report& report) {
-  std::printf("%s: holds %s already; there is nothing to resume (another recording needs another name)\n",
-              options.map.c_str(), options.source.c_str());
+/// @param channel  to the window; null: no window
+int report_held_already(const PrescanOptions& options, ScanChannel* channel, Report& report) {
+  const std::string sentence = options.map + ": holds " + options.source +
+                               " already; there is nothing to resume (another recording needs another name)";
+  std::printf("%s\n", sentence.c_str());
+  std::fflush(stdout);  // the window may stay open
+  if (channel) channel->finish(sentence, nullptr);
   report.results["held_already"] = true;
   write_report(report, options.report);
   return 0;
@@ -185,7 +189,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   report.settings = settings_of(options);
   PrescanConfig config = config_of(options);
   ScanStart start = start_scan(options);
-  if (start.is_done) return report_held_already(options, report);
+  if (start.is_done) return report_held_already(options, channel, report);
   const Interrupt interrupt;
   if (!start.is_live) Interrupt::say(kStopsWithoutMap);
   const bool extends = start.map.has_value();

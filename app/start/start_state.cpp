@@ -44,7 +44,8 @@ void choose_map(StartState& state, const fs::path& folder) {
 
 void refresh_sources(StartState& state, const std::vector<SourceEntry>& recordings) {
   const SourceEntry* before = chosen_source(state);
-  const std::string chosen = before != nullptr ? before->source : state.settings.last_source;
+  const std::string first = state.given.empty() ? state.settings.last_source : state.given.back();
+  const std::string chosen = before != nullptr ? before->source : first;
   std::vector<SourceEntry> sources;
   for (const std::string& source : state.given) add_missing({describe_source(source)}, sources);
   add_missing(list_kinects(), sources);
@@ -122,7 +123,7 @@ void move_choice(StartState& state, int rows) {
 std::string why_not(const StartState& state, StartAction action) {
   const SourceEntry* source = chosen_source(state);
   const MapEntry* map = chosen_map(state);
-  if (action == StartAction::kQuit) return {};
+  if (action == StartAction::kQuit || action == StartAction::kDoctor) return {};
   const bool needs_source =
       action == StartAction::kScan || action == StartAction::kPlay || action == StartAction::kScanMore;
   if (needs_source && source == nullptr) return "There is no source to choose.";

@@ -12,7 +12,7 @@
 
 namespace roomradar {
 
-enum class StartAction { kQuit, kScan, kPlay, kScanMore, kCompare, kExport, kRename, kDelete };
+enum class StartAction { kQuit, kScan, kPlay, kScanMore, kCompare, kExport, kRename, kDelete, kDoctor };
 enum class StartList { kSources, kMaps };
 
 /// Sentence below the lists.

@@ -78,9 +78,12 @@ void show_until_closed(
     content->take_news();
     if (const auto ui_scale_set = content->ui_scale()) imgui.set_scale(*ui_scale_set);
     imgui.begin_frame(window.get());
-    const std::vector<Key> keys = window.take_keys();
-    if (!ImGui::GetIO().WantTextInput)
-      for (const Key& key : keys) content->press(key);
+    for (const Key& key : window.take_keys()) {
+      if (ImGui::GetIO().WantTextInput)
+        content->press_in_text(key);
+      else
+        content->press(key);
+    }
     for (const std::string& file : window.take_files()) content->take_file(file);
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     content->draw(size.x, size.y);

@@ -21,6 +21,8 @@ class WindowContent {
   /// Takes what is new since the last call. Called before each drawing.
   virtual void take_news() = 0;
   virtual void press(const Key& key) = 0;
+  /// Called in place of press() while a text field has the keyboard.
+  virtual void press_in_text(const Key& /*key*/) {}
   /// Called for each file that is dropped onto the window.
   virtual void take_file(const std::string& /*path*/) {}
   /// Draws within a Dear ImGui frame.

@@ -5,7 +5,17 @@ namespace roomradar {
 namespace {
 
 constexpr int kPicture_px = 900;
-constexpr Rgb kGround{24, 28, 35};  // look::kPanel
+constexpr Rgb kGround{0, 0, 0};  // no surface is as dark
+
+/// Returns the picture in RGBA, transparent where no surface is.
+Image<std::uint32_t> without_ground(const ColourImage& picture) {
+  Image<std::uint32_t> rgba(picture.width, picture.height);
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    const Rgb c = picture.pixels[i];
+    if (!(c == kGround)) rgba.pixels[i] = 0xFF000000U | (c.b * 0x10000U) | (c.g * 0x100U) | c.r;
+  }
+  return rgba;
+}
 
 }  // namespace
 
@@ -31,7 +41,7 @@ bool ExaminedMaps::begin(const MapEntry& map, BackgroundJobs& jobs) {
   examined->saved_at = map.saved_at;
   jobs.add([folder = map.folder] { return examine_map(folder, kPicture_px, kGround); },
            [into = examined](MapDetails details) {
-             if (!details.picture.empty()) into->picture.upload(details.picture);
+             if (!details.picture.empty()) into->picture.upload(without_ground(details.picture));
              into->details = std::move(details);
              into->details.picture = {};
              into->is_done = true;

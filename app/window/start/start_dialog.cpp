@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace roomradar {
 namespace {
@@ -38,25 +39,15 @@ bool asks_for_name(const StartDialog& dialog) {
   return dialog.kind == DialogKind::kNewMap || dialog.kind == DialogKind::kRename;
 }
 
-/// Draws the text field. Returns the answer of its keys.
-DialogAnswer draw_name(StartDialog& dialog) {
+void draw_name(StartDialog& dialog) {
   if (dialog.is_new) ImGui::SetKeyboardFocusHere();
   dialog.is_new = false;
   ImGui::SetNextItemWidth(-1.0F);
-  const bool is_entered =
-      ImGui::InputText("##name", dialog.name.data(), dialog.name.size(),
-                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-  if (!dialog.fault.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, look::kWarn);
-    ImGui::TextWrapped("%s", dialog.fault.c_str());
-    ImGui::PopStyleColor();
-  }
-  if (is_entered) {
-    dialog.is_new = true;  // if the name is refused, it can be edited at once
-    return DialogAnswer::kYes;
-  }
-  const bool is_escape = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), /*repeat=*/false);
-  return is_escape ? DialogAnswer::kNo : DialogAnswer::kNone;
+  ImGui::InputText("##name", dialog.name.data(), dialog.name.size(), ImGuiInputTextFlags_AutoSelectAll);
+  if (dialog.fault.empty()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, look::kWarn);
+  ImGui::TextWrapped("%s", dialog.fault.c_str());
+  ImGui::PopStyleColor();
 }
 
 void draw_choices(StartDialog& dialog) {
@@ -111,7 +102,7 @@ DialogAnswer draw_dialog(float width, float height, StartDialog& dialog, const l
   const float button = ImGui::GetFrameHeightWithSpacing(), heading = line + look::px(10.0F);
   const float fault =
       dialog.fault.empty() ? 0.0F : ImGui::CalcTextSize(dialog.fault.c_str(), nullptr, false, wrap).y + line;
-  const float fixed = heading + button + look::px(44.0F) + (asks_for_name(dialog) ? button + fault : 0.0F);
+  const float fixed = heading + button + look::px(38.0F) + (asks_for_name(dialog) ? button + fault : 0.0F);
   const float content =
       std::min(content_height(dialog, wrap) + look::px(4.0F), height - 2.0F * margin - fixed);
   begin_cover(width, height);
@@ -129,10 +120,13 @@ DialogAnswer draw_dialog(float width, float height, StartDialog& dialog, const l
   draw_choices(dialog);
   ImGui::EndChild();
   ImGui::PopStyleVar();
-  DialogAnswer answer = asks_for_name(dialog) ? draw_name(dialog) : DialogAnswer::kNone;
+  if (asks_for_name(dialog)) draw_name(dialog);
+  DialogAnswer answer = std::exchange(dialog.pressed, DialogAnswer::kNone);
   ImGui::Dummy({0.0F, 0.0F});
   for (const DialogButton& each : buttons_of(dialog.kind)) {
-    if (look::button(each.label, each.key, each.answer != DialogAnswer::kNo)) answer = each.answer;
+    if (look::button(each.label, each.key,
+                     each.answer != DialogAnswer::kNo || dialog.kind == DialogKind::kNotice))
+      answer = each.answer;
     ImGui::SameLine();
   }
   ImGui::EndChild();

@@ -10,6 +10,9 @@
 
 namespace roomradar {
 
+/// What the user answered.
+enum class DialogAnswer { kNone, kYes, kNo, kGlb, kPly };
+
 enum class DialogKind {
   kNone,
   kNewMap,   ///< asks for the name of a new map
@@ -33,17 +36,16 @@ struct StartDialog {
   std::string fault;                 ///< sentence on why the name was refused; empty: none
   std::vector<std::string> choices;  ///< rows of kCompare
   int choice = 0;                    ///< chosen row of kCompare
-  bool is_new = true;                ///< true: the text field takes the keyboard when it is drawn
+  /// Answer of a key pressed while the name is edited; returned after the field has taken what was typed.
+  DialogAnswer pressed = DialogAnswer::kNone;
+  bool is_new = true;  ///< true: the text field takes the keyboard when it is drawn
 };
-
-/// What the user answered.
-enum class DialogAnswer { kNone, kYes, kNo, kGlb, kPly };
 
 /// Draws the dialog over a dimmed window. Returns the answer of a click or, while the name is edited, of a
 /// key.
 DialogAnswer draw_dialog(float width, float height, StartDialog& dialog, const look::Fonts& fonts);
 
-/// Returns the answer of a key that was pressed while the dialog is open and no text is edited. Moves
+/// Returns the answer of a key that was pressed while the dialog is open. Moves
 /// StartDialog::choice by the arrow keys.
 /// @param key  result of key_meant()
 DialogAnswer answer_of_key(int key, StartDialog& dialog);

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace roomradar {
 namespace {
@@ -15,13 +16,16 @@ struct Row {
 };
 
 struct RowState {
-  bool is_chosen = false, is_active = false, scrolls_to = false, has_picture_column = false;
+  bool is_chosen = false, is_active = false, has_picture_column = false;
 };
+
+float row_height() { return std::floor(look::px(40.0F)); }
+float row_gap() { return std::floor(look::px(3.0F)); }
 
 /// Draws a row at the cursor. Returns true if it was clicked.
 bool draw_row(int id, const Row& row, const RowState& state, const look::Fonts& fonts) {
   ImGui::PushID(id);
-  const float height = look::px(40.0F), width = ImGui::GetContentRegionAvail().x;
+  const float height = row_height(), width = ImGui::GetContentRegionAvail().x;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const bool clicked = ImGui::InvisibleButton("row", {width, height});
   const ImVec2 end{at.x + width, at.y + height};
@@ -46,26 +50,42 @@ bool draw_row(int id, const Row& row, const RowState& state, const look::Fonts& 
   list.AddText({x, at.y + look::px(22.0F)}, row.has_fault ? look::kWarn : look::kDim,
                look::shortened(row.detail, wide).c_str());
   ImGui::PopFont();
-  if (state.scrolls_to) ImGui::SetScrollHereY(0.5F);
   ImGui::PopID();
   return clicked;
 }
 
+/// Scrolls by whole rows, so that none is cut.
+/// @param row  row to scroll into view; < 0: none
+void scroll_rows(float height, int row) {
+  const float pitch = row_height() + row_gap();
+  float first = std::round(ImGui::GetScrollY() / pitch);
+  const float shown = std::max(std::round(height / pitch), 1.0F);
+  if (row >= 0) first = std::clamp(first, static_cast<float>(row) - shown + 1.0F, static_cast<float>(row));
+  if (first * pitch != ImGui::GetScrollY()) ImGui::SetScrollY(first * pitch);
+}
+
 /// Begins a list with its heading; its rows scroll.
-void begin_list(const char* name, const char* heading, const Area& area, bool is_active,
+/// @param row  row to scroll into view; < 0: none
+void begin_list(const char* name, const char* heading, const Area& area, bool is_active, int row,
                 const look::Fonts& fonts) {
-  look::begin_pane(name, area, look::kPanel);
+  look::begin_pane(name, area, look::kGround);
   ImGui::PushFont(fonts.small);
   ImGui::PushStyleColor(ImGuiCol_Text, is_active ? look::kAccent : look::kDim);
   ImGui::TextUnformatted(heading);
   ImGui::PopStyleColor();
   ImGui::PopFont();
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.0F, look::px(3.0F)});
-  ImGui::BeginChild("rows", {0.0F, 0.0F}, /*border=*/false, ImGuiWindowFlags_NoNav);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.0F, row_gap()});
+  ImGui::PushStyleColor(ImGuiCol_ScrollbarBg, IM_COL32(0, 0, 0, 0));
+  const float pitch = row_height() + row_gap();
+  const float height =
+      std::max(std::floor((ImGui::GetContentRegionAvail().y + row_gap()) / pitch), 1.0F) * pitch;
+  ImGui::BeginChild("rows", {0.0F, height}, /*border=*/false, ImGuiWindowFlags_NoNav);
+  scroll_rows(height, row);
 }
 
 void end_list() {
   ImGui::EndChild();
+  ImGui::PopStyleColor();
   ImGui::PopStyleVar();
   look::end_pane();
 }
@@ -75,9 +95,9 @@ std::string name_of(const MapEntry& map) {
   return path.starts_with("maps/") ? path.substr(5) : path;
 }
 
-std::string detail_of(const MapEntry& map) {
+std::string detail_of(const MapEntry& map, bool is_damaged) {
   if (!map.is_saved) return "scan interrupted";
-  if (!map.fault.empty()) return "damaged";
+  if (is_damaged) return "damaged";
   std::string detail;
   for (const auto& [name, value] : facts_of(map, nullptr))
     if (name == "saved" || name == "room") detail += (detail.empty() ? "" : ", ") + value;
@@ -145,14 +165,13 @@ void draw_map_detail(const Area& area, const MapEntry& map, const ExaminedMap* e
 
 void draw_sources(const Area& area, StartState& state, const look::Fonts& fonts, bool scrolls_to_choice) {
   const bool is_active = state.active == StartList::kSources;
-  begin_list("sources", "SOURCES", area, is_active, fonts);
+  begin_list("sources", "SOURCES", area, is_active, scrolls_to_choice ? static_cast<int>(state.source) : -1,
+             fonts);
   for (std::size_t i = 0; i < state.sources.size(); ++i) {
     const SourceEntry& source = state.sources[i];
     const bool is_chosen = i == state.source;
     const Row row{source.name, source.detail, nullptr, !source.fault.empty()};
-    if (!draw_row(static_cast<int>(i), row, {is_chosen, is_active, is_chosen && scrolls_to_choice, false},
-                  fonts))
-      continue;
+    if (!draw_row(static_cast<int>(i), row, {is_chosen, is_active, false}, fonts)) continue;
     state.source = i;
     state.active = StartList::kSources;
   }
@@ -162,17 +181,16 @@ void draw_sources(const Area& area, StartState& state, const look::Fonts& fonts,
 void draw_maps(const Area& area, StartState& state, const ExaminedMaps& examined, const look::Fonts& fonts,
                bool scrolls_to_choice) {
   const bool is_active = state.active == StartList::kMaps;
-  begin_list("maps", "MAPS", area, is_active, fonts);
+  begin_list("maps", "MAPS", area, is_active, scrolls_to_choice ? static_cast<int>(state.map) : -1, fonts);
   if (state.maps.empty()) ImGui::TextWrapped("None so far. Choose a source and scan it (S).");
   for (std::size_t i = 0; i < state.maps.size(); ++i) {
     const MapEntry& map = state.maps[i];
     const bool is_chosen = i == state.map;
     const ExaminedMap* found = examined.find(map);
-    const Row row{name_of(map), detail_of(map), found != nullptr ? &found->picture : nullptr,
-                  !map.fault.empty()};
-    if (!draw_row(static_cast<int>(i), row, {is_chosen, is_active, is_chosen && scrolls_to_choice, true},
-                  fonts))
-      continue;
+    const bool has_fault = !map.fault.empty() || (found != nullptr && !found->details.fault.empty());
+    const Row row{name_of(map), detail_of(map, has_fault), found != nullptr ? &found->picture : nullptr,
+                  has_fault};
+    if (!draw_row(static_cast<int>(i), row, {is_chosen, is_active, true}, fonts)) continue;
     state.map = i;
     state.active = StartList::kMaps;
   }

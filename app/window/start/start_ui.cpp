@@ -11,6 +11,7 @@
 #include <ctime>
 
 #include "app/start/map_tasks.hpp"
+#include "app/window/start/action_bar.hpp"
 #include "app/window/start/start_lists.hpp"
 #include "mapping/map/map_files.hpp"
 #include "mapping/types/system/error.hpp"
@@ -19,20 +20,6 @@ namespace roomradar {
 namespace {
 
 constexpr double kListEvery_s = 2.0;
-
-struct ActionButton {
-  const char* label;
-  const char* key_name;
-  int key;
-  StartAction action;
-};
-constexpr std::array<ActionButton, 7> kActions = {{{"Scan", "S", GLFW_KEY_S, StartAction::kScan},
-                                                   {"Play", "P", GLFW_KEY_P, StartAction::kPlay},
-                                                   {"Scan more", "M", GLFW_KEY_M, StartAction::kScanMore},
-                                                   {"Compare", "C", GLFW_KEY_C, StartAction::kCompare},
-                                                   {"Export", "E", GLFW_KEY_E, StartAction::kExport},
-                                                   {"Rename", "R", GLFW_KEY_R, StartAction::kRename},
-                                                   {"Delete", "Del", GLFW_KEY_DELETE, StartAction::kDelete}}};
 
 bool leaves(StartAction action) {
   return action == StartAction::kPlay || action == StartAction::kScanMore || action == StartAction::kQuit;
@@ -56,6 +43,9 @@ void StartUi::list_recordings_again() {
   jobs_.add([folder = state_.folder] { return list_recordings(folder); },
             [this](std::vector<SourceEntry> recordings) {
               recordings_ = std::move(recordings);
+              const bool is_untouched = !has_recordings_ && state_.source == 0;
+              has_recordings_ = true;
+              if (is_untouched) state_.sources.clear();  // then the first of the new list is chosen
               refresh_sources(state_, recordings_);
               scrolls_to_choice_ = true;
             },
@@ -85,6 +75,10 @@ void StartUi::press(const Key& key) {
   if (!key.is_repeat || moves) press_key(key.key, key.modifiers);
 }
 
+void StartUi::press_in_text(const Key& key) {
+  if (!key.is_repeat && dialog_.kind != DialogKind::kNone) dialog_.pressed = answer_of_key(key.key, dialog_);
+}
+
 void StartUi::press_key(int key, int modifiers) {
   if (key == GLFW_KEY_Q && (modifiers & GLFW_MOD_CONTROL) != 0) quits_ = true;
   if (dialog_.kind != DialogKind::kNone) return answer(answer_of_key(key, dialog_));
@@ -103,10 +97,8 @@ void StartUi::press_key(int key, int modifiers) {
   }
   if (key == GLFW_KEY_TAB || key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT)
     state_.active = state_.active == StartList::kMaps ? StartList::kSources : StartList::kMaps;
-  if (is_enter) begin(state_.active == StartList::kMaps ? StartAction::kPlay : StartAction::kScan);
-  for (const ActionButton& each : kActions)
-    if (key == each.key) begin(each.action);
-  if (key == GLFW_KEY_D) examine_setup();
+  if (is_enter) begin(first_action(state_));
+  if (const auto action = action_of_key(key)) begin(*action);
   if (key == GLFW_KEY_F5) list_recordings_again();
   if (key == '+' || key == '=' || key == GLFW_KEY_KP_ADD) change_scale(1);
   if (key == '-' || key == GLFW_KEY_KP_SUBTRACT) change_scale(-1);
@@ -145,6 +137,8 @@ void StartUi::begin(StartAction action) {
       for (const MapEntry& each : state_.maps)
         if (&each != map) dialog_.choices.push_back(each.folder.lexically_normal().string());
       return;
+    case StartAction::kDoctor:
+      return examine_setup();
     default:
       return;
   }
@@ -180,10 +174,9 @@ void StartUi::answer(DialogAnswer answer) {
     if (kind == DialogKind::kExport) export_mesh(answer == DialogAnswer::kPly ? ".ply" : ".glb");
     if (kind == DialogKind::kCompare) compare();
   } catch (const std::exception& error) {
-    if (kind == DialogKind::kNewMap || kind == DialogKind::kRename)
-      dialog_.fault = error.what();
-    else
-      say(error.what(), true);
+    if (kind != DialogKind::kNewMap && kind != DialogKind::kRename) return say(error.what(), true);
+    dialog_.fault = error.what();
+    dialog_.is_new = true;  // the name can be edited at once
   }
 }
 
@@ -242,7 +235,7 @@ void StartUi::run_job(const std::string& name, Work work, Done done) {
 void StartUi::export_mesh(const std::string& extension) {
   const MapEntry* map = chosen_map(state_);
   if (map == nullptr) throw Error("the map is gone");
-  work(
+  run_job(
       "exporting", [folder = map->folder, extension] { return export_beside(folder, extension); },
       [this](const std::filesystem::path& path) {
         say(path.lexically_normal().string() + " is written.", false);
@@ -259,7 +252,7 @@ void StartUi::compare() {
   const bool is_second_earlier = second.saved_at < map->saved_at;
   const std::filesystem::path earlier = is_second_earlier ? other : map->folder,
                               later = is_second_earlier ? map->folder : other;
-  work(
+  run_job(
       "comparing", [earlier, later] { return compare_maps(earlier, later); },
       [this, earlier, later](const std::vector<std::string>& sentences) {
         std::vector<DialogLine> lines = {
@@ -271,7 +264,6 @@ void StartUi::compare() {
 }
 
 void StartUi::examine_setup() {
-  if (!work_.empty()) return say("Still at work: " + work_ + ". Wait until it is done.", false);
   run_job("checking the set-up", check_setup, [this](const std::vector<Finding>& findings) {
     std::vector<DialogLine> lines;
     for (const Finding& finding : findings) {
@@ -299,7 +291,7 @@ void StartUi::draw(float width, float height) {
   draw_sources(layout.sources, state_, fonts_, scrolls_to_choice_);
   draw_maps(layout.maps, state_, examined_, fonts_, scrolls_to_choice_);
   draw_detail(layout.detail, state_, examined_, fonts_);
-  draw_actions(layout.actions);
+  if (const auto clicked = draw_action_bar(layout.actions, state_, fonts_)) begin(*clicked);
   scrolls_to_choice_ = false;
   if (dialog_.kind != DialogKind::kNone) answer(draw_dialog(width, height, dialog_, fonts_));
 }
@@ -319,31 +311,6 @@ void StartUi::draw_bar(const Area& area) {
     look::pill(look::kAccent, work_ + " \u2026");
   else if (!state_.message.text.empty())
     look::pill(look::kGood, look::shortened(state_.message.text, wide));
-  look::end_pane();
-}
-
-void StartUi::draw_actions(const Area& area) {
-  look::begin_pane("actions", area, look::kPanel);
-  const float right = area.width - ImGui::GetStyle().WindowPadding.x, gap = look::px(6.0F);
-  float x = 0.0F;
-  const auto button = [&](const char* label, const char* key_name, bool is_lit, bool enabled) {
-    const float wide = ImGui::CalcTextSize((std::string(label) + "  " + key_name).c_str()).x +
-                       2.0F * ImGui::GetStyle().FramePadding.x;
-    if (x > 0.0F && x + gap + wide <= right) ImGui::SameLine(0.0F, gap);
-    const bool clicked = look::button(label, key_name, is_lit, {0, 0}, enabled);
-    x = ImGui::GetItemRectMax().x - area.x;
-    return clicked;
-  };
-  const StartAction first = state_.active == StartList::kMaps ? StartAction::kPlay : StartAction::kScan;
-  for (const ActionButton& each : kActions)
-    if (button(each.label, each.key_name, each.action == first, why_not(state_, each.action).empty()))
-      begin(each.action);
-  if (button("Doctor", "D", false, true)) examine_setup();
-  ImGui::PushFont(fonts_.small);
-  const char* const first_name = first == StartAction::kPlay ? "Play" : "Scan";
-  ImGui::TextDisabled("\u2191 \u2193 choose   Tab other list   Enter %s   + - text size   Ctrl+Q quit",
-                      first_name);
-  ImGui::PopFont();
   look::end_pane();
 }
 

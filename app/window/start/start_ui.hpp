@@ -24,6 +24,7 @@ class StartUi final : public WindowContent {
 
   void take_news() override;
   void press(const Key& key) override;
+  void press_in_text(const Key& key) override;
   void take_file(const std::string& path) override;
   void draw(float width, float height) override;
   [[nodiscard]] bool wants_to_quit() const override { return quits_; }
@@ -36,8 +37,9 @@ class StartUi final : public WindowContent {
   std::vector<SourceEntry> recordings_;
   ExaminedMaps examined_;
   StartDialog dialog_;
-  std::string work_;        ///< name of the action that runs in the background; empty: none
-  double listed_s_ = -1.0;  ///< time at which the lists were last refreshed; < 0: not so far
+  std::string work_;             ///< name of the action that runs in the background; empty: none
+  double listed_s_ = -1.0;       ///< time at which the lists were last refreshed; < 0: not so far
+  bool has_recordings_ = false;  ///< false: recordings_ are not known so far
   bool scrolls_to_choice_ = true, quits_ = false;
   BackgroundJobs jobs_;  ///< last: its results refer to the members above
 
@@ -57,7 +59,6 @@ class StartUi final : public WindowContent {
   void run_job(const std::string& name, Work work, Done done);
   void change_scale(int steps);
   void draw_bar(const Area& area);
-  void draw_actions(const Area& area);
 };
 
 }  // namespace roomradar

@@ -1,0 +1,23 @@
+// action_bar.hpp: the start view's buttons, and their keys.
+#pragma once
+#include <optional>
+
+#include "app/start/start_state.hpp"
+#include "app/window/panes/theme.hpp"
+#include "app/window/panes/window_layout.hpp"
+
+namespace roomradar {
+
+/// Draws the buttons, in two rows if one is too narrow, and the keys that move in the lists. Buttons of
+/// actions that cannot be done are dim. Returns the action that was clicked.
+std::optional<StartAction> draw_action_bar(const Area& area, const StartState& state,
+                                           const look::Fonts& fonts);
+
+/// Returns the action of a key.
+/// @param key  result of key_meant()
+std::optional<StartAction> action_of_key(int key);
+
+/// Returns the action of the Enter key: Scan in the list of sources, Play in that of maps.
+StartAction first_action(const StartState& state);
+
+}  // namespace roomradar

@@ -1,0 +1,185 @@
+#!/usr/bin/env bash
+# Operates the start view by real keys on a virtual screen: choose, scan, play, scan more, compare, export, rename, delete,
+# doctor, text size; in three sizes of window.
+#
+# usage: start_window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
+set -euo pipefail
+program=$(readlink -f "$1")
+for tool in Xvfb xdotool import identify script; do
+  command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (packages xvfb xdotool imagemagick bsdutils)"; exit 77; }
+done
+work=$(mktemp -d)
+shots=${2:-$work/shots}
+mkdir -p "$shots" "$work/here"
+shots=$(readlink -f "$shots")
+trap 'kill $(jobs -p) 2> /dev/null || true; wait; rm -rf "$work"' EXIT
+export XDG_CONFIG_HOME=$work/config
+settings=$XDG_CONFIG_HOME/roomradar/start.json
+source='sim:table?seed=3&frames=40&width=160&rate=10'
+more='sim:table?seed=3&frames=30&width=160'
+cd "$work/here"
+
+fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" >&2 || true; exit 1; }
+until_true() {
+  for _ in $(seq 1800); do
+    "$@" && return
+    kill -0 "$view" 2> /dev/null || fail "the window is gone, while waiting for: $*"
+    sleep 0.1
+  done
+  fail "in vain waited for: $*"
+}
+window() { xdotool search --onlyvisible --name "$1" 2> /dev/null | head -n 1; }
+has_focus() { local id; id=$(window "$1"); [[ -n $id ]] && xdotool windowfocus "$id" 2> /dev/null; }
+says() { grep -qE -- "$1" "$work/log"; }
+shot() { sleep 0.6; import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 200 ]] || fail "$1.png is empty"; }
+# keys KEY...: types keys one after the other, each in a frame of its own.
+keys() { for key in "$@"; do xdotool key "$key"; sleep 0.4; done; }
+start() { "$program" start "$@" > "$work/log" 2>&1 & view=$!; until_true has_focus '^roomradar$'; sleep 1; }
+over() { local status=0; wait "$view" || status=$?; [[ $status -eq $1 ]] || fail "exit status $status instead of $1"; }
+screen() {  # screen WIDTHxHEIGHT: a screen of its own
+  rm -f "$work/display"
+  Xvfb -displayfd 3 -screen 0 "$1x24" -nolisten tcp -noreset 3> "$work/display" > /dev/null 2>&1 &
+  for _ in $(seq 600); do [[ -s $work/display ]] && break; sleep 0.1; done
+  DISPLAY=:$(cat "$work/display")
+  export DISPLAY
+}
+
+screen 1280x800
+echo "== S asks for a name, Enter scans in the same window, Enter comes back"
+start "$more" "$source"
+first=$(window '^roomradar$')
+keys s
+shot scan-asks
+xdotool type 'maps/table'
+keys Return
+until_true test -e maps/table/map.json
+until_true says '^holes'
+until_true has_focus '^roomradar scan - '
+shot scan-over
+[[ $(window '^roomradar scan - ') == "$first" ]] || fail "the scan has another window"
+keys Return
+until_true has_focus '^roomradar$'
+shot back-from-scan
+[[ $(window '^roomradar$') == "$first" ]] || fail "the start view has another window"
+grep -q '"last_map": "maps/table"' "$settings" || fail "the map is not remembered"
+
+echo "== P plays in the chosen map, Ctrl+Q comes back"
+keys p
+until_true has_focus '^roomradar - '
+until_true says '^roomradar run sim:table.*path=view.* --map maps/table --window'
+sleep 2
+shot play
+keys ctrl+q
+until_true has_focus '^roomradar$'
+
+echo "== M adds to the map; a recording that it holds already is named"
+before=$(sha256sum < maps/table/map.json)
+keys m
+until_true says 'holds .* already'
+until_true has_focus '^roomradar scan - '
+shot held-already
+keys Return
+until_true has_focus '^roomradar$'
+[[ $(sha256sum < maps/table/map.json) == "$before" ]] || fail "the map has changed"
+keys Tab Up m
+has_changed() { [[ $(sha256sum < maps/table/map.json) != "$before" ]]; }
+until_true has_changed
+until_true has_focus '^roomradar scan - '
+sleep 1
+keys Return
+until_true has_focus '^roomradar$'
+shot back-from-scan-more
+
+echo "== R renames, E exports, C compares"
+sleep 1
+keys r
+shot rename-asks
+xdotool type 'kitchen'
+keys Return
+[[ -e maps/kitchen/map.json && ! -e maps/table ]] || fail "the map is not renamed"
+keys e
+shot export-asks
+keys p
+until_true test -s maps/kitchen.ply
+cp -r maps/kitchen maps/other
+sleep 3  # the view lists folders every two seconds
+keys c
+shot compare-asks
+keys Return
+sleep 4
+shot compared
+keys Return
+
+echo "== a damaged map: a sentence in the view, and nothing is lost"
+cp -r maps/kitchen maps/zzz
+echo x >> maps/zzz/mesh.ply
+sleep 3
+keys Home
+shot damaged
+keys p
+until_true says 'roomradar: maps/zzz/mesh.ply'
+until_true has_focus '^roomradar$'
+shot damaged-play
+keys Escape
+[[ -e maps/zzz/mesh.ply ]] || fail "the damaged map is gone"
+
+echo "== Delete asks; Escape keeps the map, Return deletes it"
+keys Delete
+shot delete-asks
+keys Escape
+[[ -e maps/zzz/map.json ]] || fail "the map was deleted although it was to be kept"
+keys Delete Return
+[[ ! -e maps/zzz ]] || fail "the map was not deleted"
+[[ -z $(compgen -G 'maps/*.deleted-*') ]] || fail "something is left of the map"
+[[ -e maps/kitchen/map.json && -e maps/other/map.json ]] || fail "another map was deleted"
+
+echo "== D shows what of the set-up works; + is remembered"
+keys d
+sleep 3
+shot doctor
+keys Return plus ctrl+q
+over 0
+grep -q '"ui_scale": 1.25' "$settings" || fail "the text size is not remembered"
+
+echo "== damaged settings: a sentence and the defaults"
+echo '{"ui_scale": "huge"}' > "$settings"
+start maps/kitchen
+says 'ui_scale must be a number; the default settings are used' || fail "nothing is said about the settings"
+shot default-settings
+keys ctrl+q
+over 0
+
+for size in 640x480 1280x960 3840x2160; do
+  screen "$size"
+  for scale in 1 2; do
+    echo "== $size, scale $scale"
+    start maps/kitchen --ui-scale "$scale"
+    id=$(window '^roomradar$')
+    xdotool windowmove "$id" 0 0
+    xdotool windowsize "$id" "${size%x*}" "${size#*x}"
+    sleep 2
+    shot "$size-$scale-maps"
+    keys Tab
+    shot "$size-$scale-sources"
+    keys s
+    shot "$size-$scale-scan"
+    keys Escape ctrl+q
+    over 0
+  done
+done
+
+echo "== alone: on a terminal with a display the view opens, else the first commands are printed"
+view=$$
+script -qec "$program" /dev/null > "$work/log" 2>&1 < /dev/null &
+view=$!
+until_true has_focus '^roomradar$'
+keys ctrl+q
+over 0
+status=0
+DISPLAY='' WAYLAND_DISPLAY='' script -qec "$program" /dev/null > "$work/log" 2>&1 < /dev/null || status=$?
+[[ $status -eq 2 ]] || fail "exit status $status without a display"
+says 'roomradar prescan kinect:0' || fail "the first commands are missing"
+status=0
+"$program" < /dev/null > "$work/log" 2>&1 || status=$?
+[[ $status -eq 2 ]] || fail "exit status $status in a pipe"
+echo "passed"
