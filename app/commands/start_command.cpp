@@ -16,6 +16,8 @@
 namespace roomradar {
 namespace {
 
+constexpr int kWrongUsage = 2;  // exit status
+
 struct Outcome {
   int status = 0;
   StartMessage message;
@@ -39,6 +41,7 @@ Outcome carry_out(const StartChoice& choice, const StartSettings& settings) {
   try {
     const int status = run_as_typed(command_of(choice, settings));
     std::fflush(stdout);
+    if (status == kWrongUsage) return {status, {"The command was refused; the terminal says why.", true}};
     if (choice.action == StartAction::kPlay)
       return {status, {status == 0 ? "" : "The run ended with a fault, which the terminal names.", false}};
     const MapEntry map = describe_map(choice.map);
@@ -68,7 +71,7 @@ StartState first_state(const StartOptions& options) {
   const ReadSettings read = read_start_settings(start_settings_file());
   state.settings = read.settings;
   if (options.ui_scale) state.settings.ui_scale = options.ui_scale;
-  state.message = {read.fault, false};
+  state.message = {read.fault, !read.fault.empty()};
   if (!read.fault.empty()) std::fprintf(stderr, "roomradar: %s\n", read.fault.c_str());
   refresh_sources(state, {});
   refresh_maps(state);
@@ -103,8 +106,9 @@ bool has_display() {
 }  // namespace
 
 void add_options(CLI::App& command, StartOptions& options) {
-  command.add_option("NAME", options.names,
-                     "saved map, recording or other source to choose in the window; may be repeated");
+  command.add_option(
+      "NAME", options.names,
+      "saved map, recording or other source to choose in the window; may be repeated (default: none)");
   add_ui_scale_option(command, options.ui_scale);
 }
 
@@ -124,7 +128,7 @@ int run_start_alone(const char* first_steps) {
     if (window) return show_start(*window, {});
   }
   std::fputs(first_steps, stderr);
-  return 2;
+  return kWrongUsage;
 }
 
 }  // namespace roomradar

@@ -15,6 +15,11 @@ install(FILES ${PROJECT_BINARY_DIR}/roomradar.bash DESTINATION ${CMAKE_INSTALL_D
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
   RENAME _roomradar COMPONENT program)
 install(FILES app/quality/presets.json DESTINATION ${CMAKE_INSTALL_DATADIR}/roomradar COMPONENT program)
+if(ROOMRADAR_HAS_WINDOW)
+  install(FILES app/package/roomradar.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
+  install(FILES app/package/roomradar.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps
+    COMPONENT program)
+endif()
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 

@@ -43,7 +43,7 @@ bool is_map(const std::filesystem::path& folder);
 MapEntry describe_map(const std::filesystem::path& folder);
 
 /// Returns the maps among the subfolders of `folder`/maps and of `folder`, and `folder` itself if it is a
-/// map; newest first. Considers the first 300 subfolders of each.
+/// map; newest first. Considers subfolders().
 std::vector<MapEntry> list_maps(const std::filesystem::path& folder);
 
 /// Loads the map, draws it and looks for holes. Takes about a second for a room. Never throws:

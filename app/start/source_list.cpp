@@ -48,7 +48,7 @@ SourceEntry describe_simulated(const std::string& spec) {
   SourceEntry entry{SourceKind::kSimulated, spec, {}, spec, spec, {}};
   try {
     SimOptions options = parse_sim_spec(spec);
-    entry.name = "Simulated room: " + options.room;
+    if (spec == "sim:" + options.room) entry.name = "Simulated room: " + options.room;
     entry.detail = "simulated Kinect, " + frames_text(static_cast<std::size_t>(options.frames));
     options.path = CameraPathKind::kView;
     entry.play_source = sim_spec(options);
@@ -92,7 +92,7 @@ std::vector<SourceEntry> list_kinects() {
 std::vector<SourceEntry> list_recordings(const fs::path& folder) {
   std::vector<SourceEntry> entries;
   SourceEntry here = describe_recording(folder);
-  if (here.fault.empty()) entries.push_back(std::move(here));
+  if (here.fault.empty()) return {here};  // its subfolders hold its images
   add_recordings_in(folder, entries);
   add_recordings_in(folder / "recordings", entries);
   return entries;

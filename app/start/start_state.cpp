@@ -28,6 +28,13 @@ void add_missing(const std::vector<SourceEntry>& entries, std::vector<SourceEntr
     if (!has_source(sources, entry)) sources.push_back(entry);
 }
 
+/// Describes a source; a recording that is listed is not read again.
+SourceEntry described(const StartState& state, const std::string& source) {
+  for (const SourceEntry& each : state.sources)
+    if (each.source == source && each.kind == SourceKind::kRecording) return each;
+  return describe_source(source);
+}
+
 void choose_source(StartState& state, const std::string& source) {
   const auto found = std::find_if(state.sources.begin(), state.sources.end(),
                                   [&](const SourceEntry& each) { return each.source == source; });
@@ -47,11 +54,11 @@ void refresh_sources(StartState& state, const std::vector<SourceEntry>& recordin
   const std::string first = state.given.empty() ? state.settings.last_source : state.given.back();
   const std::string chosen = before != nullptr ? before->source : first;
   std::vector<SourceEntry> sources;
-  for (const std::string& source : state.given) add_missing({describe_source(source)}, sources);
+  for (const std::string& source : state.given) add_missing({described(state, source)}, sources);
   add_missing(list_kinects(), sources);
   add_missing(recordings, sources);
-  if (SourceEntry last; !state.settings.last_source.empty()) {
-    last = describe_source(state.settings.last_source);
+  if (!state.settings.last_source.empty()) {
+    const SourceEntry last = described(state, state.settings.last_source);
     if (last.fault.empty()) add_missing({last}, sources);
   }
   add_missing(list_simulated_rooms(), sources);
@@ -138,8 +145,10 @@ std::string why_not(const StartState& state, StartAction action) {
 }
 
 std::vector<std::string> command_of(const StartChoice& choice, const StartSettings& settings) {
-  std::vector<std::string> words = {choice.action == StartAction::kPlay ? "run" : "prescan", choice.source,
-                                    "--map", choice.map, "--window"};
+  // A name that begins with a hyphen would be read as an option.
+  const auto name = [](const std::string& path) { return path.starts_with('-') ? "./" + path : path; };
+  std::vector<std::string> words = {choice.action == StartAction::kPlay ? "run" : "prescan",
+                                    name(choice.source), "--map", name(choice.map), "--window"};
   if (choice.action == StartAction::kScanMore) words.emplace_back("--resume");
   if (settings.ui_scale) {
     words.emplace_back("--ui-scale");

@@ -39,7 +39,7 @@ GlfwWindow::GlfwWindow(const std::string& title) {
     const std::string fault = last_glfw_error();
     const char* display = std::getenv("DISPLAY");
     throw Error(
-        "--window: there is no display to open it on (" + fault +
+        "there is no display to open a window on (" + fault +
         (display == nullptr ? "; DISPLAY is not set" : std::string("; DISPLAY is ") + display) +
         "). Over ssh connect with ssh -X, or leave --window out; `run --video FILE.mp4` writes what its "
         "window would show");
@@ -48,6 +48,8 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, "roomradar");  // StartupWMClass of the desktop entry
+  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "roomradar");
   // EGL if it works, as for the radar, so the process loads one driver; else the window system's own API.
   const auto [width_px, height_px] = first_size_px();
   for (const int way : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
@@ -58,7 +60,7 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   if (window_ == nullptr) {
     const std::string fault = last_glfw_error();
     glfwTerminate();
-    throw Error("--window: the display gives no window with OpenGL 3.3 (" + fault +
+    throw Error("the display gives no window with OpenGL 3.3 (" + fault +
                 "); leave --window out; `run --video FILE.mp4` writes what its window would show");
   }
   glfwSetWindowSizeLimits(window_, kLeastWidth_px, kLeastHeight_px, GLFW_DONT_CARE, GLFW_DONT_CARE);

@@ -16,10 +16,10 @@ constexpr StartLayout start_layout(float width, float height, float scale = 1.0F
   const auto whole = [](float length) { return static_cast<float>(static_cast<int>(length)); };
   StartLayout layout;
   layout.has_two_rows = width < scale * 940.0F;
-  const float bar = whole(scale * 46.0F), actions = whole(scale * (layout.has_two_rows ? 106.0F : 74.0F));
+  const float bar = whole(scale * 40.0F), actions = whole(scale * (layout.has_two_rows ? 96.0F : 66.0F));
   const float left = std::max(height - bar - actions, 0.0F);
   const float lists = whole(std::clamp(0.36F * width, scale * 240.0F, scale * 480.0F));
-  const float sources = whole(0.46F * left);
+  const float sources = whole(0.5F * left);
   layout.bar = {0.0F, 0.0F, width, bar};
   layout.sources = {0.0F, bar, lists, sources};
   layout.maps = {0.0F, bar + sources, lists, left - sources};

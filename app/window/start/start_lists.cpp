@@ -11,6 +11,7 @@ namespace {
 
 struct Row {
   std::string name, detail;
+  std::string more;                    ///< added to `detail` if it fits
   const GlTexture* picture = nullptr;  ///< null: none
   bool has_fault = false;
 };
@@ -47,8 +48,10 @@ bool draw_row(int id, const Row& row, const RowState& state, const look::Fonts& 
   list.AddText({x, at.y + look::px(4.0F)}, row.has_fault ? look::kDim : look::kText,
                look::shortened(row.name, wide).c_str());
   ImGui::PushFont(fonts.small);
+  const std::string whole = row.detail + row.more;
+  const bool fits = ImGui::CalcTextSize(whole.c_str()).x <= wide;
   list.AddText({x, at.y + look::px(22.0F)}, row.has_fault ? look::kWarn : look::kDim,
-               look::shortened(row.detail, wide).c_str());
+               fits ? whole.c_str() : look::shortened(row.detail, wide).c_str());
   ImGui::PopFont();
   ImGui::PopID();
   return clicked;
@@ -95,13 +98,20 @@ std::string name_of(const MapEntry& map) {
   return path.starts_with("maps/") ? path.substr(5) : path;
 }
 
-std::string detail_of(const MapEntry& map, bool is_damaged) {
-  if (!map.is_saved) return "scan interrupted";
-  if (is_damaged) return "damaged";
-  std::string detail;
-  for (const auto& [name, value] : facts_of(map, nullptr))
-    if (name == "saved" || name == "room") detail += (detail.empty() ? "" : ", ") + value;
-  return detail;
+Row row_of(const MapEntry& map, const ExaminedMap* examined) {
+  Row row;
+  row.name = name_of(map);
+  row.picture = examined != nullptr ? &examined->picture : nullptr;
+  row.has_fault = !map.fault.empty() || (examined != nullptr && !examined->details.fault.empty());
+  if (row.has_fault) {
+    row.detail = map.is_saved ? "damaged" : "scan interrupted";
+    return row;
+  }
+  for (const auto& [name, value] : facts_of(map, nullptr)) {
+    if (name == "saved") row.detail = value;
+    if (name == "room") row.more = ", " + value;
+  }
+  return row;
 }
 
 void draw_facts(const std::vector<std::pair<std::string, std::string>>& facts) {
@@ -170,7 +180,7 @@ void draw_sources(const Area& area, StartState& state, const look::Fonts& fonts,
   for (std::size_t i = 0; i < state.sources.size(); ++i) {
     const SourceEntry& source = state.sources[i];
     const bool is_chosen = i == state.source;
-    const Row row{source.name, source.detail, nullptr, !source.fault.empty()};
+    const Row row{source.name, source.detail, {}, nullptr, !source.fault.empty()};
     if (!draw_row(static_cast<int>(i), row, {is_chosen, is_active, false}, fonts)) continue;
     state.source = i;
     state.active = StartList::kSources;
@@ -186,10 +196,7 @@ void draw_maps(const Area& area, StartState& state, const ExaminedMaps& examined
   for (std::size_t i = 0; i < state.maps.size(); ++i) {
     const MapEntry& map = state.maps[i];
     const bool is_chosen = i == state.map;
-    const ExaminedMap* found = examined.find(map);
-    const bool has_fault = !map.fault.empty() || (found != nullptr && !found->details.fault.empty());
-    const Row row{name_of(map), detail_of(map, has_fault), found != nullptr ? &found->picture : nullptr,
-                  has_fault};
+    const Row row = row_of(map, examined.find(map));
     if (!draw_row(static_cast<int>(i), row, {is_chosen, is_active, true}, fonts)) continue;
     state.map = i;
     state.active = StartList::kMaps;

@@ -119,7 +119,7 @@ void StartUi::begin(StartAction action) {
   if (!work_.empty()) return say("Still at work: " + work_ + ". Wait until it is done.", false);
   switch (action) {
     case StartAction::kScan:
-      open(DialogKind::kNewMap, "Scan " + source->name, {{"Name of the new map:"}});
+      open(DialogKind::kNewMap, "Scan " + source->source, {{"Name of the new map:"}});
       return set_name(dialog_, proposed_map_name(state_.folder, std::time(nullptr)));
     case StartAction::kRename:
       open(DialogKind::kRename, "Rename " + name, {{"New name:"}});
@@ -152,12 +152,12 @@ void StartUi::open(DialogKind kind, const std::string& heading, std::vector<Dial
 }
 
 /// Shows a sentence: a fault over the window, else in the bar.
-void StartUi::say(const std::string& sentence, bool is_fault) {
+void StartUi::say(std::string sentence, bool is_fault) {
   state_.message = {};
   if (is_fault)
-    open(DialogKind::kNotice, "This does not work", {{sentence, look::kWarn}});
+    open(DialogKind::kNotice, "This does not work", {{std::move(sentence), look::kWarn}});
   else
-    state_.message = {sentence, false};
+    state_.message = {std::move(sentence), false};
 }
 
 void StartUi::answer(DialogAnswer answer) {

@@ -47,7 +47,7 @@ class StartUi final : public WindowContent {
   void press_key(int key, int modifiers);
   void begin(StartAction action);
   void open(DialogKind kind, const std::string& heading, std::vector<DialogLine> lines);
-  void say(const std::string& sentence, bool is_fault);
+  void say(std::string sentence, bool is_fault);
   void answer(DialogAnswer answer);
   void scan();
   void rename();

@@ -634,13 +634,25 @@ TEST_F(CommandLine, AMisspeltWordIsAnsweredWithTheNearestOne) {
   EXPECT_EQ(unlike.out.find("did you mean"), std::string::npos) << unlike.out;
 }
 
-TEST_F(CommandLine, BareCommandsListTheirParts) {
-  const Outcome bare = roomradar("");
-  EXPECT_EQ(bare.status, 2);
-  for (const char* command : {"prescan", "run", "map", "record", "calibrate", "doctor", "help", "simulate"})
-    EXPECT_NE(bare.out.find(std::string("\n  ") + command + " "), std::string::npos) << command << "\n"
-                                                                                     << bare.out;
+TEST_F(CommandLine, AloneInAPipeItNamesTheFirstThreeCommands) {
+  const Outcome alone = roomradar("");
+  for (const char* line : {"\n  roomradar doctor ", "\n  roomradar prescan kinect:0 --map maps/kitchen ",
+                           "\n  roomradar run kinect:0 --map maps/kitchen --window\n"})
+    expect_fault(alone, 2, line);
+  EXPECT_EQ(alone.out.find("required"), std::string::npos) << alone.out;
   expect_fault(roomradar("map"), 2, "  export ");
+}
+
+TEST_F(CommandLine, ANameInPlaceOfACommandIsOpenedInTheStartView) {
+  const std::string blind = "env -u DISPLAY -u WAYLAND_DISPLAY ";
+  for (const char* start : {" ", " start "}) {
+    const Outcome outcome = shell(blind + ROOMRADAR_PROGRAM + start + map());
+    EXPECT_EQ(outcome.status, 1) << outcome.out;
+    EXPECT_TRUE(outcome.out.find("there is no display") != std::string::npos ||
+                outcome.out.find("without a window") != std::string::npos)
+        << outcome.out;
+  }
+  expect_fault(roomradar("/no/such/map"), 2, "there is no command '/no/such/map'");
 }
 
 TEST_F(CommandLine, AMissingArgumentIsNamedWithItsMeaning) {
@@ -655,12 +667,13 @@ TEST_F(CommandLine, HelpExplainsCommandsAndTopics) {
   EXPECT_EQ(roomradar("help run").out, roomradar("run --help").out);
   EXPECT_EQ(roomradar("help map export").out, roomradar("map export --help").out);
   expect_fault(roomradar("help scirpt"), 2, "did you mean script?");
-  expect_fault(roomradar("help kinect"), 2, "no command or topic 'kinect'; known are prescan, run, ");
+  expect_fault(roomradar("help kinect"), 2, "no command or topic 'kinect'; known are start, prescan, run, ");
 }
 
 TEST_F(CommandLine, EveryHelpHasGroupsOfKnownOptionsAndTwoExamples) {
-  for (const char* command : {"prescan", "run", "record", "simulate", "calibrate", "fallthrough", "trade",
-                              "doctor", "map info", "map verify", "map export", "map merge", "map diff"}) {
+  for (const char* command :
+       {"start", "prescan", "run", "record", "simulate", "calibrate", "fallthrough", "trade", "doctor",
+        "map info", "map verify", "map export", "map merge", "map diff"}) {
     const std::string help = roomradar(std::string(command) + " --help").out;
     EXPECT_GE(lines_with(help, std::string("roomradar ") + command + " ") +
                   lines_with(help, std::string("roomradar ") + command + "\n"),
