@@ -42,9 +42,11 @@ TEST_F(MapTasks, AProposedNameIsFree) {
 
 TEST_F(MapTasks, RenameMovesTheMapOrRefuses) {
   save_small_map(here_ / "maps/other");
-  for (const char* name : {"", ".", "..", "a/b", "/tmp/x", "other"})
+  fs::create_directory(here_ / "maps/empty");
+  fs::create_directory(here_ / "maps/begun.unfinished");
+  for (const char* name : {"", ".", "..", "a/b", "/tmp/x", "other", "empty", "begun"})
     EXPECT_NE(error_of([&] { rename_map(map_, name); }), "") << name;
-  EXPECT_EQ(entries(), 2U);
+  EXPECT_EQ(entries(), 4U);
   EXPECT_EQ(rename_map(map_, "wall"), map_);
   const fs::path renamed = rename_map(map_, "my wall");
   EXPECT_EQ(renamed, here_ / "maps/my wall");
