@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <string_view>
 
 #include "app/media/map_picture.hpp"
 #include "app/start/subfolders.hpp"
@@ -75,6 +76,16 @@ std::string holes_text(const MapDetails& details) {
   return std::to_string(details.holes) + (details.largest_hole_m2 >= 0.01
                                               ? text_of(", the largest %.2f m\u00B2", details.largest_hole_m2)
                                               : std::string());
+}
+
+/// Returns the first source, and the number of the others.
+std::string sources_text(const std::string& sources) {
+  constexpr std::string_view kBetween = "; ";
+  std::size_t others = 0;
+  for (std::size_t at = sources.find(kBetween); at != std::string::npos; at = sources.find(kBetween, at + 1))
+    ++others;
+  if (others == 0) return sources;
+  return sources.substr(0, sources.find(kBetween)) + " and " + std::to_string(others) + " more";
 }
 
 }  // namespace
@@ -154,7 +165,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MapEntry& map, c
     facts.emplace_back("surface", "being measured");
   }
   facts.emplace_back("disk", text_of("%.1f MB", static_cast<double>(map.bytes) / 1e6));
-  facts.emplace_back("from", map.source);
+  facts.emplace_back("from", sources_text(map.source));
   if (map.has_unfinished_scan) facts.emplace_back("scan", "interrupted; Scan more (M) continues it");
   return facts;
 }

@@ -155,7 +155,7 @@ void StartUi::open(DialogKind kind, const std::string& heading, std::vector<Dial
 void StartUi::say(std::string sentence, bool is_fault) {
   state_.message = {};
   if (is_fault)
-    open(DialogKind::kNotice, "This does not work", {{std::move(sentence), look::kWarn}});
+    open(DialogKind::kNotice, "What is wrong", {{std::move(sentence), look::kWarn}});
   else
     state_.message = {std::move(sentence), false};
 }

@@ -82,6 +82,9 @@ TEST_F(MapList, AMapIsMeasured) {
   EXPECT_EQ(fact(map, &details, "floor"), "not found");
   EXPECT_EQ(fact(map, nullptr, "surface"), "being measured");
   EXPECT_EQ(fact(map, &details, "from"), "a wall");
+  MapEntry extended = map;
+  extended.source = "a wall; another; kinect:0";
+  EXPECT_EQ(fact(extended, &details, "from"), "a wall and 2 more");
 }
 
 TEST_F(MapList, ABallHidesSpaceWhichIsAHole) {
