@@ -1,5 +1,6 @@
 // odometry_checkpoint_test.cpp: odometry that is saved and resumed, and odometry with a prior map.
 #include "mapping/odometry/odometry_checkpoint.hpp"
+#include "mapping/odometry/odometry_snapshot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -162,13 +163,13 @@ KeyframeDatabase places_of_the_room() {
 TEST(OdometryThatKnowsAMap, IsInTheMapsWorldFromTheFirstFrameOn) {
   Odometry odometry;
   odometry.set_prior_map(places_of_the_room());
-  EXPECT_FALSE(odometry.is_located());
+  EXPECT_FALSE(odometry.state().located);
   std::vector<TimedPose> truth;
   for (int i = 20; i < 36; ++i) {
     truth.push_back({i, i / 30.0, on_path(i, kFrames)});
     EXPECT_TRUE(odometry.track(frame_at(truth.back().T_world_camera, 100 + i)));
   }
-  EXPECT_TRUE(odometry.is_located());
+  EXPECT_TRUE(odometry.state().located);
   const std::vector<TrackedFrame> found = odometry.optimise();
   EXPECT_GT(odometry.counts().anchored, 2);
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -189,7 +190,7 @@ TEST(OdometryThatKnowsAMap, AnotherRoomIsTrackedInAWorldOfItsOwn) {
     EXPECT_TRUE(odometry.track(frame_at(T, i, other)));
   }
   const std::vector<TrackedFrame> found = odometry.optimise();
-  EXPECT_FALSE(odometry.is_located());
+  EXPECT_FALSE(odometry.state().located);
   EXPECT_TRUE(found[0].T_world_camera.isApprox(Eigen::Isometry3d::Identity()));
 }
 
