@@ -133,6 +133,19 @@ keys Delete Return
 [[ -z $(compgen -G 'maps/*.deleted-*') ]] || fail "something is left of the map"
 [[ -e maps/kitchen/map.json && -e maps/other/map.json ]] || fail "another map was deleted"
 
+echo "== a scan that is quit leaves the view, and can be continued from it"
+keys Tab End s
+xdotool type 'maps/cut'
+keys Return
+until_true test -e maps/cut.unfinished/work.json
+until_true has_focus '^roomradar scan - '
+keys ctrl+q
+until_true has_focus '^roomradar$'
+says 'roomradar: .*maps/cut' || fail "nothing is said about the scan that was quit"
+shot quit-scan
+keys Escape Delete Return
+[[ ! -e maps/cut.unfinished ]] || fail "the interrupted scan was not deleted"
+
 echo "== D shows what of the set-up works; + is remembered"
 keys d
 sleep 3
