@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mapping/coverage/coverage.hpp"
+#include "mapping/deskewed_source.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/prescan_passes.hpp"
 #include "mapping/types/system/error.hpp"
@@ -99,11 +100,14 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
                 why_none_trusted(work));
 
   // Second pass: fusion.
-  run_fusion_pass(work, map.trajectory, pass);
-  if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(work));
+  DeskewedSource deskewed(source, map.trajectory, pass.counts.timing);
+  PrescanWork fusion_work{deskewed, config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
+                          start.observer, std::move(work.track_ms)};
+  run_fusion_pass(fusion_work, map.trajectory, pass);
+  if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(fusion_work));
 
   // Ghost removal.
-  if (config.remove_ghosts) run_ghost_removal(work, pass);
+  if (config.remove_ghosts) run_ghost_removal(fusion_work, pass);
   map.octree = std::move(pass.octree);
 
   // Surface extraction.

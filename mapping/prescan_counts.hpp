@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "mapping/types/frame.hpp"
 #include "mapping/types/trajectory.hpp"
 
 namespace roomradar {
@@ -17,11 +18,13 @@ struct PrescanCounts {
   std::int64_t frames_lost = 0;  ///< readable, but without a trusted pose; not fused
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
+  std::int64_t restarts = 0;  ///< times that tracking began again with corrected times of the sensor
   std::int64_t ghost_voxels = 0;  ///< surface voxels removed by ghost removal
   /// Frames of the interrupted pass (tracking or fusion) that were finished at the checkpoint. They are not
   /// processed again.
   std::int64_t frames_resumed = 0;
   bool stopped_for_memory = false;  ///< memory cap reached: part of the source is not in the map
+  SensorTiming timing;              ///< times of the sensor, estimated if the poses were tracked
   std::string last_fault;           ///< reason why the last skipped frame was unreadable
   /// Set if the poses were tracked and at least 3 tracked frames have recorded poses.
   std::optional<TrajectoryError> trajectory_error;

@@ -110,6 +110,24 @@ void undo(PrescanWork& work, TrackingPass& pass, const KeyframeDatabase* known, 
   work.observer->forgot_frames(from_index);
 }
 
+/// Begins the pass again with corrected times of the sensor, if the times that it began with turn out wrong.
+/// Only for a source of known length: a live device cannot be rewound while it delivers.
+/// @param known  keyframes of the map that is extended; null: a new map
+bool restart_with_better_times(PrescanWork& work, const KeyframeDatabase* known, TrackingPass& pass) {
+  const std::int64_t frames = work.source.frame_count().value_or(0);
+  if (work.config.poses != PoseOrigin::kTracked || pass.counts.restarts >= kMostRestarts) return false;
+  if (pass.counts.frames_read != std::min(frames, kProbeFrames)) return false;
+  if (!are_times_wrong(pass.odometry.timing()) || !work.source.rewind()) return false;
+  OdometryConfig config = work.config.odometry;
+  config.timing = pass.odometry.timing().current;
+  const std::int64_t restarts = pass.counts.restarts + 1;
+  pass = TrackingPass(config);
+  pass.counts.restarts = restarts;
+  if (known) pass.odometry.set_prior_map(*known);
+  if (work.observer) work.observer->forgot_frames(0);
+  return true;
+}
+
 /// Reads the source to its end and returns the camera pose of each frame.
 /// @param known  keyframes of the map that is extended; null: a new map
 TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase* known, TrackingPass& pass) {
@@ -140,6 +158,10 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
       if (tracking) seen.add(frame, tracking.T_world_camera);
       work.progress(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
     }
+    if (restart_with_better_times(work, known, pass)) {
+      seen = {};
+      continue;
+    }
     keep_tracking(work.checkpoints, pass, work.times);
     // Reserve a quarter of the cap for the octree and its surface, which are built after the tracker is
     // freed.
@@ -152,6 +174,7 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
   found.recorded = std::move(pass.recorded);
   pass.counts.keyframes = pass.odometry.counts().keyframes;
   pass.counts.loops_found = pass.odometry.counts().loops_found;
+  pass.counts.timing = pass.odometry.timing().current;
   found.keyframe_database = pass.odometry.take_keyframe_database();
   return found;
 }

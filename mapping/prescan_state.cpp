@@ -21,12 +21,15 @@ template <typename Archive>
 void serialize(Archive& archive, PrescanCounts& counts) {
   for (std::int64_t* count :
        {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked, &counts.frames_fused,
-        &counts.frames_lost, &counts.keyframes, &counts.loops_found, &counts.ghost_voxels}) {
+        &counts.frames_lost, &counts.keyframes, &counts.loops_found, &counts.restarts, &counts.ghost_voxels}) {
     serialize(archive, *count);
     if constexpr (Archive::kReads) {
       if (*count < 0) archive.fail("is damaged: a count is negative");
     }
   }
+  for (double* time_s :
+       {&counts.timing.depth_readout_s, &counts.timing.colour_readout_s, &counts.timing.colour_delay_s})
+    serialize(archive, *time_s);
   serialize(archive, counts.stopped_for_memory);
   serialize(archive, counts.last_fault);
 }
@@ -87,7 +90,7 @@ constexpr const char* kOdometry = "odometry";
 constexpr const char* kOctree = "octree.bin";
 constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRPRSCAN";
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 
 template <typename Archive>
 void serialize_state(Archive& archive, TrackingPass& pass) {

@@ -210,7 +210,7 @@ CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config)
   fit.calibration = calibration_of(unknowns, config, views.first);
   require_readable(fit.calibration);
   Calibration said;
-  said.rig = {views.first.depth_camera, views.first.colour_camera, views.first.T_colour_depth};
+  said.rig = {views.first.depth_camera, views.first.colour_camera, views.first.T_colour_depth, false, {}};
   for (const BoardView& view : views.views) {
     fit.before.push_back(residual_of(view, config.board, said));
     fit.after.push_back(residual_of(view, config.board, fit.calibration));

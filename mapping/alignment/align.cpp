@@ -99,14 +99,14 @@ bool is_too_large(const Eigen::Isometry3d& T_guess_found, const AlignConfig& con
 PointMatches match_references(const std::vector<SourcePoint>& points,
                               std::span<const PosedReference> references, std::size_t level,
                               const Eigen::Isometry3d& T_world_camera, const MatchLimits& limits,
-                              std::vector<Exposure>& exposures, double& overlap) {
+                              const RowMotion& motion, std::vector<Exposure>& exposures, double& overlap) {
   PointMatches total;
   for (std::size_t k = 0; k < references.size(); ++k) {
     const TargetView& reference = *references[k].view;
     if (level >= reference.levels.size()) continue;
     PointMatches pass;
     match_points(points, reference.levels[level], references[k].T_world_view.inverse() * T_world_camera,
-                 limits, exposures[k], pass);
+                 limits, exposures[k], motion, pass);
     exposures[k] = match_exposure(pass);
     total.depth.H += pass.depth.H, total.depth.g += pass.depth.g, total.depth.weight += pass.depth.weight;
     total.colour.H += pass.colour.H, total.colour.g += pass.colour.g;
@@ -115,6 +115,16 @@ PointMatches match_references(const std::vector<SourcePoint>& points,
       overlap = points.empty() ? 0.0 : static_cast<double>(pass.met) / static_cast<double>(points.size());
   }
   return total;
+}
+
+/// Returns the motion of a level's points if the camera is at T_world_camera.
+RowMotion motion_at(const SourcePoints& live, int level, const Eigen::Isometry3d& T_world_camera,
+                    const ReadoutMotion& readout) {
+  const auto i = static_cast<std::size_t>(level);
+  if (readout.readout_s == 0.0 || i >= live.cameras.size()) return {};
+  return row_motion(live.cameras[i],
+                    velocity_of(readout.T_world_before.inverse() * T_world_camera, readout.dt_s),
+                    readout.readout_s);
 }
 
 }  // namespace
@@ -150,7 +160,8 @@ Vector6d local(const Eigen::Isometry3d& T) {
 }
 
 Tracking align(const SourcePoints& live, std::span<const PosedReference> references,
-               const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config) {
+               const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config,
+               const ReadoutMotion& readout) {
   Tracking result;
   if (!T_world_camera_guess.matrix().allFinite()) return result;
   result.T_world_camera = T_world_camera_guess;
@@ -174,7 +185,7 @@ Tracking align(const SourcePoints& live, std::span<const PosedReference> referen
     const Matrix6d fixed_coarser = fixed;
     for (int iteration = 0; iteration < config.iterations; ++iteration) {
       total = match_references(points, references, static_cast<std::size_t>(level), T_world_camera, limits,
-                               exposures, result.overlap);
+                               motion_at(live, level, T_world_camera, readout), exposures, result.overlap);
       // Coarser levels have fewer points, so the min count is divided by 4 per level.
       const int coarser = std::min(level - std::min(config.finest_level, last), 8);
       if (total.met < static_cast<std::size_t>(std::max(config.min_points >> (2 * coarser), 12))) {

@@ -72,6 +72,14 @@ struct PosedReference {
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
+/// Earlier pose from which align() computes the camera's velocity during the readout of the image. Each
+/// iteration uses the velocity of its own pose.
+struct ReadoutMotion {
+  Eigen::Isometry3d T_world_before = Eigen::Isometry3d::Identity();
+  double dt_s = 0.0;       ///< time since that pose; 0: the velocity is not known and taken as 0
+  double readout_s = 0.0;  ///< of the depth image; 0: a global shutter
+};
+
 /// Estimates T_world_camera by point-to-plane ICP with projective association. Adds intensity residuals, with
 /// one gain and one offset per reference. Minimises by Gauss-Newton, from coarse to fine. Residuals are
 /// weighted by their standard deviations and by a robust kernel. Moving objects thus have little effect. Each
@@ -81,7 +89,8 @@ struct PosedReference {
 /// (point to plane); Newcombe et al., KinectFusion, ISMAR 2011 (projective association); Zhang, Kaess, Singh,
 /// On Degeneracy of Optimization-based State Estimation Problems, ICRA 2016.
 Tracking align(const SourcePoints& live, std::span<const PosedReference> references,
-               const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
+               const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {},
+               const ReadoutMotion& readout = {});
 
 /// Aligns with a single reference, at its own T_world_view.
 Tracking align(const SourcePoints& live, const TargetView& reference,

@@ -44,7 +44,7 @@ float robust_weight(float x) {
 // One function: the sums of a block stay in registers.
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
-                  PointMatches& pass) {
+                  const RowMotion& motion, PointMatches& pass) {
   constexpr std::size_t kBlock = 512;  // float sums over this many points keep five digits
   const Eigen::Matrix3f R = T_view_camera.linear().cast<float>();
   const Eigen::Matrix3f R_transposed = R.transpose();
@@ -60,7 +60,8 @@ void match_points(const std::vector<SourcePoint>& points, const TargetLevel& ref
     float n = 0.0F, sl = 0.0F, sr = 0.0F, sll = 0.0F, srr = 0.0F;
     for (std::size_t i = begin; i < end; ++i) {
       const SourcePoint& point = points[i];
-      const Eigen::Vector3f p = R * point.p_camera + t;
+      const Eigen::Vector3f p_camera = motion.at_middle(point.p_camera);
+      const Eigen::Vector3f p = R * p_camera + t;
       if (p.z() < 0.1F) continue;
       const float inverse_z = 1.0F / p.z();
       const float u = fx * p.x() * inverse_z + cx, v = fy * p.y() * inverse_z + cy;
@@ -78,7 +79,7 @@ void match_points(const std::vector<SourcePoint>& points, const TargetLevel& ref
         squares += r_m * r_m;
       }
       const Eigen::Vector3f m = pixel.inverse_sigma_per_m * (R_transposed * pixel.normal);
-      depth.add(point.p_camera, m, r, w);
+      depth.add(p_camera, m, r, w);
       weights += w * pixel.inverse_sigma_per_m * pixel.inverse_sigma_per_m;
 
       if (limits.inverse_intensity_sigma <= 0.0F || point.intensity < 0.0F || pixel.intensity < 0.0F)
@@ -92,7 +93,7 @@ void match_points(const std::vector<SourcePoint>& points, const TargetLevel& ref
       const float rc =
           (expected - exposure.gain * point.intensity - exposure.offset) * limits.inverse_intensity_sigma;
       const Eigen::Vector3f h(gu, gv, -(gu * p.x() + gv * p.y()) * inverse_z);
-      colour.add(point.p_camera, limits.inverse_intensity_sigma * (R_transposed * h), rc,
+      colour.add(p_camera, limits.inverse_intensity_sigma * (R_transposed * h), rc,
                  w * robust_weight(rc * limits.inverse_soft));
     }
     add(depth, pass.depth);

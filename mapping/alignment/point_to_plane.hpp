@@ -54,10 +54,11 @@ struct MatchLimits {
 /// Projects the points into the reference to find correspondences, and sums their residuals. Residuals are
 /// the distance to the reference's plane and, if exposure.known, the difference of intensity. They are
 /// linearised in the camera's twist in the camera frame.
+/// @param motion  motion of the points during their image's readout
 /// @param[in,out] pass sums to which the residuals are added. Only the upper triangle of H is filled
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
-                  PointMatches& pass);
+                  const RowMotion& motion, PointMatches& pass);
 
 /// Computes the gain and offset that map the mean and standard deviation of the live intensities to those of
 /// the reference's intensities. `known` is false if there are too few correspondences.

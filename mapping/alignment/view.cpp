@@ -127,8 +127,10 @@ void make_target_view(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_wor
 void make_source_points(const ViewPyramid& pyramid, SourcePoints& live, const MaskImage& ignore,
                         int finest_step_px) {
   live.levels.resize(pyramid.levels.size());
+  live.cameras.resize(pyramid.levels.size());
   for (std::size_t i = 0; i < pyramid.levels.size(); ++i) {
     const ViewPyramid::Level& level = pyramid.levels[i];
+    live.cameras[i] = level.camera;
     const int step = i == 0 ? std::max(finest_step_px, 1) : 1;
     const double mask_scale =
         ignore.empty() ? 0.0 : static_cast<double>(ignore.width) / level.camera.width_px;

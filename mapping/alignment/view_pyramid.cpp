@@ -82,11 +82,21 @@ void block_grey(const ColourImage& colour, int block, Image<float>& grey) {
 }
 
 /// Registers the colour image's intensity to the depth pixels; -1 outside the colour camera's view.
-void register_intensity(const Frame& frame, int block, Image<float>& grey, ViewPyramid::Level& level) {
+void register_intensity(const Frame& frame, int block, const FrameMotion& motion, Image<float>& grey,
+                        ViewPyramid::Level& level) {
   block_grey(frame.colour, block, grey);
+  const auto& [velocity, timing] = motion;
+  const auto delay_s = static_cast<float>(frame.colour_after_depth_s + timing.colour_delay_s);
+  const auto depth_row_s = static_cast<float>(timing.depth_readout_s / level.camera.height_px);
+  const float colour_row_s = static_cast<float>(timing.colour_readout_s) / static_cast<float>(grey.height);
+  const float depth_middle = 0.5F * static_cast<float>(level.camera.height_px - 1);
+  const float colour_middle = 0.5F * static_cast<float>(grey.height - 1);
   const Intrinsics colour = scaled(frame.colour_camera, 1.0 / block);
   const Eigen::Matrix3f R = frame.T_colour_depth.linear().cast<float>();
   const Eigen::Vector3f t = frame.T_colour_depth.translation().cast<float>();
+  const Eigen::Vector3f v = R * velocity.linear_mps.cast<float>();
+  const Eigen::Vector3f w = R * velocity.angular_radps.cast<float>();
+  const bool moves = !v.isZero(0.0F) || !w.isZero(0.0F);
   const auto fx = static_cast<float>(colour.fx_px), fy = static_cast<float>(colour.fy_px);
   const auto cx = static_cast<float>(colour.cx_px), cy = static_cast<float>(colour.cy_px);
   const auto last_u = static_cast<float>(grey.width - 1), last_v = static_cast<float>(grey.height - 1);
@@ -98,12 +108,19 @@ void register_intensity(const Frame& frame, int block, Image<float>& grey, ViewP
     for (int x = 0; x < level.camera.width_px; ++x) {
       const float q = level.inverse_depth_per_m.at(x, y);
       if (q <= 0.0F) continue;
-      const Eigen::Vector3f p = row_ray + static_cast<float>(x) * ray_step + q * t;  // divided by the depth
+      const Eigen::Vector3f ray = row_ray + static_cast<float>(x) * ray_step;
+      Eigen::Vector3f p = ray + q * t;  // divided by the depth
+      if (moves) {
+        const Eigen::Vector3f per_s = q * v + w.cross(ray);
+        p += (depth_row_s * (static_cast<float>(y) - depth_middle) - delay_s) * per_s;
+        const float row_rough = p.z() < 0.1F ? colour_middle : fy * p.y() / p.z() + cy;
+        p -= colour_row_s * (row_rough - colour_middle) * per_s;
+      }
       if (p.z() < 0.1F) continue;
-      const float u = fx * p.x() / p.z() + cx, v = fy * p.y() / p.z() + cy;
-      if (!(u >= 0.0F && v >= 0.0F && u < last_u && v < last_v)) continue;
-      const int u0 = static_cast<int>(u), v0 = static_cast<int>(v);
-      const float du = u - static_cast<float>(u0), dv = v - static_cast<float>(v0);
+      const float u = fx * p.x() / p.z() + cx, row = fy * p.y() / p.z() + cy;
+      if (!(u >= 0.0F && row >= 0.0F && u < last_u && row < last_v)) continue;
+      const int u0 = static_cast<int>(u), v0 = static_cast<int>(row);
+      const float du = u - static_cast<float>(u0), dv = row - static_cast<float>(v0);
       const float* upper = grey.row(v0) + u0;
       const float* lower = upper + grey.width;
       level.intensity.at(x, y) = (1.0F - dv) * ((1.0F - du) * upper[0] + du * upper[1]) +
@@ -156,6 +173,15 @@ void halve_depth(ViewPyramid& pyramid) {
   }
 }
 
+void deskew(ViewPyramid& pyramid, const CameraVelocity& velocity, double readout_s) {
+  constexpr double kLeast_px = 0.25;  // at the first and the last row
+  ViewPyramid::Level& finest = pyramid.levels.front();
+  if (!(0.5 * std::abs(readout_s) * image_speed_pxps(velocity, finest.camera) > kLeast_px)) return;
+  deskew(finest.camera, velocity, readout_s, finest.inverse_depth_per_m, finest.intensity);
+  halve_depth(pyramid);
+  halve_intensity(pyramid);
+}
+
 void halve_intensity(ViewPyramid& pyramid) {
   for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
     if (pyramid.levels[i - 1].intensity.empty()) {
@@ -173,14 +199,15 @@ void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const Vie
   for (ViewPyramid::Level& level : pyramid.levels) level.intensity.resize(0, 0);
 }
 
-void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid) {
+void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
+                  const FrameMotion& motion) {
   const int block = make_depth_levels(frame.depth_m, frame.depth_camera, config, pyramid);
   if (frame.colour.empty()) {
     pyramid.grey.resize(0, 0);
     for (ViewPyramid::Level& level : pyramid.levels) level.intensity.resize(0, 0);
     return;
   }
-  register_intensity(frame, block, pyramid.grey, pyramid.levels.front());
+  register_intensity(frame, block, motion, pyramid.grey, pyramid.levels.front());
   halve_intensity(pyramid);
 }
 

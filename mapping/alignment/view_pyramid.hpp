@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "mapping/alignment/rolling_shutter.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/image.hpp"
 
@@ -37,11 +38,20 @@ struct ViewPyramid {
   Image<float> grey;
 };
 
+/// Motion of the camera during a frame, and the times at which the sensor reads the frame's images.
+struct FrameMotion {
+  CameraVelocity velocity;
+  SensorTiming timing;
+};
+
 /// Builds the pyramid of a frame: its depth, and its intensity registered to the depth camera. The finest
 /// level is at most finest_width_px wide. Leaves out depths outside min_depth_m..max_depth_m, and intensity
 /// outside the colour camera's view. The frame's images must have their cameras' sizes. Reuses memory
 /// allocated in `pyramid`.
-void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid);
+/// @param motion  moves points from the time of their depth to that of their colour. Depth is left as it was
+///                read
+void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
+                  const FrameMotion& motion = {});
 
 /// Builds a pyramid without intensity, for rendered depth.
 void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
@@ -49,6 +59,10 @@ void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const Vie
 
 /// Recomputes the depth of all coarser levels from the finest level.
 void halve_depth(ViewPyramid& pyramid);
+
+/// Applies deskew() to the finest level, unless its points move by less than a quarter of a pixel, and
+/// recomputes the coarser levels.
+void deskew(ViewPyramid& pyramid, const CameraVelocity& velocity, double readout_s);
 
 /// Recomputes the intensity of all coarser levels from the finest level, if the finest level has intensity.
 /// Requires the depth of all levels.

@@ -2,16 +2,11 @@
 #include "mapping/odometry/odometry.hpp"
 
 #include <algorithm>
-#include <future>
-#include <numbers>
-#include <optional>
 #include <utility>
 
 #include "mapping/alignment/stationary_camera.hpp"
 #include "mapping/localization/relocalise.hpp"
-#include "mapping/odometry/keyframe_job.hpp"
-#include "mapping/odometry/keyframe_pairs.hpp"
-#include "mapping/odometry/odometry_snapshot.hpp"
+#include "mapping/odometry/odometry_state.hpp"
 
 namespace roomradar {
 namespace {
@@ -21,42 +16,7 @@ double length(const Eigen::Isometry3d& T) {
   return T.translation().norm() + Eigen::AngleAxisd(T.linear()).angle();
 }
 
-KeyframeJobConfig job_config(const OdometryConfig& config) {
-  return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
-}
-
 }  // namespace
-
-struct Odometry::State {
-  OdometryConfig config;
-  KeyframeDatabase known;
-  OdometrySnapshot kept;
-  ViewPyramid pyramid;  ///< of the current frame, like `live`
-  SourcePoints live;
-  KeyframeCache cache;
-  ViewPyramid open;  ///< the current keyframe's, refined by the views since it became current
-  Image<std::uint8_t> open_measured;
-  bool open_is_newer = false;  ///< newer than the stored view
-  std::future<KeyframeJobResult> job;
-  std::optional<KeyframeJobResult> joined;  ///< the job's result, once it has been waited for
-  int job_frames = 0;                       ///< frames since the job began
-  PairAligner pairs;                        ///< alignments of keyframes for optimise()
-
-  explicit State(const OdometryConfig& chosen) : config(chosen), cache(chosen.graph.cached_keyframes) {}
-
-  Tracking start(const Frame& frame);
-  Tracking align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess);
-  Tracking recover(const Frame& frame);
-  [[nodiscard]] bool is_plausible(const Tracking& tracking) const;
-  void improve_current(const Tracking& tracking);
-  [[nodiscard]] bool is_far_from(std::size_t keyframe, const Tracking& tracking) const;
-  void choose_keyframe(const Frame& frame, Tracking& tracking);
-  void add_keyframe(const Frame& frame, const Tracking& tracking);
-  void take_up(std::size_t keyframe);
-  void store_open();
-  void wait_for_job();
-  Eigen::Isometry3d take_over_job();
-};
 
 Tracking Odometry::State::start(const Frame& frame) {
   Tracking tracking;
@@ -88,12 +48,25 @@ Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d&
     references.push_back({&other->reference, keyframes[i].T_world_camera});
     used.push_back(std::move(other));
   }
-  return align(live, references, T_world_guess, config.align);
+  return align(live, references, T_world_guess, config.align, readout);
+}
+
+/// Tracks the frame from the predicted pose, or recovers.
+Tracking Odometry::State::find_pose(const Frame& frame, const PredictedMotion& predicted) {
+  readout = {kept.T_world_last, predicted.dt_s, kept.timing.current.depth_readout_s};
+  Tracking tracking = align_near(kept.current, predicted.T_world_camera);
+  if (is_plausible(tracking, predicted.T_world_camera)) {
+    velocity = velocity_of(kept.T_world_last.inverse() * tracking.T_world_camera, predicted.dt_s);
+    return tracking;
+  }
+  readout = {};
+  velocity = {};
+  return recover(frame);
 }
 
 Tracking Odometry::State::recover(const Frame& frame) {
   Tracking standing = align_near(kept.current, kept.T_world_last);
-  if (standing && is_plausible(standing)) return standing;
+  if (standing && is_plausible(standing, kept.T_world_last)) return standing;
   standing.status = TrackStatus::kDiverged;
   if (frame.colour.empty() && !kept.last_moved_grey.empty())
     return standing;  // this frame alone has lost its colour
@@ -110,99 +83,24 @@ Tracking Odometry::State::recover(const Frame& frame) {
 }
 
 /// Limits the change of motion between frames to what a hand can do. A recalibrating sensor seems to exceed
-/// it.
-bool Odometry::State::is_plausible(const Tracking& tracking) const {
-  constexpr double kMost_m = 0.10, kMost_rad = 0.05;
+/// it. The first motion is a change from nothing known.
+bool Odometry::State::is_plausible(const Tracking& tracking, const Eigen::Isometry3d& T_world_expected) const {
+  constexpr double kMost_m = 0.10, kMost_rad = 0.10, kMostAtFirst_rad = 0.15;
   if (!has_pose(tracking)) return false;
-  const Eigen::Isometry3d change = (kept.T_world_last * kept.T_last_next).inverse() * tracking.T_world_camera;
-  return change.translation().norm() < kMost_m && Eigen::AngleAxisd(change.linear()).angle() < kMost_rad;
+  const Eigen::Isometry3d change = T_world_expected.inverse() * tracking.T_world_camera;
+  return change.translation().norm() < kMost_m &&
+         Eigen::AngleAxisd(change.linear()).angle() < (kept.frames.size() < 2 ? kMostAtFirst_rad : kMost_rad);
 }
 
-void Odometry::State::improve_current(const Tracking& tracking) {
-  if (kept.current < kept.final_keyframes) return;
+/// Adds what the aligned frame says about the sensor's times.
+void Odometry::State::take_evidence(const Frame& frame, const Tracking& tracking) {
+  const CameraVelocity steady = mean_velocity(kept, tracking.T_world_camera, frame.stamp_s);
   const Keyframe& keyframe = kept.graph.keyframes[kept.current];
-  improve_depth(open, open_measured, pyramid, tracking.T_world_camera.inverse() * keyframe.T_world_camera);
-  open_is_newer = true;
-  if (++kept.improved < config.improve_every) return;
-  kept.improved = 0;
-  halve_depth(open);
-  auto made = std::make_shared<CachedKeyframe>();
-  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
-  make_source_points(open, made->live);
-  cache.put(kept.current, std::move(made));
-}
-
-bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking) const {
-  const Eigen::Isometry3d T =
-      kept.graph.keyframes[keyframe].T_world_camera.inverse() * tracking.T_world_camera;
-  return T.translation().norm() > config.keyframe_distance_m ||
-         Eigen::AngleAxisd(T.linear()).angle() > config.keyframe_angle_deg * std::numbers::pi / 180.0;
-}
-
-void Odometry::State::choose_keyframe(const Frame& frame, Tracking& tracking) {
-  const bool little_in_common = tracking.overlap < config.keyframe_overlap;
-  if (!little_in_common && !is_far_from(kept.current, tracking)) return;
-  const std::vector<std::size_t> near = keyframes_near(kept.graph.keyframes, tracking.T_world_camera, 1.0);
-  if (!near.empty() && near.front() != kept.current && !is_far_from(near.front(), tracking)) {
-    take_up(near.front());
-    return;
-  }
-  tracking.T_world_camera = take_over_job() * tracking.T_world_camera;
-  add_keyframe(frame, tracking);
-}
-
-void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking) {
-  store_open();
-  open = pyramid;
-  open.grey.resize(0, 0);
-  open_measured.resize(open.levels.front().camera.width_px, open.levels.front().camera.height_px, 1);
-  kept.graph.keyframes.push_back({frame.index, tracking.T_world_camera,
-                                  std::make_shared<const StoredView>(store(open, open_measured)), 0,
-                                  kept.path_length_m});
-  ++kept.counts.keyframes;
-  kept.current = kept.graph.keyframes.size() - 1;
-  kept.improved = 0;
-  auto made = std::make_shared<CachedKeyframe>();
-  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
-  made->live = live;
-  cache.put(kept.current, std::move(made));
-  job = std::async(std::launch::async, run,
-                   KeyframeJob{frame, kept.graph, cache, &kept.keyframe_database,
-                               known.keyframes.empty() ? nullptr : &known},
-                   job_config(config));
-  job_frames = 0;
-  kept.final_keyframes = pairs.advance(kept.graph.keyframes, job_config(config).join);
-}
-
-/// Makes another keyframe current: frames are aligned with it first, and refine its depth.
-void Odometry::State::take_up(std::size_t keyframe) {
-  if (keyframe == kept.current) return;
-  store_open();
-  kept.current = keyframe;
-  kept.improved = 0;
-  restore(*kept.graph.keyframes[keyframe].view, config.view, open);
-  open_measured = kept.graph.keyframes[keyframe].view->measured;
-}
-
-void Odometry::State::store_open() {
-  if (!std::exchange(open_is_newer, false)) return;
-  Keyframe& keyframe = kept.graph.keyframes[kept.current];
-  keyframe.view = std::make_shared<const StoredView>(store(open, open_measured));
-  ++keyframe.revision;
-}
-
-void Odometry::State::wait_for_job() {
-  if (job.valid()) joined = job.get();
-}
-
-/// Waits for the second thread and applies its result. Returns the resulting motion of poses near the current
-/// keyframe.
-Eigen::Isometry3d Odometry::State::take_over_job() {
-  wait_for_job();
-  if (!joined) return Eigen::Isometry3d::Identity();
-  const Eigen::Isometry3d T_new_old = take_over(*std::exchange(joined, std::nullopt), kept);
-  update_index(kept.keyframe_database);
-  return T_new_old;
+  const auto used = cache.get(kept.current, *keyframe.view, config.view);
+  add_evidence(kept.timing,
+               timing_evidence(live, {tracking.T_world_camera, velocity, steady}, used->reference,
+                               {keyframe.T_world_camera, keyframe.velocity, keyframe.velocity},
+                               kept.timing.current));
 }
 
 Odometry::Odometry(const OdometryConfig& config) : state_(std::make_unique<State>(config)) {}
@@ -231,11 +129,13 @@ Tracking Odometry::track(const Frame& frame) {
   State& s = *state_;
   OdometrySnapshot& kept = s.kept;
   ++kept.counts.frames;
-  make_pyramid(frame, s.config.view, s.pyramid);
+  const bool first = kept.graph.keyframes.empty();
+  if (kept.counts.frames == 1) kept.timing = start_estimate(s.config.timing.value_or(frame.timing));
+  const PredictedMotion predicted = predict(kept, frame.stamp_s);
+  make_pyramid(frame, s.config.view, s.pyramid, {predicted.velocity, kept.timing.current});
   make_source_points(s.pyramid, s.live);
   const bool is_joining = s.job.valid() || s.joined;
   if (is_joining && ++s.job_frames >= s.config.apply_result_after_frames) s.take_over_job();
-  const bool first = kept.graph.keyframes.empty();
   if (!first && is_camera_stationary(kept.last_moved_grey, s.pyramid.grey)) {
     ++kept.counts.tracked;
     kept.T_world_last = kept.last_moved.T_world_camera;
@@ -243,10 +143,13 @@ Tracking Odometry::track(const Frame& frame) {
     keep(kept, frame, kept.last_moved);
     return kept.last_moved;
   }
-  Tracking tracking =
-      first ? s.start(frame) : s.align_near(kept.current, kept.T_world_last * kept.T_last_next);
-  if (!first && !s.is_plausible(tracking)) tracking = s.recover(frame);
-
+  Tracking tracking = first ? s.start(frame) : s.find_pose(frame, predicted);
+  const bool second = !first && kept.graph.keyframes.size() == 1 && !kept.frames.empty() &&
+                      kept.graph.keyframes.front().frame_index == kept.frames.back().frame_index;
+  if (tracking && second) {
+    s.deskew_first_keyframe(frame);
+    tracking = s.find_pose(frame, {tracking.T_world_camera, s.velocity, predicted.dt_s});
+  }
   if (!has_pose(tracking)) {
     ++kept.counts.lost;
     tracking.T_world_camera = kept.T_world_last;
@@ -257,6 +160,8 @@ Tracking Odometry::track(const Frame& frame) {
   const Eigen::Isometry3d T_last_next = kept.T_world_last.inverse() * tracking.T_world_camera;
   kept.path_length_m += length(T_last_next) * (tracking ? 1.0 : 10.0);
   if (tracking && !first) {
+    if (s.config.estimate_timing) s.take_evidence(frame, tracking);
+    deskew(s.pyramid, s.velocity, kept.timing.current.depth_readout_s);
     s.improve_current(tracking);
     s.choose_keyframe(frame, tracking);
   }
@@ -273,22 +178,7 @@ Tracking Odometry::track(const Frame& frame) {
 }
 
 void Odometry::add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  State& s = *state_;
-  std::vector<MapKeyframe>& keyframe_database = s.kept.keyframe_database.keyframes;
-  ++s.kept.counts.frames;
-  ++s.kept.counts.tracked;
-  s.kept.frames.push_back(
-      {frame.index, frame.stamp_s, std::nullopt, T_world_camera, TrackStatus::kTracked, true});
-  const double limit = view_distance(
-      Eigen::Translation3d(s.config.keyframe_distance_m, 0, 0) *
-      Eigen::AngleAxisd(s.config.keyframe_angle_deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX()));
-  const bool known =
-      std::any_of(keyframe_database.begin(), keyframe_database.end(), [&](const MapKeyframe& place) {
-        return view_distance(place.T_world_camera.inverse() * T_world_camera) < limit;
-      });
-  if (known) return;
-  keyframe_database.push_back(make_map_keyframe(frame, T_world_camera, s.config.place));
-  ++s.kept.counts.keyframes;
+  roomradar::add_posed(state_->kept, frame, T_world_camera, state_->config);
 }
 
 void Odometry::finish_jobs() {
@@ -322,6 +212,8 @@ KeyframeDatabase Odometry::take_keyframe_database() {
   state_->take_over_job();
   return std::exchange(state_->kept.keyframe_database, {});
 }
+
+const TimingEstimate& Odometry::timing() const { return state_->kept.timing; }
 
 OdometryCounts Odometry::counts() const {
   OdometryCounts counts = state_->kept.counts;

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kStateMagic = "RRODOMET", kViewMagic = "RRKEYFRM";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr int kMaxSide_px = 8192;
 
 fs::path view_name(std::size_t number, std::uint32_t revision) {
@@ -35,6 +35,37 @@ Eigen::Isometry3d take_pose(BinaryReader& in, const char* what) {
   for (Eigen::Index i = 0; i < 16; ++i) T.matrix().data()[i] = in.take_finite(what);
   if (!is_rigid(T, 1e-6)) in.fail(std::string(what) + " is not a rotation and a shift");
   return T;
+}
+
+void put_velocity(std::string& out, const CameraVelocity& velocity) {
+  put(out, velocity.linear_mps.data(), 3);
+  put(out, velocity.angular_radps.data(), 3);
+}
+
+CameraVelocity take_velocity(BinaryReader& in) {
+  CameraVelocity velocity;
+  for (Eigen::Index i = 0; i < 3; ++i) velocity.linear_mps[i] = in.take_finite("velocity");
+  for (Eigen::Index i = 0; i < 3; ++i) velocity.angular_radps[i] = in.take_finite("velocity");
+  return velocity;
+}
+
+void put_timing(std::string& out, const TimingEstimate& timing) {
+  for (const SensorTiming& times : {timing.stated, timing.current})
+    for (const double s : {times.depth_readout_s, times.colour_readout_s, times.colour_delay_s}) put(out, s);
+  put(out, timing.sum.H.data(), static_cast<std::size_t>(timing.sum.H.size()));
+  put(out, timing.sum.b.data(), static_cast<std::size_t>(timing.sum.b.size()));
+  put(out, timing.frames);
+}
+
+TimingEstimate take_timing(BinaryReader& in) {
+  TimingEstimate timing;
+  for (SensorTiming* times : {&timing.stated, &timing.current})
+    for (double* s : {&times->depth_readout_s, &times->colour_readout_s, &times->colour_delay_s})
+      *s = in.take_finite("a time of the sensor");
+  for (Eigen::Index i = 0; i < timing.sum.H.size(); ++i) timing.sum.H.data()[i] = in.take_finite("evidence");
+  for (Eigen::Index i = 0; i < timing.sum.b.size(); ++i) timing.sum.b.data()[i] = in.take_finite("evidence");
+  timing.frames = in.take<int>("frames of evidence");
+  return timing;
 }
 
 void put_information(std::string& out, const Matrix6d& information) { put(out, information.data(), 36); }
@@ -139,6 +170,7 @@ void put_graph(std::string& out, const KeyframeGraph& graph) {
     put_pose(out, keyframe.T_world_camera);
     put(out, keyframe.revision);
     put(out, keyframe.path_length_m);
+    put_velocity(out, keyframe.velocity);
   }
   put(out, std::uint64_t{graph.constraints.size()});
   for (const PoseConstraint& c : graph.constraints) {
@@ -167,6 +199,7 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
     keyframe.T_world_camera = take_pose(in, "a keyframe's pose");
     keyframe.revision = in.take<std::uint32_t>("revision");
     keyframe.path_length_m = in.take_finite("path length");
+    keyframe.velocity = take_velocity(in);
     keyframe.view = std::make_shared<const StoredView>(read_view(folder / view_name(i, keyframe.revision)));
   }
   graph.constraints.resize(take_count(in, kPose_bytes + kInformation_bytes, "constraints"));
@@ -259,6 +292,7 @@ void save_odometry(const Odometry& odometry, const fs::path& into, const fs::pat
   put(out, static_cast<std::uint32_t>(kept.last_moved.status));
   put_pose(out, kept.last_moved.T_world_camera);
   put(out, std::uint32_t{kept.located ? 1U : 0U});
+  put_timing(out, kept.timing);
   write_binary(into / "state.bin", kStateMagic, kVersion, out);
 }
 
@@ -288,6 +322,7 @@ Odometry load_odometry(const fs::path& folder, const OdometryConfig& config) {
   kept.last_moved.status = take_status(in);
   kept.last_moved.T_world_camera = take_pose(in, "the pose when the camera last moved");
   kept.located = in.take<std::uint32_t>("located") != 0;
+  kept.timing = take_timing(in);
   if (in.left() != 0) in.fail(std::to_string(in.left()) + " bytes more than expected");
   return Odometry(config, std::move(kept));
 }

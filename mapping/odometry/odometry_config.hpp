@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 
 #include "mapping/alignment/align.hpp"
 #include "mapping/alignment/view.hpp"
@@ -36,6 +37,9 @@ struct OdometryConfig {
   int improve_every = 5;
   /// Number of frames after which the second thread's result for a new keyframe is applied.
   int apply_result_after_frames = 4;
+  /// Times of the sensor to begin with. Unset: those that the first frame states.
+  std::optional<SensorTiming> timing;
+  bool estimate_timing = true;  ///< correct the times while tracking
 };
 
 /// Pose of one frame of the trajectory.

@@ -2,6 +2,7 @@
 #include "mapping/odometry/odometry_snapshot.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 #include "mapping/types/linear_algebra.hpp"
@@ -54,6 +55,56 @@ Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
   return T_new_old;
 }
 
+Eigen::Isometry3d T_world_camera_of(const OdometrySnapshot& kept, const KeptFrame& frame) {
+  return frame.keyframe ? kept.graph.keyframes[*frame.keyframe].T_world_camera * frame.T_keyframe_camera
+                        : frame.T_keyframe_camera;
+}
+
+CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now, double now_s) {
+  constexpr double kSpan_s = 0.09;
+  for (std::size_t i = kept.frames.size(); i-- > 0;) {
+    const KeptFrame& frame = kept.frames[i];
+    if (!frame.trusted || !(frame.stamp_s < now_s)) return {};
+    if (now_s - frame.stamp_s >= kSpan_s || i == 0)
+      return velocity_of(T_world_camera_of(kept, frame).inverse() * T_world_now, now_s - frame.stamp_s);
+  }
+  return {};
+}
+
+PredictedMotion predict(const OdometrySnapshot& kept, double stamp_s) {
+  const std::size_t count = kept.frames.size();
+  PredictedMotion predicted;
+  predicted.T_world_camera = kept.T_world_last * kept.T_last_next;
+  if (count < 1) return predicted;
+  predicted.dt_s = stamp_s - kept.frames[count - 1].stamp_s;
+  if (count < 2) return predicted;
+  const double before_s = kept.frames[count - 1].stamp_s - kept.frames[count - 2].stamp_s;
+  const auto is_usable = [](double dt_s) { return dt_s >= 1e-3 && dt_s <= 0.2; };
+  if (!is_usable(before_s) || !is_usable(predicted.dt_s)) return predicted;
+  predicted.T_world_camera = kept.T_world_last * retract(predicted.dt_s / before_s * local(kept.T_last_next));
+  predicted.velocity = mean_velocity(kept, predicted.T_world_camera, stamp_s);
+  return predicted;
+}
+
+void add_posed(OdometrySnapshot& kept, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+               const OdometryConfig& config) {
+  std::vector<MapKeyframe>& keyframe_database = kept.keyframe_database.keyframes;
+  ++kept.counts.frames;
+  ++kept.counts.tracked;
+  kept.frames.push_back(
+      {frame.index, frame.stamp_s, std::nullopt, T_world_camera, TrackStatus::kTracked, true});
+  const double limit = view_distance(
+      Eigen::Translation3d(config.keyframe_distance_m, 0, 0) *
+      Eigen::AngleAxisd(config.keyframe_angle_deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX()));
+  const bool known =
+      std::any_of(keyframe_database.begin(), keyframe_database.end(), [&](const MapKeyframe& place) {
+        return view_distance(place.T_world_camera.inverse() * T_world_camera) < limit;
+      });
+  if (known) return;
+  keyframe_database.push_back(make_map_keyframe(frame, T_world_camera, config.place));
+  ++kept.counts.keyframes;
+}
+
 void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking) {
   KeptFrame frame_kept{frame.index,     frame.stamp_s, std::nullopt, tracking.T_world_camera,
                        tracking.status, bool{tracking}};
@@ -96,10 +147,7 @@ void forget_frames_from(std::int64_t frame_index, OdometrySnapshot& kept) {
 std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept) {
   std::vector<TrackedFrame> trajectory;
   for (const KeptFrame& f : kept.frames) {
-    const Eigen::Isometry3d T_world_camera =
-        f.keyframe ? kept.graph.keyframes[*f.keyframe].T_world_camera * f.T_keyframe_camera
-                   : f.T_keyframe_camera;
-    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera, f.status, f.trusted});
+    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera_of(kept, f), f.status, f.trusted});
   }
   return trajectory;
 }

@@ -11,6 +11,7 @@
 #include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/odometry/keyframe_job.hpp"
 #include "mapping/odometry/odometry_config.hpp"
+#include "mapping/odometry/timing_estimate.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
@@ -47,7 +48,26 @@ struct OdometrySnapshot {
   Image<float> last_moved_grey;
   Tracking last_moved;   ///< tracking result of the frame of last_moved_grey
   bool located = false;  ///< true if poses are in the world of the prior map
+  TimingEstimate timing;
 };
+
+/// Returns a frame's present pose in the world.
+Eigen::Isometry3d T_world_camera_of(const OdometrySnapshot& kept, const KeptFrame& frame);
+
+/// Returns the mean velocity from 0.09 s ago or a little more, or from the first frame, to now. Returns 0 if a frame since then has no
+/// trusted pose, or if the stamps do not allow it. Single motions between frames are too noisy to move colour by.
+CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now, double now_s);
+
+/// Prediction for a frame, from the motion between the two frames before it.
+struct PredictedMotion {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  CameraVelocity velocity;
+  double dt_s = 0.0;  ///< time since the last frame
+};
+
+/// Predicts that the camera goes on at its velocity. If a time between frames is not within 1 ms to 0.2 s, the
+/// last motion is repeated, and the velocity is 0.
+PredictedMotion predict(const OdometrySnapshot& kept, double stamp_s);
 
 /// Sets new poses of keyframes and moves all poses that depend on them. The camera pose moves with the
 /// current keyframe.
@@ -60,6 +80,10 @@ Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySna
 /// move_keyframes() does. If the newest keyframe was localised in the prior map, adds an anchor for it. The
 /// first anchor also moves all poses into the prior map's world.
 Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);
+
+/// Adds a frame with a given pose, and a keyframe to the database if the view is new.
+void add_posed(OdometrySnapshot& kept, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+               const OdometryConfig& config);
 
 /// Adds a frame whose pose is stored relative to the current keyframe.
 void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking);

@@ -9,6 +9,17 @@
 
 namespace roomradar {
 
+/// Times at which a sensor reads the rows of its images. Row y of h rows is read (y - (h - 1) / 2) / h *
+/// readout_s after the image's middle. A readout of 0 s is a global shutter.
+struct SensorTiming {
+  double depth_readout_s = 0.0;
+  double colour_readout_s = 0.0;
+  /// Time of the middle of the colour image minus that of the depth image, beyond the difference of their
+  /// stamps.
+  double colour_delay_s = 0.0;
+  friend bool operator==(const SensorTiming&, const SensorTiming&) = default;
+};
+
 /// In names, `camera` alone means the depth camera.
 struct Frame {
   std::int64_t index = 0;  ///< index in the recording from 0, skipped frames included
@@ -23,6 +34,8 @@ struct Frame {
   /// Maps depth-camera points to colour-camera points.
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
 
+  SensorTiming timing;  ///< as the source states; all 0 if unknown
+
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< depth camera's pose in the recording's world
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame
 };
@@ -35,6 +48,7 @@ inline void copy_all_but_images(const Frame& from, Frame& to) {
   to.colour_camera = from.colour_camera;
   to.colour_after_depth_s = from.colour_after_depth_s;
   to.T_colour_depth = from.T_colour_depth;
+  to.timing = from.timing;
   to.T_world_camera = from.T_world_camera;
   to.down_camera = from.down_camera;
 }

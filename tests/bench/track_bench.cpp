@@ -1,6 +1,6 @@
 // track_bench.cpp: error and time of tracking and of relocalisation, on recordings with known poses.
 //
-// usage: track_bench [--frames N] [--places N] [--json FILE] SOURCE...      SOURCE: a folder or sim:ROOM?...
+// usage: track_bench [--frames N] [--places N] [--json FILE] [--trajectory FILE] SOURCE...      SOURCE: a folder or sim:ROOM?...
 // One row per source: ATE RMSE over all frames, median RPE over 1 and 30 frames, the error of the last pose
 // after aligning the first with its true pose, time per frame (wall clock, and CPU time of the tracking
 // thread), loops, the memory used by keyframes, and the recall of the feature index. With --places N the
@@ -38,6 +38,7 @@ struct Settings {
   std::int64_t frames = 600;
   std::int64_t keyframe_database = 0;
   std::string json;
+  std::string trajectory;
   std::vector<std::string> sources;
 };
 
@@ -116,11 +117,14 @@ double recall_of_index(KeyframeDatabase keyframe_database) {
 
 nlohmann::json bench_tracking(const std::string& name, const Settings& settings) {
   const std::unique_ptr<FrameSource> source = open(name);
-  Odometry odometry;
+  OdometryConfig config;
+  Odometry odometry(config);
+  int restarts = 0;
   Frame frame;
   std::vector<TimedPose> truth;
-  std::vector<double> times_ms, cpu_ms, stamps_s;
+  std::vector<double> times_ms, cpu_ms, stamps_s, residuals_m;
   double inliers = 0.0;
+  const std::int64_t last_frame = std::min(settings.frames, source->frame_count().value_or(settings.frames));
   while (odometry.counts().frames < settings.frames) {
     const ReadResult read = source->next(frame);
     if (read.status == ReadStatus::kEnd) break;
@@ -132,8 +136,17 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
     times_ms.push_back(since_ms(start));
     stamps_s.push_back(frame.stamp_s);
     inliers += tracking.inlier_fraction;
+    residuals_m.push_back(tracking.rms_m);
     truth.push_back(
         {frame.index, frame.stamp_s, frame.T_world_camera.value_or(Eigen::Isometry3d::Identity())});
+    const bool probed = odometry.counts().frames == std::min<std::int64_t>(kProbeFrames, last_frame);
+    if (!probed || restarts == kMostRestarts || !are_times_wrong(odometry.timing())) continue;
+    ++restarts;
+    config.timing = odometry.timing().current;
+    odometry = Odometry(config);
+    truth.clear(), times_ms.clear(), cpu_ms.clear(), stamps_s.clear(), residuals_m.clear();
+    inliers = 0.0;
+    source->rewind();
   }
   const auto start = Clock::now();
   std::vector<TimedPose> estimate;
@@ -143,6 +156,7 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
     furthest_m = std::max(furthest_m, f.T_world_camera.translation().norm());
   }
   const double optimise_ms = since_ms(start);
+  if (!settings.trajectory.empty()) write_trajectory(settings.trajectory, estimate);
   const bool known = frame.T_world_camera.has_value();
   const TrajectoryError ate = absolute_trajectory_error(estimate, truth);
   const OdometryCounts counts = odometry.counts();
@@ -163,6 +177,11 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
           {"rpe30_median_mm", known ? 1e3 * relative_error_m(estimate, truth, 30) : -1.0},
           {"furthest_m", furthest_m},
           {"inlier_mean", inliers / static_cast<double>(std::max<std::size_t>(times_ms.size(), 1))},
+          {"residual_median_mm", 1e3 * test::quantile(residuals_m, 0.5)},
+          {"restarts", restarts},
+          {"depth_readout_ms", 1e3 * odometry.timing().current.depth_readout_s},
+          {"colour_readout_ms", 1e3 * odometry.timing().current.colour_readout_s},
+          {"colour_delay_ms", 1e3 * odometry.timing().current.colour_delay_s},
           {"median_ms", test::quantile(times_ms, 0.5)},
           {"p95_ms", test::quantile(times_ms, 0.95)},
           {"thread_median_ms", test::quantile(cpu_ms, 0.5)},
@@ -226,6 +245,8 @@ Settings parse(int argc, char** argv) {
       settings.keyframe_database = std::atoll(value().c_str());
     } else if (word == "--json") {
       settings.json = value();
+    } else if (word == "--trajectory") {
+      settings.trajectory = value();
     } else {
       settings.sources.push_back(word);
     }
@@ -240,7 +261,7 @@ int main(int argc, char** argv) {
   return roomradar::test::run_or_say("track_bench", [&] {
     const roomradar::Settings settings = roomradar::parse(argc, argv);
     if (settings.sources.empty()) {
-      std::fprintf(stderr, "usage: track_bench [--frames N] [--places N] [--json FILE] SOURCE...\n");
+      std::fprintf(stderr, "usage: track_bench [--frames N] [--places N] [--json FILE] [--trajectory FILE] SOURCE...\n");
       return 2;
     }
     nlohmann::json rows = nlohmann::json::array();

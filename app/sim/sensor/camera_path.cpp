@@ -157,6 +157,12 @@ CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t
   return best;
 }
 
+void add_turns(CameraPath& path, double turn_dps) {
+  constexpr double kSwing_deg = 25.0, kDegree_rad = std::numbers::pi / 180.0;
+  if (turn_dps == 0.0) return;
+  path.turn_sway[1][0] = {kSwing_deg * kDegree_rad, turn_dps / (kSwing_deg * kFullTurn_rad), 0.0};
+}
+
 Eigen::Isometry3d looking_at(const Vector3d& eye_world, const Vector3d& target_world) {
   const Vector3d z = (target_world - eye_world).normalized();
   const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();  // horizontal; y = z cross x points down

@@ -51,6 +51,9 @@ struct CameraPath {
 /// start.
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s);
 
+/// Adds swings of 25 degrees to each side, at up to turn_dps degrees/s; nothing if turn_dps is 0.
+void add_turns(CameraPath& path, double turn_dps);
+
 /// Returns the pose of a camera at eye_world that looks at target_world, with a horizontal x axis. The
 /// viewing direction must not be vertical.
 Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world);

@@ -47,13 +47,16 @@ struct PatchNoise {
   }
 };
 
-PatchNoise make_patch_noise(const Intrinsics& camera, std::uint64_t key, std::vector<float>& lattice) {
+PatchNoise make_patch_noise(const Intrinsics& camera, std::uint64_t key, KinectScratch& scratch) {
   PatchNoise noise;
   noise.columns = camera.width_px / PatchNoise::kCell_px + 2;
+  noise.lattice = &scratch.lattice;
   const int rows = camera.height_px / PatchNoise::kCell_px + 2;
-  lattice.resize(static_cast<std::size_t>(noise.columns) * static_cast<std::size_t>(rows));
-  for (std::size_t i = 0; i < lattice.size(); ++i) lattice[i] = gaussian(mixed(key + i));
-  noise.lattice = &lattice;
+  const std::size_t size = static_cast<std::size_t>(noise.columns) * static_cast<std::size_t>(rows);
+  if (scratch.lattice_key == key && scratch.lattice.size() == size) return noise;
+  scratch.lattice_key = key;
+  scratch.lattice.resize(size);
+  for (std::size_t i = 0; i < size; ++i) scratch.lattice[i] = gaussian(mixed(key + i));
   return noise;
 }
 
@@ -69,12 +72,26 @@ double reported_m(const DepthFaults& faults, int x, int y, double depth_m) {
   return faults.inverse_scale / (1.0 / depth_m - faults.inverse_offset_per_m.at(x, y));
 }
 
-void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
-                  const PixelRays& rays, ExactView& exact) {
+std::vector<RowBand> row_bands(int height_px, double readout_s) {
+  constexpr int kRows = 4;  // at 90 degrees/s and 30 ms, half a band's motion is 0.2 px
+  if (readout_s == 0.0) return {{0, height_px, 0.0}};
+  std::vector<RowBand> bands;
+  for (int begin = 0; begin < height_px; begin += kRows) {
+    const int end = std::min(begin + kRows, height_px);
+    bands.push_back({begin, end, (0.5 * (begin + end) / height_px - 0.5) * readout_s});
+  }
+  return bands;
+}
+
+void clear(const Intrinsics& camera, ExactView& exact) {
   exact.depth_m.resize(camera.width_px, camera.height_px);
   exact.solid.resize(camera.width_px, camera.height_px, -1);
   exact.cosine.resize(camera.width_px, camera.height_px);
-  for (int y = 0; y < camera.height_px; ++y)
+}
+
+void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
+                  const PixelRays& rays, const RowBand& band, ExactView& exact) {
+  for (int y = band.begin; y < band.end; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       const PlanePoint<double> ray = ray_of(rays, x, y);
       const PixelHit hit = view.cast(ray.x, ray.y);
@@ -89,6 +106,12 @@ void render_exact(std::span<const Solid> solids, const ViewCaster& view, const I
     }
 }
 
+void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
+                  const PixelRays& rays, ExactView& exact) {
+  clear(camera, exact);
+  render_exact(solids, view, camera, rays, {0, camera.height_px, 0.0}, exact);
+}
+
 double quantisation_step_m(const Intrinsics& camera, double depth_m) {
   return depth_m * depth_m / (kSubpixels * disparity_scale(camera));
 }
@@ -101,7 +124,8 @@ double quantised_depth_m(const Intrinsics& camera, double depth_m) {
 void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
                    const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                    const DepthFaults& faults, double noise_scale, std::uint64_t seed,
-                   std::int64_t frame_index, KinectScratch& scratch, DepthImage& depth_m) {
+                   std::int64_t frame_index, const RowBand& band, KinectScratch& scratch,
+                   DepthImage& depth_m) {
   // Min returned light, relative to a white surface at 1 m. White paper is measured beyond the range, black
   // plastic (0.05) to some 3 m, and a wall at 4 m up to 82 degrees from its normal.
   constexpr double kFaintest = 0.005;
@@ -110,13 +134,12 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
   constexpr double kShadowMargin_m = 0.003;
 
   const std::uint64_t key = hash_of(seed, static_cast<std::uint64_t>(frame_index), 0x6b696e65);
-  const PatchNoise patch_noise = make_patch_noise(camera, mixed(key), scratch.lattice);
+  const PatchNoise patch_noise = make_patch_noise(camera, mixed(key), scratch);
   const Eigen::Isometry3d T_world_projector = T_world_camera * Eigen::Translation3d(kKinectBaseline_m, 0, 0);
   scratch.projector.prepare(solids, camera, T_world_projector);
   const double disparity_px_m = camera.fx_px * kKinectBaseline_m;
 
-  depth_m.resize(camera.width_px, camera.height_px);
-  for (int y = 0; y < camera.height_px; ++y)
+  for (int y = band.begin; y < band.end; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       int solid = exact.solid.at(x, y);
       if (solid < 0) continue;
@@ -152,6 +175,15 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
       if (reported_m < kKinectNearest_m || reported_m > kKinectFarthest_m) continue;
       depth_m.at(x, y) = static_cast<float>(reported_m);
     }
+}
+
+void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
+                   const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                   const DepthFaults& faults, double noise_scale, std::uint64_t seed,
+                   std::int64_t frame_index, KinectScratch& scratch, DepthImage& depth_m) {
+  depth_m.resize(camera.width_px, camera.height_px);
+  measure_depth(solids, infrared, view, exact, camera, T_world_camera, faults, noise_scale, seed, frame_index,
+                {0, camera.height_px, 0.0}, scratch, depth_m);
 }
 
 }  // namespace roomradar

@@ -17,6 +17,10 @@ constexpr Pace kAllPaces[] = {Pace::kSteady, Pace::kSlow, Pace::kWaits, Pace::kL
 constexpr CrateKind kAllCrates[] = {CrateKind::kNone, CrateKind::kStays, CrateKind::kComes, CrateKind::kGoes};
 constexpr CameraPathKind kAllPaths[] = {CameraPathKind::kScan, CameraPathKind::kView, CameraPathKind::kSwing};
 
+constexpr const char* kShutterRule = "a time in ms, 0 to 50";
+constexpr const char* kDelayRule = "a time in ms, -100 to 100";
+constexpr const char* kTurnRule = "degrees per second, 0 to 360";
+
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t from = 0; from <= text.size();) {
@@ -88,9 +92,18 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
       refuse(key, value, "registered, separate or none");
     options.registered_colour = value != "separate";
     options.with_colour = value != "none";
+  } else if (key == "shutter") {
+    options.timing.shutter_s = 1e-3 * number<double>(key, value, kShutterRule);
+  } else if (key == "delay") {
+    options.timing.delay_s = 1e-3 * number<double>(key, value, kDelayRule);
+  } else if (key == "exposure") {
+    options.timing.exposure_s = 1e-3 * number<double>(key, value, kShutterRule);
+  } else if (key == "turn") {
+    options.turn_dps = number<double>(key, value, kTurnRule);
   } else {
     throw Error("sim: no option is called '" + std::string(key) +
-                "'; known are: seed, frames, rate, path, moving, pace, noise, crate, faults, width, colour");
+                "'; known are: seed, frames, rate, path, moving, pace, noise, crate, faults, width, colour, "
+                "shutter, delay, exposure, turn");
   }
 }
 
@@ -201,6 +214,10 @@ std::string sim_spec(const SimOptions& options) {
     say("colour", "none");
   else if (!options.registered_colour)
     say("colour", "separate");
+  if (options.timing.shutter_s != 0.0) say("shutter", format_number(1e3 * options.timing.shutter_s));
+  if (options.timing.delay_s != 0.0) say("delay", format_number(1e3 * options.timing.delay_s));
+  if (options.timing.exposure_s != 0.0) say("exposure", format_number(1e3 * options.timing.exposure_s));
+  if (options.turn_dps != 0.0) say("turn", format_number(options.turn_dps));
   return spec;
 }
 
@@ -212,6 +229,14 @@ void require_valid(const SimOptions& options) {
     refuse("rate", format_number(options.rate_hz), "frames per second, 0.1 to 1000");
   if (!(options.noise_scale >= 0.0 && options.noise_scale <= 10.0))
     refuse("noise", format_number(options.noise_scale), "0 (off), 1 (a Kinect's) or another factor up to 10");
+  const SimTiming& timing = options.timing;
+  if (!(timing.shutter_s >= 0.0 && timing.shutter_s <= 0.05))
+    refuse("shutter", format_number(1e3 * timing.shutter_s), kShutterRule);
+  if (!(std::abs(timing.delay_s) <= 0.1)) refuse("delay", format_number(1e3 * timing.delay_s), kDelayRule);
+  if (!(timing.exposure_s >= 0.0 && timing.exposure_s <= 0.05))
+    refuse("exposure", format_number(1e3 * timing.exposure_s), kShutterRule);
+  if (!(options.turn_dps >= 0.0 && options.turn_dps <= 360.0))
+    refuse("turn", format_number(options.turn_dps), kTurnRule);
   if (options.faults && options.registered_colour && options.with_colour)
     refuse("faults", "1",
            "combined with colour=separate or colour=none: faults=1 takes away the calibration by which the "

@@ -58,6 +58,17 @@ inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 24
 /// Returns the Kinect's depth camera scaled to 4:3 images of this width.
 Intrinsics kinect_of_width(int width_px);
 
+/// Timing of the simulated sensor. Frames do not state it: their timing and colour_after_depth_s stay 0.
+struct SimTiming {
+  /// Readout time of both images, 0 to 0.05 s: each row is seen from where the camera is at its time.
+  double shutter_s = 0.0;
+  /// Time of the colour image after the depth image, -0.1 to 0.1 s.
+  double delay_s = 0.0;
+  /// Exposure of the colour image, 0 to 0.05 s: the mean of views of that time.
+  double exposure_s = 0.0;
+  friend bool operator==(const SimTiming&, const SimTiming&) = default;
+};
+
 struct SimOptions {
   /// Name of the room: one of room_names(), kRandomRoom, kFlatRoom or kBoardRoom.
   std::string room = "table";
@@ -84,13 +95,18 @@ struct SimOptions {
   bool registered_colour = true;
   /// False: frames have depth only, which is several times as fast.
   bool with_colour = true;
+  SimTiming timing;
+  /// Max speed, degrees/s, of swings of 25 degrees to each side that are added to the path; 0: none.
+  double turn_dps = 0.0;
 };
 
 /// Parses `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
 ///   seed, frames, rate, path (scan, view, swing), moving (hand, ball, person; several with commas), pace
 ///   (steady, slow, waits, leaves), noise (0: none, 1: as a Kinect), crate (0, 1: an additional crate; comes,
 ///   goes: after half of the frames), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
-///   separate, none), faults (0, 1: the true cameras differ from those the frames declare).
+///   separate, none), faults (0, 1: the true cameras differ from those the frames declare), shutter (ms: readout
+///   of depth and colour), delay (ms: colour after depth), exposure (ms: blur of colour), turn (degrees/s: the
+///   camera swings this fast).
 /// @throws Error naming the key or value that is unknown or out of range, and the valid ones
 SimOptions parse_sim_spec(std::string_view spec);
 

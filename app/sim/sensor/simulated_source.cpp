@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <future>
 
 #include "app/sim/room/room.hpp"
 #include "app/sim/room/surface_appearance.hpp"
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/sensor/kinect_depth.hpp"
+#include "app/sim/sensor/mean_picture.hpp"
 #include "app/sim/sensor/mover_shadow.hpp"
 #include "app/sim/sensor/movers.hpp"
 #include "app/sim/solids/view_caster.hpp"
@@ -25,6 +27,7 @@ constexpr double kColourFocal = 525.0 / 585.0;
 /// An absent crate is moved this far below the floor, where it is invisible.
 constexpr double kAway_m = 100.0;
 
+using PoseAt = std::function<Eigen::Isometry3d(double)>;  // s after the middle of the depth image
 Rgb dimmed(Rgb colour, float factor) {
   const auto dim = [factor](std::uint8_t of) {
     return static_cast<std::uint8_t>(static_cast<float>(of) * factor);
@@ -41,6 +44,7 @@ struct SimulatedSource::State {
         room_look(room, finest_texel_m(chosen)) {
     const double duration_s = static_cast<double>(options.frames) / options.rate_hz;
     path = plan_camera_path(room, options.path, options.seed, duration_s);
+    add_turns(path, options.turn_dps);
     const Vector3d viewer_world =
         plan_camera_path(room, CameraPathKind::kView, options.seed, duration_s).centre_world;
     std::vector<Material> materials;
@@ -104,10 +108,17 @@ struct SimulatedSource::State {
   [[nodiscard]] bool crate_changes() const {
     return options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
   }
+  [[nodiscard]] bool is_colour_own_view() const {
+    return !options.registered_colour || options.timing != SimTiming{};
+  }
+  void render(std::int64_t index, const PoseAt& T_world_camera_at, Frame& frame);
+  void describe(std::int64_t index, Frame& frame) const;
+  void render_depth_exact(const PoseAt& T_world_camera_at);
   void fill_truth();
-  void fill_depth(std::int64_t index, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
-  void fill_picture(std::int64_t index, const Eigen::Isometry3d& T_world_camera, ColourImage& picture);
-  void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key, ColourImage& picture);
+  void fill_depth(std::int64_t index, const PoseAt& T_world_camera_at, DepthImage& depth_m);
+  void fill_picture(std::int64_t index, const PoseAt& T_world_camera_at, ColourImage& picture);
+  void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key, const RowBand& band,
+                   ColourImage& picture);
 
   /// Rays of the colour camera, and its pose relative to the depth camera.
   struct ColourCamera {
@@ -176,10 +187,9 @@ void SimulatedSource::State::fill_truth() {
 }
 
 void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
-                                         ColourImage& picture) {
-  picture.resize(colour.camera.width_px, colour.camera.height_px);
+                                         const RowBand& band, ColourImage& picture) {
   const auto noise_scale = static_cast<float>(options.noise_scale);
-  for (int y = 0; y < picture.height; ++y)
+  for (int y = band.begin; y < band.end; ++y)
     for (int x = 0; x < picture.width; ++x) {
       const int seen = exact.solid.at(x, y);
       if (seen < 0) continue;
@@ -213,11 +223,25 @@ void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView
     }
 }
 
-void SimulatedSource::State::fill_depth(std::int64_t index, const Eigen::Isometry3d& T_world_camera,
+void SimulatedSource::State::render_depth_exact(const PoseAt& T_world_camera_at) {
+  clear(options.depth_camera, views.depth_exact);
+  for (const RowBand& band : row_bands(options.depth_camera.height_px, options.timing.shutter_s)) {
+    views.depth.prepare(solids, options.depth_camera, T_world_camera_at(band.t_s));
+    render_exact(solids, views.depth, options.depth_camera, depth_faults.rays, band, views.depth_exact);
+  }
+}
+
+void SimulatedSource::State::fill_depth(std::int64_t index, const PoseAt& T_world_camera_at,
                                         DepthImage& depth_m) {
   if (options.noise_scale > 0.0) {
-    measure_depth(solids, infrared, views.depth, views.depth_exact, options.depth_camera, T_world_camera,
-                  depth_faults, options.noise_scale, options.seed, index, views.scratch, depth_m);
+    depth_m.resize(options.depth_camera.width_px, options.depth_camera.height_px);
+    const std::vector<RowBand> bands = row_bands(depth_m.height, options.timing.shutter_s);
+    for (const RowBand& band : bands) {
+      const Eigen::Isometry3d T_world_camera = T_world_camera_at(band.t_s);
+      if (bands.size() > 1) views.depth.prepare(solids, options.depth_camera, T_world_camera);
+      measure_depth(solids, infrared, views.depth, views.depth_exact, options.depth_camera, T_world_camera,
+                    depth_faults, options.noise_scale, options.seed, index, band, views.scratch, depth_m);
+    }
     return;
   }
   depth_m = truth.depth_m;
@@ -228,16 +252,48 @@ void SimulatedSource::State::fill_depth(std::int64_t index, const Eigen::Isometr
     }
 }
 
-void SimulatedSource::State::fill_picture(std::int64_t index, const Eigen::Isometry3d& T_world_camera,
+void SimulatedSource::State::fill_picture(std::int64_t index, const PoseAt& T_world_camera_at,
                                           ColourImage& picture) {
   const std::uint64_t key = hash_of(options.seed, static_cast<std::uint64_t>(index), 0x636f6c);
-  if (options.registered_colour) {
-    fill_colour(views.depth, views.depth_exact, key, picture);
+  picture.resize(colour.camera.width_px, colour.camera.height_px);
+  if (!is_colour_own_view()) {
+    fill_colour(views.depth, views.depth_exact, key, {0, picture.height, 0.0}, picture);
     return;
   }
-  views.colour.prepare(solids, colour.camera, T_world_camera * colour.T_colour_depth_true.inverse());
-  render_exact(solids, views.colour, colour.camera, colour.rays, views.colour_exact);
-  fill_colour(views.colour, views.colour_exact, key, picture);
+  const SimTiming& timing = options.timing;
+  const Eigen::Isometry3d T_depth_colour = colour.T_colour_depth_true.inverse();
+  const int exposures = timing.exposure_s > 0.0 ? 5 : 1;
+  MeanPicture mean(picture.width, picture.height);
+  for (int i = 0; i < exposures; ++i) {
+    const double exposed_s = timing.exposure_s * ((i + 0.5) / exposures - 0.5);
+    clear(colour.camera, views.colour_exact);
+    std::fill(picture.pixels.begin(), picture.pixels.end(), Rgb{});
+    for (const RowBand& band : row_bands(picture.height, timing.shutter_s)) {
+      views.colour.prepare(solids, colour.camera,
+                           T_world_camera_at(timing.delay_s + exposed_s + band.t_s) * T_depth_colour);
+      render_exact(solids, views.colour, colour.camera, colour.rays, band, views.colour_exact);
+      fill_colour(views.colour, views.colour_exact, key, band, picture);
+    }
+    mean.add(picture);
+  }
+  mean.write(picture);
+}
+
+void SimulatedSource::State::render(std::int64_t index, const PoseAt& T_world_camera_at, Frame& frame) {
+  place_solids(index);
+  std::future<void> picture;  // rendered beside depth
+  const auto take_picture = [&] {
+    picture = std::async(std::launch::async, [&] { fill_picture(index, T_world_camera_at, frame.colour); });
+  };
+  const bool own_view = is_colour_own_view();
+  if (options.with_colour && own_view) take_picture();
+  render_depth_exact(T_world_camera_at);
+  if (options.with_colour && !own_view) take_picture();
+  truth.T_world_camera = T_world_camera_at(0.0);
+  fill_truth();
+  fill_depth(index, T_world_camera_at, frame.depth_m);
+  if (!options.with_colour) frame.colour = {};
+  if (picture.valid()) picture.get();
 }
 
 SimulatedSource::SimulatedSource(const SimOptions& options) {
@@ -251,38 +307,25 @@ ReadResult SimulatedSource::next(Frame& frame) {
   State& s = *state_;
   if (s.next_index >= s.options.frames) return {ReadStatus::kEnd, {}};
   const std::int64_t index = s.next_index++;
-  look(index, T_world_camera_at(s.path, static_cast<double>(index) / s.options.rate_hz), frame);
+  const double t_s = static_cast<double>(index) / s.options.rate_hz;
+  s.render(index, [&](double after_s) { return T_world_camera_at(s.path, t_s + after_s); }, frame);
+  s.describe(index, frame);
   return {ReadStatus::kFrame, {}};
 }
 
 void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame) {
-  State& s = *state_;
-  const double t_s = static_cast<double>(index) / s.options.rate_hz;
-  s.place_solids(index);
-  // Depth and colour are rendered side by side. A registered picture shows what the depth camera sees.
-  std::future<void> picture;
-  const auto take_picture = [&] {
-    picture = std::async(std::launch::async, [&] { s.fill_picture(index, T_world_camera, frame.colour); });
-  };
-  if (s.options.with_colour && !s.options.registered_colour) take_picture();
-  s.views.depth.prepare(s.solids, s.options.depth_camera, T_world_camera);
-  render_exact(s.solids, s.views.depth, s.options.depth_camera, s.depth_faults.rays, s.views.depth_exact);
-  if (s.options.with_colour && s.options.registered_colour) take_picture();
-  s.truth.T_world_camera = T_world_camera;
-  s.fill_truth();
-  s.fill_depth(index, T_world_camera, frame.depth_m);
-  if (s.options.with_colour)
-    picture.get();
-  else
-    frame.colour = {};
+  state_->render(index, [&](double) { return T_world_camera; }, frame);
+  state_->describe(index, frame);
+}
 
+void SimulatedSource::State::describe(std::int64_t index, Frame& frame) const {
   frame.index = index;
-  frame.stamp_s = t_s;
-  frame.depth_camera = s.options.depth_camera;
-  frame.colour_camera = s.options.with_colour ? s.colour.camera : Intrinsics{};
-  frame.T_colour_depth = s.colour.T_colour_depth;
-  frame.T_world_camera = T_world_camera;
-  frame.down_camera = T_world_camera.linear().transpose() * -Vector3d::UnitZ();
+  frame.stamp_s = static_cast<double>(index) / options.rate_hz;
+  frame.depth_camera = options.depth_camera;
+  frame.colour_camera = options.with_colour ? colour.camera : Intrinsics{};
+  frame.T_colour_depth = colour.T_colour_depth;
+  frame.T_world_camera = truth.T_world_camera;
+  frame.down_camera = truth.T_world_camera.linear().transpose() * -Vector3d::UnitZ();
 }
 
 bool SimulatedSource::rewind() {

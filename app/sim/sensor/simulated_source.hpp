@@ -13,7 +13,7 @@ struct Room;
 
 /// Ground truth of one frame. Images have the depth image's size.
 struct SimTruth {
-  /// Exact depth along the pixel's centre ray, m; 0 if outside the sensor's range.
+  /// Exact depth along the pixel's centre ray at the time of its row, m; 0 if outside the sensor's range.
   DepthImage depth_m;
   /// 255 if the nearest surface is a moving object.
   MaskImage moved;
@@ -25,7 +25,7 @@ struct SimTruth {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Frames of a simulated Kinect. Frame i depends only on the options and on i. Reading it again thus gives
+/// Frames of a simulated Kinect. A frame's pose and stamp are those of the middle of its depth image. Frame i depends only on the options and on i. Reading it again thus gives
 /// identical pixels. The world frame is that of the room (z up, metres, floor at z = 0). room() does not
 /// contain a crate that appears or disappears.
 class SimulatedSource final : public FrameSource {
@@ -35,7 +35,7 @@ class SimulatedSource final : public FrameSource {
   ~SimulatedSource() override;
 
   ReadResult next(Frame& frame) override;
-  /// Renders the scene at time index / rate_hz from the given camera pose. Does not affect next().
+  /// Renders the scene at time index / rate_hz from a camera that stands still. Does not affect next().
   void look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame);
   bool rewind() override;
   bool seek(std::int64_t index) override;

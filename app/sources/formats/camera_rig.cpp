@@ -81,6 +81,21 @@ Eigen::Isometry3d pose_from(const Json& rows, const std::string& where) {
   return pose;
 }
 
+/// Returns a time of at most 0.1 s, which is 10 times a sensor's that delivers 100 frames per second.
+double time_s(const Json& object, const char* name, double least_s, const std::string& where) {
+  constexpr double kMost_s = 0.1;
+  const double value_s = json_number(object, name, where);
+  if (!(value_s >= least_s && value_s <= kMost_s))
+    throw Error(where + ": " + name + " = " + std::to_string(value_s) + ": must be " + std::to_string(least_s) +
+                " to " + std::to_string(kMost_s) + " s");
+  return value_s;
+}
+
+SensorTiming timing_from(const Json& object, const std::string& where) {
+  return {time_s(object, "depth_readout_s", 0.0, where), time_s(object, "colour_readout_s", 0.0, where),
+          time_s(object, "colour_delay_s", -0.1, where)};
+}
+
 }  // namespace
 
 Json parse_json_of_format(const std::filesystem::path& path, const char* format, int version) {
@@ -110,6 +125,7 @@ CameraRig rig_from_json(const Json& root, const std::string& name) {
   if (root.contains("colour")) rig.colour_camera = intrinsics_from(root["colour"], name + ", colour");
   if (root.contains("T_colour_depth"))
     rig.T_colour_depth = pose_from(root["T_colour_depth"], name + ", T_colour_depth");
+  if (root.contains("timing")) rig.timing = timing_from(root["timing"], name + ", timing");
   return rig;
 }
 
@@ -124,6 +140,11 @@ Json json_of(const CameraRig& rig) {
     }
     root["T_colour_depth"] = rows;
   }
+  const SensorTiming& timing = rig.timing;
+  if (timing != SensorTiming{})
+    root["timing"] = {{"depth_readout_s", timing.depth_readout_s},
+                      {"colour_readout_s", timing.colour_readout_s},
+                      {"colour_delay_s", timing.colour_delay_s}};
   return root;
 }
 

@@ -106,6 +106,7 @@ class FolderSource final : public FrameSource {
     frame.depth_camera = rig_.depth_camera;
     frame.colour_camera = rig_.colour_camera.value_or(Intrinsics{});
     frame.T_colour_depth = rig_.T_colour_depth;
+    frame.timing = rig_.timing;
     frame.T_world_camera =
         recorded.pose_file.empty() ? recorded.T_world_camera : read_pose_file(recorded.pose_file);
     frame.down_camera = recorded.down_camera;

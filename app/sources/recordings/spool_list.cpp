@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "RRSPOOL1";
+constexpr std::string_view kMagic = "RRSPOOL2";
 
 fs::path depth_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".depth.png");
@@ -38,6 +38,9 @@ void serialize_entry(Archive& archive, SpoolEntry& entry) {
   serialize(archive, coloured);
   if (coloured) serialize(archive, frame.colour_camera);
   serialize(archive, frame.T_colour_depth);
+  for (double* time_s : {&frame.timing.depth_readout_s, &frame.timing.colour_readout_s,
+                         &frame.timing.colour_delay_s})
+    serialize(archive, *time_s);
   serialize(archive, frame.T_world_camera);
   serialize(archive, frame.down_camera);
 }

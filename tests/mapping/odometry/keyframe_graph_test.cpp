@@ -20,7 +20,7 @@ Keyframe keyframe_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera
   const Image<std::uint8_t> measured(pyramid.levels[0].camera.width_px, pyramid.levels[0].camera.height_px,
                                      1);
   return {frame.index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)), 0,
-          path_length_m};
+          path_length_m, {}};
 }
 
 /// A camera goes away and returns to the pose of its first keyframe. Drift displaces the last keyframe by
@@ -147,7 +147,7 @@ struct Way {
       const Eigen::Isometry3d T = truth.back() * Eigen::Translation3d(off, -off, 0.01) *
                                   Eigen::AngleAxisd(off, Eigen::Vector3d::UnitX());
       graph.keyframes.push_back(
-          {i, i == 0 ? truth.back() : T, std::make_shared<const StoredView>(), 0, 0.1 * i});
+          {i, i == 0 ? truth.back() : T, std::make_shared<const StoredView>(), 0, 0.1 * i, {}});
     }
     for (std::size_t a = 0; a < truth.size(); ++a) {
       for (std::size_t b = a + 1; b < truth.size() && b <= a + reach; ++b)

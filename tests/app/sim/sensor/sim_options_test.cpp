@@ -27,7 +27,7 @@ TEST(SimSpec, ComesBackFromItsOptions) {
   for (const char* const spec :
        {"sim:table", "sim:wall?seed=12", "sim:shelf?seed=3&frames=90&path=view&moving=hand,person&noise=0.5",
         "sim:table?rate=15&width=160&colour=separate", "sim:table?moving=person&pace=leaves",
-        "sim:table?crate=1", "sim:table?crate=comes", "sim:table?crate=goes"})
+        "sim:table?shutter=30&delay=-40&exposure=20&turn=90", "sim:table?crate=1", "sim:table?crate=comes", "sim:table?crate=goes"})
     EXPECT_EQ(sim_spec(parse_sim_spec(spec)), spec);
 }
 
@@ -63,6 +63,11 @@ TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
       {"sim:table?pace=run", "steady, slow, waits or leaves"},
       {"sim:table?width=63", "width"},
       {"sim:table?width=99999999999", "width"},
+      {"sim:table?shutter=51", "0 to 50"},
+      {"sim:table?shutter=nan", "0 to 50"},
+      {"sim:table?delay=-101", "-100 to 100"},
+      {"sim:table?exposure=-1", "0 to 50"},
+      {"sim:table?turn=361", "0 to 360"},
       {"sim:table?colour=red", "registered, separate or none"},
   };
   for (const auto& [spec, part] : cases)

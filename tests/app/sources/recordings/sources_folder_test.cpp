@@ -720,7 +720,7 @@ TEST(Intrinsics, BrokenFilesAreNamed) {
 TEST(CameraFile, ComesBackAsWritten) {
   const TemporaryFolder folder;
   const Frame frame = some_frame(2);
-  CameraRig rig{frame.depth_camera, frame.colour_camera, *frame.T_world_camera};
+  CameraRig rig{frame.depth_camera, frame.colour_camera, *frame.T_world_camera, false, {}};
   write_camera_file(rig, folder.path() / "camera.json");
   const CameraRig read = read_camera_file(folder.path() / "camera.json");
   EXPECT_EQ(read.depth_camera, rig.depth_camera);

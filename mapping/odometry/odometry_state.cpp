@@ -1,0 +1,121 @@
+// odometry_state.cpp: the current keyframe: its choice, its refinement, and the results of its background job.
+#include "mapping/odometry/odometry_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+namespace roomradar {
+
+KeyframeJobConfig job_config(const OdometryConfig& config) {
+  return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
+}
+
+/// The first keyframe's velocity is known once the second frame is tracked. Its intensity was registered without
+/// one: it is dropped if that is wrong by more than a pixel.
+void Odometry::State::deskew_first_keyframe(const Frame& frame) {
+  constexpr double kMost_px = 1.0;
+  Keyframe& keyframe = kept.graph.keyframes.front();
+  keyframe.velocity = velocity;
+  deskew(open, velocity, kept.timing.current.depth_readout_s);
+  const double delay_s = frame.colour_after_depth_s + kept.timing.current.colour_delay_s;
+  if (std::abs(delay_s) * image_speed_pxps(velocity, open.levels.front().camera) > kMost_px)
+    for (ViewPyramid::Level& level : open.levels)
+      std::fill(level.intensity.pixels.begin(), level.intensity.pixels.end(), -1.0F);
+  open_is_newer = true;
+  auto made = std::make_shared<CachedKeyframe>();
+  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
+  make_source_points(open, made->live);
+  cache.put(0, std::move(made));
+}
+
+void Odometry::State::improve_current(const Tracking& tracking) {
+  if (kept.current < kept.final_keyframes) return;
+  const Keyframe& keyframe = kept.graph.keyframes[kept.current];
+  improve_depth(open, open_measured, pyramid, tracking.T_world_camera.inverse() * keyframe.T_world_camera);
+  open_is_newer = true;
+  if (++kept.improved < config.improve_every) return;
+  kept.improved = 0;
+  halve_depth(open);
+  auto made = std::make_shared<CachedKeyframe>();
+  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
+  make_source_points(open, made->live);
+  cache.put(kept.current, std::move(made));
+}
+
+bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking) const {
+  const Eigen::Isometry3d T =
+      kept.graph.keyframes[keyframe].T_world_camera.inverse() * tracking.T_world_camera;
+  return T.translation().norm() > config.keyframe_distance_m ||
+         Eigen::AngleAxisd(T.linear()).angle() > config.keyframe_angle_deg * std::numbers::pi / 180.0;
+}
+
+void Odometry::State::choose_keyframe(const Frame& frame, Tracking& tracking) {
+  const bool little_in_common = tracking.overlap < config.keyframe_overlap;
+  if (!little_in_common && !is_far_from(kept.current, tracking)) return;
+  const std::vector<std::size_t> near = keyframes_near(kept.graph.keyframes, tracking.T_world_camera, 1.0);
+  if (!near.empty() && near.front() != kept.current && !is_far_from(near.front(), tracking)) {
+    take_up(near.front());
+    return;
+  }
+  tracking.T_world_camera = take_over_job() * tracking.T_world_camera;
+  add_keyframe(frame, tracking);
+}
+
+void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking) {
+  store_open();
+  open = pyramid;
+  open.grey.resize(0, 0);
+  open_measured.resize(open.levels.front().camera.width_px, open.levels.front().camera.height_px, 1);
+  kept.graph.keyframes.push_back({frame.index, tracking.T_world_camera,
+                                  std::make_shared<const StoredView>(store(open, open_measured)), 0,
+                                  kept.path_length_m, velocity});
+  ++kept.counts.keyframes;
+  kept.current = kept.graph.keyframes.size() - 1;
+  kept.improved = 0;
+  auto made = std::make_shared<CachedKeyframe>();
+  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
+  make_source_points(open, made->live);
+  cache.put(kept.current, std::move(made));
+  job = std::async(std::launch::async, run,
+                   KeyframeJob{frame, kept.graph, cache, &kept.keyframe_database,
+                               known.keyframes.empty() ? nullptr : &known},
+                   job_config(config));
+  job_frames = 0;
+  kept.final_keyframes = pairs.advance(kept.graph.keyframes, job_config(config).join);
+}
+
+/// Makes another keyframe current: frames are aligned with it first, and refine its depth.
+void Odometry::State::take_up(std::size_t keyframe) {
+  if (keyframe == kept.current) return;
+  store_open();
+  kept.current = keyframe;
+  kept.improved = 0;
+  restore(*kept.graph.keyframes[keyframe].view, config.view, open);
+  open_measured = kept.graph.keyframes[keyframe].view->measured;
+}
+
+void Odometry::State::store_open() {
+  if (!std::exchange(open_is_newer, false)) return;
+  Keyframe& keyframe = kept.graph.keyframes[kept.current];
+  keyframe.view = std::make_shared<const StoredView>(store(open, open_measured));
+  ++keyframe.revision;
+}
+
+void Odometry::State::wait_for_job() {
+  if (job.valid()) joined = job.get();
+}
+
+/// Waits for the second thread and applies its result. Returns the resulting motion of poses near the current
+/// keyframe.
+Eigen::Isometry3d Odometry::State::take_over_job() {
+  wait_for_job();
+  if (!joined) return Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d T_new_old = take_over(*std::exchange(joined, std::nullopt), kept);
+  update_index(kept.keyframe_database);
+  return T_new_old;
+}
+
+}  // namespace roomradar

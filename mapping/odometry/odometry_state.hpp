@@ -1,0 +1,53 @@
+// odometry_state.hpp: what an odometry holds between two frames, and the handling of its current keyframe.
+#pragma once
+#include <cstdint>
+#include <future>
+#include <optional>
+
+#include "mapping/alignment/keyframe_cache.hpp"
+#include "mapping/odometry/keyframe_job.hpp"
+#include "mapping/odometry/keyframe_pairs.hpp"
+#include "mapping/odometry/odometry.hpp"
+#include "mapping/odometry/odometry_snapshot.hpp"
+
+namespace roomradar {
+
+KeyframeJobConfig job_config(const OdometryConfig& config);
+
+struct Odometry::State {
+  OdometryConfig config;
+  KeyframeDatabase known;
+  OdometrySnapshot kept;
+  ViewPyramid pyramid;  ///< of the current frame, like `live`
+  SourcePoints live;
+  ReadoutMotion readout;    ///< of the current frame
+  CameraVelocity velocity;  ///< of the current frame; 0 until its pose is known
+  KeyframeCache cache;
+  ViewPyramid open;  ///< the current keyframe's, refined by the views since it became current
+  Image<std::uint8_t> open_measured;
+  bool open_is_newer = false;  ///< newer than the stored view
+  std::future<KeyframeJobResult> job;
+  std::optional<KeyframeJobResult> joined;  ///< the job's result, once it has been waited for
+  int job_frames = 0;                       ///< frames since the job began
+  PairAligner pairs;                        ///< alignments of keyframes for optimise()
+
+  explicit State(const OdometryConfig& chosen) : config(chosen), cache(chosen.graph.cached_keyframes) {}
+
+  Tracking start(const Frame& frame);
+  Tracking align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess);
+  Tracking find_pose(const Frame& frame, const PredictedMotion& predicted);
+  Tracking recover(const Frame& frame);
+  [[nodiscard]] bool is_plausible(const Tracking& tracking, const Eigen::Isometry3d& T_world_expected) const;
+  void take_evidence(const Frame& frame, const Tracking& tracking);
+  void deskew_first_keyframe(const Frame& frame);
+  void improve_current(const Tracking& tracking);
+  [[nodiscard]] bool is_far_from(std::size_t keyframe, const Tracking& tracking) const;
+  void choose_keyframe(const Frame& frame, Tracking& tracking);
+  void add_keyframe(const Frame& frame, const Tracking& tracking);
+  void take_up(std::size_t keyframe);
+  void store_open();
+  void wait_for_job();
+  Eigen::Isometry3d take_over_job();
+};
+
+}  // namespace roomradar

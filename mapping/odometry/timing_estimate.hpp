@@ -1,0 +1,36 @@
+// timing_estimate.hpp: estimates a sensor's readout times and colour delay while its camera is tracked.
+#pragma once
+#include <cstdint>
+
+#include "mapping/alignment/timing_evidence.hpp"
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+/// Estimate of a sensor's times, and the evidence gathered since it last changed.
+struct TimingEstimate {
+  SensorTiming stated;   ///< as the first frame states; the estimate's prior
+  SensorTiming current;
+  TimingEvidence sum;    ///< of frames tracked with `current`
+  int frames = 0;        ///< in `sum`
+};
+
+TimingEstimate start_estimate(const SensorTiming& stated);
+
+/// Adds one frame's evidence. After every 20 frames, corrects those times that differ from their estimates by
+/// more than three standard deviations. Readouts stay within 0 to 50 ms, the delay within 0.1 s.
+/// @return true if `current` changed
+bool add_evidence(TimingEstimate& estimate, const TimingEvidence& evidence);
+
+/// Returns true if a recording should be tracked again from its beginning with the current times: keyframes and
+/// poses were made with times that have turned out to be wrong by more than 8 ms.
+/// Asked after kProbeFrames frames and at the end.
+bool are_times_wrong(const TimingEstimate& estimate);
+inline constexpr std::int64_t kProbeFrames = 300;
+inline constexpr int kMostRestarts = 3;
+
+/// Standard deviations of the current times, s, by the evidence since they last changed. At most those of
+/// the prior: 10 ms for the readouts, 30 ms for the delay.
+SensorTiming standard_deviation(const TimingEstimate& estimate);
+
+}  // namespace roomradar
