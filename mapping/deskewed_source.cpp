@@ -36,7 +36,8 @@ ReadResult DeskewedSource::next(Frame& frame) {
   Vector6d twist;
   twist << velocity.linear_mps, velocity.angular_radps;
   frame.T_colour_depth = frame.T_colour_depth * retract(-delay_s * twist);
-  if (!(0.5 * timing_.depth_readout_s * image_speed_pxps(velocity, frame.depth_camera) > kLeast_px)) return result;
+  if (!(0.5 * timing_.depth_readout_s * image_speed_pxps(velocity, frame.depth_camera) > kLeast_px))
+    return result;
   std::swap(inverse_depth_per_m_, frame.depth_m);
   invert(inverse_depth_per_m_);
   deskew(frame.depth_camera, velocity, timing_.depth_readout_s, inverse_depth_per_m_, no_intensity_);

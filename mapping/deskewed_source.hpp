@@ -1,4 +1,5 @@
-// deskewed_source.hpp: frames of a source as a global shutter would have seen them, by the camera's known motion.
+// deskewed_source.hpp: frames of a source as a global shutter would have seen them, by the camera's known
+// motion.
 #pragma once
 #include <map>
 #include <vector>
@@ -9,9 +10,9 @@
 
 namespace roomradar {
 
-/// Delivers the frames of another source with their depth moved to the middle of its readout, and with the colour
-/// camera where it was when the colour image was taken. Frames whose neighbours have no pose stay as they are.
-/// All else is the other source's, which must outlive this one.
+/// Delivers the frames of another source with their depth moved to the middle of its readout, and with the
+/// colour camera where it was when the colour image was taken. Frames whose neighbours have no pose stay as
+/// they are. All else is the other source's, which must outlive this one.
 class DeskewedSource final : public FrameSource {
  public:
   /// @param trajectory  poses in the order of their stamps

@@ -86,7 +86,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
                       const PrescanProgress& progress, PrescanInput start) {
   const double reach_m = start.map ? start.map->octree->reach_m() : StaticMap(config.resolution_m).reach_m();
   const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
-  PrescanWork work{source, config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
+  PrescanWork work{source,        config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
                    start.observer};
   PrescanResult result;
   PrescanCounts& counts = result.counts;
@@ -101,8 +101,15 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
 
   // Second pass: fusion.
   DeskewedSource deskewed(source, map.trajectory, pass.counts.timing);
-  PrescanWork fusion_work{deskewed, config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
-                          start.observer, std::move(work.track_ms)};
+  PrescanWork fusion_work{deskewed,
+                          config,
+                          times,
+                          progress,
+                          start.checkpoints,
+                          reach_m,
+                          maps_recorded_world,
+                          start.observer,
+                          std::move(work.track_ms)};
   run_fusion_pass(fusion_work, map.trajectory, pass);
   if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(fusion_work));
 

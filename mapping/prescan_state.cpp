@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 
 template <typename Archive>
 void serialize(Archive& archive, PrescanCounts& counts) {
-  for (std::int64_t* count :
-       {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked, &counts.frames_fused,
-        &counts.frames_lost, &counts.keyframes, &counts.loops_found, &counts.restarts, &counts.ghost_voxels}) {
+  for (std::int64_t* count : {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked,
+                              &counts.frames_fused, &counts.frames_lost, &counts.keyframes,
+                              &counts.loops_found, &counts.restarts, &counts.ghost_voxels}) {
     serialize(archive, *count);
     if constexpr (Archive::kReads) {
       if (*count < 0) archive.fail("is damaged: a count is negative");

@@ -33,8 +33,8 @@ Sample sample(const Image<float>& inverse_depth_per_m, const Image<float>& inten
   const float* upper_grey = intensity.row(v0) + u0;
   const float* lower_grey = upper_grey + intensity.width;
   const bool known = std::min({upper_grey[0], upper_grey[1], lower_grey[0], lower_grey[1]}) >= 0.0F;
-  found.intensity = one_surface && known ? between(upper_grey, lower_grey, du, dv)
-                                         : intensity.at(nearest_u, nearest_v);
+  found.intensity =
+      one_surface && known ? between(upper_grey, lower_grey, du, dv) : intensity.at(nearest_u, nearest_v);
   return found;
 }
 

@@ -13,7 +13,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPose = 6, kAll = kPose + kTimingParameters;
-constexpr int kDepthReadout = kPose, kColourReadout = kPose + 1, kColourDelay = kPose + 2, kOffset = kPose + 3;
+constexpr int kDepthReadout = kPose, kColourReadout = kPose + 1, kColourDelay = kPose + 2,
+              kOffset = kPose + 3;
 constexpr int kOffsets = kTimingParameters - 3;
 using Row = Eigen::Matrix<double, kAll, 1>;
 using Offsets = Eigen::Matrix<double, kOffsets, 1>;
@@ -48,8 +49,9 @@ struct Correspondence {
   int x = 0, y = 0;
   Vector3d p_camera, p_view;
   Eigen::Vector2d live_px, view_px;
-  Vector3d live_mps, view_mps;  ///< motion of the point in the camera frame, by the live image and by the view
-  Vector3d steady_mps;          ///< difference of these, by the steady velocities
+  Vector3d live_mps,
+      view_mps;         ///< motion of the point in the camera frame, by the live image and by the view
+  Vector3d steady_mps;  ///< difference of these, by the steady velocities
 };
 
 struct Sums {
@@ -81,9 +83,9 @@ double add_depth(const Correspondence& c, const Eigen::Matrix3d& R_view_camera, 
   Row J = pose_part(c, m);
   J(kDepthReadout) = m.dot(c.live_mps) * row_fraction(live_camera, c.live_px.y()) -
                      m.dot(c.view_mps) * row_fraction(view_camera, c.view_px.y());
-  J.segment<kOffsets>(kOffset) =
-      m.dot(c.p_camera) * c.p_camera.z() * offsets_at(live_camera, c.live_px) -
-      inverse_sigma * static_cast<double>(c.pixel->offset_m) * c.p_view.z() * offsets_at(view_camera, c.view_px);
+  J.segment<kOffsets>(kOffset) = m.dot(c.p_camera) * c.p_camera.z() * offsets_at(live_camera, c.live_px) -
+                                 inverse_sigma * static_cast<double>(c.pixel->offset_m) * c.p_view.z() *
+                                     offsets_at(view_camera, c.view_px);
   sums.add(J, residual, weight);
   return weight;
 }
@@ -94,11 +96,12 @@ void add_colour(const Correspondence& c, float live_intensity, const Eigen::Matr
   const double inverse_z = 1.0 / c.p_view.z();
   const auto gradient_u = static_cast<double>(c.pixel->gradient_u);
   const auto gradient_v = static_cast<double>(c.pixel->gradient_v);
-  const double gu = gradient_u * view_camera.fx_px * inverse_z, gv = gradient_v * view_camera.fy_px * inverse_z;
+  const double gu = gradient_u * view_camera.fx_px * inverse_z,
+               gv = gradient_v * view_camera.fy_px * inverse_z;
   const double expected = static_cast<double>(c.pixel->intensity) + gradient_u * (c.view_px.x() - c.x) +
                           gradient_v * (c.view_px.y() - c.y);
-  const double residual = (expected - static_cast<double>(exposure.gain * live_intensity + exposure.offset)) /
-                          kIntensitySigma;
+  const double residual =
+      (expected - static_cast<double>(exposure.gain * live_intensity + exposure.offset)) / kIntensitySigma;
   const Vector3d h(gu, gv, -(gu * c.p_view.x() + gv * c.p_view.y()) * inverse_z);
   const Vector3d m = (1.0 / kIntensitySigma) * (R_view_camera.transpose() * h);
   Row J = pose_part(c, m);
@@ -123,8 +126,9 @@ TimingEvidence without_pose(const Sums& sums) {
 
 }  // namespace
 
-TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camera, const TargetView& reference,
-                               const MovingView& view, const SensorTiming& timing) {
+TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camera,
+                               const TargetView& reference, const MovingView& view,
+                               const SensorTiming& timing) {
   constexpr std::size_t kEvery = 4;
   const std::size_t level = std::min(live.levels.size(), reference.levels.size()) > 1 ? 1 : 0;
   if (level >= live.cameras.size() || level >= reference.levels.size()) return {};
@@ -148,7 +152,8 @@ TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camer
     c.p_view = T_view_camera * c.p_camera;
     if (c.p_view.z() < 0.1) continue;
     c.view_px = project(view_camera, c.p_view);
-    c.x = static_cast<int>(std::floor(c.view_px.x() + 0.5)), c.y = static_cast<int>(std::floor(c.view_px.y() + 0.5));
+    c.x = static_cast<int>(std::floor(c.view_px.x() + 0.5)),
+    c.y = static_cast<int>(std::floor(c.view_px.y() + 0.5));
     if (!target.pixels.contains(c.x, c.y)) continue;
     c.pixel = &target.pixels.at(c.x, c.y);
     if (c.pixel->inverse_sigma_per_m <= 0.0F) continue;

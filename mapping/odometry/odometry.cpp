@@ -84,7 +84,8 @@ Tracking Odometry::State::recover(const Frame& frame) {
 
 /// Limits the change of motion between frames to what a hand can do. A recalibrating sensor seems to exceed
 /// it. The first motion is a change from nothing known.
-bool Odometry::State::is_plausible(const Tracking& tracking, const Eigen::Isometry3d& T_world_expected) const {
+bool Odometry::State::is_plausible(const Tracking& tracking,
+                                   const Eigen::Isometry3d& T_world_expected) const {
   constexpr double kMost_m = 0.10, kMost_rad = 0.10, kMostAtFirst_rad = 0.15;
   if (!has_pose(tracking)) return false;
   const Eigen::Isometry3d change = T_world_expected.inverse() * tracking.T_world_camera;
@@ -97,10 +98,10 @@ void Odometry::State::take_evidence(const Frame& frame, const Tracking& tracking
   const CameraVelocity steady = mean_velocity(kept, tracking.T_world_camera, frame.stamp_s);
   const Keyframe& keyframe = kept.graph.keyframes[kept.current];
   const auto used = cache.get(kept.current, *keyframe.view, config.view);
-  add_evidence(kept.timing,
-               timing_evidence(live, {tracking.T_world_camera, velocity, steady}, used->reference,
-                               {keyframe.T_world_camera, keyframe.velocity, keyframe.velocity},
-                               kept.timing.current));
+  add_evidence(
+      kept.timing,
+      timing_evidence(live, {tracking.T_world_camera, velocity, steady}, used->reference,
+                      {keyframe.T_world_camera, keyframe.velocity, keyframe.velocity}, kept.timing.current));
 }
 
 Odometry::Odometry(const OdometryConfig& config) : state_(std::make_unique<State>(config)) {}

@@ -60,7 +60,8 @@ Eigen::Isometry3d T_world_camera_of(const OdometrySnapshot& kept, const KeptFram
                         : frame.T_keyframe_camera;
 }
 
-CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now, double now_s) {
+CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now,
+                             double now_s) {
   constexpr double kSpan_s = 0.09;
   for (std::size_t i = kept.frames.size(); i-- > 0;) {
     const KeptFrame& frame = kept.frames[i];

@@ -54,9 +54,11 @@ struct OdometrySnapshot {
 /// Returns a frame's present pose in the world.
 Eigen::Isometry3d T_world_camera_of(const OdometrySnapshot& kept, const KeptFrame& frame);
 
-/// Returns the mean velocity from 0.09 s ago or a little more, or from the first frame, to now. Returns 0 if a frame since then has no
-/// trusted pose, or if the stamps do not allow it. Single motions between frames are too noisy to move colour by.
-CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now, double now_s);
+/// Returns the mean velocity from 0.09 s ago or a little more, or from the first frame, to now. Returns 0 if
+/// a frame since then has no trusted pose, or if the stamps do not allow it. Single motions between frames
+/// are too noisy to move colour by.
+CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now,
+                             double now_s);
 
 /// Prediction for a frame, from the motion between the two frames before it.
 struct PredictedMotion {
@@ -65,8 +67,8 @@ struct PredictedMotion {
   double dt_s = 0.0;  ///< time since the last frame
 };
 
-/// Predicts that the camera goes on at its velocity. If a time between frames is not within 1 ms to 0.2 s, the
-/// last motion is repeated, and the velocity is 0.
+/// Predicts that the camera goes on at its velocity. If a time between frames is not within 1 ms to 0.2 s,
+/// the last motion is repeated, and the velocity is 0.
 PredictedMotion predict(const OdometrySnapshot& kept, double stamp_s);
 
 /// Sets new poses of keyframes and moves all poses that depend on them. The camera pose moves with the

@@ -13,8 +13,9 @@ namespace {
 // so their difference is known better than either.
 constexpr double kReadoutSigma_s = 0.010, kReadoutDifferenceSigma_s = 0.003, kDelaySigma_s = 0.030;
 constexpr double kOffsetSigma_per_m = 0.02;
-// Residuals of neighbouring pixels are correlated, see align.cpp, and so are those of successive frames. On
-// real recordings, estimates of 100 frames each scatter as this fraction of independent residuals predicts.
+// Residuals of neighbouring pixels are correlated, see align.cpp, and so are those of successive frames.
+// Chosen: with 0.3, estimates on real recordings jump by many of their standard deviations; with 0.05 they
+// converge.
 constexpr double kIndependentPart = 0.05;
 
 double weight(double sigma) { return 1.0 / (sigma * sigma); }
@@ -36,8 +37,8 @@ Solution solve(const TimingEstimate& estimate) {
       -difference, weight(kReadoutSigma_s) + difference, 0.0,                             //
       0.0, 0.0, weight(kDelaySigma_s);
   const TimingMatrix H = kIndependentPart * estimate.sum.H + prior;
-  const TimingVector b = kIndependentPart * estimate.sum.b +
-                         prior * (vector_of(estimate.stated) - vector_of(estimate.current));
+  const TimingVector b =
+      kIndependentPart * estimate.sum.b + prior * (vector_of(estimate.stated) - vector_of(estimate.current));
   const TimingMatrix covariance = H.llt().solve(TimingMatrix::Identity());
   return {covariance * b, covariance.diagonal().cwiseMax(0.0).cwiseSqrt()};
 }
@@ -45,15 +46,16 @@ Solution solve(const TimingEstimate& estimate) {
 /// Returns the corrected value, or `current` if the correction is within its error.
 double corrected(double current, const Solution& solution, int parameter, double least, double most) {
   constexpr double kSignificant = 3.0;
-  // While times are wrong, poses and keyframes have taken up a part of the error: one step corrects 20 to 60 %
-  // of it on real and simulated recordings.
+  // While times are wrong, poses and keyframes have taken up a part of the error: one step corrects 20 to 60
+  // % of it on real and simulated recordings.
   constexpr double kOverRelaxation = 1.5, kMostStep_s = 0.015;
   const double step_s = solution.correction(parameter);
   if (!(std::abs(step_s) > kSignificant * solution.sigma(parameter))) return current;
   return std::clamp(current + std::clamp(kOverRelaxation * step_s, -kMostStep_s, kMostStep_s), least, most);
 }
 
-/// Expresses the evidence relative to the corrected times, and lets it fade: it was linearised at earlier ones.
+/// Expresses the evidence relative to the corrected times, and lets it fade: it was linearised at earlier
+/// ones.
 void correct(TimingEstimate& estimate, const SensorTiming& next) {
   constexpr double kLarge_s = 0.004, kKeptAfterLarge = 0.3, kKept = 0.7;
   const TimingVector step = vector_of(next) - vector_of(estimate.current);

@@ -9,10 +9,10 @@ namespace roomradar {
 
 /// Estimate of a sensor's times, and the evidence gathered since it last changed.
 struct TimingEstimate {
-  SensorTiming stated;   ///< as the first frame states; the estimate's prior
+  SensorTiming stated;  ///< as the first frame states; the estimate's prior
   SensorTiming current;
-  TimingEvidence sum;    ///< of frames tracked with `current`
-  int frames = 0;        ///< in `sum`
+  TimingEvidence sum;  ///< of frames tracked with `current`
+  int frames = 0;      ///< in `sum`
 };
 
 TimingEstimate start_estimate(const SensorTiming& stated);
@@ -22,9 +22,9 @@ TimingEstimate start_estimate(const SensorTiming& stated);
 /// @return true if `current` changed
 bool add_evidence(TimingEstimate& estimate, const TimingEvidence& evidence);
 
-/// Returns true if a recording should be tracked again from its beginning with the current times: keyframes and
-/// poses were made with times that have turned out to be wrong by more than 8 ms.
-/// Asked after kProbeFrames frames and at the end.
+/// Returns true if a recording should be tracked again from its beginning with the current times: keyframes
+/// and poses were made with times that have turned out to be wrong by more than 8 ms. Asked after
+/// kProbeFrames frames and at the end.
 bool are_times_wrong(const TimingEstimate& estimate);
 inline constexpr std::int64_t kProbeFrames = 300;
 inline constexpr int kMostRestarts = 3;

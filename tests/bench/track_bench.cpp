@@ -1,12 +1,12 @@
 // track_bench.cpp: error and time of tracking and of relocalisation, on recordings with known poses.
 //
-// usage: track_bench [--frames N] [--places N] [--json FILE] [--trajectory FILE] SOURCE...      SOURCE: a folder or sim:ROOM?...
-// One row per source: ATE RMSE over all frames, median RPE over 1 and 30 frames, the error of the last pose
-// after aligning the first with its true pose, time per frame (wall clock, and CPU time of the tracking
-// thread), loops, the memory used by keyframes, and the recall of the feature index. With --places N the
-// first N frames, at their recorded poses, become map keyframes, and the later frames are localised among
-// them. Settings are the defaults of OdometryConfig: changing them breaks the comparison with earlier
-// results.
+// usage: track_bench [--frames N] [--places N] [--json FILE] [--trajectory FILE] SOURCE...      SOURCE: a
+// folder or sim:ROOM?... One row per source: ATE RMSE over all frames, median RPE over 1 and 30 frames, the
+// error of the last pose after aligning the first with its true pose, time per frame (wall clock, and CPU
+// time of the tracking thread), loops, the memory used by keyframes, and the recall of the feature index.
+// With --places N the first N frames, at their recorded poses, become map keyframes, and the later frames are
+// localised among them. Settings are the defaults of OdometryConfig: changing them breaks the comparison with
+// earlier results.
 #include <sys/resource.h>
 #include <time.h>
 
@@ -261,7 +261,9 @@ int main(int argc, char** argv) {
   return roomradar::test::run_or_say("track_bench", [&] {
     const roomradar::Settings settings = roomradar::parse(argc, argv);
     if (settings.sources.empty()) {
-      std::fprintf(stderr, "usage: track_bench [--frames N] [--places N] [--json FILE] [--trajectory FILE] SOURCE...\n");
+      std::fprintf(
+          stderr,
+          "usage: track_bench [--frames N] [--places N] [--json FILE] [--trajectory FILE] SOURCE...\n");
       return 2;
     }
     nlohmann::json rows = nlohmann::json::array();

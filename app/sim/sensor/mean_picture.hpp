@@ -24,9 +24,10 @@ class MeanPicture {
   /// Writes the mean of at least one picture.
   void write(ColourImage& picture) const {
     const auto mean = [this](int sum) { return static_cast<std::uint8_t>((sum + count_ / 2) / count_); };
-    std::transform(
-        sums_.pixels.begin(), sums_.pixels.end(), picture.pixels.begin(),
-        [&](const std::array<int, 3>& sum) { return Rgb{mean(sum[0]), mean(sum[1]), mean(sum[2])}; });
+    std::transform(sums_.pixels.begin(), sums_.pixels.end(), picture.pixels.begin(),
+                   [&](const std::array<int, 3>& sum) {
+                     return Rgb{mean(sum[0]), mean(sum[1]), mean(sum[2])};
+                   });
   }
 
  private:

@@ -104,9 +104,9 @@ struct SimOptions {
 ///   seed, frames, rate, path (scan, view, swing), moving (hand, ball, person; several with commas), pace
 ///   (steady, slow, waits, leaves), noise (0: none, 1: as a Kinect), crate (0, 1: an additional crate; comes,
 ///   goes: after half of the frames), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
-///   separate, none), faults (0, 1: the true cameras differ from those the frames declare), shutter (ms: readout
-///   of depth and colour), delay (ms: colour after depth), exposure (ms: blur of colour), turn (degrees/s: the
-///   camera swings this fast).
+///   separate, none), faults (0, 1: the true cameras differ from those the frames declare), shutter (ms:
+///   readout of depth and colour), delay (ms: colour after depth), exposure (ms: blur of colour), turn
+///   (degrees/s: the camera swings this fast).
 /// @throws Error naming the key or value that is unknown or out of range, and the valid ones
 SimOptions parse_sim_spec(std::string_view spec);
 

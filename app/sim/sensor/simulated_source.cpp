@@ -308,13 +308,15 @@ ReadResult SimulatedSource::next(Frame& frame) {
   if (s.next_index >= s.options.frames) return {ReadStatus::kEnd, {}};
   const std::int64_t index = s.next_index++;
   const double t_s = static_cast<double>(index) / s.options.rate_hz;
-  s.render(index, [&](double after_s) { return T_world_camera_at(s.path, t_s + after_s); }, frame);
+  s.render(
+      index, [&](double after_s) { return T_world_camera_at(s.path, t_s + after_s); }, frame);
   s.describe(index, frame);
   return {ReadStatus::kFrame, {}};
 }
 
 void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame) {
-  state_->render(index, [&](double) { return T_world_camera; }, frame);
+  state_->render(
+      index, [&](double) { return T_world_camera; }, frame);
   state_->describe(index, frame);
 }
 

@@ -81,13 +81,13 @@ Eigen::Isometry3d pose_from(const Json& rows, const std::string& where) {
   return pose;
 }
 
-/// Returns a time of at most 0.1 s, which is 10 times a sensor's that delivers 100 frames per second.
+/// Returns a time of least_s to 0.1 s.
 double time_s(const Json& object, const char* name, double least_s, const std::string& where) {
   constexpr double kMost_s = 0.1;
   const double value_s = json_number(object, name, where);
   if (!(value_s >= least_s && value_s <= kMost_s))
-    throw Error(where + ": " + name + " = " + std::to_string(value_s) + ": must be " + std::to_string(least_s) +
-                " to " + std::to_string(kMost_s) + " s");
+    throw Error(where + ": " + name + " = " + std::to_string(value_s) + ": must be " +
+                std::to_string(least_s) + " to " + std::to_string(kMost_s) + " s");
   return value_s;
 }
 

@@ -26,8 +26,9 @@ struct CameraRig {
 ///    "depth":  {"width_px": 640, "height_px": 480, "fx_px": 585, "fy_px": 585, "cx_px": 320, "cy_px": 240},
 ///    "colour": {... the same fields; absent if there is no colour},
 ///    "T_colour_depth": [[r, r, r, tx], [r, r, r, ty], [r, r, r, tz], [0, 0, 0, 1]],       (metres)
-///    "timing": {"depth_readout_s": 0.03, "colour_readout_s": 0.026, "colour_delay_s": 0},   (absent if unknown)
-///    "calibrated": true}                           (absent if frames are as the device delivered them)
+///    "timing": {"depth_readout_s": 0.03, "colour_readout_s": 0.026, "colour_delay_s": 0},   (absent if
+///    unknown) "calibrated": true}                           (absent if frames are as the device delivered
+///    them)
 /// Throws Error naming the file and a field that is missing, has the wrong type or an invalid value.
 CameraRig read_camera_file(const std::filesystem::path& path);
 /// Writes camera.json. Throws Error with the file's name if it cannot be written.

@@ -19,8 +19,8 @@ Eigen::Isometry3d rigid(double rx_rad, double ry_rad, double rz_rad, const Eigen
 }
 
 /// Readout times of a Kinect v1: both cameras are read row by row during most of a frame's 33 ms. Depth: the
-/// times with the least residuals of tracking are 26 to 30 ms on redkitchen and 29 to 31 ms on freiburg1_rpy.
-/// Colour: 12 to 28 ms. A recording's own times are estimated from these.
+/// times with the least residuals of tracking are 25 to 30 ms on redkitchen and 29 to 31 ms on freiburg1_rpy.
+/// Colour: 8 to 26 ms and 23 to 29 ms. A recording's own times are estimated from these.
 constexpr SensorTiming kKinectTiming{0.030, 0.026, 0.0};
 
 CameraRig figures(NominalRig kind) {

@@ -38,8 +38,8 @@ void serialize_entry(Archive& archive, SpoolEntry& entry) {
   serialize(archive, coloured);
   if (coloured) serialize(archive, frame.colour_camera);
   serialize(archive, frame.T_colour_depth);
-  for (double* time_s : {&frame.timing.depth_readout_s, &frame.timing.colour_readout_s,
-                         &frame.timing.colour_delay_s})
+  for (double* time_s :
+       {&frame.timing.depth_readout_s, &frame.timing.colour_readout_s, &frame.timing.colour_delay_s})
     serialize(archive, *time_s);
   serialize(archive, frame.T_world_camera);
   serialize(archive, frame.down_camera);

@@ -30,7 +30,8 @@ Frame skewed_frame() {
   Frame frame = test::exact_frame(test::corner_with_ball(), kCamera, after(0.0));
   constexpr int kRows = 4;
   for (int y = 0; y < kCamera.height_px; y += kRows) {
-    const double t_s = ((y + 0.5 * (kRows - 1)) - 0.5 * (kCamera.height_px - 1)) / kCamera.height_px * kReadout_s;
+    const double t_s =
+        ((y + 0.5 * (kRows - 1)) - 0.5 * (kCamera.height_px - 1)) / kCamera.height_px * kReadout_s;
     const Frame seen = test::exact_frame(test::corner_with_ball(), kCamera, after(t_s));
     std::copy(seen.depth_m.row(y), seen.depth_m.row(y) + kRows * kCamera.width_px, frame.depth_m.row(y));
   }
@@ -56,7 +57,8 @@ double mean_difference(const Image<float>& a, const Image<float>& b) {
 CameraVelocity velocity() { return velocity_of(after(-kFrame_s).inverse() * after(0.0), kFrame_s); }
 
 TEST(RollingShutter, DeskewGivesTheImageOfItsMiddle) {
-  const Image<float> exact = inverse_of(test::exact_frame(test::corner_with_ball(), kCamera, after(0.0)).depth_m);
+  const Image<float> exact =
+      inverse_of(test::exact_frame(test::corner_with_ball(), kCamera, after(0.0)).depth_m);
   Image<float> image = inverse_of(skewed_frame().depth_m), none;
   const double before = mean_difference(image, exact);
   deskew(kCamera, velocity(), kReadout_s, image, none);

@@ -19,8 +19,8 @@ Keyframe keyframe_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera
   make_pyramid(frame, {}, pyramid);
   const Image<std::uint8_t> measured(pyramid.levels[0].camera.width_px, pyramid.levels[0].camera.height_px,
                                      1);
-  return {frame.index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)), 0,
-          path_length_m, {}};
+  return {frame.index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)),
+          0,           path_length_m,  {}};
 }
 
 /// A camera goes away and returns to the pose of its first keyframe. Drift displaces the last keyframe by

@@ -15,8 +15,8 @@ Keyframe keyframe_at(const Eigen::Isometry3d& T_world_camera, int index) {
   make_pyramid(frame_at(T_world_camera, index), {}, pyramid);
   const Image<std::uint8_t> measured(pyramid.levels[0].camera.width_px, pyramid.levels[0].camera.height_px,
                                      1);
-  return {index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)), 0,
-          0.1 * index, {}};
+  return {index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)),
+          0,     0.1 * index,    {}};
 }
 
 std::vector<Keyframe> keyframes_on_path(int count) {

@@ -10,7 +10,8 @@ namespace roomradar::timing_estimate_test {
 namespace {
 
 /// Evidence of one frame of a sensor with the times `truth`, of which a frame corrects the fraction `part`.
-TimingEvidence evidence_of(const SensorTiming& truth, const TimingEstimate& estimate, double part, double sigma_s) {
+TimingEvidence evidence_of(const SensorTiming& truth, const TimingEstimate& estimate, double part,
+                           double sigma_s) {
   TimingEvidence evidence;
   evidence.H.diagonal().head<3>().setConstant(1.0 / (sigma_s * sigma_s));
   TimingVector error = TimingVector::Zero();

@@ -27,7 +27,8 @@ TEST(SimSpec, ComesBackFromItsOptions) {
   for (const char* const spec :
        {"sim:table", "sim:wall?seed=12", "sim:shelf?seed=3&frames=90&path=view&moving=hand,person&noise=0.5",
         "sim:table?rate=15&width=160&colour=separate", "sim:table?moving=person&pace=leaves",
-        "sim:table?shutter=30&delay=-40&exposure=20&turn=90", "sim:table?crate=1", "sim:table?crate=comes", "sim:table?crate=goes"})
+        "sim:table?shutter=30&delay=-40&exposure=20&turn=90", "sim:table?crate=1", "sim:table?crate=comes",
+        "sim:table?crate=goes"})
     EXPECT_EQ(sim_spec(parse_sim_spec(spec)), spec);
 }
 

@@ -22,7 +22,8 @@ Frame frame_of(const std::string& spec, std::int64_t index) {
 double mean_difference(const Frame& a, const Frame& b, int begin, int end) {
   double sum = 0.0;
   for (int y = begin; y < end; ++y)
-    for (int x = 0; x < a.depth_m.width; ++x) sum += std::abs(static_cast<double>(a.depth_m.at(x, y) - b.depth_m.at(x, y)));
+    for (int x = 0; x < a.depth_m.width; ++x)
+      sum += std::abs(static_cast<double>(a.depth_m.at(x, y) - b.depth_m.at(x, y)));
   return sum / ((end - begin) * a.depth_m.width);
 }
 
@@ -47,7 +48,8 @@ TEST(SimTiming, ExposureBlursColourAlone) {
   const auto edges = [](const Frame& frame) {
     double sum = 0.0;
     for (int y = 0; y < frame.colour.height; ++y)
-      for (int x = 1; x < frame.colour.width; ++x) sum += std::abs(frame.colour.at(x, y).g - frame.colour.at(x - 1, y).g);
+      for (int x = 1; x < frame.colour.width; ++x)
+        sum += std::abs(frame.colour.at(x, y).g - frame.colour.at(x - 1, y).g);
     return sum;
   };
   const Frame sharp = frame_of(spec, 0), blurred = frame_of(spec + "&exposure=40", 0);
