@@ -235,10 +235,9 @@ void SimulatedSource::State::fill_depth(std::int64_t index, const PoseAt& T_worl
                                         DepthImage& depth_m) {
   if (options.noise_scale > 0.0) {
     depth_m.resize(options.depth_camera.width_px, options.depth_camera.height_px);
-    const std::vector<RowBand> bands = row_bands(depth_m.height, options.timing.shutter_s);
-    for (const RowBand& band : bands) {
+    for (const RowBand& band : row_bands(depth_m.height, options.timing.shutter_s)) {
       const Eigen::Isometry3d T_world_camera = T_world_camera_at(band.t_s);
-      if (bands.size() > 1) views.depth.prepare(solids, options.depth_camera, T_world_camera);
+      if (options.timing.shutter_s > 0.0) views.depth.prepare(solids, options.depth_camera, T_world_camera);
       measure_depth(solids, infrared, views.depth, views.depth_exact, options.depth_camera, T_world_camera,
                     depth_faults, options.noise_scale, options.seed, index, band, views.scratch, depth_m);
     }
@@ -260,17 +259,17 @@ void SimulatedSource::State::fill_picture(std::int64_t index, const PoseAt& T_wo
     fill_colour(views.depth, views.depth_exact, key, {0, picture.height, 0.0}, picture);
     return;
   }
-  const SimTiming& timing = options.timing;
+  const auto& [shutter_s, delay_s, exposure_s] = options.timing;
   const Eigen::Isometry3d T_depth_colour = colour.T_colour_depth_true.inverse();
-  const int exposures = timing.exposure_s > 0.0 ? 5 : 1;
+  const int exposures = exposure_s > 0.0 ? 5 : 1;
   MeanPicture mean(picture.width, picture.height);
   for (int i = 0; i < exposures; ++i) {
-    const double exposed_s = timing.exposure_s * ((i + 0.5) / exposures - 0.5);
+    const double exposed_s = exposure_s * ((i + 0.5) / exposures - 0.5);
     clear(colour.camera, views.colour_exact);
     std::fill(picture.pixels.begin(), picture.pixels.end(), Rgb{});
-    for (const RowBand& band : row_bands(picture.height, timing.shutter_s)) {
+    for (const RowBand& band : row_bands(picture.height, shutter_s)) {
       views.colour.prepare(solids, colour.camera,
-                           T_world_camera_at(timing.delay_s + exposed_s + band.t_s) * T_depth_colour);
+                           T_world_camera_at(delay_s + exposed_s + band.t_s) * T_depth_colour);
       render_exact(solids, views.colour, colour.camera, colour.rays, band, views.colour_exact);
       fill_colour(views.colour, views.colour_exact, key, band, picture);
     }
@@ -285,15 +284,14 @@ void SimulatedSource::State::render(std::int64_t index, const PoseAt& T_world_ca
   const auto take_picture = [&] {
     picture = std::async(std::launch::async, [&] { fill_picture(index, T_world_camera_at, frame.colour); });
   };
-  const bool own_view = is_colour_own_view();
-  if (options.with_colour && own_view) take_picture();
+  if (options.with_colour && is_colour_own_view()) take_picture();
   render_depth_exact(T_world_camera_at);
-  if (options.with_colour && !own_view) take_picture();
+  if (options.with_colour && !picture.valid()) take_picture();
   truth.T_world_camera = T_world_camera_at(0.0);
   fill_truth();
   fill_depth(index, T_world_camera_at, frame.depth_m);
-  if (!options.with_colour) frame.colour = {};
   if (picture.valid()) picture.get();
+  if (!options.with_colour) frame.colour = {};
 }
 
 SimulatedSource::SimulatedSource(const SimOptions& options) {

@@ -26,9 +26,8 @@ struct SimTruth {
 };
 
 /// Frames of a simulated Kinect. A frame's pose and stamp are those of the middle of its depth image. Frame i
-/// depends only on the options and on i. Reading it again thus gives identical pixels. The world frame is
-/// that of the room (z up, metres, floor at z = 0). room() does not contain a crate that appears or
-/// disappears.
+/// depends on the options and i alone. Reading it again gives the same pixels. The world frame is that of the
+/// room (z up, metres, floor at z = 0). room() does not contain a crate that appears or disappears.
 class SimulatedSource final : public FrameSource {
  public:
   /// Throws Error if the options are not valid.
