@@ -86,6 +86,10 @@ constexpr std::string_view kSources =
                      width=PX    width of the images (640)
                      colour=WORD registered, separate or none (registered)
                      faults=0|1  1: the cameras deviate from what they declare (0)
+                     shutter=MS  readout time of depth and colour, row by row (0)
+                     delay=MS    time of the colour image after the depth image (0)
+                     exposure=MS motion blur of the colour image (0)
+                     turn=DPS    the camera swings at this many degrees per second, too (0)
 
 Quote a source that contains ? or &: 'sim:table?seed=3&frames=100'.
 )";

@@ -24,6 +24,7 @@
 #include "app/scan/scan_end.hpp"
 #include "app/scan/scan_progress.hpp"
 #include "app/window/scan/scan_window.hpp"
+#include "mapping/deskewed_source.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/scan_memory.hpp"
@@ -151,8 +152,10 @@ HeldOut score_map(const PrescanOptions& options, FrameSource& source, const Pres
   const std::vector<TimedPose> poses(scanned.map.trajectory.end() - scanned.counts.frames_tracked,
                                      scanned.map.trajectory.end());
   try {
+    // The map is deskewed, so the frames that judge it must be, too.
+    DeskewedSource deskewed(source, poses, scanned.counts.timing);
     held_out.score = report.times.timed(
-        "held_out", [&] { return score_held_out(source, scanned.map.mesh, poses, options.hold_out); });
+        "held_out", [&] { return score_held_out(deskewed, scanned.map.mesh, poses, options.hold_out); });
     report.results["held_out"] = held_out_json(*held_out.score);
   } catch (const Error& error) {
     held_out.fault = error.what();

@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "RRSPOOL2";
+constexpr std::string_view kMagicWithoutTiming = "RRSPOOL1";
 
 fs::path depth_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".depth.png");
@@ -25,8 +26,9 @@ fs::path colour_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".colour.png");
 }
 
+/// @param has_timing  false: an entry of a list that was written before frames had a SensorTiming
 template <typename Archive>
-void serialize_entry(Archive& archive, SpoolEntry& entry) {
+void serialize_entry(Archive& archive, SpoolEntry& entry, bool has_timing = true) {
   Frame& frame = entry.frame;
   serialize(archive, entry.fault);
   if (!entry.fault.empty()) return;
@@ -38,24 +40,33 @@ void serialize_entry(Archive& archive, SpoolEntry& entry) {
   serialize(archive, coloured);
   if (coloured) serialize(archive, frame.colour_camera);
   serialize(archive, frame.T_colour_depth);
-  for (double* time_s :
-       {&frame.timing.depth_readout_s, &frame.timing.colour_readout_s, &frame.timing.colour_delay_s})
-    serialize(archive, *time_s);
+  if (has_timing)
+    for (double* time_s :
+         {&frame.timing.depth_readout_s, &frame.timing.colour_readout_s, &frame.timing.colour_delay_s})
+      serialize(archive, *time_s);
   serialize(archive, frame.T_world_camera);
   serialize(archive, frame.down_camera);
 }
 
-/// Parses an entry; a damaged entry becomes an unreadable frame.
+/// Parses an entry, with or without a SensorTiming; a damaged entry becomes an unreadable frame. A list that
+/// an earlier version began may hold both: an entry with timing is 24 bytes longer.
 SpoolEntry entry_of(std::string_view bytes, const fs::path& list) {
-  SpoolEntry entry;
-  try {
+  const auto parsed = [&](bool has_timing) {
+    SpoolEntry entry;
     ByteReader reader(bytes, list.string());
-    serialize_entry(reader, entry);
+    serialize_entry(reader, entry, has_timing);
     reader.require_end();
+    return entry;
+  };
+  try {
+    return parsed(/*has_timing=*/true);
+  } catch (const Error&) {
+  }
+  try {
+    return parsed(/*has_timing=*/false);
   } catch (const Error& damage) {
     return {{}, damage.what()};
   }
-  return entry;
 }
 
 }  // namespace
@@ -74,7 +85,8 @@ SpoolList read_spool_list(const fs::path& folder) {
   ByteReader list(bytes, path.string());
   std::string magic(kMagic.size(), '\0');
   list.raw(magic.data(), magic.size());
-  if (magic != kMagic) list.fail("is no list of spooled frames, or of another version");
+  if (magic != kMagic && magic != kMagicWithoutTiming)
+    list.fail("is no list of spooled frames, or of another version");
   SpoolList left;
   serialize(list, left.name);
   left.sound_bytes = bytes.size() - list.left();
