@@ -21,6 +21,11 @@ bool correct(const OdometrySnapshot& odometry, Anchors& anchors) {
   for (std::size_t i = 0; i < anchors.anchors.size(); ++i) {
     const Anchor& anchor = anchors.anchors[i];
     if (!anchors.T_world_anchor[i]) continue;
+    if (anchor.keyframe && *anchor.keyframe >= odometry.graph.keyframes.size()) {  // tracking began again
+      anchors.T_world_anchor[i].reset();
+      is_moved = true;
+      continue;
+    }
     Eigen::Isometry3d& T_world_anchor = *anchors.T_world_anchor[i];
     const Eigen::Isometry3d now = T_world_keyframe(odometry, anchor.keyframe) * anchor.T_keyframe_anchor;
     const Eigen::Isometry3d change = T_world_anchor.inverse() * now;

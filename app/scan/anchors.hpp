@@ -29,8 +29,8 @@ struct Anchors {
   AnchorPoses T_world_anchor;
 };
 
-/// Sets the anchors' poses to those of their keyframes. Returns true if a point 2 m from an anchor moved by
-/// more than 1 cm.
+/// Sets the anchors' poses to those of their keyframes. Anchors of keyframes that no longer exist are
+/// removed. Returns true if one is removed, or if a point 2 m from an anchor moved by more than 1 cm.
 bool correct(const OdometrySnapshot& odometry, Anchors& anchors);
 
 /// Returns the anchor with the view most similar to the camera's, or makes a new anchor if none was made
