@@ -31,7 +31,7 @@ struct Keyframe {
   /// tracking was degenerate counts tenfold. The assumed drift between two keyframes grows with the length of
   /// the path between them.
   double path_length_m = 0.0;
-  CameraVelocity velocity;  ///< of the camera at `frame_index`
+  CameraVelocity velocity = {};  ///< of the camera at `frame_index`
 };
 
 /// Returns the pyramid's finest level in compact form. `measured` must have that level's size.

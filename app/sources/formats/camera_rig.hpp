@@ -18,7 +18,7 @@ struct CameraRig {
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
   /// True if lens and depth errors were removed from the frames before recording.
   bool was_calibrated = false;
-  SensorTiming timing;  ///< 0 where unknown
+  SensorTiming timing = {};  ///< 0 where unknown
 };
 
 /// Reads camera.json:
