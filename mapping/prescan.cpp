@@ -58,7 +58,7 @@ std::string why_none_fused(const PrescanWork& work) {
 MapInfo describe_map(const PrescanWork& work, const FusionPass& pass,
                      const std::vector<TimedPose>& trajectory) {
   MapInfo info;
-  info.source = work.source.name();
+  info.source = work.source->name();
   info.frames_read = pass.counts.frames_read;
   info.frames_fused = static_cast<std::int64_t>(pass.fused.size());
   info.up_source = to_string(pass.found.up.source);
@@ -66,7 +66,7 @@ MapInfo describe_map(const PrescanWork& work, const FusionPass& pass,
                    {kDeviationSetting, format_number(work.config.surface.max_deviation_m)},
                    {kPosesSetting, std::string(to_string(work.config.poses))}};
   if (pass.counts.stopped_for_memory || pass.stopped_for_memory)
-    info.settings[kStoppedSetting] = work.source.name();
+    info.settings[kStoppedSetting] = work.source->name();
   if (work.config.fuse_every > 1) info.settings["fuse_every"] = std::to_string(work.config.fuse_every);
   if (work.config.hold_out > 0) info.settings["hold_out"] = std::to_string(work.config.hold_out);
   if (work.config.poses == PoseOrigin::kRecorded)
@@ -86,7 +86,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
                       const PrescanProgress& progress, PrescanInput start) {
   const double reach_m = start.map ? start.map->octree->reach_m() : StaticMap(config.resolution_m).reach_m();
   const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
-  PrescanWork work{source,        config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
+  PrescanWork work{&source,       config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
                    start.observer};
   PrescanResult result;
   PrescanCounts& counts = result.counts;
@@ -101,20 +101,12 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
 
   // Second pass: fusion.
   DeskewedSource deskewed(source, map.trajectory, pass.counts.timing);
-  PrescanWork fusion_work{deskewed,
-                          config,
-                          times,
-                          progress,
-                          start.checkpoints,
-                          reach_m,
-                          maps_recorded_world,
-                          start.observer,
-                          std::move(work.track_ms)};
-  run_fusion_pass(fusion_work, map.trajectory, pass);
-  if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(fusion_work));
+  work.source = &deskewed;
+  run_fusion_pass(work, map.trajectory, pass);
+  if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(work));
 
   // Ghost removal.
-  if (config.remove_ghosts) run_ghost_removal(fusion_work, pass);
+  if (config.remove_ghosts) run_ghost_removal(work, pass);
   map.octree = std::move(pass.octree);
 
   // Surface extraction.

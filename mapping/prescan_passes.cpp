@@ -114,12 +114,12 @@ void undo(PrescanWork& work, TrackingPass& pass, const KeyframeDatabase* known, 
 /// Only for a source of known length: a live device cannot be rewound while it delivers.
 /// @param known  keyframes of the map that is extended; null: a new map
 bool restart_with_better_times(PrescanWork& work, const KeyframeDatabase* known, TrackingPass& pass) {
-  const std::int64_t frames = work.source.frame_count().value_or(0);
+  const std::int64_t frames = work.source->frame_count().value_or(0);
   if (work.config.poses != PoseOrigin::kTracked || pass.counts.restarts >= kMostRestarts) return false;
   if (pass.counts.frames_read != std::min(frames, kProbeFrames)) return false;
-  if (!are_times_wrong(pass.odometry.timing()) || !work.source.rewind()) return false;
+  if (!are_times_wrong(pass.odometry.state().timing) || !work.source->rewind()) return false;
   OdometryConfig config = work.config.odometry;
-  config.timing = pass.odometry.timing().current;
+  config.timing = pass.odometry.state().timing.current;
   const std::int64_t restarts = pass.counts.restarts + 1;
   pass = TrackingPass(config);
   pass.counts.restarts = restarts;
@@ -134,7 +134,7 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
   const PrescanConfig& config = work.config;
   Frame frame;
   ObservedArea seen;
-  while (read(work.source, work.times, frame, pass.counts)) {
+  while (read(*work.source, work.times, frame, pass.counts)) {
     const Clock::time_point start = Clock::now();
     const std::optional<Eigen::Isometry3d> recorded =
         recorded_pose(frame, middle_of_recorded(work, pass, frame), work.reach_m);
@@ -174,7 +174,7 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
   found.recorded = std::move(pass.recorded);
   pass.counts.keyframes = pass.odometry.counts().keyframes;
   pass.counts.loops_found = pass.odometry.counts().loops_found;
-  pass.counts.timing = pass.odometry.timing().current;
+  pass.counts.timing = pass.odometry.state().timing.current;
   found.keyframe_database = pass.odometry.take_keyframe_database();
   return found;
 }
@@ -224,7 +224,7 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
   if (checkpoint) {
     pass = read_tracking_pass(*checkpoint, work.config.odometry);
     pass.counts.frames_resumed = pass.counts.frames_read;
-    skip_frames(work.source, pass.counts.frames_read, kTrackingStage, work.progress);
+    skip_frames(*work.source, pass.counts.frames_read, kTrackingStage, work.progress);
   }
   const KeyframeDatabase* const known =
       map && work.config.poses == PoseOrigin::kTracked ? &map->keyframe_database : nullptr;
@@ -233,9 +233,9 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
   fusing.found = estimate_trajectory(work, known, pass);
   fusing.counts = pass.counts;
   if (fusing.counts.frames_read == fusing.counts.frames_skipped)
-    throw Error(work.source.name() + ": there is not one readable frame" +
+    throw Error(work.source->name() + ": there is not one readable frame" +
                 (fusing.counts.last_fault.empty() ? "" : "; the last fault: " + fusing.counts.last_fault));
-  fusing.T_world_found = map ? transform_to_map(pass.odometry, fusing.found, *map, work.source.name())
+  fusing.T_world_found = map ? transform_to_map(pass.odometry, fusing.found, *map, work.source->name())
                              : transform_to_new_map(fusing.found, work.config.poses);
   fusing.octree = map ? std::move(*map->octree) : StaticMap(work.config.resolution_m);
   keep(work.checkpoints, kFusingStage, fusing, work.times, /*between_frames=*/false);
@@ -246,15 +246,15 @@ void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory
   if (pass.revision || pass.ghost_voxels) return;
   std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
   for (const TimedPose& pose : trajectory) T_world_camera[pose.frame_index] = pose.T_world_camera;
-  if (!work.source.rewind()) throw Error(work.source.name() + ": cannot be read a second time");
+  if (!work.source->rewind()) throw Error(work.source->name() + ": cannot be read a second time");
   PrescanCounts second_pass;
   second_pass.frames_read = pass.frames_read;
-  if (pass.frames_read > 0) skip_frames(work.source, pass.frames_read, kFusingStage, work.progress);
+  if (pass.frames_read > 0) skip_frames(*work.source, pass.frames_read, kFusingStage, work.progress);
   release_unused_memory();
   bool has_room = true;
   Frame frame;
   while (has_room && pass.frames_read < pass.counts.frames_read &&
-         read(work.source, work.times, frame, second_pass)) {
+         read(*work.source, work.times, frame, second_pass)) {
     pass.frames_read = second_pass.frames_read;
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end() || is_held_out(frame.index, work.config.hold_out)) continue;
@@ -279,9 +279,9 @@ void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory
 void run_ghost_removal(PrescanWork& work, FusionPass& pass) {
   if (pass.ghost_voxels) return;
   if (!pass.revision)
-    pass.revision = remove_ghosts(work.source, pass.fused, work.config.ghosts, pass.octree, work.times,
+    pass.revision = remove_ghosts(*work.source, pass.fused, work.config.ghosts, pass.octree, work.times,
                                   [&](const std::string& note) { work.show("ghosts", note); });
-  refuse_surroundings(work.source, pass.fused, *pass.revision, pass.octree, work.times,
+  refuse_surroundings(*work.source, pass.fused, *pass.revision, pass.octree, work.times,
                       [&](const std::string& note) {
                         work.show("ghosts", note);
                         keep(work.checkpoints, kFusingStage, pass, work.times);

@@ -14,7 +14,7 @@ namespace roomradar {
 
 /// State shared by all stages of one prescan.
 struct PrescanWork {
-  FrameSource& source;
+  FrameSource* source;  ///< never null; the second pass reads a DeskewedSource
   const PrescanConfig& config;
   StageTimes& times;
   const PrescanProgress& progress;

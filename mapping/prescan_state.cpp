@@ -27,9 +27,7 @@ void serialize(Archive& archive, PrescanCounts& counts) {
       if (*count < 0) archive.fail("is damaged: a count is negative");
     }
   }
-  for (double* time_s :
-       {&counts.timing.depth_readout_s, &counts.timing.colour_readout_s, &counts.timing.colour_delay_s})
-    serialize(archive, *time_s);
+  serialize(archive, counts.timing);
   serialize(archive, counts.stopped_for_memory);
   serialize(archive, counts.last_fault);
 }

@@ -15,14 +15,12 @@ class ControlledSource final : public FrameSource {
     if (is_controlled_) {
       channel_.wait_while_paused();
       throw_if_discarded(channel_);
-      if (channel_.requested() == ScanRequest::kFinish) return {ReadStatus::kEnd, {}};
+      if (channel_.requested() == ScanRequest::kFinish) return ended();
     }
-    return source_->next(frame);
+    const ReadResult result = source_->next(frame);
+    return result.status == ReadStatus::kEnd ? ended() : result;
   }
-  bool rewind() override {
-    is_controlled_ = false;
-    return source_->rewind();
-  }
+  bool rewind() override { return source_->rewind(); }
   bool seek(std::int64_t index) override { return source_->seek(index); }
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
   [[nodiscard]] std::string name() const override { return source_->name(); }
@@ -30,7 +28,12 @@ class ControlledSource final : public FrameSource {
  private:
   std::unique_ptr<FrameSource> source_;
   ScanChannel& channel_;
-  bool is_controlled_ = true;
+  bool is_controlled_ = true;  ///< until the first end: then the frames have been chosen
+
+  ReadResult ended() {
+    is_controlled_ = false;
+    return {ReadStatus::kEnd, {}};
+  }
 };
 
 }  // namespace

@@ -33,12 +33,6 @@ void add(const Normals& block, NormalEquations& sum) {
   }
 }
 
-/// Geman-McClure weight of a residual: 1 at x = 0, 1/4 at 1, decreasing with the fourth power of x.
-float robust_weight(float x) {
-  const float w = 1.0F / (1.0F + x * x);
-  return w * w;
-}
-
 }  // namespace
 
 // One function: the sums of a block stay in registers.

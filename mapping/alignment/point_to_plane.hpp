@@ -51,6 +51,13 @@ struct MatchLimits {
   float inverse_intensity_sigma;  ///< 1 / standard deviation, in grey levels; 0: intensity is not used
 };
 
+/// Geman-McClure weight of a residual: 1 at x = 0, 1/4 at 1, decreasing with the fourth power of x.
+template <typename Real>
+Real robust_weight(Real x) {
+  const Real w = Real(1) / (Real(1) + x * x);
+  return w * w;
+}
+
 /// Projects the points into the reference to find correspondences, and sums their residuals. Residuals are
 /// the distance to the reference's plane and, if exposure.known, the difference of intensity. They are
 /// linearised in the camera's twist in the camera frame.

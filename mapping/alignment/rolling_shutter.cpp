@@ -40,9 +40,13 @@ Sample sample(const Image<float>& inverse_depth_per_m, const Image<float>& inten
 
 }  // namespace
 
-CameraVelocity velocity_of(const Eigen::Isometry3d& T_before_after, double dt_s) {
+bool gives_velocity(double dt_s) {
   constexpr double kShortest_s = 1e-3, kLongest_s = 0.2;
-  if (!(dt_s >= kShortest_s && dt_s <= kLongest_s)) return {};
+  return dt_s >= kShortest_s && dt_s <= kLongest_s;
+}
+
+CameraVelocity velocity_of(const Eigen::Isometry3d& T_before_after, double dt_s) {
+  if (!gives_velocity(dt_s)) return {};
   const Vector6d twist = local(T_before_after) / dt_s;
   if (!twist.allFinite()) return {};
   return {twist.head<3>(), twist.tail<3>()};

@@ -14,8 +14,10 @@ struct CameraVelocity {
   Eigen::Vector3d angular_radps = Eigen::Vector3d::Zero();
 };
 
-/// Returns the constant velocity of a camera that moves by T_before_after in dt_s. Returns 0 if dt_s is not
-/// within 1 ms to 0.2 s, or if the motion is not finite.
+/// Returns true if a motion in this time gives a velocity: 1 ms to 0.2 s.
+bool gives_velocity(double dt_s);
+/// Returns the constant velocity of a camera that moves by T_before_after in dt_s. Returns 0 if dt_s gives no
+/// velocity, or if the motion is not finite.
 CameraVelocity velocity_of(const Eigen::Isometry3d& T_before_after, double dt_s);
 
 /// Returns the speed of image points at a depth of 1 m, px/s, an upper bound over the image's centre.

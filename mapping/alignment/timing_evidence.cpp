@@ -23,11 +23,6 @@ constexpr double kSoft = 2.5;             // scale of the robust kernel, in stan
 constexpr double kGate_m = 0.06;          // max distance of a correspondence
 constexpr double kIntensitySigma = 16.0;  // as for tracking: grey levels
 
-double robust_weight(double x) {
-  const double w = 1.0 / (1.0 + x * x);
-  return w * w;
-}
-
 Offsets offsets_at(const Intrinsics& camera, const Eigen::Vector2d& pixel) {
   const double half_px = 0.5 * camera.width_px;
   const double x = (pixel.x() - half_px) / half_px;

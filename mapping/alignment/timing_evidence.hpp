@@ -35,7 +35,7 @@ struct MovingView {
 /// Linearises the residuals of an aligned image in the camera's pose and in the parameters, and eliminates
 /// the pose. Images taken at equal velocities say nothing about times. Uses every fourth point of the level
 /// before the finest, or of the only one.
-/// @param live    points of the image as it was read
+/// @param live    points of the image before any correction
 /// @param timing  times with which the views were aligned; points move with them
 TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camera,
                                const TargetView& reference, const MovingView& view,

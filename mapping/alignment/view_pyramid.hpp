@@ -48,8 +48,7 @@ struct FrameMotion {
 /// level is at most finest_width_px wide. Leaves out depths outside min_depth_m..max_depth_m, and intensity
 /// outside the colour camera's view. The frame's images must have their cameras' sizes. Reuses memory
 /// allocated in `pyramid`.
-/// @param motion  moves points from the time of their depth to that of their colour. Depth is left as it was
-///                read
+/// @param motion  moves points from the time of their depth to that of their colour. Depth is not moved
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
                   const FrameMotion& motion = {});
 

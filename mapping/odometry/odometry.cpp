@@ -214,8 +214,6 @@ KeyframeDatabase Odometry::take_keyframe_database() {
   return std::exchange(state_->kept.keyframe_database, {});
 }
 
-const TimingEstimate& Odometry::timing() const { return state_->kept.timing; }
-
 OdometryCounts Odometry::counts() const {
   OdometryCounts counts = state_->kept.counts;
   counts.loops_found = state_->kept.graph.loops_found;

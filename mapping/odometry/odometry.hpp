@@ -7,7 +7,6 @@
 #include "mapping/alignment/align.hpp"
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/odometry/odometry_config.hpp"
-#include "mapping/odometry/timing_estimate.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
@@ -49,8 +48,6 @@ class Odometry {
   [[nodiscard]] OdometryCounts counts() const;
   /// Returns the state after the last frame, without the second thread's next result.
   [[nodiscard]] const OdometrySnapshot& state() const;
-  /// Returns the times that frames are tracked with, and what they were estimated from.
-  [[nodiscard]] const TimingEstimate& timing() const;
 
   /// Waits until the second thread is idle. Call before snapshot(). Changes no pose.
   /// The thread's result is applied later, at the frame where it is due.

@@ -80,8 +80,7 @@ PredictedMotion predict(const OdometrySnapshot& kept, double stamp_s) {
   predicted.dt_s = stamp_s - kept.frames[count - 1].stamp_s;
   if (count < 2) return predicted;
   const double before_s = kept.frames[count - 1].stamp_s - kept.frames[count - 2].stamp_s;
-  const auto is_usable = [](double dt_s) { return dt_s >= 1e-3 && dt_s <= 0.2; };
-  if (!is_usable(before_s) || !is_usable(predicted.dt_s)) return predicted;
+  if (!gives_velocity(before_s) || !gives_velocity(predicted.dt_s)) return predicted;
   predicted.T_world_camera = kept.T_world_last * retract(predicted.dt_s / before_s * local(kept.T_last_next));
   predicted.velocity = mean_velocity(kept, predicted.T_world_camera, stamp_s);
   return predicted;
@@ -139,8 +138,7 @@ void forget_frames_from(std::int64_t frame_index, OdometrySnapshot& kept) {
   const KeptFrame& last = kept.frames.back();
   kept.current = last.keyframe.value_or(0);
   kept.improved = 0;
-  kept.T_world_last = last.keyframe ? graph.keyframes[*last.keyframe].T_world_camera * last.T_keyframe_camera
-                                    : last.T_keyframe_camera;
+  kept.T_world_last = T_world_camera_of(kept, last);
   kept.T_last_next.setIdentity();
   kept.last_moved_grey.resize(0, 0);
 }

@@ -26,10 +26,7 @@ void Odometry::State::deskew_first_keyframe(const Frame& frame) {
     for (ViewPyramid::Level& level : open.levels)
       std::fill(level.intensity.pixels.begin(), level.intensity.pixels.end(), -1.0F);
   open_is_newer = true;
-  auto made = std::make_shared<CachedKeyframe>();
-  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
-  make_source_points(open, made->live);
-  cache.put(0, std::move(made));
+  cache_open(0);
 }
 
 void Odometry::State::improve_current(const Tracking& tracking) {
@@ -40,10 +37,15 @@ void Odometry::State::improve_current(const Tracking& tracking) {
   if (++kept.improved < config.improve_every) return;
   kept.improved = 0;
   halve_depth(open);
+  cache_open(kept.current);
+}
+
+/// Caches the open view, prepared for alignment, as that of a keyframe.
+void Odometry::State::cache_open(std::size_t keyframe) {
   auto made = std::make_shared<CachedKeyframe>();
   make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
   make_source_points(open, made->live);
-  cache.put(kept.current, std::move(made));
+  cache.put(keyframe, std::move(made));
 }
 
 bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking) const {

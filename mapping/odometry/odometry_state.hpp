@@ -41,6 +41,7 @@ struct Odometry::State {
   void take_evidence(const Frame& frame, const Tracking& tracking);
   void deskew_first_keyframe(const Frame& frame);
   void improve_current(const Tracking& tracking);
+  void cache_open(std::size_t keyframe);
   [[nodiscard]] bool is_far_from(std::size_t keyframe, const Tracking& tracking) const;
   void choose_keyframe(const Frame& frame, Tracking& tracking);
   void add_keyframe(const Frame& frame, const Tracking& tracking);

@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "mapping/types/frame.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/validity.hpp"
@@ -127,6 +128,11 @@ void serialize(Archive& archive, Intrinsics& camera) {
   if constexpr (Archive::kReads) require_valid(camera, archive.where().c_str());
 }
 
+template <typename Archive>
+void serialize(Archive& archive, SensorTiming& timing) {
+  for (double* time_s : {&timing.depth_readout_s, &timing.colour_readout_s, &timing.colour_delay_s})
+    serialize(archive, *time_s);
+}
 template <typename Archive, typename Value>
 void serialize(Archive& archive, std::optional<Value>& value) {
   bool there = value.has_value();

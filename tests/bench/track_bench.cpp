@@ -140,9 +140,9 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
     truth.push_back(
         {frame.index, frame.stamp_s, frame.T_world_camera.value_or(Eigen::Isometry3d::Identity())});
     const bool probed = odometry.counts().frames == std::min<std::int64_t>(kProbeFrames, last_frame);
-    if (!probed || restarts == kMostRestarts || !are_times_wrong(odometry.timing())) continue;
+    if (!probed || restarts == kMostRestarts || !are_times_wrong(odometry.state().timing)) continue;
     ++restarts;
-    config.timing = odometry.timing().current;
+    config.timing = odometry.state().timing.current;
     odometry = Odometry(config);
     truth.clear(), times_ms.clear(), cpu_ms.clear(), stamps_s.clear(), residuals_m.clear();
     inliers = 0.0;
@@ -179,9 +179,9 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
           {"inlier_mean", inliers / static_cast<double>(std::max<std::size_t>(times_ms.size(), 1))},
           {"residual_median_mm", 1e3 * test::quantile(residuals_m, 0.5)},
           {"restarts", restarts},
-          {"depth_readout_ms", 1e3 * odometry.timing().current.depth_readout_s},
-          {"colour_readout_ms", 1e3 * odometry.timing().current.colour_readout_s},
-          {"colour_delay_ms", 1e3 * odometry.timing().current.colour_delay_s},
+          {"depth_readout_ms", 1e3 * odometry.state().timing.current.depth_readout_s},
+          {"colour_readout_ms", 1e3 * odometry.state().timing.current.colour_readout_s},
+          {"colour_delay_ms", 1e3 * odometry.state().timing.current.colour_delay_s},
           {"median_ms", test::quantile(times_ms, 0.5)},
           {"p95_ms", test::quantile(times_ms, 0.95)},
           {"thread_median_ms", test::quantile(cpu_ms, 0.5)},

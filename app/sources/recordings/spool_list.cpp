@@ -40,10 +40,7 @@ void serialize_entry(Archive& archive, SpoolEntry& entry, bool has_timing = true
   serialize(archive, coloured);
   if (coloured) serialize(archive, frame.colour_camera);
   serialize(archive, frame.T_colour_depth);
-  if (has_timing)
-    for (double* time_s :
-         {&frame.timing.depth_readout_s, &frame.timing.colour_readout_s, &frame.timing.colour_delay_s})
-      serialize(archive, *time_s);
+  if (has_timing) serialize(archive, frame.timing);
   serialize(archive, frame.T_world_camera);
   serialize(archive, frame.down_camera);
 }

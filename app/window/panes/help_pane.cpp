@@ -40,15 +40,7 @@ bool draw_help(float width, float height, const look::Fonts& fonts) {
   const float wide = std::min(look::px(540.0F), width - 2.0F * margin);
   const float tall =
       std::min(row * static_cast<float>(kHelp.size()) + look::px(72.0F), height - 2.0F * margin);
-  // A transparent window over all panes, so a click reaches nothing else.
-  ImGui::SetNextWindowPos({0.0F, 0.0F});
-  ImGui::SetNextWindowSize({width, height});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(8, 10, 13, 150));
-  ImGui::SetNextWindowFocus();
-  ImGui::Begin("help", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav);
-  ImGui::PopStyleColor();
+  look::begin_cover("help", width, height);
   ImGui::SetCursorScreenPos({0.5F * (width - wide), 0.5F * (height - tall)});
   ImGui::PushStyleColor(ImGuiCol_ChildBg, look::kRaised);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {look::px(24.0F), look::px(16.0F)});

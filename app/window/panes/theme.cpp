@@ -83,6 +83,17 @@ void end_pane() {
   ImGui::PopStyleColor();
 }
 
+void begin_cover(const char* name, float width, float height) {
+  ImGui::SetNextWindowPos({0.0F, 0.0F});
+  ImGui::SetNextWindowSize({width, height});
+  ImGui::SetNextWindowFocus();
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(8, 10, 13, 150));
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleColor();
+}
+
 void heading(const char* text, const Fonts& fonts) {
   ImGui::Dummy({0.0F, px(3.0F)});
   ImGui::PushFont(fonts.small);

@@ -35,6 +35,10 @@ float px(float length);
 bool begin_pane(const char* name, const Area& area, ImU32 ground = kPanel, bool scrolls = false);
 void end_pane();
 
+/// Begins a transparent window over all panes, so that a click reaches nothing else. Always call ImGui::End()
+/// afterwards.
+void begin_cover(const char* name, float width, float height);
+
 /// Draws the small heading of a group.
 void heading(const char* text, const Fonts& fonts);
 

@@ -80,18 +80,6 @@ float content_height(const StartDialog& dialog, float wrap) {
   return height;
 }
 
-/// Begins a transparent window over all panes, so that a click reaches nothing else.
-void begin_cover(float width, float height) {
-  ImGui::SetNextWindowPos({0.0F, 0.0F});
-  ImGui::SetNextWindowSize({width, height});
-  ImGui::SetNextWindowFocus();
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(8, 10, 13, 150));
-  ImGui::Begin("cover", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav);
-  ImGui::PopStyleColor();
-}
-
 }  // namespace
 
 DialogAnswer draw_dialog(float width, float height, StartDialog& dialog, const look::Fonts& fonts) {
@@ -105,7 +93,7 @@ DialogAnswer draw_dialog(float width, float height, StartDialog& dialog, const l
   const float fixed = heading + button + look::px(38.0F) + (asks_for_name(dialog) ? button + fault : 0.0F);
   const float content =
       std::min(content_height(dialog, wrap) + look::px(4.0F), height - 2.0F * margin - fixed);
-  begin_cover(width, height);
+  look::begin_cover("cover", width, height);
   ImGui::SetCursorScreenPos({0.5F * (width - wide), 0.5F * (height - fixed - content)});
   ImGui::PushStyleColor(ImGuiCol_ChildBg, look::kRaised);
   ImGui::PushStyleColor(ImGuiCol_FrameBg, look::kGround);

@@ -61,7 +61,7 @@ TEST(ExplorationGrid, GivesUpOnWhatSeveralViewsCouldNotMeasure) {
 }
 
 TEST(NextView, TurnsToWhatWasNotSeen) {
-  // All round but for the view to +y.
+  // All directions except +y.
   std::vector<Keyframe> keyframes;
   for (int i = 0; i < 24; ++i) {
     const double azimuth_rad = 2.0 * std::numbers::pi * i / 24;

@@ -154,6 +154,16 @@ TEST(ControlledSource, EndsAtARequestToFinishAndDeliversTheRestOnceRewound) {
   EXPECT_EQ(source->next(frame).status, ReadStatus::kEnd);
 }
 
+TEST(ControlledSource, RewoundBeforeItsEndItStillHeedsTheChannel) {
+  ScanChannel channel;
+  const auto source = controlled(room(6), channel);
+  Frame frame;
+  ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
+  ASSERT_TRUE(source->rewind());  // as when tracking begins again
+  channel.request(ScanRequest::kFinish);
+  EXPECT_EQ(source->next(frame).status, ReadStatus::kEnd);
+}
+
 TEST(ControlledSource, ThrowsIfTheScanIsDiscarded) {
   ScanChannel channel;
   const auto source = controlled(room(6), channel);

@@ -5,40 +5,23 @@
 # usage: scan_window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
 set -euo pipefail
 program=$1
-for tool in Xvfb xdotool import identify; do
-  command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (packages xvfb xdotool imagemagick)"; exit 77; }
-done
-work=$(mktemp -d)
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/virtual_screen.sh"
+require_tools
 shots=${2:-$work}
 mkdir -p "$shots"
-trap 'kill $(jobs -p) 2> /dev/null || true; wait; rm -rf "$work"' EXIT
 
-fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" >&2 || true; exit 1; }
-until_true() {
-  for _ in $(seq 1800); do
-    "$@" && return
-    kill -0 "$scanner" 2> /dev/null || fail "the window is gone, while waiting for: $*"
-    sleep 0.1
-  done
-  fail "in vain waited for: $*"
-}
 has_focus() { xdotool windowfocus "$(xdotool search --onlyvisible --name '^roomradar scan - ' | head -n 1)" 2> /dev/null; }
 tracked() { tr '\r' '\n' < "$work/log" | sed -n 's/^track \([0-9]*\).*/\1/p' | tail -n 1; }
 has_tracked() { [[ $(tracked || true) -ge $1 ]]; }
 says() { grep -q "$1" "$work/log"; }
-shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 500 ]] || fail "$1.png is empty"; }
 # scan NAME SOURCE [OPTION...]: starts a scan in a window.
 scan() {
   "$program" prescan "$2" --map "$work/$1" --resolution 0.03 --window "${@:3}" > "$work/log" 2>&1 &
-  scanner=$!
+  shown=$!
   until_true has_focus
 }
-over() { local status=0; wait "$scanner" || status=$?; [[ $status -eq $1 ]] || fail "exit status $status instead of $1"; }
 
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp -noreset 3> "$work/display" > /dev/null 2>&1 &
-for _ in $(seq 600); do [[ -s $work/display ]] && break; sleep 0.1; done
-DISPLAY=:$(cat "$work/display")
-export DISPLAY
+screen 1280x800
 
 echo "== a scan that runs to its end gives the map of the same scan without a window"
 short='sim:table?seed=3&frames=40&width=160&rate=10'
@@ -109,7 +92,7 @@ if command -v fakenect > /dev/null; then
   "$program" record 'sim:table?seed=3&frames=60&rate=10' "$work/kinect" --format fakenect > "$work/log" 2>&1 || fail record
   FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" prescan kinect:0 --map "$work/live" --resolution 0.03 --window \
     > "$work/log" 2>&1 &
-  scanner=$!
+  shown=$!
   until_true has_focus
   until_true has_tracked 1
   shot live

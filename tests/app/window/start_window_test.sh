@@ -5,61 +5,41 @@
 # usage: start_window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
 set -euo pipefail
 program=$(readlink -f "$1")
-for tool in Xvfb xdotool import identify script; do
-  command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (packages xvfb xdotool imagemagick bsdutils)"; exit 77; }
-done
-work=$(mktemp -d)
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/virtual_screen.sh"
+require_tools script
 shots=${2:-$work/shots}
 mkdir -p "$shots" "$work/here"
 shots=$(readlink -f "$shots")
-trap 'kill $(jobs -p) 2> /dev/null || true; wait; rm -rf "$work"' EXIT
 export XDG_CONFIG_HOME=$work/config
 settings=$XDG_CONFIG_HOME/roomradar/start.json
 source='sim:table?seed=3&frames=40&width=160&rate=10'
 more='sim:table?seed=3&frames=30&width=160'
 cd "$work/here"
 
-fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" >&2 || true; exit 1; }
-until_true() {
-  for _ in $(seq 1800); do
-    "$@" && return
-    kill -0 "$view" 2> /dev/null || fail "the window is gone, while waiting for: $*"
-    sleep 0.1
-  done
-  fail "in vain waited for: $*"
-}
 window() { xdotool search --onlyvisible --name "$1" 2> /dev/null | head -n 1; }
 has_focus() { local id; id=$(window "$1"); [[ -n $id ]] && xdotool windowfocus "$id" 2> /dev/null; }
 says() { grep -qE -- "$1" "$work/log"; }
-shot() { sleep 0.6; import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 200 ]] || fail "$1.png is empty"; }
+settled_shot() { sleep 0.6; shot "$1" 200; }
 # keys KEY...: types keys one after the other, each in a frame of its own.
 keys() { for key in "$@"; do xdotool key "$key"; sleep 0.4; done; }
-start() { "$program" start "$@" > "$work/log" 2>&1 & view=$!; until_true has_focus '^roomradar$'; sleep 1; }
-over() { local status=0; wait "$view" || status=$?; [[ $status -eq $1 ]] || fail "exit status $status instead of $1"; }
-screen() {  # screen WIDTHxHEIGHT: a screen of its own
-  rm -f "$work/display"
-  Xvfb -displayfd 3 -screen 0 "$1x24" -nolisten tcp -noreset 3> "$work/display" > /dev/null 2>&1 &
-  for _ in $(seq 600); do [[ -s $work/display ]] && break; sleep 0.1; done
-  DISPLAY=:$(cat "$work/display")
-  export DISPLAY
-}
+start() { "$program" start "$@" > "$work/log" 2>&1 & shown=$!; until_true has_focus '^roomradar$'; sleep 1; }
 
 screen 1280x800
 echo "== S asks for a name, Enter scans in the same window, Enter comes back"
 start "$more" "$source"
 first=$(window '^roomradar$')
 keys s
-shot scan-asks
+settled_shot scan-asks
 xdotool type 'maps/table'
 keys Return
 until_true test -e maps/table/map.json
 until_true says '^holes'
 until_true has_focus '^roomradar scan - '
-shot scan-over
+settled_shot scan-over
 [[ $(window '^roomradar scan - ') == "$first" ]] || fail "the scan has another window"
 keys Return
 until_true has_focus '^roomradar$'
-shot back-from-scan
+settled_shot back-from-scan
 [[ $(window '^roomradar$') == "$first" ]] || fail "the start view has another window"
 grep -q '"last_map": "maps/table"' "$settings" || fail "the map is not remembered"
 
@@ -68,7 +48,7 @@ keys p
 until_true has_focus '^roomradar - '
 until_true says '^roomradar run sim:table.*path=view.* --map maps/table --window'
 sleep 2
-shot play
+settled_shot play
 keys ctrl+q
 until_true has_focus '^roomradar$'
 
@@ -77,7 +57,7 @@ before=$(sha256sum < maps/table/map.json)
 keys m
 until_true says 'holds .* already'
 until_true has_focus '^roomradar scan - '
-shot held-already
+settled_shot held-already
 keys Return
 until_true has_focus '^roomradar$'
 [[ $(sha256sum < maps/table/map.json) == "$before" ]] || fail "the map has changed"
@@ -88,26 +68,26 @@ until_true has_focus '^roomradar scan - '
 sleep 1
 keys Return
 until_true has_focus '^roomradar$'
-shot back-from-scan-more
+settled_shot back-from-scan-more
 
 echo "== R renames, E exports, C compares"
 sleep 1
 keys r
-shot rename-asks
+settled_shot rename-asks
 xdotool type 'kitchen'
 keys Return
 [[ -e maps/kitchen/map.json && ! -e maps/table ]] || fail "the map is not renamed"
 keys e
-shot export-asks
+settled_shot export-asks
 keys p
 until_true test -s maps/kitchen.ply
 cp -r maps/kitchen maps/other
 sleep 3  # the view lists folders every two seconds
 keys c
-shot compare-asks
+settled_shot compare-asks
 keys Return
 sleep 4
-shot compared
+settled_shot compared
 keys Return
 
 echo "== a damaged map: a sentence in the view, and nothing is lost"
@@ -115,17 +95,17 @@ cp -r maps/kitchen maps/zzz
 echo x >> maps/zzz/mesh.ply
 sleep 3
 keys Home
-shot damaged
+settled_shot damaged
 keys p
 until_true says 'roomradar: maps/zzz/mesh.ply'
 until_true has_focus '^roomradar$'
-shot damaged-play
+settled_shot damaged-play
 keys Escape
 [[ -e maps/zzz/mesh.ply ]] || fail "the damaged map is gone"
 
 echo "== Delete asks; Escape keeps the map, Return deletes it"
 keys Delete
-shot delete-asks
+settled_shot delete-asks
 keys Escape
 [[ -e maps/zzz/map.json ]] || fail "the map was deleted although it was to be kept"
 keys Delete Return
@@ -142,14 +122,14 @@ until_true has_focus '^roomradar scan - '
 keys ctrl+q
 until_true has_focus '^roomradar$'
 says 'roomradar: .*maps/cut' || fail "nothing is said about the scan that was quit"
-shot quit-scan
+settled_shot quit-scan
 keys Escape Delete Return
 [[ ! -e maps/cut.unfinished ]] || fail "the interrupted scan was not deleted"
 
 echo "== D shows what of the set-up works; + is remembered"
 keys d
 sleep 3
-shot doctor
+settled_shot doctor
 keys Return plus ctrl+q
 over 0
 grep -q '"ui_scale": 1.25' "$settings" || fail "the text size is not remembered"
@@ -158,7 +138,7 @@ echo "== damaged settings: a sentence and the defaults"
 echo '{"ui_scale": "huge"}' > "$settings"
 start maps/kitchen
 says 'ui_scale must be a number; the default settings are used' || fail "nothing is said about the settings"
-shot default-settings
+settled_shot default-settings
 keys ctrl+q
 over 0
 
@@ -171,11 +151,11 @@ for size in 640x480 1280x960 3840x2160; do
     xdotool windowmove "$id" 0 0
     xdotool windowsize "$id" "${size%x*}" "${size#*x}"
     sleep 2
-    shot "$size-$scale-maps"
+    settled_shot "$size-$scale-maps"
     keys Tab
-    shot "$size-$scale-sources"
+    settled_shot "$size-$scale-sources"
     keys s
-    shot "$size-$scale-scan"
+    settled_shot "$size-$scale-scan"
     keys Escape ctrl+q
     over 0
   done
@@ -184,7 +164,7 @@ done
 echo "== alone: on a terminal with a display the view opens, else the first commands are printed"
 view=$$
 script -qec "$program" /dev/null > "$work/log" 2>&1 < /dev/null &
-view=$!
+shown=$!
 until_true has_focus '^roomradar$'
 keys ctrl+q
 over 0

@@ -6,40 +6,24 @@
 # usage: window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
 set -euo pipefail
 program=$1
-for tool in Xvfb xdotool import identify; do
-  command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (packages xvfb xdotool imagemagick)"; exit 77; }
-done
-work=$(mktemp -d)
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/virtual_screen.sh"
+require_tools
 shots=${2:-$work}
 mkdir -p "$shots"
-trap 'kill $(jobs -p) 2> /dev/null || true; wait; rm -rf "$work"' EXIT
 
-fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" "$work/session/events.txt" >&2 || true; exit 1; }
-# until_true COMMAND...: repeats a command until it succeeds, for as long as a slow machine may need.
-until_true() {
-  for _ in $(seq 1800); do
-    "$@" && return
-    kill -0 "$player" 2> /dev/null || fail "the window is gone, while waiting for: $*"
-    sleep 0.1
-  done
-  fail "in vain waited for: $*"
-}
+fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" "$work/session/events.txt" >&2 || true; exit 1; }  # with the events
 has_event() { grep -qE "$1" "$work/session/events.txt" 2> /dev/null; }
 has_frames() { [[ $(grep -cv '^#' "$work/session/results.txt" 2> /dev/null) -ge $1 ]]; }
 # Waits a few frames until the window shows the latest change.
 settle() { until_true has_frames $(($(grep -cv '^#' "$work/session/results.txt") + 4)); }
-shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 500 ]] || fail "$1.png is empty"; }
 
 "$program" prescan 'sim:table?frames=40&width=160' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 || fail prescan
 
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp -noreset 3> "$work/display" > /dev/null 2>&1 &
-for _ in $(seq 600); do [[ -s $work/display ]] && break; sleep 0.1; done
-DISPLAY=:$(cat "$work/display")
-export DISPLAY
+screen 1280x800
 
 "$program" run 'sim:table?frames=30&width=320&path=view&seed=2' --poses recorded --map "$work/map" --window --at-end loop \
   --record-session "$work/session" --report "$work/report.json" > "$work/log" 2>&1 &
-player=$!
+shown=$!
 # A window that exists but is not shown yet cannot have the focus.
 has_focus() { xdotool windowfocus "$(xdotool search --onlyvisible --name '^roomradar - ' | head -n 1)" 2> /dev/null; }
 until_true has_focus
@@ -182,7 +166,7 @@ echo "== quit, and play it again without a window"
 xdotool key Escape
 xdotool key ctrl+q
 status=0
-wait "$player" || status=$?
+wait "$shown" || status=$?
 [[ $status == 0 ]] || fail "exit status $status"
 has_event '^frame [0-9]+ quit$' || fail "the session does not say where it ended"
 grep -q '"object"' "$work/report.json" || fail "no object in the report"
@@ -199,14 +183,14 @@ play_again 20
 echo "== Ctrl-C in the terminal ends the window, too, and the summary comes"
 "$program" run 'sim:table?frames=30&width=320&path=view&seed=2' --poses recorded --map "$work/map" --window --at-end loop \
   > "$work/interrupted" 2>&1 &
-player=$!
+shown=$!
 until_true grep -q '^running .* located' "$work/interrupted"
-kill -INT "$player"
-ended() { ! kill -0 "$player" 2> /dev/null; }
+kill -INT "$shown"
+ended() { ! kill -0 "$shown" 2> /dev/null; }
 for _ in $(seq 300); do ended && break; sleep 0.1; done
 ended || fail "the window is still there"
 status=0
-wait "$player" || status=$?
+wait "$shown" || status=$?
 [[ $status == 0 ]] || fail "exit status $status after Ctrl-C"
 grep -q '^camera located in ' "$work/interrupted" || fail "no summary after Ctrl-C"
 
@@ -219,7 +203,7 @@ if command -v fakenect > /dev/null; then
     fail prescan
   FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" run kinect:0 --map "$work/map" --window \
     --record-session "$work/session" > "$work/log" 2>&1 &
-  player=$!
+  shown=$!
   until_true has_focus
   until_true has_frames 3
   xdotool mousemove 590 390 click 1  # on the table, beside the object
@@ -228,7 +212,7 @@ if command -v fakenect > /dev/null; then
   shot kinect
   xdotool key ctrl+q
   status=0
-  wait "$player" || status=$?
+  wait "$shown" || status=$?
   [[ $status == 0 ]] || fail "exit status $status with a Kinect"
   play_again 5
 fi
