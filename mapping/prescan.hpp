@@ -54,7 +54,8 @@ struct PrescanResult {
   SurfaceStats surface;
 };
 
-/// Callback after each frame. `stage` is "track", "fuse" or "ghosts", and `note` states the frame's outcome.
+/// Callback after each frame. `stage` is "track", "track again" (from the first frame, with better
+/// times of the sensor), "fuse" or "ghosts", and `note` states the frame's outcome.
 /// Called once more, as "surface", when the frames have been read and the surface is to be extracted.
 /// While tracking, the note also states the surface area observed in total and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;

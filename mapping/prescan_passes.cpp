@@ -156,7 +156,8 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
     }
     if (work.progress) {  // only `progress` reports the observed area
       if (tracking) seen.add(frame, tracking.T_world_camera);
-      work.progress(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
+      work.progress(pass.counts.restarts > 0 ? kTrackingAgainStage : kTrackingStage,
+                    std::string(to_string(tracking.status)) + ", " + describe(seen));
     }
     if (restart_with_better_times(work, known, pass)) {
       seen = {};

@@ -46,6 +46,7 @@ struct FusionPass {
 };
 
 inline constexpr const char* kTrackingStage = "track";
+inline constexpr const char* kTrackingAgainStage = "track again";  ///< after a restart; shown, not stored
 inline constexpr const char* kFusingStage = "fuse";
 
 /// Writes the state's files into a checkpoint's folder; see Checkpoints::WriteFiles. Does not change the

@@ -127,7 +127,7 @@ PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, S
   ScanProgress progress(options.map, start, window);
   PrescanResult scanned = or_say_what_is_kept(start, [&] {
     const auto show = [&](const std::string& stage, const std::string& note) {
-      if (stage == "track") last_frame_s = report.seconds();
+      if (stage.starts_with("track")) last_frame_s = report.seconds();
       progress.show(stage, note);
     };
     return prescan(*start.source, config, report.times, show,

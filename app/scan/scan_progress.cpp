@@ -12,6 +12,8 @@
 namespace roomradar {
 namespace {
 
+bool is_tracking(const std::string& stage) { return stage == "track" || stage == "track again"; }
+
 constexpr const char* kLookedAt = "looked";  // the note of each frame in which ghosts are searched
 
 }  // namespace
@@ -31,8 +33,8 @@ void ScanProgress::show(const std::string& stage, const std::string& note) {
   if (const std::string title = is_again ? "fuse again" : stage; title != stage_) begin(title);
   if (stage == "fuse" && note == to_string(FuseStatus::kFused)) ++fused_;
   progress_->step(is_again && fused_ > 0 ? note + ", of at most " + std::to_string(fused_) : note);
-  if (stage != "track") show_in_window(stage_);
-  const bool ends_by_itself = start_.is_live && stage == "track";
+  if (!is_tracking(stage)) show_in_window(stage_);
+  const bool ends_by_itself = start_.is_live && is_tracking(stage);
   if (is_stopping_) stop(map_, start_.checkpoints.get());
   is_stopping_ = !ends_by_itself && Interrupt::take();
   if (is_stopping_ && start_.checkpoints) start_.checkpoints->write_soon();
@@ -60,7 +62,7 @@ void ScanProgress::begin(const std::string& stage) {
   shown_ = 0;
   progress_ = std::make_unique<Progress>(stage, total_of(stage));
   stage_ = stage;
-  if (stage != "track") Interrupt::say(kStopsWithoutMap);
+  if (!is_tracking(stage)) Interrupt::say(kStopsWithoutMap);
 }
 
 }  // namespace roomradar

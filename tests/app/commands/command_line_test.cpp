@@ -127,6 +127,21 @@ TEST_F(CommandLine, PrescanLeavesAMapThatVerifiesAndAReport) {
   EXPECT_GT(report["held_out"]["cover"], 0.5);
 }
 
+// Colour that comes 40 ms late is noticed after 100 frames. They are tracked again, counted from 1.
+TEST_F(CommandLine, PrescanTracksAgainOnceTheTimesOfTheSensorAreKnown) {
+  const fs::path late = folder_ / "late", report = folder_ / "late.json";
+  const Outcome scanned = roomradar("prescan 'sim:table?seed=3&frames=104&width=320&delay=40' --map " +
+                                    late.string() + " --resolution 0.03 --report " + report.string());
+  ASSERT_EQ(scanned.status, 0) << scanned.out;
+  const nlohmann::json found = nlohmann::json::parse(read_text(report));
+  EXPECT_EQ(found["tracking_restarts"], 1);
+  EXPECT_GT(found["colour_delay_s"], 0.02);
+  EXPECT_EQ(found["frames_read"], 104);
+  EXPECT_NE(scanned.out.find("track again"), std::string::npos) << scanned.out;
+  EXPECT_NE(scanned.out.find("104/104"), std::string::npos) << scanned.out;
+  EXPECT_EQ(scanned.out.find("204/104"), std::string::npos) << scanned.out;
+}
+
 TEST_F(CommandLine, MapInfoAndEveryExportWork) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const Outcome info = roomradar("map info " + map());
