@@ -139,6 +139,12 @@ PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, S
   return scanned;
 }
 
+/// Returns the poses of this scan's frames. An extended map has those of earlier scans before them.
+std::vector<TimedPose> poses_of_scan(const PrescanResult& scanned) {
+  const auto& poses = scanned.map.trajectory;
+  return {poses.end() - scanned.counts.frames_tracked, poses.end()};
+}
+
 struct HeldOut {
   std::optional<HeldOutScore> score;  ///< unset: no frames were held out, or they were not compared
   std::string fault;                  ///< empty: none
@@ -148,9 +154,7 @@ HeldOut score_map(const PrescanOptions& options, FrameSource& source, const Pres
                   Report& report) {
   HeldOut held_out;
   if (options.hold_out <= 0) return held_out;
-  // An extended map's last poses are this scan's.
-  const std::vector<TimedPose> poses(scanned.map.trajectory.end() - scanned.counts.frames_tracked,
-                                     scanned.map.trajectory.end());
+  const std::vector<TimedPose> poses = poses_of_scan(scanned);
   try {
     // The map is deskewed, so the frames that judge it must be, too.
     DeskewedSource deskewed(source, poses, scanned.counts.timing);
@@ -219,6 +223,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
                       [&] { report.times.timed("save", [&] { save_map(options.map, scanned.map); }); });
   report.results["ready_after_s"] = report.seconds() - last_frame_s;
 
+  if (!options.trajectory.empty()) write_trajectory(options.trajectory, poses_of_scan(scanned));
   const HeldOut held_out = score_map(options, *start.source, scanned, report);
   if (start.checkpoints) finish(*start.checkpoints, keep_frames);
   print_summary(options, scanned, held_out.score);
@@ -237,8 +242,9 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
 
 int run(const PrescanOptions& options) {
   mmap_large_allocations();
-  require_can_become_map(options.map, {options.report});
+  require_can_become_map(options.map, {options.report, options.trajectory});
   require_writable(options.report);
+  require_writable(options.trajectory);
   if (!options.window) return scan_and_save(options, nullptr);
   const ScanWindowResult result =
       run_in_scan_window("roomradar scan - " + options.source, options.ui_scale, [&](ScanChannel& channel) {

@@ -38,6 +38,18 @@ nlohmann::json report_replay(const ReplayCheck& check) {
   return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
 }
 
+/// Closes the stream of frames, and says what its reader did not get.
+void close_stream(OpenedRun& run) {
+  const LineStream& lines = run.stream->lines();
+  run.stream->close();
+  if (lines.is_reader_gone())
+    std::fprintf(stderr, "--stream: its reader closed it before the run's end; %lld lines were dropped\n",
+                 static_cast<long long>(lines.dropped()));
+  else if (lines.dropped() > 0)
+    std::fprintf(stderr, "--stream: its reader was too slow; %lld lines were dropped\n",
+                 static_cast<long long>(lines.dropped()));
+}
+
 /// Returns true, with a message, if all objects that a run was to drop or place are still out of the room.
 bool says_nothing_dropped(const OpenedRun& run) {
   if (run.options.window || run.check) return false;
@@ -67,6 +79,8 @@ int play(OpenedRun& run) {
   faults.attempt([&] { play_to_end(run); });
   if (run.video) faults.attempt([&] { run.video->close(); });
   if (run.frames_csv) faults.attempt([&] { run.frames_csv->close(); });
+  if (run.trajectory) faults.attempt([&] { run.trajectory->close(); });
+  if (run.stream) faults.attempt([&] { close_stream(run); });
   if (totals.read == totals.skipped) {
     faults.throw_first();
     throw Error(options.source + ": there is no readable frame" +
@@ -80,6 +94,7 @@ int play(OpenedRun& run) {
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped.count;
   run.report.results = results_of(totals, *run.session);
+  if (run.stream) run.report.results["stream_lines_dropped"] = run.stream->lines().dropped();
   if (run.budget) run.report.results["budget"] = run.budget->report();
   if (run.check) run.report.results["replay"] = report_replay(*run.check);
   if (!faults.first().empty()) run.report.results["fault"] = faults.first();

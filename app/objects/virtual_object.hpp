@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/objects/object_file.hpp"
 #include "app/objects/object_model.hpp"
@@ -13,8 +14,15 @@
 #include "app/render/draw.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
+#include "radar/motion/closest_point.hpp"
 
 namespace roomradar {
+
+/// A point where an object touches something.
+struct ObjectContact {
+  ClosestPoint closest;         ///< ClosestPoint::gap_m is exact for the two meshes
+  const Body* other = nullptr;  ///< the other object's body; null: a surface
+};
 
 struct VirtualObject {
   Body body;  ///< includes name and pose
@@ -36,6 +44,8 @@ struct VirtualObject {
   double still_s = 0.0;  ///< time for which it has been awake and within 2 mm of T_world_still
   /// Pose from which its motion is measured for still_s.
   Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
+  /// Contacts before its last motion, within 1.5 contact margins. They stay while it sleeps.
+  std::vector<ObjectContact> contacts;
   double waited_s = 0.0;  ///< time since advance() was last called for it
   /// Pose at which no surface of the room and no other object overlaps it, since physics moved it there.
   std::optional<Eigen::Isometry3d> T_world_undisturbed;

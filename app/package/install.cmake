@@ -14,7 +14,7 @@ install(FILES ${PROJECT_BINARY_DIR}/roomradar.bash DESTINATION ${CMAKE_INSTALL_D
   RENAME roomradar COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
   RENAME _roomradar COMPONENT program)
-install(FILES app/quality/presets.json DESTINATION ${CMAKE_INSTALL_DATADIR}/roomradar COMPONENT program)
+install(FILES app/quality/presets.json app/run/frame-stream.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/roomradar COMPONENT program)
 if(ROOMRADAR_HAS_WINDOW)
   install(FILES app/package/roomradar.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
   install(FILES app/package/roomradar.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps

@@ -218,6 +218,7 @@ void Stepper::wake_if_due() {
 }
 
 void Stepper::end_substep(const MovingBody& moved, const SubstepResult& result) {
+  advanced_.near = moved.near;
   if (moved.crosses) {
     SubstepResult supported = result;
     supported.is_balanced = true;

@@ -3,11 +3,13 @@
 #include <Eigen/Core>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "app/physics/body.hpp"
 #include "app/physics/collision_queries.hpp"
 #include "app/physics/contact_system.hpp"
 #include "app/physics/physics_config.hpp"
+#include "radar/motion/closest_point.hpp"
 
 namespace roomradar {
 
@@ -35,6 +37,9 @@ struct AdvancedBody {
   /// Called after each change of the body's pose. Callers update the scenes of the other bodies in it.
   std::function<void()> moved{};
   StepReport report{};  ///< out
+  /// Out: closest features within contact distance before the body's last motion. Unchanged while it sleeps.
+  /// Of two bodies that move, only one has the features of the pair. `tree` is that of the probe's scene.
+  std::vector<ClosestPoint> near{};
 };
 
 /// Returns the max speed at which surfaces push the body or move it out of an overlap.

@@ -88,8 +88,9 @@ void require_can_save_map(const RunOptions& options, const Script& script) {
     throw Error(
         "--save-map " + options.save_map +
         ": nothing would change in the map; add --commit-changes SECONDS, or an adopt event to the script");
-  require_can_become_map(options.save_map, {options.report, options.frames_csv, options.video,
-                                            options.pictures, options.record_session});
+  require_can_become_map(options.save_map,
+                         {options.report, options.frames_csv, options.trajectory, options.stream,
+                          options.video, options.pictures, options.record_session});
 }
 
 void require_one_quality(const RunOptions& options, const Script& script) {
@@ -277,6 +278,8 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   run.report.settings = settings_of(options);
   require_writable(options.report);
   require_writable(options.frames_csv);
+  require_writable(options.trajectory);
+  if (options.stream != "-") require_writable(options.stream);
   require_outside_maps(options.video);
   require_contents_outside_maps(options.pictures);
   run.script = script_of(options);
@@ -292,9 +295,11 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   open_session(run, has_picture, std::move(first_object));
   open_outputs(run);
   if (!options.frames_csv.empty()) run.frames_csv.emplace(options.frames_csv);
+  if (!options.trajectory.empty()) run.trajectory.emplace(options.trajectory);
   record_frames(run, frames);  // last, so a run that fails to open leaves no folder that blocks the next
                                // attempt
   play_frames(run, std::move(frames));
+  if (!options.stream.empty()) run.stream.emplace(options.stream, options.source, options.map);
   if (link != nullptr)
     run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, run.is_live);
   return opened;

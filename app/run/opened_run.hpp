@@ -8,6 +8,8 @@
 #include "app/cli/report.hpp"
 #include "app/cli/session_folder.hpp"
 #include "app/media/video_writer.hpp"
+#include "app/run/frame_stream.hpp"
+#include "app/run/pose_file.hpp"
 #include "app/run/run_budget.hpp"
 #include "app/run/run_results.hpp"
 #include "app/session/script/script.hpp"
@@ -46,6 +48,10 @@ struct OpenedRun {
   std::unique_ptr<VideoWriter> video;
   /// Set with --frames-csv.
   std::optional<FrameUseFile> frames_csv;
+  /// Set with --trajectory.
+  std::optional<PoseFile> trajectory;
+  /// Set with --stream.
+  std::optional<FrameStream> stream;
   /// Connection to the window; unset if there is no window.
   std::optional<PlayHost> host;
   RunTotals totals;

@@ -118,6 +118,8 @@ void print_files(const RunOptions& options) {
   add(options.record_session.empty() ? "" : options.record_session + "/");
   add(options.save_map.empty() ? "" : options.save_map + "/");
   add(options.frames_csv);
+  add(options.trajectory);
+  add(options.stream);
   add(options.report);
   if (!files.empty()) std::printf("written: %s\n", files.c_str());
 }

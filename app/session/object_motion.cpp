@@ -148,6 +148,26 @@ void set_in_hand(VirtualObject& object, double dt_s) {
   object.body.velocity_world_mps = dt_s > 0.0 ? Eigen::Vector3d(way / dt_s) : Eigen::Vector3d::Zero();
 }
 
+/// Sets VirtualObject::contacts of the objects that are awake or have just fallen asleep.
+void keep_contacts(std::span<const DueObject> due, std::span<AdvancedBody> advanced) {
+  for (std::size_t i = 0; i < due.size(); ++i)
+    if (!advanced[i].near.empty() || !due[i].object->body.asleep) due[i].object->contacts.clear();
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    for (const ClosestPoint& p : advanced[i].near) {
+      const Body* other = p.tree < due[i].bodies.size() ? due[i].bodies[p.tree].body : nullptr;
+      due[i].object->contacts.push_back({p, other});
+      const auto met = std::find_if(due.begin(), due.end(),
+                                    [&](const DueObject& one) { return &one.object->body == other; });
+      if (met == due.end() || met->object->body.asleep) continue;
+      ClosestPoint reversed = p;
+      reversed.point_world += p.gap_m * p.normal_world;
+      reversed.normal_world = -p.normal_world;
+      met->object->contacts.push_back({reversed, &due[i].object->body});
+    }
+    advanced[i].near.clear();
+  }
+}
+
 }  // namespace
 
 bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config) {
@@ -231,6 +251,7 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
       leave_out_engulfing_back(due[i], advanced[i], config, radar, proximity, radar_ms);
     }
     advance_together(advanced, config, contacts);
+    keep_contacts(due, advanced);
     for (std::size_t i = 0; i < due.size(); ++i) {
       const StepReport& report = advanced[i].report;
       due[i].was_overlapped |= report.deepest_overlap_m > config.overlap_allowed_m;

@@ -40,16 +40,18 @@ MatchedPoints matched_points(const std::vector<TimedPose>& estimate, const std::
 
 }  // namespace
 
+std::string trajectory_line(const TimedPose& pose) {
+  const Eigen::Vector3d t = pose.T_world_camera.translation();
+  const Eigen::Quaterniond q(pose.T_world_camera.linear());
+  std::string line = format_fixed(pose.stamp_s, 9);
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
+    line += ' ' + format_general(value, 12);
+  return line + '\n';
+}
+
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory) {
-  std::string text = "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n";
-  for (const TimedPose& pose : trajectory) {
-    const Eigen::Vector3d t = pose.T_world_camera.translation();
-    const Eigen::Quaterniond q(pose.T_world_camera.linear());
-    text += format_fixed(pose.stamp_s, 9);
-    for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
-      text += ' ' + format_general(value, 12);
-    text += '\n';
-  }
+  std::string text = kTrajectoryHeader;
+  for (const TimedPose& pose : trajectory) text += trajectory_line(pose);
   write_bytes(path, text);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace roomradar {
@@ -13,6 +14,12 @@ struct TimedPose {
   double stamp_s = 0.0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
+
+/// First line of a trajectory file, a comment.
+inline constexpr const char* kTrajectoryHeader = "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n";
+
+/// Returns a pose's line in a trajectory file, with its end of line.
+std::string trajectory_line(const TimedPose& pose);
 
 /// Writes one line per pose in order, `stamp tx ty tz qx qy qz qw` (s, m, unit quaternion). Reading restores
 /// values within 1e-9. Throws Error if the file cannot be written.

@@ -73,6 +73,11 @@ void add_options(CLI::App& command, PrescanOptions& options) {
   add_ui_scale_option(command, options.ui_scale);
   add_preset_options(command, options.preset, options.presets);
   add_scan_quality_options(command, options.fixed);
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "also write the camera's poses in the map, in TUM's form, to this file\n"
+                  "(default: only to trajectory.txt in the map)")
+      ->type_name("FILE");
   add_report_option(command, options.report);
 }
 

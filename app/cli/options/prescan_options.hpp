@@ -48,6 +48,8 @@ struct PrescanOptions {
   bool window = false;
   /// Scale of the window's text and panes; unset: the monitor's.
   std::optional<double> ui_scale;
+  /// File for the camera's poses; empty: written only to the map.
+  std::string trajectory;
   /// JSON file to write; empty: not written.
   std::string report;
 };

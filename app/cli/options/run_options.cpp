@@ -92,6 +92,17 @@ void add_picture_options(CLI::App& command, RunOptions& options) {
                   "write pictures of every Nth frame (default: 10)")
       ->check(whole_within(1, 1'000'000))
       ->type_name("N");
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "write the camera's pose in the map for each localised frame, in TUM's form\n"
+                  "(default: not written)")
+      ->type_name("FILE");
+  command
+      .add_option("--stream", options.stream,
+                  "write a line of JSON per frame: camera, objects, contacts, what moved, times; a file,\n"
+                  "a named pipe, or - for standard output. A slow reader loses lines, and never delays\n"
+                  "the run (default: not written)")
+      ->type_name("FILE");
 }
 
 /// Adds the options that trade accuracy for time, and those that measure both.

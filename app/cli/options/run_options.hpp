@@ -71,6 +71,10 @@ struct RunOptions {
   std::int64_t pictures_stride = 10;
   /// CSV file with the FrameUse of each frame and its reasons; empty: not written.
   std::string frames_csv;
+  /// File for the pose of each localised frame; empty: not written.
+  std::string trajectory;
+  /// File, named pipe or "-" (standard output) for the results of each frame; empty: not written.
+  std::string stream;
   /// True: the summary includes RunUse.
   bool verbose = false;
   /// JSON file to write; empty: not written.

@@ -1,0 +1,136 @@
+// frame_stream.cpp: JSON of one frame: camera, objects, contacts, what moved, times.
+#include "app/run/frame_stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "app/cli/report.hpp"
+#include "mapping/types/disjoint_sets.hpp"
+#include "mapping/types/system/version.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::size_t kLeastTriangles = 8;  // smaller components of the dynamic mesh have no box
+
+nlohmann::json orientation_xyzw(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+nlohmann::json pose(const Eigen::Isometry3d& T) {
+  return {{"position_m", to_json(T.translation())}, {"orientation_xyzw", orientation_xyzw(T)}};
+}
+
+std::string_view state_of(const VirtualObject& object) {
+  if (!object.in_room) return "outside";
+  if (object.carried_to_world) return "carried";
+  if (object.stuck) return "stuck";
+  return object.body.asleep ? "at rest" : "moving";
+}
+
+nlohmann::json json_of(const ObjectContact& contact) {
+  return {{"with", to_string(contact.closest.kind)},
+          {"object", contact.other != nullptr ? nlohmann::json(contact.other->name) : nullptr},
+          {"point_m", to_json(contact.closest.point_world)},
+          {"normal", to_json(contact.closest.normal_world)},
+          {"gap_m", contact.closest.gap_m}};
+}
+
+nlohmann::json json_of(const VirtualObject& object) {
+  nlohmann::json json = {{"name", object.body.name}, {"state", state_of(object)}};
+  if (!object.in_room) return json;
+  json.update(pose(object.body.T_world_object));
+  json["velocity_mps"] = to_json(object.body.velocity_world_mps);
+  json["angular_velocity_rad_s"] = to_json(object.body.angular_velocity_world_rad_s);
+  json["rests_on"] = object.body.asleep ? nlohmann::json(to_string(object.body.rests_on)) : nullptr;
+  nlohmann::json& contacts = json["contacts"] = nlohmann::json::array();
+  for (const ObjectContact& contact : object.contacts) contacts.push_back(json_of(contact));
+  return json;
+}
+
+/// Returns JSON in one line. Names that are not UTF-8 get replacement characters.
+std::string text_of(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::vector<Eigen::AlignedBox3d> component_boxes(const Mesh& mesh, std::size_t min_triangles) {
+  const auto count = static_cast<std::uint32_t>(mesh.vertices.size());
+  DisjointSets<std::uint32_t> components(count);
+  for (const Triangle& t : mesh.triangles) components.join(t[0], t[1]), components.join(t[0], t[2]);
+  struct Component {
+    Eigen::AlignedBox3f box;
+    std::size_t triangles = 0;
+  };
+  std::vector<Component> found;
+  std::vector<std::uint32_t> index_of(count, count);
+  for (const Triangle& t : mesh.triangles) {
+    std::uint32_t& index = index_of[components.find(t[0])];
+    if (index == count) index = static_cast<std::uint32_t>(found.size()), found.emplace_back();
+    for (const std::uint32_t vertex : t) found[index].box.extend(mesh.vertices[vertex]);
+    ++found[index].triangles;
+  }
+  std::erase_if(found, [&](const Component& component) { return component.triangles < min_triangles; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Component& a, const Component& b) { return a.triangles > b.triangles; });
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const Component& component : found) {
+    Eigen::AlignedBox3d box = component.box.cast<double>();
+    boxes.push_back(box.translate(mesh.origin));
+  }
+  return boxes;
+}
+
+FrameStream::FrameStream(const std::filesystem::path& path, const std::string& source, const std::string& map)
+    : lines_(path) {
+  lines_.offer(text_of({{"type", "start"},
+                        {"schema", kFrameStreamVersion},
+                        {"version", kVersion},
+                        {"source", source},
+                        {"map", map}}));
+}
+
+void FrameStream::write(std::int64_t run_frame, double time_s, const Frame& frame, const FrameResult& result,
+                        const Session& session, const StageTimes& times) {
+  const bool is_located = result.status == FrameStatus::kDone;
+  nlohmann::json stages = nlohmann::json::object();
+  times.visit_newest([&](const std::string& stage, std::size_t count, float newest_ms) {
+    if (timed_[stage] != count) stages[stage] = std::round(1e3 * static_cast<double>(newest_ms)) / 1e3;
+    timed_[stage] = count;
+  });
+  nlohmann::json objects = nlohmann::json::array();
+  for (const auto& object : session.objects()) objects.push_back(json_of(*object));
+  nlohmann::json moved = nlohmann::json::array();
+  if (is_located && session.config().scene.surfaces == SurfacePolicy::kMap)
+    for (const Eigen::AlignedBox3d& box :
+         component_boxes(session.scene().dynamic_world().seen_world, kLeastTriangles))
+      moved.push_back({{"least_m", to_json(box.min())}, {"greatest_m", to_json(box.max())}});
+  nlohmann::json notices = nlohmann::json::array();
+  for (const ObjectNotice& notice : result.notices) notices.push_back(notice.name + notice.text);
+  nlohmann::json line = {{"type", "frame"},
+                         {"frame", run_frame},
+                         {"source_frame", frame.index},
+                         {"stamp_s", frame.stamp_s},
+                         {"time_s", time_s},
+                         {"tracking", to_string(result.tracking)},
+                         {"camera", is_located ? pose(result.T_world_camera) : nlohmann::json(nullptr)},
+                         {"objects", objects},
+                         {"moved", moved},
+                         {"notices", notices},
+                         {"stages_ms", stages},
+                         {"lines_dropped", lines_.dropped()}};
+  lines_.offer([line = std::move(line)] { return text_of(line); });
+  ++frames_;
+}
+
+void FrameStream::close() {
+  lines_.offer(text_of({{"type", "end"}, {"frames", frames_}, {"lines_dropped", lines_.dropped()}}));
+  lines_.close();
+}
+
+}  // namespace roomradar
