@@ -14,12 +14,11 @@
 
 #include "app/cli/apply_scan_quality.hpp"
 #include "app/cli/interrupt.hpp"
-#include "app/cli/options/object_options.hpp"
 #include "app/cli/report.hpp"
-#include "app/commands/run_command.hpp"
 #include "app/evaluation/held_out.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/scan/controlled_source.hpp"
+#include "app/scan/next_view.hpp"
 #include "app/scan/prescan_report.hpp"
 #include "app/scan/scan_end.hpp"
 #include "app/scan/scan_progress.hpp"
@@ -89,7 +88,7 @@ int report_held_already(const PrescanOptions& options, ScanChannel* channel, Rep
                                " already; there is nothing to resume (another recording needs another name)";
   std::printf("%s\n", sentence.c_str());
   std::fflush(stdout);  // the window may stay open
-  if (channel) channel->finish(sentence, nullptr);
+  if (channel) channel->finish({sentence, std::make_shared<const Mesh>(load_map(options.map).mesh)});
   report.results["held_already"] = true;
   write_report(report, options.report);
   return 0;
@@ -167,17 +166,10 @@ HeldOut score_map(const PrescanOptions& options, FrameSource& source, const Pres
   return held_out;
 }
 
-/// Returns the options of a run in the map just made, with the same camera.
-RunOptions play_options(const PrescanOptions& options) {
-  RunOptions play;
-  play.source = options.source;
-  play.map = options.map;
-  play.calibration = options.calibration;
-  play.objects = objects_of({});
-  play.at_end = AtEnd::kStay;
-  play.window = true;
-  play.ui_scale = options.ui_scale;
-  return play;
+/// Returns the holes that are numbered in coverage.png and in the report.
+std::vector<Hole> holes_inside(std::vector<Hole> holes) {
+  std::erase_if(holes, [](const Hole& hole) { return hole.kind == HoleKind::kOuterBorder; });
+  return holes;
 }
 
 /// Returns the sentence that the window shows at the end.
@@ -185,7 +177,14 @@ std::string outcome_of(const PrescanOptions& options, const PrescanResult& scann
   return "The map is saved in " + options.map + ": " + std::to_string(scanned.counts.frames_tracked) +
          " of " + std::to_string(scanned.counts.frames_read) + " frames tracked, " +
          std::to_string(scanned.map.mesh.triangles.size()) + " triangles, " +
-         std::to_string(scanned.holes.size()) + " holes.";
+         std::to_string(holes_inside(scanned.holes).size()) +
+         " holes inside the scan, numbered in the model.";
+}
+
+/// Returns the view that the window shows first: that of options.look_at.
+std::optional<NextView> first_view_of(const PrescanOptions& options) {
+  if (!options.look_at) return std::nullopt;
+  return view_of(options.look_at->point_world, options.look_at->viewpoint_world, Eigen::Vector3d::UnitZ());
 }
 
 /// Scans and saves. Returns the exit status.
@@ -206,8 +205,9 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   if (channel) {
     start.source = controlled(std::move(start.source), *channel);
     const std::filesystem::path folder = std::filesystem::absolute(options.map).parent_path();
-    window.view = std::make_unique<ScanView>(*channel, config.max_memory_bytes,
-                                             start.spool.empty() ? folder : start.spool);
+    window.view =
+        std::make_unique<ScanView>(*channel, config.max_memory_bytes,
+                                   start.spool.empty() ? folder : start.spool, first_view_of(options));
   }
 
   double last_frame_s = 0.0;
@@ -229,7 +229,9 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   print_summary(options, scanned, held_out.score);
   print_holes(scanned.holes);
   std::fflush(stdout);  // the window may stay open
-  if (channel) channel->finish(outcome_of(options, scanned), std::make_shared<const Mesh>(scanned.map.mesh));
+  if (channel)
+    channel->finish({outcome_of(options, scanned), std::make_shared<const Mesh>(scanned.map.mesh),
+                     holes_inside(scanned.holes)});
   write_report(report, options.report);
   if (!held_out.fault.empty())
     std::fprintf(stderr, "roomradar: %s: is saved; its held-out frames could not be compared with it: %s\n",
@@ -238,16 +240,24 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   return held_out.fault.empty() ? 0 : 1;
 }
 
-}  // namespace
-
-int run(const PrescanOptions& options) {
+void require_can_save(const PrescanOptions& options) {
   mmap_large_allocations();
   require_can_become_map(options.map, {options.report, options.trajectory});
   require_writable(options.report);
   require_writable(options.trajectory);
-  if (!options.window) return scan_and_save(options, nullptr);
-  const ScanWindowResult result =
-      run_in_scan_window("roomradar scan - " + options.source, options.ui_scale, [&](ScanChannel& channel) {
+}
+
+}  // namespace
+
+int scan(const PrescanOptions& options) {
+  require_can_save(options);
+  return scan_and_save(options, nullptr);
+}
+
+ScanWindowResult scan_in_window(const PrescanOptions& options) {
+  require_can_save(options);
+  return run_in_scan_window(
+      "roomradar scan - " + options.source, options.ui_scale, [&](ScanChannel& channel) {
         try {
           return scan_and_save(options, &channel);
         } catch (const ScanDiscarded&) {
@@ -255,7 +265,6 @@ int run(const PrescanOptions& options) {
           return 1;
         }
       });
-  return result.wants_to_play ? run(play_options(options)) : result.status;
 }
 
 }  // namespace roomradar

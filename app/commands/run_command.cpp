@@ -2,14 +2,15 @@
 #include "app/commands/run_command.hpp"
 
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "app/cli/deferred_errors.hpp"
 #include "app/run/opened_run.hpp"
 #include "app/run/run_loop.hpp"
+#include "app/run/run_results.hpp"
 #include "app/run/run_summary.hpp"
-#include "app/window/play_window.hpp"
 #include "mapping/coverage/coverage.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/system/error.hpp"
@@ -83,6 +84,7 @@ int play(OpenedRun& run) {
   if (run.stream) faults.attempt([&] { close_stream(run); });
   if (totals.read == totals.skipped) {
     faults.throw_first();
+    if (run.host && run.host->is_closed()) return 0;  // before the first frame
     throw Error(options.source + ": there is no readable frame" +
                 (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
   }
@@ -115,18 +117,34 @@ int play(OpenedRun& run) {
   return 1;
 }
 
-/// @param link  to the window; null: no window
-int run_frames(const RunOptions& options, UiChannel* link) { return play(*open_run(options, link)); }
+/// Returns where to look for what the first object on the border of unknown space rests on.
+std::optional<PlaceToScan> place_to_scan(const Session& session) {
+  for (const auto& object : session.objects()) {
+    if (!object->in_room || !rests_on_unknown(*object)) continue;
+    const auto viewpoint =
+        viewpoint_of_support(*object, session.scene_without(object.get()), camera_position_world(session));
+    if (viewpoint) return PlaceToScan{support_point_world(*object), *viewpoint};
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
-int run(const RunOptions& options) {
-  if (!options.window) return run_frames(options, nullptr);
+int play(const RunOptions& options) { return play(*open_run(options, nullptr)); }
+
+PlayResult play_in_window(const RunOptions& options) {
   std::vector<ObjectSource> meshes;
   for (const ObjectOption& object : options.objects)
     if (object.source.mesh != "teapot") meshes.push_back(object.source);
-  return run_in_window("roomradar - " + options.source, meshes, options.budget_ms, options.ui_scale,
-                       [&](UiChannel& link) { return run_frames(options, &link); });
+  PlayResult result;
+  result.window = run_in_window("roomradar - " + options.source, meshes, options.budget_ms, options.ui_scale,
+                                [&](UiChannel& link) {
+                                  const std::unique_ptr<OpenedRun> run = open_run(options, &link);
+                                  const int status = play(*run);
+                                  if (link.wants_to_scan()) result.look_at = place_to_scan(*run->session);
+                                  return status;
+                                });
+  return result;
 }
 
 }  // namespace roomradar

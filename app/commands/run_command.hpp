@@ -1,13 +1,25 @@
 // run_command.hpp: roomradar run: augmented reality in a saved room.
 #pragma once
+#include <optional>
+
 #include "app/cli/options/run_options.hpp"
+#include "app/objects/unknown_support.hpp"
+#include "app/window/play_window.hpp"
 
 namespace roomradar {
 
-/// Processes the source's frames, in a window if requested, and writes the requested results. Returns the
-/// exit status: 0, or 1 if the camera was not localised in any frame.
+/// Processes the source's frames without a window, and writes the requested results. Returns the exit status:
+/// 0, or 1 if the camera was not localised in any frame.
 /// @throws Error if the run cannot begin, has no readable frame or fails. Results obtained before the error
 /// are written
-int run(const RunOptions& options);
+int play(const RunOptions& options);
+
+struct PlayResult {
+  PlayWindowResult window;
+  /// If the user asks to scan more: the border of unknown space on which an object rests; unset: none does.
+  std::optional<PlaceToScan> look_at{};
+};
+/// Does the same in a window.
+PlayResult play_in_window(const RunOptions& options);
 
 }  // namespace roomradar

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kWrongUsage = 2;  // exit status
 
-struct Outcome {
+struct CommandResult {
   int status = 0;
   StartMessage message;
 };
@@ -37,7 +37,7 @@ int run_as_typed(const std::vector<std::string>& words) {
 }
 
 /// Carries out a choice. The message says how it ended; errors are printed, too.
-Outcome carry_out(const StartChoice& choice, const StartSettings& settings) {
+CommandResult carry_out(const StartChoice& choice, const StartSettings& settings) {
   try {
     const int status = run_as_typed(command_of(choice, settings));
     std::fflush(stdout);
@@ -90,9 +90,9 @@ int show_start(StartWindow& window, const StartOptions& options) {
     }
     remember(state);
     if (choice.action == StartAction::kQuit) return 0;
-    const Outcome outcome = carry_out(choice, state.settings);
-    if (window.was_closed()) return outcome.status;
-    state.message = outcome.message;
+    const CommandResult result = carry_out(choice, state.settings);
+    if (window.was_closed()) return result.status;
+    state.message = result.message;
     if (choice.action != StartAction::kPlay && is_map(choice.map)) choose(state, choice.map);
   }
 }

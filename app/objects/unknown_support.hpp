@@ -30,6 +30,12 @@ std::optional<Eigen::Vector3d> viewpoint_of_support(const VirtualObject& object,
                                                     std::span<const SceneTree> scene,
                                                     const Eigen::Vector3d& towards_world);
 
+/// A surface to scan, and a free position from which it can be seen.
+struct PlaceToScan {
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d viewpoint_world = Eigen::Vector3d::Zero();
+};
+
 /// Returns a sentence, without the object's name, that states the support point and the viewpoint for
 /// scanning it.
 std::string unknown_support_text(const VirtualObject& object, std::span<const SceneTree> scene,

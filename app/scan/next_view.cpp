@@ -158,6 +158,13 @@ std::optional<NextView> best_next_view(const ExplorationGrid& grid, const Isomet
   return best;
 }
 
+NextView view_of(const Vector3d& point_world, const Vector3d& viewpoint_world, const Vector3d& up_world) {
+  Vector3d ahead = point_world - viewpoint_world;
+  if (ahead.cross(up_world).norm() < 1e-6 * ahead.norm() || ahead.norm() < 1e-9)  // straight up or down
+    ahead += (1e-3 * ahead.norm() + 1e-9) * up_world.unitOrthogonal();
+  return {looking(viewpoint_world, ahead.normalized(), up_world), 0.0, 0.0};
+}
+
 std::string way_to(const NextView& next, const Isometry3d& T_world_camera, const Vector3d& up_world) {
   constexpr double kTurn_deg = 12.0, kMove_m = 0.15;
   const Level level = level_axes(T_world_camera, up_world);

@@ -23,6 +23,10 @@ struct NextView {
 std::optional<NextView> best_next_view(const ExplorationGrid& grid, const Eigen::Isometry3d& T_world_camera,
                                        const Eigen::Vector3d& up_world);
 
+/// Returns a view of a point, with a level x axis.
+NextView view_of(const Eigen::Vector3d& point_world, const Eigen::Vector3d& viewpoint_world,
+                 const Eigen::Vector3d& up_world);
+
 /// Returns the way from the camera to a view in words, such as "turn left 60 degrees, go 0.8 m forward".
 std::string way_to(const NextView& next, const Eigen::Isometry3d& T_world_camera,
                    const Eigen::Vector3d& up_world);

@@ -46,14 +46,9 @@ ScanStage ScanChannel::stage() const {
   return stage_;
 }
 
-std::string ScanChannel::outcome() const {
+ScanOutcome ScanChannel::outcome() const {
   const std::lock_guard lock(mutex_);
   return outcome_;
-}
-
-std::shared_ptr<const Mesh> ScanChannel::surface() const {
-  const std::lock_guard lock(mutex_);
-  return surface_;
 }
 
 ScanRequest ScanChannel::requested() const {
@@ -83,11 +78,10 @@ void ScanChannel::set_stage(ScanStage stage) {
   wake_();
 }
 
-void ScanChannel::finish(std::string outcome, std::shared_ptr<const Mesh> surface) {
+void ScanChannel::finish(ScanOutcome outcome) {
   {
     const std::lock_guard lock(mutex_);
     outcome_ = std::move(outcome);
-    surface_ = std::move(surface);
   }
   wake_();
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/scan/scan_advice.hpp"
+#include "mapping/coverage/hole.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
@@ -58,6 +59,14 @@ struct ShownScan {
   ScanCounts counts;
 };
 
+/// Result of a scan, for its window.
+struct ScanOutcome {
+  std::string text;                       ///< empty: the scan goes on
+  std::shared_ptr<const Mesh> surface{};  ///< of the saved map; null: there is no map
+  /// Holes inside the scan, largest first, in the map's world; the window numbers them from 1.
+  std::vector<Hole> holes{};
+};
+
 /// Work of a scan after its last frame.
 struct ScanStage {
   std::string name;                   ///< as in PrescanProgress; empty: frames are still tracked
@@ -88,10 +97,8 @@ class ScanChannel {
   /// Swaps the newest state with `shown`. Returns false if there is none since the last call.
   bool take(ShownScan& shown);
   [[nodiscard]] ScanStage stage() const;
-  /// Returns the result's sentence once the scan is over; empty before.
-  [[nodiscard]] std::string outcome() const;
-  /// Returns the map's surface once the scan is over; null before, and if there is no map.
-  [[nodiscard]] std::shared_ptr<const Mesh> surface() const;
+  /// Returns the result once the scan is over; ScanOutcome::text is empty before.
+  [[nodiscard]] ScanOutcome outcome() const;
 
   // For the scan's thread.
   [[nodiscard]] ScanRequest requested() const;
@@ -102,8 +109,7 @@ class ScanChannel {
   /// Publishes `filled`, and swaps it with an old state whose memory can be reused.
   void publish(ShownScan& filled);
   void set_stage(ScanStage stage);
-  /// @param surface  mesh of the saved map; null: there is no map
-  void finish(std::string outcome, std::shared_ptr<const Mesh> surface);
+  void finish(ScanOutcome outcome);
 
  private:
   std::function<void()> wake_;
@@ -111,8 +117,7 @@ class ScanChannel {
   std::condition_variable changed_;
   ShownScan newest_;
   ScanStage stage_;
-  std::string outcome_;
-  std::shared_ptr<const Mesh> surface_;
+  ScanOutcome outcome_;
   ScanRequest request_ = ScanRequest::kGoOn;
   double undo_s_ = 0.0;
   bool is_fresh_ = false, is_paused_ = false;

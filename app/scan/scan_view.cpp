@@ -36,10 +36,12 @@ double new_fraction(const Image<Knowledge>& knowledge) {
 
 }  // namespace
 
-ScanView::ScanView(ScanChannel& channel, std::size_t max_memory_bytes, std::filesystem::path folder)
+ScanView::ScanView(ScanChannel& channel, std::size_t max_memory_bytes, std::filesystem::path folder,
+                   std::optional<NextView> first_view)
     : channel_(channel),
       max_memory_bytes_(max_memory_bytes),
       folder_(std::move(folder)),
+      first_view_(std::move(first_view)),
       thread_([this] { serve(); }) {}
 
 ScanView::~ScanView() {
@@ -88,6 +90,7 @@ void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const O
   if (tracking) work.anchor = anchor_for(frame.index, tracking.T_world_camera, state, anchors_);
   work.T_world_anchor = anchors_.T_world_anchor;
   work.has_moved = std::exchange(has_moved_, false);
+  work.is_located = state.located;
   work.path_world = path_of(state, tracking);
   if (tracking && wants_keyframes_.exchange(false)) work.keyframes = state.graph.keyframes;
   work.counts.frames = frames_;
@@ -149,10 +152,13 @@ void ScanView::explore(const Work& work) {
     });
   }
   if (!search_.valid() && Clock::now() - searched_ > kEvery) wants_keyframes_ = true;
-  if (!explored_.next_view || !work.tracking) return;
-  const Eigen::Isometry3d left = explored_.next_view->T_world_camera.inverse() * work.tracking.T_world_camera;
-  if (left.translation().norm() < kReached_m && Eigen::AngleAxisd(left.linear()).angle() < kReached_rad)
-    explored_.next_view.reset();
+  if (!work.tracking) return;
+  for (std::optional<NextView>* next : {&explored_.next_view, &first_view_}) {
+    if (!*next || (next == &first_view_ && !work.is_located)) continue;
+    const Eigen::Isometry3d left = (*next)->T_world_camera.inverse() * work.tracking.T_world_camera;
+    if (left.translation().norm() < kReached_m && Eigen::AngleAxisd(left.linear()).angle() < kReached_rad)
+      next->reset();
+  }
 }
 
 void ScanView::show(const Work& work) {
@@ -197,10 +203,11 @@ void ScanView::show(const Work& work) {
   for (Eigen::Vector3f& position : shown_.path_world)
     position = T_shown_world_.linear().cast<float>() * position;
   shown_.next_view.reset();
-  if (explored_.next_view && work.tracking)
-    shown_.next_view = ShownNextView{
-        T_shown_world_ * explored_.next_view->T_world_camera,
-        way_to(*explored_.next_view, T_world_camera, T_shown_world_.linear().row(2).transpose())};
+  const std::optional<NextView>& next = first_view_ && work.is_located ? first_view_ : explored_.next_view;
+  if (next && work.tracking)
+    shown_.next_view =
+        ShownNextView{T_shown_world_ * next->T_world_camera,
+                      way_to(*next, T_world_camera, T_shown_world_.linear().row(2).transpose())};
   shown_.parts.clear();
   for (const LiveModelPart& part : model_.parts())
     if (part.anchor < work.T_world_anchor.size() && work.T_world_anchor[part.anchor])

@@ -31,8 +31,10 @@ class ScanView final : public ScanObserver {
  public:
   /// @param channel  must outlive the view
   /// @param max_memory_bytes, folder  see resources_now()
+  /// @param first_view  view, in the world of the map that is extended, that is shown as the next one until
+  ///                    the camera has been there; unset: none
   explicit ScanView(ScanChannel& channel, std::size_t max_memory_bytes = 0,
-                    std::filesystem::path folder = ".");
+                    std::filesystem::path folder = ".", std::optional<NextView> first_view = {});
   ~ScanView() override;
 
   void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) override;
@@ -47,7 +49,8 @@ class ScanView final : public ScanObserver {
     ScanFacts facts;
     std::size_t anchor = 0;
     AnchorPoses T_world_anchor;
-    bool has_moved = false;  ///< anchors moved since the last work
+    bool has_moved = false;   ///< anchors moved since the last work
+    bool is_located = false;  ///< the odometry's world is that of the map
     std::vector<Eigen::Vector3f> path_world;
     std::vector<Keyframe> keyframes;  ///< only if the next view is to be searched
     ScanCounts counts;
@@ -86,6 +89,7 @@ class ScanView final : public ScanObserver {
     std::optional<NextView> next_view;
   };
   Explored explored_;  ///< in the odometry's world
+  std::optional<NextView> first_view_;
   std::chrono::steady_clock::time_point searched_{};
   std::future<Explored> search_;
 

@@ -44,11 +44,8 @@ PlayUi::PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<Obje
 }
 
 void PlayUi::take_news() {
-  const std::string message = link_.take_message();
-  if (!message.empty()) {
-    message_.text = message;
-    message_.until_s = ImGui::GetTime() + kMessage_s;
-  }
+  if (const std::string message = link_.take_message(); !message.empty())
+    message_ = {message, ImGui::GetTime() + kMessage_s};
   const std::int64_t before = shown_.run_frame;
   if (!link_.take(shown_)) return;
   picture_.upload(shown_);
@@ -103,7 +100,7 @@ void PlayUi::draw_waiting(const Area& area) {
 
 void PlayUi::draw_bar(const Area& area, bool has_two_rows) {
   look::begin_pane("bar", area, look::kPanel);
-  const float gap = look::px(has_two_rows ? 3.0F : 8.0F), wide_gap = look::px(has_two_rows ? 8.0F : 22.0F);
+  const float gap = look::px(has_two_rows ? 3.0F : 8.0F), wide_gap = look::px(has_two_rows ? 8.0F : 12.0F);
   if (!has_two_rows) {
     ImGui::PushFont(fonts_.large);
     ImGui::AlignTextToFramePadding();
@@ -122,7 +119,7 @@ void PlayUi::draw_bar(const Area& area, bool has_two_rows) {
   if (button(is_paused ? "Play" : "Pause", "Space", is_paused)) press(GLFW_KEY_SPACE);
   if (button("Step", ".", false)) press(GLFW_KEY_PERIOD);
   if (button("Restart", "Home", false)) press(GLFW_KEY_HOME);
-  if (button(has_two_rows ? "Hold" : "Hold camera", "F", shown_.is_held)) press(GLFW_KEY_F);
+  if (button("Hold", "F", shown_.is_held)) press(GLFW_KEY_F);
   if (button("Loop", "L", shown_.at_end == AtEnd::kLoop)) press(GLFW_KEY_L);
   ImGui::SameLine(0.0F, wide_gap);
   const struct {
@@ -134,7 +131,8 @@ void PlayUi::draw_bar(const Area& area, bool has_two_rows) {
     ImGui::SameLine(0.0F, look::px(2.0F));
   }
   ImGui::SameLine(0.0F, wide_gap);
-  if (button("Help", "H", shows_help_)) shows_help_ = !shows_help_;
+  if (button("Scan more", "M", false)) press(GLFW_KEY_M);
+  if (button("Help", "H", shows_help_)) press(GLFW_KEY_H);
   if (has_two_rows) ImGui::NewLine();
   draw_run_state(area, has_two_rows, shown_, link_, ImGui::GetTime() - newest_s_);
   draw_frame_time(area, has_two_rows, timing_, rate_.frames_per_s, speed_, fonts_);
@@ -295,9 +293,7 @@ bool PlayUi::press_scene_key(int key) {
 bool PlayUi::press_window_key(int key, int modifiers) {
   switch (key) {
     case GLFW_KEY_V:
-      view_ = view_ == MainView::kCamera   ? MainView::kModels
-              : view_ == MainView::kModels ? MainView::kBoth
-                                           : MainView::kCamera;
+      view_ = static_cast<MainView>((static_cast<int>(view_) + 1) % kMainViews);
       return true;
     case GLFW_KEY_C:
       if ((modifiers & GLFW_MOD_CONTROL) == 0)
@@ -311,6 +307,10 @@ bool PlayUi::press_window_key(int key, int modifiers) {
       return true;
     case GLFW_KEY_ESCAPE:
       shows_help_ = false;
+      return true;
+    case GLFW_KEY_M:
+      link_.ask_to_scan();
+      quits_ = true;
       return true;
     case GLFW_KEY_Q:
       quits_ = quits_ || (modifiers & GLFW_MOD_CONTROL) != 0;

@@ -22,17 +22,17 @@
 
 namespace roomradar {
 
-int run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,
-                  std::optional<double> budget_ms, std::optional<double> ui_scale,
-                  const std::function<int(UiChannel&)>& work) {
+PlayWindowResult run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,
+                               std::optional<double> budget_ms, std::optional<double> ui_scale,
+                               const std::function<int(UiChannel&)>& work) {
   const std::shared_ptr<GlfwWindow> open = open_window(title);
   GlfwWindow& window = *open;
   UiChannel link([] { glfwPostEmptyEvent(); });
-  int status = 0;
+  PlayWindowResult result;
   std::exception_ptr fault;
   std::thread session([&] {
     try {
-      status = work(link);
+      result.status = work(link);
     } catch (...) {
       fault = std::current_exception();
     }
@@ -50,11 +50,13 @@ int run_in_window(const std::string& title, const std::vector<ObjectSource>& mes
     throw;
   }
   link.close();
-  glfwHideWindow(window.get());  // the session may take a while to end
+  result.wants_to_scan = link.wants_to_scan();
+  if (!result.wants_to_scan) glfwHideWindow(window.get());  // the session may take a while to end
   session.join();
   if (fault) glfwSetWindowShouldClose(window.get(), GLFW_FALSE);  // the fault closed it, not the user
   if (fault) std::rethrow_exception(fault);
-  return status;
+  if (result.wants_to_scan) result.window = open;
+  return result;
 }
 
 }  // namespace roomradar

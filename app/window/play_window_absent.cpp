@@ -4,9 +4,9 @@
 
 namespace roomradar {
 
-int run_in_window(const std::string& /*title*/, const std::vector<ObjectSource>& /*meshes*/,
-                  std::optional<double> /*budget_ms*/, std::optional<double> /*ui_scale*/,
-                  const std::function<int(UiChannel&)>& /*work*/) {
+PlayWindowResult run_in_window(const std::string& /*title*/, const std::vector<ObjectSource>& /*meshes*/,
+                               std::optional<double> /*budget_ms*/, std::optional<double> /*ui_scale*/,
+                               const std::function<int(UiChannel&)>& /*work*/) {
   throw Error(
       "--window: this roomradar was built without it; install libglfw3-dev and libimgui-dev and configure "
       "again, or write the pictures with --video FILE");

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "app/objects/unknown_support.hpp"
 #include "app/quality/quality.hpp"
 #include "app/sources/formats/frame_range.hpp"
 #include "mapping/odometry/up_direction.hpp"
@@ -46,6 +47,9 @@ struct PrescanOptions {
   double max_memory_mb = 0.0;
   /// True: opens a window that shows the scan.
   bool window = false;
+  /// Place that the window asks to be scanned first, in the world of the map that is extended. No option sets
+  /// it.
+  std::optional<PlaceToScan> look_at;
   /// Scale of the window's text and panes; unset: the monitor's.
   std::optional<double> ui_scale;
   /// File for the camera's poses; empty: written only to the map.

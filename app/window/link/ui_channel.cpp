@@ -82,6 +82,16 @@ std::string UiChannel::take_message() {
   return std::exchange(message_, {});
 }
 
+void UiChannel::ask_to_scan() {
+  const std::lock_guard lock(mutex_);
+  wants_to_scan_ = true;
+}
+
+bool UiChannel::wants_to_scan() const {
+  const std::lock_guard lock(mutex_);
+  return wants_to_scan_;
+}
+
 void UiChannel::close() {
   const std::lock_guard lock(mutex_);
   is_closed_ = true;

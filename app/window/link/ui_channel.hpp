@@ -130,6 +130,9 @@ class UiChannel {
   bool take(Snapshot& shown);
   /// Returns the newest message since the last call, or an empty string.
   std::string take_message();
+  /// Asks to scan more of the room once the run has ended.
+  void ask_to_scan();
+  [[nodiscard]] bool wants_to_scan() const;
   void close();
   [[nodiscard]] bool is_over() const;
 
@@ -156,6 +159,7 @@ class UiChannel {
   Snapshot newest_;
   bool is_fresh_ = false;
   bool is_paused_ = false, is_closed_ = false, is_over_ = false;
+  bool wants_to_scan_ = false;
   bool was_paused_ = false;  ///< the window has been paused since the last take_pause()
   int steps_ = 0;
   double speed_ = 1.0;

@@ -9,7 +9,7 @@
 namespace roomradar {
 namespace {
 
-constexpr std::array<std::array<const char*, 2>, 22> kHelp = {
+constexpr std::array<std::array<const char*, 2>, 23> kHelp = {
     {{"click on a surface", "drop the chosen object there"},
      {"Shift + click", "place it there"},
      {"drag an object", "carry it; let go in motion: throw it"},
@@ -30,6 +30,7 @@ constexpr std::array<std::array<const char*, 2>, 22> kHelp = {
      {"X", "radar exact, sampled"},
      {"V", "camera, models, both"},
      {"C", "models: look at the chosen object"},
+     {"M", "scan more of the room, then play on in it"},
      {"Ctrl + C", "copy the position under the mouse, for a script"},
      {"Esc, a click", "close this; Ctrl + Q quits"}}};
 

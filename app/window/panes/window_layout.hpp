@@ -24,6 +24,7 @@ constexpr float scale_in_window(float wanted, float width, float height) {
 }
 
 enum class MainView { kCamera, kModels, kBoth };
+constexpr int kMainViews = 3;
 
 struct WindowLayout {
   Area bar, camera, models, side, timing, radar;

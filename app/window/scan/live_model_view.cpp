@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "app/session/picture_composer.hpp"
@@ -20,6 +21,22 @@ void draw_path(ImDrawList& list, const ShownScan& shown, const ToWindow& to_wind
     const std::optional<ImVec2> at = to_window(position.cast<double>());
     if (at && last) list.AddLine(*last, *at, kPath, look::px(1.5F));
     last = at;
+  }
+}
+
+/// Draws a disc with its number at each hole, the largest hole on top.
+void draw_holes(ImDrawList& list, std::span<const Hole> holes, const ToWindow& to_window,
+                const look::Fonts& fonts) {
+  for (std::size_t i = holes.size(); i-- > 0;) {
+    const std::optional<ImVec2> at = to_window(holes[i].position_world);
+    if (!at) continue;
+    const std::string number = std::to_string(i + 1);
+    const ImVec2 size = fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e4F, 0.0F, number.c_str());
+    const float radius = 0.5F * std::max(size.x, size.y) + look::px(3.0F);
+    list.AddCircleFilled(*at, radius, IM_COL32(16, 19, 24, 220));
+    list.AddCircle(*at, radius, look::kWarn, 0, look::px(1.5F));
+    list.AddText(fonts.small, fonts.small->FontSize, {at->x - 0.5F * size.x, at->y - 0.5F * size.y},
+                 look::kWarn, number.c_str());
   }
 }
 
@@ -64,7 +81,8 @@ void LiveModelView::look_at(const Mesh& mesh) {
   is_stale_ = true;
 }
 
-void LiveModelView::draw(const Area& area, const ShownScan& shown, const look::Fonts& fonts) {
+void LiveModelView::draw(const Area& area, const ShownScan& shown, std::span<const Hole> holes,
+                         const look::Fonts& fonts) {
   look::begin_pane("live model", area, look::kGround);
   ImGui::SetCursorScreenPos({area.x, area.y});
   ImGui::InvisibleButton("orbit", {area.width, area.height},
@@ -92,6 +110,7 @@ void LiveModelView::draw(const Area& area, const ShownScan& shown, const look::F
                                 to = to_window(shown.next_view->T_world_camera * Eigen::Vector3d(0, 0, 0.25));
     if (from && to) list.AddLine(*from, *to, look::kWarn, look::px(2.0F));
   }
+  draw_holes(list, holes, to_window, fonts);
   if (shown.frame_index >= 0) draw_camera(list, {shown.camera, shown.T_world_camera}, 0.35, to_window);
   if (shown.parts.empty())
     list.AddText(fonts.text, fonts.text->FontSize, {area.x + look::px(16.0F), area.y + look::px(16.0F)},

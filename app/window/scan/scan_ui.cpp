@@ -50,9 +50,11 @@ ScanUi::ScanUi(ScanChannel& channel, const look::Fonts& fonts) : channel_(channe
 
 void ScanUi::take_news() {
   stage_ = channel_.stage();
-  outcome_ = channel_.outcome();
-  if (channel_.surface() && !surface_) show_result();
-  if (surface_ || !channel_.take(shown_)) return;
+  if (outcome_.text.empty()) {
+    outcome_ = channel_.outcome();
+    if (outcome_.surface) show_result();
+  }
+  if (outcome_.surface || !channel_.take(shown_)) return;
   newest_s_ = ImGui::GetTime();
   picture_.upload(shown_.picture);
   if (!shown_.tint.empty()) tint_.upload(shown_.tint);
@@ -61,13 +63,12 @@ void ScanUi::take_news() {
 
 /// Shows the map's surface in place of the live model.
 void ScanUi::show_result() {
-  surface_ = channel_.surface();
-  shown_.parts = {{surface_, Eigen::Isometry3d::Identity()}};
+  shown_.parts = {{outcome_.surface, Eigen::Isometry3d::Identity()}};
   shown_.path_world.clear();
   shown_.next_view.reset();
   shown_.frame_index = -1;  // the camera's pose is in another world
   model_.upload(shown_);
-  model_.look_at(*surface_);
+  model_.look_at(*outcome_.surface);
 }
 
 void ScanUi::press(const Key& key) {
@@ -81,8 +82,8 @@ void ScanUi::press_key(int key, int modifiers) {
     if (is_enter || key == GLFW_KEY_ESCAPE) asks_to_discard_ = false;
     return;
   }
-  if (!outcome_.empty()) {
-    if (key == GLFW_KEY_P && surface_) {
+  if (!outcome_.text.empty()) {
+    if (key == GLFW_KEY_P && outcome_.surface) {
       channel_.request(ScanRequest::kPlay);
       quits_ = true;
     }
@@ -104,7 +105,7 @@ void ScanUi::draw(float width, float height) {
   const ScanLayout layout = scan_layout(width, height, look::px(1.0F));
   draw_bar(layout.bar);
   draw_picture(layout.camera);
-  model_.draw(layout.model, shown_, fonts_);
+  model_.draw(layout.model, shown_, outcome_.holes, fonts_);
   if (is_tracking())
     draw_counts(layout.counts);
   else
@@ -129,19 +130,19 @@ void ScanUi::draw_bar(const Area& area) {
     ImGui::SameLine(0.0F, look::px(8.0F));
   };
   const bool is_paused = channel_.is_paused(), tracks = is_tracking();
-  if (outcome_.empty()) {
+  if (outcome_.text.empty()) {
     button(is_paused ? "Go on" : "Pause", "Space", GLFW_KEY_SPACE, is_paused, tracks);
     button("Finish", "Enter", GLFW_KEY_ENTER, false, tracks && shown_.frame_index >= 0);
     button("Undo 5 s", "Backspace", GLFW_KEY_BACKSPACE, false, tracks && shown_.frame_index >= 0);
     button("Discard", "Del", GLFW_KEY_DELETE, false, true);
     button("Follow", "F", GLFW_KEY_F, model_.follows(), true);
   } else {
-    if (surface_) button("Play in this map", "P", GLFW_KEY_P, true, true);
+    if (outcome_.surface) button("Play in this map", "P", GLFW_KEY_P, true, true);
     button("Close", "Enter", GLFW_KEY_ENTER, false, true);
   }
   ImGui::SameLine(0.0F, look::px(16.0F));
   ImGui::AlignTextToFramePadding();
-  if (!outcome_.empty())
+  if (!outcome_.text.empty())
     look::pill(look::kGood, "over");
   else if (!tracks)
     look::pill(look::kAccent, "making the map");
@@ -258,9 +259,9 @@ void ScanUi::draw_counts(const Area& area) {
 /// Draws the progress of the work after the last frame, or its result.
 void ScanUi::draw_work(const Area& area) {
   look::begin_pane("counts", area, look::kPanel);
-  if (!outcome_.empty()) {
+  if (!outcome_.text.empty()) {
     ImGui::PushTextWrapPos(area.width - look::px(14.0F));
-    ImGui::TextUnformatted(outcome_.c_str());
+    ImGui::TextUnformatted(outcome_.text.c_str());
     ImGui::PopTextWrapPos();
   } else {
     ImGui::TextUnformatted(words_of(stage_.name));

@@ -26,14 +26,13 @@ class ScanUi final : public WindowContent {
   const look::Fonts& fonts_;
   ShownScan shown_;
   ScanStage stage_;
-  std::string outcome_;
-  std::shared_ptr<const Mesh> surface_;  ///< of the map; null until the scan is over
+  ScanOutcome outcome_;
   GlTexture picture_{/*smooth=*/true}, tint_{/*smooth=*/true};
   LiveModelView model_;
   double newest_s_ = -1.0;  ///< time at which the last frame came; < 0: none so far
   bool asks_to_discard_ = false, quits_ = false;
 
-  [[nodiscard]] bool is_tracking() const { return stage_.name.empty() && outcome_.empty(); }
+  [[nodiscard]] bool is_tracking() const { return stage_.name.empty() && outcome_.text.empty(); }
   void show_result();
   void press_key(int key, int modifiers);
   void draw_bar(const Area& area);

@@ -26,7 +26,7 @@ ScanWindowResult run_in_scan_window(const std::string& title, std::optional<doub
       result.status = work(channel);
     } catch (const std::exception& error) {
       fault = std::current_exception();
-      channel.finish(error.what(), nullptr);
+      channel.finish({error.what()});
     }
     if (channel.requested() == ScanRequest::kDiscard)
       glfwSetWindowShouldClose(window->get(), GLFW_TRUE);  // allowed on any thread
@@ -35,7 +35,7 @@ ScanWindowResult run_in_scan_window(const std::string& title, std::optional<doub
   show_until_closed(*window, ui_scale,
                     [&](const look::Fonts& fonts) { return std::make_unique<ScanUi>(channel, fonts); });
   channel.set_paused(false);
-  if (channel.outcome().empty() && channel.requested() == ScanRequest::kGoOn) std::raise(SIGINT);
+  if (channel.outcome().text.empty() && channel.requested() == ScanRequest::kGoOn) std::raise(SIGINT);
   result.wants_to_play = channel.requested() == ScanRequest::kPlay;
   if (!result.wants_to_play) glfwHideWindow(window->get());  // the work may take a while to end
   scan.join();

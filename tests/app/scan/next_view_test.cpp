@@ -96,6 +96,20 @@ TEST(NextView, IsNoneInARoomThatIsSeen) {
   EXPECT_FALSE(next) << next->gain_m2 << " m2";
 }
 
+TEST(NextView, OfAPointHasItInTheMiddleOfALevelImage) {
+  for (const Vector3d& point : {Vector3d(1, 2, 0.3), Vector3d(0.5, 0.5, 0.0), Vector3d(0.5, 0.5, 3.0)}) {
+    const Vector3d viewpoint(0.5, 0.5, 1.4);
+    const Isometry3d view = view_of(point, viewpoint, Vector3d::UnitZ()).T_world_camera;
+    ASSERT_TRUE(view.matrix().allFinite());
+    EXPECT_EQ(view.translation(), viewpoint);
+    EXPECT_NEAR(view.linear().determinant(), 1.0, 1e-9);
+    const Vector3d seen = view.inverse() * point;
+    EXPECT_GT(seen.z(), 0.0);
+    EXPECT_LT(seen.head<2>().norm(), 0.01);
+    EXPECT_NEAR(view.linear().col(0).z(), 0.0, 1e-9);
+  }
+}
+
 TEST(NextView, WayInWords) {
   NextView next;
   const Isometry3d camera = looking(0.0, 1.3);  // forward is +x, left is +y

@@ -48,7 +48,7 @@ TEST(ScanView, ShowsAScanAndDoesNotChangeIt) {
   ASSERT_TRUE(channel.take(shown));
   EXPECT_FALSE(channel.take(shown));  // only once
   EXPECT_GE(woken, 1);
-  ASSERT_TRUE(channel.outcome().empty());
+  ASSERT_TRUE(channel.outcome().text.empty());
 }
 
 TEST(ScanView, ShowsPictureTintModelPathAndCounts) {

@@ -100,5 +100,44 @@ if command -v fakenect > /dev/null; then
   until_true says 'frames tracked'
   xdotool key Return
   over 0
+
+  echo "== scan, play, scan more, play: all in one window"
+  frames_of_map() { grep -c '^[0-9]' "$work/more/trajectory.txt" 2> /dev/null || echo 0; }
+  saved_times() { grep -c 'frames tracked, ' "$work/log" || true; }
+  is_saved_times() { [[ $(saved_times) -eq $1 ]]; }
+  is_titled() { [[ $(xdotool getwindowname "$window" 2> /dev/null) == "$1"* ]]; }
+  scans_again() { is_titled "roomradar scan - " && [[ $(grep -c '^track' "$work/log") -gt $1 ]]; }
+  # fakenect goes on where the program has closed it, so the recording is long enough for all parts.
+  "$program" record 'sim:table?seed=3&frames=400&rate=10' "$work/long" --format fakenect > "$work/log" 2>&1 || fail record
+  FAKENECT_LOOP=0 fakenect "$work/long" "$program" prescan kinect:0 --map "$work/more" --resolution 0.03 --window \
+    > "$work/log" 2>&1 &
+  shown=$!
+  until_true has_tracked 30
+  until_true has_focus
+  window=$(xdotool search --onlyvisible --name '^roomradar scan - ')
+  xdotool key Return
+  until_true is_saved_times 1
+  sleep 1
+  shot holes
+  before=$(frames_of_map)
+  xdotool key p
+  until_true is_titled "roomradar - "
+  until_true says '^running'
+  sleep 1
+  shot played
+  lines=$(grep -c '^track' "$work/log" || true)
+  xdotool key m
+  until_true scans_again "$lines"
+  sleep 3
+  shot more
+  xdotool key Return
+  until_true is_saved_times 2
+  [[ $(frames_of_map) -gt $before ]] || fail "the map has not grown"
+  xdotool key p
+  until_true is_titled "roomradar - "
+  sleep 2
+  shot played_again
+  xdotool key ctrl+q
+  over 0
 fi
 echo "passed"
