@@ -62,12 +62,14 @@ vertex colours, in their rest pose.
 constexpr std::string_view kSources =
     R"(A SOURCE is one of
 
-  DIR              a recording, recognised by its files:
+  DIR or FILE      a recording, recognised by its content:
                      7-Scenes    frame-XXXXXX.depth.png, .color.jpg (or .png; an empty .none: no colour),
                                  .pose.txt
                      TUM RGB-D   depth.txt, rgb.txt, groundtruth.txt, accelerometer.txt
                      fakenect    INDEX.txt and the raw images of a Kinect
                      numbered    depth/00000.png (mm), color/00000.jpg
+                     Record3D    an export "EXR + RGB": metadata, depth/0.exr (m), rgb/0.jpg
+                     Azure       FILE.mkv of k4arecorder (Azure Kinect, Femto), with its calibration
                    A camera.json in it describes the cameras, a calibration.json their errors.
   SESSION          a folder that `run --record-session` wrote: replayed with identical results
   kinect:N         a Kinect v1, numbered from 0. It continues until Ctrl-C is pressed once. kinect:0?depth=mm

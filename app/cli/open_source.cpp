@@ -48,10 +48,10 @@ std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceO
   if (source.starts_with(kKinect)) return open_kinect_named(source, options);
   if (source.starts_with(kSim)) return std::make_unique<SimulatedSource>(parse_sim_spec(source));
   if (!std::filesystem::exists(source))
-    throw Error(
-        source +
-        ": no such folder. A source is a folder with a recording (7-Scenes, TUM RGB-D, fakenect, numbered), "
-        "kinect:N for a device, or sim:ROOM for the simulated one");
+    throw Error(source +
+                ": no such file or folder. A source is a recording (`roomradar help sources` lists the "
+                "kinds), kinect:N "
+                "for a device, or sim:ROOM for the simulated one");
   if (is_session_folder(source)) return open_session_frames(source);
   return open_folder(source, options);
 }

@@ -22,8 +22,8 @@ std::filesystem::path calibration_for(const std::string& source, const std::file
 /// camera.json or session.json cannot be read.
 bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen);
 
-/// Opens `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder. A folder contains a
-/// recording or a recorded session, recognised by its files. With `frames`, the source delivers only that
+/// Opens `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a file or folder. It contains a
+/// recording or a recorded session, recognised by its content. With `frames`, the source delivers only that
 /// range. With a file of calibration_for(), the source corrects lens and depth errors. Recordings and
 /// simulated frames are read one frame ahead, on a second thread.
 ///

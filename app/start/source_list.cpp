@@ -6,6 +6,7 @@
 #include "app/cli/session_folder.hpp"
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/sim_options.hpp"
+#include "app/sources/datasets/foreign_recording.hpp"
 #include "app/sources/kinect/fakenect_replay.hpp"
 #include "app/sources/kinect/kinect_usb.hpp"
 #include "app/sources/recordings/recording_index.hpp"
@@ -29,6 +30,7 @@ std::string shown_path(const fs::path& path) {
   return relative == "." ? fs::absolute(path, fault).filename().string() : relative.string();
 }
 
+/// Describes a recording: a folder or a file.
 SourceEntry describe_recording(const fs::path& folder) {
   SourceEntry entry{SourceKind::kRecording, shown_path(folder), {}, folder.string(), folder.string(), {}};
   if (is_session_folder(folder)) {
@@ -36,7 +38,9 @@ SourceEntry describe_recording(const fs::path& folder) {
     return entry;
   }
   try {
-    entry.detail = "recording, " + frames_text(index_recording(folder).frames.size());
+    const auto foreign = index_foreign(folder);
+    entry.detail = foreign ? foreign_kind(folder) + ", " + frames_text(foreign->frames.size())
+                           : "recording, " + frames_text(index_recording(folder).frames.size());
   } catch (const std::exception& error) {
     entry.detail = "cannot be read";
     entry.fault = error.what();
@@ -71,7 +75,10 @@ SourceEntry describe_kinect(std::size_t number, const KinectOnUsb& kinect) {
 }
 
 void add_recordings_in(const fs::path& folder, std::vector<SourceEntry>& entries) {
-  for (const fs::path& each : subfolders(folder)) {
+  std::vector<fs::path> candidates = subfolders(folder);
+  for (fs::path& file : files_in_folder(folder))
+    if (!foreign_kind(file).empty()) candidates.push_back(std::move(file));
+  for (const fs::path& each : candidates) {
     SourceEntry entry = describe_recording(each);
     if (entry.fault.empty()) entries.push_back(std::move(entry));
   }

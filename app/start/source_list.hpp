@@ -22,9 +22,9 @@ struct SourceEntry {
 /// Returns the Kinects on the USB bus, or the recording that fakenect replays in place of one. Opens none.
 std::vector<SourceEntry> list_kinects();
 
-/// Returns the recordings among the subfolders of `folder` and of `folder`/recordings, by name; only `folder`
-/// itself if it is a recording. Considers subfolders(). Folders that are not readable or no recording are
-/// left out.
+/// Returns the recordings among the subfolders and files of `folder` and of `folder`/recordings, by name;
+/// only `folder` itself if it is a recording. Considers subfolders() and files_in_folder(). Folders that are
+/// not readable or no recording are left out.
 std::vector<SourceEntry> list_recordings(const std::filesystem::path& folder);
 
 /// Returns the simulated rooms.

@@ -5,19 +5,39 @@
 
 namespace roomradar {
 
-std::vector<std::filesystem::path> subfolders(const std::filesystem::path& folder) {
-  namespace fs = std::filesystem;
-  constexpr std::size_t kMaxFolders = 300;
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Returns the entries without hidden ones for which `is_wanted` is true.
+template <typename IsWanted>
+std::vector<fs::path> entries_of(const fs::path& folder, const IsWanted& is_wanted) {
+  constexpr std::size_t kMaxEntries = 300;
   std::error_code fault;
-  std::vector<fs::path> folders;
-  for (fs::directory_iterator each(folder, fault), end; !fault && each != end && folders.size() < kMaxFolders;
+  std::vector<fs::path> paths;
+  for (fs::directory_iterator each(folder, fault), end; !fault && each != end && paths.size() < kMaxEntries;
        each.increment(fault)) {
-    std::error_code ignored;
-    if (each->is_directory(ignored) && !each->path().filename().string().starts_with('.'))
-      folders.push_back(each->path().lexically_normal());
+    if (is_wanted(*each) && !each->path().filename().string().starts_with('.'))
+      paths.push_back(each->path().lexically_normal());
   }
-  std::sort(folders.begin(), folders.end());
-  return folders;
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+}  // namespace
+
+std::vector<fs::path> subfolders(const fs::path& folder) {
+  return entries_of(folder, [](const fs::directory_entry& entry) {
+    std::error_code ignored;
+    return entry.is_directory(ignored);
+  });
+}
+
+std::vector<fs::path> files_in_folder(const fs::path& folder) {
+  return entries_of(folder, [](const fs::directory_entry& entry) {
+    std::error_code ignored;
+    return entry.is_regular_file(ignored);
+  });
 }
 
 }  // namespace roomradar

@@ -11,7 +11,7 @@ namespace roomradar {
 void add_source_argument(CLI::App& command, std::string& source, const std::string& more) {
   command
       .add_option("SOURCE", source,
-                  "folder with a recording (7-Scenes, TUM RGB-D, fakenect, numbered), kinect:N or sim:ROOM" +
+                  "recording (a folder or file), kinect:N or sim:ROOM" +
                       more + ";\n`roomradar help sources` explains them (required)")
       ->required();
 }

@@ -24,7 +24,7 @@ std::string read_image_bytes(const std::filesystem::path& path) {
   return read_bytes(path, "an image", kLargestImage_bytes);
 }
 
-std::span<const std::uint8_t> span_of(const std::string& bytes) {
+std::span<const std::uint8_t> span_of(std::string_view bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
@@ -37,7 +37,7 @@ void write_png(const cv::Mat& image, const std::filesystem::path& path) {
 }
 
 /// Decodes to `type` (an OpenCV type) and checks the size against the header.
-cv::Mat decode(const std::string& bytes, int flags, int type, const ImageHeader& header,
+cv::Mat decode(std::string_view bytes, int flags, int type, const ImageHeader& header,
                const std::string& name) {
   cv::Mat image;
   try {
@@ -52,13 +52,22 @@ cv::Mat decode(const std::string& bytes, int flags, int type, const ImageHeader&
   return image;
 }
 
-cv::Mat decode_16_bit_png(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const std::string bytes = read_image_bytes(path);
+cv::Mat decode_16_bit_png(std::string_view bytes, const std::string& name) {
   const ImageHeader header = read_image_header(span_of(bytes), name);
   if (header.kind != ImageKind::kPng || header.bits != 16 || header.channels != 1)
     throw Error(name + ": is a " + to_string(header) + "; depth must be a 16 bit grey PNG");
   return decode(bytes, cv::IMREAD_UNCHANGED, CV_16UC1, header, name);
+}
+
+/// Converts units to m; `invalid` is no measurement.
+void convert(const cv::Mat& image, float units_per_m, int invalid, DepthImage& depth_m) {
+  depth_m.resize(image.cols, image.rows);
+  for (int y = 0; y < image.rows; ++y) {
+    const std::uint16_t* from = image.ptr<std::uint16_t>(y);
+    float* to = depth_m.row(y);
+    for (int x = 0; x < image.cols; ++x)
+      to[x] = from[x] == invalid ? 0.0F : static_cast<float>(from[x]) / units_per_m;
+  }
 }
 
 void read_kinect_raw(const std::filesystem::path& path, DepthImage& depth_m) {
@@ -85,21 +94,31 @@ cv::Mat view_of(ColourImage& image) {
 
 void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, DepthImage& depth_m) {
   if (encoding == DepthEncoding::kKinectRaw) return read_kinect_raw(path, depth_m);
-  const cv::Mat image = decode_16_bit_png(path);
-  depth_m.resize(image.cols, image.rows);
+  const cv::Mat image = decode_16_bit_png(read_image_bytes(path), path.string());
   const bool is_tum = encoding == DepthEncoding::kTum;
-  const float units_per_m = is_tum ? 5000.0F : 1000.0F;
-  for (int y = 0; y < image.rows; ++y) {
-    const std::uint16_t* from = image.ptr<std::uint16_t>(y);
-    float* to = depth_m.row(y);
-    for (int x = 0; x < image.cols; ++x)
-      to[x] = from[x] == 65535 && !is_tum ? 0.0F : static_cast<float>(from[x]) / units_per_m;
-  }
+  convert(image, is_tum ? 5000.0F : 1000.0F, is_tum ? 0 : 65535, depth_m);
+}
+
+void decode_depth_png(std::string_view bytes, float units_per_m, const std::string& name,
+                      DepthImage& depth_m) {
+  convert(decode_16_bit_png(bytes, name), units_per_m, 65535, depth_m);
+}
+
+void decode_grey_png(std::string_view bytes, const std::string& name, Image<std::uint8_t>& image) {
+  const ImageHeader header = read_image_header(span_of(bytes), name);
+  if (header.kind != ImageKind::kPng || header.bits != 8 || header.channels != 1)
+    throw Error(name + ": is a " + to_string(header) + "; must be an 8 bit grey PNG");
+  const cv::Mat grey = decode(bytes, cv::IMREAD_UNCHANGED, CV_8UC1, header, name);
+  image.resize(header.width_px, header.height_px);
+  for (int y = 0; y < grey.rows; ++y)
+    std::memcpy(image.row(y), grey.ptr(y), static_cast<std::size_t>(grey.cols));
 }
 
 void read_colour_file(const std::filesystem::path& path, ColourImage& colour) {
-  const std::string name = path.string();
-  const std::string bytes = read_image_bytes(path);
+  decode_colour(read_image_bytes(path), path.string(), colour);
+}
+
+void decode_colour(std::string_view bytes, const std::string& name, ColourImage& colour) {
   const ImageHeader header = read_image_header(span_of(bytes), name);
   if (header.kind == ImageKind::kPpm && header.bits == 8) {
     colour.resize(header.width_px, header.height_px);
@@ -163,7 +182,7 @@ void write_exact_depth_file(const DepthImage& depth_m, const std::filesystem::pa
 }
 
 void read_exact_depth_file(const std::filesystem::path& path, DepthImage& depth_m) {
-  const cv::Mat halves = decode_16_bit_png(path);
+  const cv::Mat halves = decode_16_bit_png(read_image_bytes(path), path.string());
   depth_m.resize(halves.cols, halves.rows / 2);
   for (int y = 0; y < depth_m.height; ++y)
     for (int x = 0; x < depth_m.width; ++x) {

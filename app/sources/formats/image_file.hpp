@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "mapping/types/image.hpp"
 
@@ -23,6 +25,16 @@ void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, 
 
 /// Reads a colour or grey image (PNG, JPEG or PPM). Throws Error as read_depth_file() does.
 void read_colour_file(const std::filesystem::path& path, ColourImage& colour);
+
+/// Decodes a depth image, a 16 bit grey PNG, from memory. 0 and 65535 are invalid.
+/// @param units_per_m  1000: the PNG is in mm
+/// @throws Error as read_depth_file() does, naming `name`
+void decode_depth_png(std::string_view bytes, float units_per_m, const std::string& name,
+                      DepthImage& depth_m);
+/// Decodes a colour or grey image (PNG, JPEG or PPM) from memory. Throws Error naming `name`.
+void decode_colour(std::string_view bytes, const std::string& name, ColourImage& colour);
+/// Decodes a grey PNG of 8 bit from memory, such as a confidence map. Throws Error naming `name`.
+void decode_grey_png(std::string_view bytes, const std::string& name, Image<std::uint8_t>& image);
 
 /// Writes a depth image, with each depth rounded to the nearest one that the encoding can represent. Invalid
 /// depth, and depth outside the encoding's range, is written as the encoding's invalid value, 0 or 2047.

@@ -8,7 +8,8 @@
 
 namespace roomradar {
 
-/// Opens the recording in `folder` and recognises its format by the files in it:
+/// Opens a recording, a folder or a file, and recognises its format by its content. Those of other programs
+/// are listed in app/sources/README.md (index_foreign()). The others are folders:
 ///   fakenect      INDEX.txt with d-*.pgm (raw 11 bit), r-*.ppm, a-*.dump (accelerometer)
 ///   TUM RGB-D     depth.txt, rgb.txt; optional groundtruth.txt, accelerometer.txt
 ///   7-Scenes      frame-XXXXXX.depth.png, .color.jpg, .color.png or .color.none (empty: no colour),

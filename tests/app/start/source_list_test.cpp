@@ -39,6 +39,20 @@ TEST(SourceList, FindsRecordingsHereAndInTheFolderOfRecordings) {
   EXPECT_TRUE(list_recordings(here / "not here").empty());
 }
 
+TEST(SourceList, FindsRecordingsOfOtherPrograms) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "phone/depth");
+  std::ofstream(folder.path() / "phone/metadata")
+      << R"({"w":8,"h":6,"dw":4,"dh":3,"K":[5,0,0,0,5,0,4,3,1],"poses":[]})";
+  std::ofstream(folder.path() / "phone/depth/0.exr") << "not read here";
+  std::ofstream(folder.path() / "cut.mkv") << "\x1A\x45\xDF\xA3";
+  const std::vector<SourceEntry> entries = list_recordings(folder.path());
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0].detail, "Record3D export, 1 frame");
+  EXPECT_NE(describe_source((folder.path() / "cut.mkv").string()).fault.find("cut.mkv: is"),
+            std::string::npos);
+}
+
 TEST(SourceList, EverySimulatedRoomCanBeScannedAndPlayedIn) {
   const std::vector<SourceEntry> rooms = list_simulated_rooms();
   EXPECT_GE(rooms.size(), 4U);

@@ -1,0 +1,19 @@
+// arkit_axes.hpp: conversion of ARKit's poses to roomradar's axes.
+#pragma once
+#include <Eigen/Geometry>
+
+namespace roomradar {
+
+/// Converts a camera-to-world pose with ARKit's axes (camera: x right, y up, z backwards; world: y up) to
+/// T_world_camera with roomradar's (camera: x right, y down, z forward; world: z up).
+inline Eigen::Isometry3d world_from_arkit(const Eigen::Isometry3d& T_arkitworld_arkitcamera) {
+  Eigen::Isometry3d T_world_arkitworld = Eigen::Isometry3d::Identity();
+  T_world_arkitworld.linear() << 1, 0, 0,  //
+      0, 0, -1,                            //
+      0, 1, 0;
+  Eigen::Isometry3d T_arkitcamera_camera = Eigen::Isometry3d::Identity();
+  T_arkitcamera_camera.linear().diagonal() << 1, -1, -1;
+  return T_world_arkitworld * T_arkitworld_arkitcamera * T_arkitcamera_camera;
+}
+
+}  // namespace roomradar

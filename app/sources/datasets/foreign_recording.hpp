@@ -1,0 +1,21 @@
+// foreign_recording.hpp: recognises recordings of other programs and devices, and opens them.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/sources/datasets/indexed_source.hpp"
+#include "mapping/types/frame_source.hpp"
+
+namespace roomradar {
+
+/// Returns the kind of the recording at `path`, a file or folder, such as "Record3D export". Recognised by
+/// its content. Returns an empty string if it is of none of the kinds that index_foreign() reads.
+[[nodiscard]] std::string foreign_kind(const std::filesystem::path& path);
+
+/// Lists the frames of a recording of another program. Returns nullopt if foreign_kind() is empty. Throws
+/// Error naming the file if the recording is damaged or lacks depth images or cameras.
+std::optional<IndexedRecording> index_foreign(const std::filesystem::path& path);
+
+}  // namespace roomradar

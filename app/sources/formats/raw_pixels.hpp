@@ -1,0 +1,35 @@
+// raw_pixels.hpp: converts uncompressed pixels of devices to depth and colour images.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "mapping/types/image.hpp"
+
+namespace roomradar {
+
+enum class DepthPixels {
+  kUint16,           ///< little-endian; 0 and 65535: no measurement
+  kUint16BigEndian,  ///< as kUint16, big-endian
+  kFloat32,          ///< little-endian; not finite or <= 0: no measurement
+};
+
+enum class ColourPixels { kRgb8, kBgr8, kRgba8, kBgra8, kMono8, kYuyv, kUyvy, kNv12 };
+
+/// Layout of uncompressed pixels.
+struct RawLayout {
+  int width_px = 0;
+  int height_px = 0;
+  std::size_t row_bytes = 0;  ///< bytes from row to row; 0: rows without padding
+};
+
+/// Converts depth. @param unit_m  length of one unit, m
+/// @throws Error naming `where` if a side is not in 1..16384, or `bytes` are fewer than the layout needs
+void convert_depth(std::string_view bytes, const RawLayout& layout, DepthPixels pixels, double unit_m,
+                   const std::string& where, DepthImage& depth_m);
+
+/// Converts colour. Throws Error as convert_depth() does. kYuyv, kUyvy and kNv12 need even sides.
+void convert_colour(std::string_view bytes, const RawLayout& layout, ColourPixels pixels,
+                    const std::string& where, ColourImage& colour);
+
+}  // namespace roomradar

@@ -1,0 +1,135 @@
+// record3d_test.cpp: exports by Record3D, a real one and written ones.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <gtest/gtest.h>
+#include <half.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "app/sources/datasets/arkit_axes.hpp"
+#include "app/sources/formats/image_file.hpp"
+#include "app/sources/recordings/folder_source.hpp"
+#include "tests/app/sources/datasets/datasets_support.hpp"
+#include "tests/app/sources/sources_support.hpp"
+#include "tests/support/recordings.hpp"
+
+namespace roomradar::record3d_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::contains;
+using test::error_of;
+using test::read_all;
+using test::TemporaryFolder;
+using test::write_text;
+
+constexpr int kWidth = 6, kHeight = 8;
+
+/// Writes depth 1 + x / 4 + y / 16 + frame m, exact in half floats; pixel (0, 0) is infinite.
+void write_exr(const fs::path& path, int frame) {
+  std::vector<half> pixels;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      pixels.push_back(x + y == 0 ? half::posInf()
+                                  : half(static_cast<float>(1.0 + 0.25 * x + 0.0625 * y + frame)));
+  Imf::Header header(kWidth, kHeight);
+  header.channels().insert("R", Imf::Channel(Imf::HALF));
+  Imf::OutputFile file(path.c_str(), header, 0);
+  Imf::FrameBuffer frame_buffer;
+  frame_buffer.insert("R", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(pixels.data()), sizeof(half),
+                                      kWidth * sizeof(half)));
+  file.setFrameBuffer(frame_buffer);
+  file.writePixels(kHeight);
+}
+
+const std::string kMetadata =
+    R"({"w":12,"h":16,"dw":6,"dh":8,"fps":60,"K":[20,0,0,0,22,0,5.5,7.5,1],
+        "poses":[[0,0,0,1,1,2,3],[0,0,0,1,1,2,4],[0,0,0,0,0,0,0],[0,0,0,1,1,2,6]],
+        "frameTimestamps":[0,0.25,0.5,0.75]})";
+
+void write_export(const fs::path& folder, const std::string& metadata = kMetadata) {
+  write_text(folder / "metadata", metadata);
+  fs::create_directories(folder / "depth");
+  fs::create_directories(folder / "rgb");
+  for (int i = 0; i < 3; ++i) {
+    write_exr(folder / "depth" / (std::to_string(i) + ".exr"), i);
+    cv::imwrite((folder / "rgb" / (std::to_string(i) + ".jpg")).string(),
+                cv::Mat(16, 12, CV_8UC3, {9, 99, 199}));
+  }
+}
+
+TEST(Record3d, GivesDepthInMetresWithTheCameraScaledToIt) {
+  const TemporaryFolder folder;
+  write_export(folder.path());
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 3U);
+  EXPECT_EQ(all.frames[1].stamp_s, 0.25);
+  EXPECT_EQ(all.frames[1].depth_m.at(0, 0), 0.0F);
+  EXPECT_EQ(all.frames[1].depth_m.at(3, 2), 1.0F + 0.75F + 0.125F + 1.0F);
+  EXPECT_EQ(all.frames[1].depth_camera, (Intrinsics{6, 8, 10, 11, 2.5, 3.5}));
+  EXPECT_EQ(all.frames[1].colour_camera, (Intrinsics{12, 16, 20, 22, 5.5, 7.5}));
+  EXPECT_NEAR(all.frames[1].colour.at(5, 5).r, 199, 3);
+}
+
+TEST(Record3d, TurnsArkitsAxesToZUpAndYDown) {
+  const TemporaryFolder folder;
+  write_export(folder.path());
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 3U);
+  const Frame& frame = all.frames[0];
+  // ARKit's camera at rotation 0 looks along -z of its world, which is +y of ours.
+  const Eigen::Vector3d ahead = *frame.T_world_camera * Eigen::Vector3d(0, 0, 1);
+  EXPECT_TRUE(ahead.isApprox(Eigen::Vector3d(1, -3 + 1, 2)));
+  EXPECT_TRUE(frame.down_camera->isApprox(Eigen::Vector3d(0, 1, 0)));
+  EXPECT_FALSE(all.frames[2].T_world_camera) << "a pose of zeros is no pose";
+  EXPECT_FALSE(all.frames[2].down_camera);
+}
+
+TEST(Record3d, SaysWhatIsWrongWithTheMetadata) {
+  const auto message_of = [](const std::string& from, const std::string& to) {
+    const TemporaryFolder folder;
+    std::string metadata = kMetadata;
+    const auto at = metadata.find(from);
+    EXPECT_NE(at, std::string::npos);
+    write_export(folder.path(), metadata.replace(at, from.size(), to));
+    return error_of([&] { (void)open_folder(folder.path()); });
+  };
+  EXPECT_TRUE(contains(message_of("[20,0,0,0,22,0,5.5,7.5,1]", "[20]"), "K: must be a list of 9 numbers"));
+  EXPECT_TRUE(contains(message_of("[20,", "[-20,"), "fx"));
+  EXPECT_TRUE(contains(message_of("\"dh\":8", "\"dh\":3"), "which is no scaled"));
+  EXPECT_TRUE(contains(message_of("\"w\":12,", ""), "'w' is missing"));
+  EXPECT_TRUE(contains(message_of("0.75]}", "0.75"), "is it cut short?"));
+  EXPECT_TRUE(contains(message_of("[0,0,0,1,1,2,3]", "[0,0]"), "poses[0]: must be a list of 7 numbers"));
+}
+
+TEST(Record3d, SkipsAFrameWhoseImageIsDamaged) {
+  const TemporaryFolder folder;
+  write_export(folder.path());
+  test::cut_to(folder.path() / "depth" / "1.exr", 0.7);
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 2U);
+  ASSERT_EQ(all.faults.size(), 1U);
+  EXPECT_TRUE(contains(all.faults[0], "1.exr"));
+}
+
+TEST(Record3d, RealExportAgreesWithItsPoses) {
+  ROOMRADAR_RECORDING_OR_SKIP(folder, "record3d");
+  const auto source = open_folder(folder);
+  EXPECT_EQ(source->frame_count(), 60);
+  const auto all = read_all(*source);
+  ASSERT_EQ(all.frames.size(), 60U);
+  for (const Frame& frame : all.frames) {
+    EXPECT_EQ(frame.depth_camera.width_px, 192);
+    EXPECT_EQ(frame.colour_camera.height_px, 1920);
+    EXPECT_GT(frame.down_camera->y(), 0.3) << "the phone is held upright";
+  }
+  EXPECT_NEAR(all.frames[59].stamp_s, 59 / 60.0, 0.001);
+  // Measured with these poses: see the commit. With a wrong axis: more than 0.03 m.
+  EXPECT_LT(test::median_disagreement_m(all.frames[0], all.frames[59]), 0.02);
+  EXPECT_GT(test::median_disagreement_m(all.frames[0], all.frames[59]), 0.0);
+}
+
+}  // namespace
+}  // namespace roomradar::record3d_test

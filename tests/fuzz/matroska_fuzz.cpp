@@ -1,0 +1,7 @@
+// matroska_fuzz.cpp: recordings of an Azure Kinect.
+#include "tests/fuzz/foreign_input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  roomradar::test::read_foreign(data, size, "recording.mkv");
+  return 0;
+}
