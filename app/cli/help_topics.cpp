@@ -69,6 +69,7 @@ constexpr std::string_view kSources =
                      fakenect    INDEX.txt and the raw images of a Kinect
                      numbered    depth/00000.png (mm), color/00000.jpg
                      Record3D    an export "EXR + RGB": metadata, depth/0.exr (m), rgb/0.jpg
+                     ROS 1       FILE.bag with depth, colour and camera_info; poses from tf, gravity from an IMU
                      Azure       FILE.mkv of k4arecorder (Azure Kinect, Femto), with its calibration
                    A camera.json in it describes the cameras, a calibration.json their errors.
   SESSION          a folder that `run --record-session` wrote: replayed with identical results

@@ -11,8 +11,8 @@ namespace roomradar {
 void add_source_argument(CLI::App& command, std::string& source, const std::string& more) {
   command
       .add_option("SOURCE", source,
-                  "recording (a folder or file), kinect:N or sim:ROOM" +
-                      more + ";\n`roomradar help sources` explains them (required)")
+                  "recording (a folder or file), kinect:N or sim:ROOM" + more +
+                      ";\n`roomradar help sources` explains them (required)")
       ->required();
 }
 
@@ -48,7 +48,8 @@ void add_format_option(CLI::App& command, RecordingFormat& format) {
   add_choice(command, "--format", format,
              {{"tum", RecordingFormat::kTum},
               {"7scenes", RecordingFormat::kSevenScenes},
-              {"fakenect", RecordingFormat::kFakenect}},
+              {"fakenect", RecordingFormat::kFakenect},
+              {"rosbag", RecordingFormat::kRosBag}},
              "format of the recording (default: tum)");
 }
 

@@ -15,7 +15,6 @@
 namespace roomradar {
 namespace {
 
-constexpr double kPairWithin_s = 0.030;
 constexpr double kGravityWithin_s = 0.150;
 constexpr std::uint64_t kMaxCalibration_bytes = 1U << 20U;
 

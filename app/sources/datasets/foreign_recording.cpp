@@ -4,8 +4,11 @@
 #include <array>
 
 #include "app/sources/containers/matroska.hpp"
+#include "app/sources/containers/ros_bag.hpp"
 #include "app/sources/datasets/azure_recording.hpp"
 #include "app/sources/datasets/record3d.hpp"
+#include "app/sources/datasets/ros_recording.hpp"
+#include "app/sources/formats/camera_rig.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -22,26 +25,52 @@ struct Kind {
 constexpr std::array kKinds = {
     Kind{"Record3D export", is_record3d, index_record3d},
     Kind{"Azure Kinect recording", is_matroska, index_azure_recording},
+    Kind{"ROS 1 bag", is_ros_bag, index_ros1_bag},
 };
 
+/// Returns the path's kind; null for unknown ones.
 const Kind* kind_of(const fs::path& path) {
   for (const Kind& kind : kKinds)
     if (kind.is_kind(path)) return &kind;
   return nullptr;
 }
 
+/// Returns the one file with a recording in a folder; the path itself if it is none or has several.
+fs::path file_in(const fs::path& path) {
+  std::error_code fault;
+  fs::path found;
+  constexpr int kMaxFiles = 30;  // a folder of images has more
+  int files = 0;
+  for (fs::directory_iterator each(path, fault), end; !fault && each != end; each.increment(fault)) {
+    if (++files > kMaxFiles) return path;
+    if (!each->is_regular_file(fault) || !kind_of(each->path())) continue;
+    if (!found.empty()) return path;
+    found = each->path();
+  }
+  return found.empty() ? path : found;
+}
+
 }  // namespace
 
 std::string foreign_kind(const fs::path& path) {
   const Kind* kind = kind_of(path);
+  if (!kind) kind = kind_of(file_in(path));
   return kind ? kind->name : "";
 }
 
 std::optional<IndexedRecording> index_foreign(const fs::path& path) {
-  const Kind* kind = kind_of(path);
-  if (!kind) return std::nullopt;
   try {
-    return kind->index(path);
+    if (const Kind* kind = kind_of(path)) return kind->index(path);
+    const fs::path file = file_in(path);
+    const Kind* kind = file == path ? nullptr : kind_of(file);
+    if (!kind) return std::nullopt;
+    IndexedRecording recording = kind->index(file);
+    recording.name = fs::canonical(path).string();
+    if (fs::exists(path / "camera.json")) {
+      recording.rig = read_camera_file(path / "camera.json");
+      recording.depth_lens = recording.colour_lens = {};
+    }
+    return recording;
   } catch (const fs::filesystem_error& error) {
     throw Error(path.string() + ": cannot be listed: " + error.code().message());
   }

@@ -11,11 +11,13 @@
 namespace roomradar {
 
 /// Returns the kind of the recording at `path`, a file or folder, such as "Record3D export". Recognised by
-/// its content. Returns an empty string if it is of none of the kinds that index_foreign() reads.
+/// its content; a folder with one file of these kinds counts as that file. Returns an empty string if it is
+/// of none of the kinds that index_foreign() reads.
 [[nodiscard]] std::string foreign_kind(const std::filesystem::path& path);
 
-/// Lists the frames of a recording of another program. Returns nullopt if foreign_kind() is empty. Throws
-/// Error naming the file if the recording is damaged or lacks depth images or cameras.
+/// Lists the frames of a recording of another program. Returns nullopt if foreign_kind() is empty. A
+/// camera.json beside the one file of a folder replaces the cameras and lenses.
+/// @throws Error naming the file if the recording is damaged or lacks depth images or cameras
 std::optional<IndexedRecording> index_foreign(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -16,6 +16,10 @@
 
 namespace roomradar {
 
+/// Max time between the depth and the colour image of a frame. Devices run at 30 Hz or less, and may miss
+/// images.
+inline constexpr double kPairWithin_s = kDevicePairing.tolerance_s;
+
 /// A frame of a recording before its images are read.
 struct IndexedFrame {
   double stamp_s = 0.0;

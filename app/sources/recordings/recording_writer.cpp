@@ -66,6 +66,8 @@ std::string_view to_string(RecordingFormat format) {
       return "7scenes";
     case RecordingFormat::kFakenect:
       return "fakenect";
+    case RecordingFormat::kRosBag:
+      return "rosbag";
   }
   return "unknown";
 }
@@ -77,6 +79,7 @@ RecordingWriter::RecordingWriter(fs::path folder, RecordingFormat format, bool a
   if (!fs::is_empty(folder_, fault))
     throw Error(folder_.string() +
                 ": is not empty; a recording is written to a folder of its own, name a new one");
+  if (format_ == RecordingFormat::kRosBag) bag_ = std::make_unique<BagFrameWriter>(folder_ / "recording.bag");
   if (format_ != RecordingFormat::kTum) return;
   make_folder(folder_ / "depth");
 }
@@ -108,6 +111,9 @@ void RecordingWriter::write(const Frame& frame) {
       break;
     case RecordingFormat::kFakenect:
       write_fakenect(frame);
+      break;
+    case RecordingFormat::kRosBag:
+      bag_->write(frame);
       break;
   }
   last_stamp_s_ = frame.stamp_s;
@@ -207,6 +213,7 @@ void RecordingWriter::write_fakenect(const Frame& frame) {
 }
 
 void RecordingWriter::close() {
+  if (bag_) bag_->close();
   for (std::ofstream* list : {&depth_list_, &colour_list_, &pose_list_, &gravity_list_}) {
     if (!list->is_open()) continue;
     list->close();

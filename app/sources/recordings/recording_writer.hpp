@@ -3,17 +3,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "app/sources/formats/camera_rig.hpp"
+#include "app/sources/recordings/bag_frame_writer.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
 
-enum class RecordingFormat { kTum, kSevenScenes, kFakenect };
+enum class RecordingFormat { kTum, kSevenScenes, kFakenect, kRosBag };
 
-/// Returns "tum", "7scenes" or "fakenect".
+/// Returns "tum", "7scenes", "fakenect" or "rosbag".
 std::string_view to_string(RecordingFormat format);
 
 /// Writes a recording frame by frame. Precision after reading it back with open_folder():
@@ -24,6 +26,8 @@ std::string_view to_string(RecordingFormat format);
 ///                 beyond 10 m), colour, gravity to 1/819 g; no poses. Gaps over 30 s become 30 s, since
 ///                 the device's clock wraps after 72 s. 640 x 480 only, the one size that fakenect
 ///                 replays.
+///   kRosBag       recording.bag: depth and poses bit for bit, stamps to 1 ns, colour, gravity. All values
+///                 that other programs need are in the bag.
 /// Colour is stored without loss. All frames must have the cameras of the first frame. They are written to
 /// camera.json.
 class RecordingWriter {
@@ -57,6 +61,7 @@ class RecordingWriter {
   // True if the last written gravity entry is a known direction.
   bool wrote_gravity_ = false;
   std::int64_t frames_written_ = 0;
+  std::unique_ptr<BagFrameWriter> bag_;
   std::ofstream depth_list_, colour_list_, pose_list_, gravity_list_;
 };
 

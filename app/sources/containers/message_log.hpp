@@ -1,0 +1,49 @@
+// message_log.hpp: time-stamped messages on topics, as ROS 1 and ROS 2 bags hold them.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace roomradar {
+
+struct MessageTopic {
+  std::string name;  ///< such as "/camera/depth/image_raw"
+  std::string type;  ///< such as "sensor_msgs/Image", without the "/msg" of ROS 2
+};
+
+/// A message that has not been read. `block` and `offset` say where; their meaning is the container's.
+struct MessageEntry {
+  double stamp_s = 0.0;  ///< time of reception
+  std::uint32_t topic = 0;
+  std::uint32_t block = 0;
+  std::uint64_t offset = 0;
+};
+
+/// Encoding of the messages.
+enum class MessageEncoding { kRos1, kCdr };
+
+/// Topics, the list of messages, and the function that reads one. Only the list is in memory.
+struct MessageLog {
+  std::string name{};
+  MessageEncoding encoding = MessageEncoding::kRos1;
+  std::vector<MessageTopic> topics{};
+  std::vector<MessageEntry> messages{};  ///< by stamp
+  /// True if the first bytes of a message can be read without reading, or decompressing, much more.
+  bool reads_starts = false;
+  /// Returns the bytes of a message, at most max_bytes of them. Throws Error if they cannot be read.
+  std::function<std::string(const MessageEntry&, std::uint64_t max_bytes)> read_up_to{};
+
+  [[nodiscard]] std::string read(const MessageEntry& entry) const {
+    return read_up_to(entry, std::numeric_limits<std::uint64_t>::max());
+  }
+};
+
+/// Returns the messages of a topic, by stamp.
+[[nodiscard]] std::vector<MessageEntry> messages_of(const MessageLog& log, std::uint32_t topic);
+
+/// Sorts the messages by stamp. Messages of one stamp keep their order.
+void sort_by_stamp(MessageLog& log);
+
+}  // namespace roomradar

@@ -1,0 +1,61 @@
+// ros_bag_writer.hpp: writes bags of ROS 1.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace roomradar {
+
+/// A type of messages as ROS identifies it.
+struct RosType {
+  std::string_view name;        ///< such as "sensor_msgs/Image"
+  std::string_view md5;         ///< of the definition, 32 hexadecimal digits
+  std::string_view definition;  ///< its fields and those of the types that it contains
+};
+
+/// Writes a bag (format 2.0) of uncompressed chunks of some MB, with an index after each chunk and at the
+/// end.
+class RosBagWriter {
+ public:
+  /// Throws Error if the file cannot be written.
+  explicit RosBagWriter(const std::filesystem::path& path);
+
+  /// Adds a topic and returns its number.
+  std::uint32_t add_topic(std::string_view name, const RosType& type);
+  /// Appends a message, encoded for ROS 1. @param time  seconds in the lower 32 bits, nanoseconds above
+  /// Throws Error if the file cannot be written.
+  void write(std::uint32_t topic, std::uint64_t time, std::string_view message);
+  /// Writes the last chunk and the index. Without it, the bag can be read up to its last whole chunk. Throws
+  /// Error if they cannot be written.
+  void close();
+
+ private:
+  struct Indexed {
+    std::uint64_t time;
+    std::uint32_t offset;
+  };
+  struct ChunkInfo {
+    std::uint64_t position, first_time, last_time;
+    std::map<std::uint32_t, std::uint32_t> counts;  // by topic
+  };
+  void write_chunk();
+  void write_bag_header(std::uint64_t index_position);
+  void put(std::string_view bytes);
+
+  std::filesystem::path path_;
+  std::ofstream file_;
+  std::uint64_t position_ = 0;
+  std::vector<std::string> connections_;  // records, by topic
+  std::string chunk_;
+  std::map<std::uint32_t, std::vector<Indexed>> index_;  // of the chunk, by topic
+  std::vector<ChunkInfo> chunks_;
+};
+
+/// Returns a stamp as ROS stores it, to 1 ns. Throws Error if it is negative or beyond the year 2106.
+std::uint64_t ros_time(double stamp_s);
+
+}  // namespace roomradar

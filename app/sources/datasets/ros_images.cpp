@@ -1,0 +1,262 @@
+// ros_images.cpp: topics are judged by the encoding of their first image, then by their name.
+#include "app/sources/datasets/ros_images.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "app/sources/datasets/indexed_source.hpp"
+#include "app/sources/formats/image_file.hpp"
+#include "app/sources/formats/raw_pixels.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::string_view kCompressedDepth = "compressedDepth";
+
+MessageBytes message(const MessageLog& log, const std::string& bytes, std::uint32_t topic) {
+  return {log.encoding, bytes, log.name + ": a message of " + log.topics[topic].name};
+}
+
+std::optional<ColourPixels> colour_pixels_of(const std::string& encoding) {
+  static const std::map<std::string, ColourPixels> kKnown = {
+      {"rgb8", ColourPixels::kRgb8},   {"bgr8", ColourPixels::kBgr8},        {"8UC3", ColourPixels::kBgr8},
+      {"rgba8", ColourPixels::kRgba8}, {"bgra8", ColourPixels::kBgra8},      {"mono8", ColourPixels::kMono8},
+      {"8UC1", ColourPixels::kMono8},  {"yuv422", ColourPixels::kUyvy},      {"uyvy", ColourPixels::kUyvy},
+      {"yuyv", ColourPixels::kYuyv},   {"yuv422_yuy2", ColourPixels::kYuyv}, {"YUYV", ColourPixels::kYuyv}};
+  const auto found = kKnown.find(encoding);
+  return found == kKnown.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool is_depth_encoding(const std::string& encoding) {
+  return encoding == "16UC1" || encoding == "mono16" || encoding == "32FC1";
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+bool names(const std::string& topic, std::initializer_list<std::string_view> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return topic.find(word) != std::string::npos; });
+}
+
+/// A topic of images as its first message shows it.
+struct Candidate {
+  RosStream stream;
+  bool is_depth = false;
+  int score = 0;
+};
+
+std::optional<Candidate> candidate_of(const MessageLog& log, std::uint32_t topic) {
+  const std::string& type = log.topics[topic].type;
+  const bool is_image = type == "sensor_msgs/Image", is_packed = type == "sensor_msgs/CompressedImage";
+  if (!is_image && !is_packed) return std::nullopt;
+  Candidate candidate;
+  candidate.stream.topic = topic;
+  candidate.stream.is_compressed = is_packed;
+  candidate.stream.messages = messages_of(log, topic);
+  if (candidate.stream.messages.empty()) return std::nullopt;
+  const std::string name = lower(log.topics[topic].name);
+  try {
+    const std::string bytes = log.read(candidate.stream.messages.front());
+    if (is_image) {
+      const RosImage image = read_image(message(log, bytes, topic));
+      candidate.is_depth = is_depth_encoding(image.encoding);
+      if (!candidate.is_depth && !colour_pixels_of(image.encoding)) return std::nullopt;
+      candidate.stream.frame_id = image.header.frame_id;
+      candidate.stream.width_px = static_cast<int>(std::min(image.width, 100'000U));
+      candidate.stream.height_px = static_cast<int>(std::min(image.height, 100'000U));
+    } else {
+      const RosCompressedImage image = read_compressed_image(message(log, bytes, topic));
+      candidate.is_depth = image.format.find(kCompressedDepth) != std::string::npos;
+      candidate.stream.frame_id = image.header.frame_id;
+      if (candidate.is_depth) {
+        DepthImage depth_m;
+        decode_ros_depth(log, candidate.stream, candidate.stream.messages.front(), 0.001, depth_m);
+        candidate.stream.width_px = depth_m.width;
+        candidate.stream.height_px = depth_m.height;
+      } else {
+        ColourImage colour;
+        decode_colour(image.data, log.name + ": " + log.topics[topic].name, colour);
+        candidate.stream.width_px = colour.width;
+        candidate.stream.height_px = colour.height;
+      }
+    }
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  candidate.score = is_image ? 1 : 0;
+  if (candidate.is_depth) {
+    if (names(name, {"depth"})) candidate.score += 8;
+    if (names(name, {"aligned", "registered"})) candidate.score -= 2;
+    if (names(name, {"infra", "/ir"})) candidate.score -= 16;
+  } else {
+    if (names(name, {"color", "colour", "rgb"})) candidate.score += 8;
+    if (names(name, {"infra", "/ir", "fisheye", "depth"})) candidate.score -= 16;
+  }
+  return candidate;
+}
+
+/// Returns the number of whole components, such as "/camera", that two names share at their begin.
+std::size_t shared_components(const std::string& a, const std::string& b) {
+  std::size_t components = 0;
+  for (std::size_t i = 0; i < a.size() && i < b.size() && a[i] == b[i]; ++i)
+    if (i > 0 && a[i] == '/') ++components;
+  return components;
+}
+
+/// Sets camera and lens from the first camera_info of the same size whose topic is nearest by name.
+bool set_camera(const MessageLog& log, RosStream& stream) {
+  std::optional<RosCameraInfo> best;
+  std::size_t best_shared = 0;
+  const std::string& name = log.topics[stream.topic].name;
+  for (std::uint32_t topic = 0; topic < log.topics.size(); ++topic) {
+    if (log.topics[topic].type != "sensor_msgs/CameraInfo") continue;
+    const std::size_t shared = shared_components(name, log.topics[topic].name);
+    if (best && shared <= best_shared) continue;
+    const auto first = std::find_if(log.messages.begin(), log.messages.end(),
+                                    [topic](const MessageEntry& entry) { return entry.topic == topic; });
+    if (first == log.messages.end()) continue;
+    try {
+      const std::string bytes = log.read(*first);
+      const RosCameraInfo info = read_camera_info(message(log, bytes, topic));
+      if (info.width != static_cast<std::uint32_t>(stream.width_px) ||
+          info.height != static_cast<std::uint32_t>(stream.height_px) || !(info.K[0] > 0.0))
+        continue;
+      best = info;
+      best_shared = shared;
+    } catch (const Error&) {  // another message may be whole
+    }
+  }
+  if (!best) return false;
+  stream.camera = {stream.width_px, stream.height_px, best->K[0], best->K[4], best->K[2], best->K[5]};
+  const bool is_rectified = names(name, {"_rect"}) && best->P[0] > 0.0;
+  if (is_rectified) {
+    stream.camera = {stream.width_px, stream.height_px, best->P[0], best->P[5], best->P[2], best->P[6]};
+    return true;
+  }
+  const std::string model = lower(best->distortion_model);
+  const std::vector<double>& D = best->D;
+  if (model != "plumb_bob" && model != "rational_polynomial" && model != "brown conrady") return true;
+  const auto coefficient = [&](std::size_t i) { return i < D.size() ? D[i] : 0.0; };
+  stream.lens = {coefficient(0), coefficient(1), coefficient(2), coefficient(3),
+                 coefficient(4), coefficient(5), coefficient(6), coefficient(7)};
+  return true;
+}
+
+std::vector<Candidate> candidates_of(const MessageLog& log, bool is_depth) {
+  std::vector<Candidate> candidates;
+  for (std::uint32_t topic = 0; topic < log.topics.size(); ++topic)
+    if (auto candidate = candidate_of(log, topic); candidate && candidate->is_depth == is_depth)
+      candidates.push_back(std::move(*candidate));
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  return candidates;
+}
+
+/// Decodes compressedDepth: the kind of compression and two floats, then a PNG of 16 bit. 32FC1 holds a /
+/// (depth + b) - quantised inverse depth; a and b are the floats.
+/// Source: ROS, compressed_depth_image_transport.
+void decode_compressed_depth(const RosCompressedImage& image, double unit_m, const std::string& where,
+                             DepthImage& depth_m) {
+  constexpr std::size_t kHead_bytes = 12;
+  if (image.data.size() < kHead_bytes) throw Error(where + ": is cut short");
+  if (image.format.find("rvl") != std::string::npos)
+    throw Error(where + ": is compressed by RVL, which is not read; record the raw depth or PNG");
+  float a = 0.0F, b = 0.0F;
+  std::memcpy(&a, image.data.data() + 4, sizeof a);
+  std::memcpy(&b, image.data.data() + 8, sizeof b);
+  const bool is_float = image.format.starts_with("32FC1");
+  decode_depth_png(image.data.substr(kHead_bytes), is_float ? 1.0F : static_cast<float>(1.0 / unit_m), where,
+                   depth_m);
+  if (!is_float) return;
+  for (float& depth : depth_m.pixels) {
+    if (depth == 0.0F) continue;
+    depth = a / (depth - b);
+    if (!(std::isfinite(depth) && depth > 0.0F)) depth = 0.0F;
+  }
+}
+
+RawLayout layout_of(const RosImage& image) {
+  constexpr std::uint32_t kTooMany = 100'000;  // convert_*() refuse it
+  return {static_cast<int>(std::min(image.width, kTooMany)),
+          static_cast<int>(std::min(image.height, kTooMany)), image.step};
+}
+
+}  // namespace
+
+RosStream find_depth_stream(const MessageLog& log) {
+  std::vector<Candidate> candidates = candidates_of(log, /*is_depth=*/true);
+  for (Candidate& candidate : candidates)
+    if (set_camera(log, candidate.stream)) return std::move(candidate.stream);
+  if (!candidates.empty()) {
+    const RosStream& stream = candidates.front().stream;
+    throw Error(log.name + ": holds no camera_info of " + size_text(stream.width_px, stream.height_px) +
+                " for its depth images on " + log.topics[stream.topic].name + "; record that topic too");
+  }
+  std::string topics;
+  for (const MessageTopic& topic : log.topics)
+    if (topics.size() < 400) topics += (topics.empty() ? "" : ", ") + topic.name;
+  throw Error(log.name + ": holds no depth images (16UC1, 32FC1 or compressedDepth); its topics are " +
+              (topics.empty() ? "none" : topics));
+}
+
+std::optional<RosStream> find_colour_stream(const MessageLog& log) {
+  for (Candidate& candidate : candidates_of(log, /*is_depth=*/false))
+    if (candidate.score >= 0 && set_camera(log, candidate.stream)) return std::move(candidate.stream);
+  return std::nullopt;
+}
+
+double depth_unit_m(const MessageLog& log, const RosStream& depth) {
+  const std::string& name = log.topics[depth.topic].name;
+  for (const MessageEntry& entry : log.messages) {
+    const MessageTopic& topic = log.topics[entry.topic];
+    if (topic.type != "std_msgs/Float32" || !topic.name.ends_with("/option/Depth Units/value") ||
+        shared_components(name, topic.name) < 2)
+      continue;
+    try {
+      const std::string bytes = log.read(entry);
+      const auto unit_m = static_cast<double>(read_float(message(log, bytes, entry.topic)));
+      if (unit_m > 0.0 && unit_m < 1.0) return std::round(unit_m * 1e9) / 1e9;  // stored as a float
+    } catch (const Error&) {                                                    // the usual unit then
+    }
+    break;
+  }
+  return 0.001;
+}
+
+void decode_ros_depth(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,
+                      double unit_m, DepthImage& depth_m) {
+  const std::string bytes = log.read(entry);
+  const MessageBytes from = message(log, bytes, stream.topic);
+  if (stream.is_compressed)
+    return decode_compressed_depth(read_compressed_image(from), unit_m, from.where, depth_m);
+  const RosImage image = read_image(from);
+  if (!is_depth_encoding(image.encoding))
+    throw Error(from.where + ": its encoding is '" + image.encoding.substr(0, 40) + "', not depth");
+  if (image.encoding == "32FC1") {
+    if (image.is_big_endian) throw Error(from.where + ": its floats are big-endian, which is not read");
+    return convert_depth(image.data, layout_of(image), DepthPixels::kFloat32, 1.0, from.where, depth_m);
+  }
+  convert_depth(image.data, layout_of(image),
+                image.is_big_endian ? DepthPixels::kUint16BigEndian : DepthPixels::kUint16, unit_m,
+                from.where, depth_m);
+}
+
+void decode_ros_colour(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,
+                       ColourImage& colour) {
+  const std::string bytes = log.read(entry);
+  const MessageBytes from = message(log, bytes, stream.topic);
+  if (stream.is_compressed) return decode_colour(read_compressed_image(from).data, from.where, colour);
+  const RosImage image = read_image(from);
+  const auto pixels = colour_pixels_of(image.encoding);
+  if (!pixels) throw Error(from.where + ": its encoding '" + image.encoding.substr(0, 40) + "' is not read");
+  convert_colour(image.data, layout_of(image), *pixels, from.where, colour);
+}
+
+}  // namespace roomradar

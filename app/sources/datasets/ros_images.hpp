@@ -1,0 +1,44 @@
+// ros_images.hpp: which topics of a ROS recording hold depth and colour, and their decoding.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/sources/containers/message_log.hpp"
+#include "app/sources/containers/ros_messages.hpp"
+#include "app/sources/formats/lens_correction.hpp"
+#include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
+
+namespace roomradar {
+
+/// A topic of images, and its camera.
+struct RosStream {
+  std::uint32_t topic = 0;
+  bool is_compressed = false;
+  std::string frame_id{};  ///< coordinate frame of the camera
+  int width_px = 0, height_px = 0;
+  Intrinsics camera{};
+  RationalLens lens{};
+  std::vector<MessageEntry> messages{};  ///< by time of reception
+};
+
+/// Returns the topic of depth images: 16UC1, mono16, 32FC1 or compressedDepth. Of several, one that is not
+/// registered to colour is preferred.
+/// @throws Error naming the topics that were found if none is depth, or the topic has no camera_info
+RosStream find_depth_stream(const MessageLog& log);
+
+/// Returns the topic of colour images; nullopt if there is none with a camera_info.
+std::optional<RosStream> find_colour_stream(const MessageLog& log);
+
+/// Returns the length of a unit of 16 bit depth, m: from the option Depth Units of a RealSense, else 0.001.
+double depth_unit_m(const MessageLog& log, const RosStream& depth);
+
+/// Decode a message of the stream. Throw Error if it is damaged or of an encoding that is not known.
+void decode_ros_depth(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,
+                      double unit_m, DepthImage& depth_m);
+void decode_ros_colour(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,
+                       ColourImage& colour);
+
+}  // namespace roomradar

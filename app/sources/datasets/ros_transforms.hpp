@@ -1,0 +1,49 @@
+// ros_transforms.hpp: the tree of coordinate frames that a ROS recording publishes (tf).
+#pragma once
+#include <Eigen/Geometry>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/sources/containers/message_log.hpp"
+#include "app/sources/containers/ros_messages.hpp"
+
+namespace roomradar {
+
+/// Tree of coordinate frames: static transforms from the recording's first messages, and the times of those
+/// that move. Moving transforms are read around the time that is asked for.
+class RosTransforms {
+ public:
+  /// Reads all messages of tf_static and the first 500 of tf; damaged ones are left out.
+  /// @param log  must outlive this object
+  explicit RosTransforms(const MessageLog& log);
+
+  /// Returns the transform between two frames that do not move relative to each other; nullopt if the tree
+  /// does not connect them.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> T_a_b(const std::string& a, const std::string& b) const;
+
+  /// Returns true if `frame` moves relative to the root of its tree.
+  [[nodiscard]] bool moves(const std::string& frame) const;
+
+  /// Returns the pose of `frame` in the root of its tree at a time of the message headers. Returns nullopt if
+  /// nothing moves, or a moving transform has no messages within 0.15 s before and after.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> T_root_frame(const std::string& frame, double stamp_s) const;
+
+ private:
+  struct Edge {
+    std::string parent;
+    Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
+    bool moves = false;
+  };
+  void add(const RosTransform& transform);
+  /// Returns the frames from `frame` up to, not including, the root.
+  [[nodiscard]] std::vector<std::string> chain(const std::string& frame) const;
+
+  const MessageLog& log_;
+  std::map<std::string, Edge> edges_;  // by child
+  std::vector<MessageEntry> moving_;   // messages of tf, by time of reception
+  double header_offset_s_ = 0.0;       // stamp of the headers minus time of reception
+};
+
+}  // namespace roomradar

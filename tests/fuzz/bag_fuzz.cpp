@@ -1,0 +1,7 @@
+// bag_fuzz.cpp: bags of ROS 1.
+#include "tests/fuzz/foreign_input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  roomradar::test::read_foreign(data, size, "recording.bag");
+  return 0;
+}
