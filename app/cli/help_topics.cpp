@@ -71,6 +71,9 @@ constexpr std::string_view kSources =
                      Record3D    an export "EXR + RGB": metadata, depth/0.exr (m), rgb/0.jpg
                      ROS 1       FILE.bag with depth, colour and camera_info; poses from tf, gravity from an IMU
                      Azure       FILE.mkv of k4arecorder (Azure Kinect, Femto), with its calibration
+                     Stray       Stray Scanner's odometry.csv, camera_matrix.csv, depth/000000.png, rgb.mp4
+                     Redwood     depth/N.png (mm), color/N.jpg, *.log or intrinsic.json (also Open3D)
+                     ICL-NUIM    depth/N.png (1/5000 m), rgb/N.png, *.gt.freiburg
                    A camera.json in it describes the cameras, a calibration.json their errors.
   SESSION          a folder that `run --record-session` wrote: replayed with identical results
   kinect:N         a Kinect v1, numbered from 0. It continues until Ctrl-C is pressed once. kinect:0?depth=mm

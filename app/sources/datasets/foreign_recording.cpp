@@ -7,7 +7,9 @@
 #include "app/sources/containers/ros_bag.hpp"
 #include "app/sources/datasets/azure_recording.hpp"
 #include "app/sources/datasets/record3d.hpp"
+#include "app/sources/datasets/redwood.hpp"
 #include "app/sources/datasets/ros_recording.hpp"
+#include "app/sources/datasets/stray_scanner.hpp"
 #include "app/sources/formats/camera_rig.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -26,6 +28,9 @@ constexpr std::array kKinds = {
     Kind{"Record3D export", is_record3d, index_record3d},
     Kind{"Azure Kinect recording", is_matroska, index_azure_recording},
     Kind{"ROS 1 bag", is_ros_bag, index_ros1_bag},
+    Kind{"Stray Scanner recording", is_stray_scanner, index_stray_scanner},
+    Kind{"Redwood or Open3D recording", is_redwood, index_redwood},
+    Kind{"ICL-NUIM recording", is_icl_nuim, index_icl_nuim},
 };
 
 /// Returns the path's kind; null for unknown ones.

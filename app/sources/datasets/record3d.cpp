@@ -2,15 +2,14 @@
 #include "app/sources/datasets/record3d.hpp"
 
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "app/sources/datasets/arkit_axes.hpp"
+#include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/exr_depth.hpp"
 #include "app/sources/formats/image_file.hpp"
-#include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -51,16 +50,6 @@ Intrinsics colour_camera_of(const Json& metadata, const std::string& where) {
   return camera;
 }
 
-/// Returns the numbers N of the files N.exr.
-std::map<std::int64_t, fs::path> depth_files(const fs::path& folder) {
-  std::map<std::int64_t, fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const auto number = parse_whole_number(entry.path().stem().string());
-    if (entry.path().extension() == ".exr" && number && *number >= 0) files[*number] = entry.path();
-  }
-  return files;
-}
-
 }  // namespace
 
 bool is_record3d(const fs::path& folder) {
@@ -80,13 +69,7 @@ IndexedRecording index_record3d(const fs::path& folder) {
   const Intrinsics colour = colour_camera_of(metadata, where);
   recording.rig.colour_camera = colour;
   const int depth_width = size_px(metadata, "dw", where), depth_height = size_px(metadata, "dh", where);
-  Intrinsics depth = scaled(colour, static_cast<double>(depth_width) / colour.width_px);
-  if (std::abs(depth.height_px - depth_height) > 1)
-    throw Error(where + ": depth is " + size_text(depth_width, depth_height) + ", which is no scaled " +
-                size_text(colour.width_px, colour.height_px));
-  depth.width_px = depth_width;
-  depth.height_px = depth_height;
-  recording.rig.depth_camera = depth;
+  recording.rig.depth_camera = scaled_to_depth(colour, {depth_width, depth_height}, where);
 
   const Json& poses = json_field(metadata, "poses", where);
   const Json stamps = metadata.value("frameTimestamps", Json::array());
@@ -96,7 +79,7 @@ IndexedRecording index_record3d(const fs::path& folder) {
   if (!(fps > 0.0)) throw Error(where + ": fps must be > 0");
 
   std::vector<fs::path> depth_paths, colour_paths;
-  for (const auto& [number, file] : depth_files(folder / "depth")) {
+  for (const auto& [number, file] : numbered_files(folder / "depth", {".exr"})) {
     const auto at = static_cast<std::size_t>(number);
     const std::string item = "[" + std::to_string(number) + "]";
     IndexedFrame frame{.stamp_s = static_cast<double>(number) / fps};

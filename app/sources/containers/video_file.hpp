@@ -1,0 +1,35 @@
+// video_file.hpp: frames of a video by number.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+
+#include "mapping/types/image.hpp"
+
+namespace roomradar {
+
+/// A video, decoded by OpenCV's FFmpeg. Not thread safe.
+class VideoFile {
+ public:
+  /// Throws Error naming the file if it cannot be opened or a side is not in 1..16384.
+  explicit VideoFile(const std::filesystem::path& path);
+  ~VideoFile();
+  VideoFile(const VideoFile&) = delete;
+  VideoFile& operator=(const VideoFile&) = delete;
+
+  [[nodiscard]] int width_px() const { return width_px_; }
+  [[nodiscard]] int height_px() const { return height_px_; }
+  /// Decodes frame `number`, from 0, as stored, without the rotation that the file asks for. Fast for the
+  /// next frames; others are reached from the key frame before them. Throws Error if the video has no such
+  /// frame.
+  void read(std::size_t number, ColourImage& image);
+
+ private:
+  struct Decoder;
+  std::filesystem::path path_;
+  std::unique_ptr<Decoder> decoder_;
+  int width_px_ = 0, height_px_ = 0;
+  std::size_t next_ = 0;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,167 @@
+// numbered_recordings_test.cpp: Stray Scanner, Redwood, Open3D and ICL-NUIM: written recordings.
+#include <gtest/gtest.h>
+
+#include <opencv2/videoio.hpp>
+
+#include "app/sources/formats/image_file.hpp"
+#include "app/sources/recordings/folder_source.hpp"
+#include "tests/app/sources/sources_support.hpp"
+
+namespace roomradar::numbered_recordings_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::contains;
+using test::error_of;
+using test::read_all;
+using test::TemporaryFolder;
+using test::write_text;
+
+std::string padded(int i) { return std::string(5, '0') + std::to_string(i); }
+
+// ---- Stray Scanner ----
+
+constexpr int kVideoFrames = 30;
+
+void write_stray(const fs::path& folder) {
+  fs::create_directories(folder / "depth");
+  fs::create_directories(folder / "confidence");
+  cv::VideoWriter video((folder / "rgb.mp4").string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 30,
+                        {64, 48});
+  std::string odometry = "timestamp, frame, x, y, z, qx, qy, qz, qw, fx\n";
+  for (int i = 0; i < kVideoFrames; ++i) {
+    DepthImage depth_m(16, 12, 1.0F + 0.001F * static_cast<float>(i));
+    write_depth_file(depth_m, DepthEncoding::kMillimetres,
+                     folder / "depth" / (padded(i).substr(padded(i).size() - 6) + ".png"));
+    MaskImage confidence(16, 12, 2);
+    confidence.at(3, 2) = 0;
+    confidence.at(4, 2) = 1;
+    write_mask_file(confidence, folder / "confidence" / (padded(i).substr(padded(i).size() - 6) + ".png"));
+    video.write(cv::Mat(48, 64, CV_8UC3, cv::Scalar(20, 100, 8 * i)));
+    odometry += std::to_string(100.0 + i / 60.0) + ", " + std::to_string(i) + ", 1, 2, " + std::to_string(i) +
+                ", 0, 0, 0, 1, ,\n";
+  }
+  write_text(folder / "odometry.csv", odometry);
+  write_text(folder / "camera_matrix.csv", "50.0, 0.0, 31.5\n0.0, 52.0, 23.5\n0.0, 0.0, 1.0");
+}
+
+TEST(StrayScanner, GivesSureDepthColourOfTheVideoAndPoses) {
+  const TemporaryFolder folder;
+  write_stray(folder.path());
+  const auto source = open_folder(folder.path());
+  EXPECT_EQ(source->frame_count(), kVideoFrames);
+  const auto all = read_all(*source);
+  ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kVideoFrames));
+  const Frame& frame = all.frames[7];
+  EXPECT_NEAR(frame.stamp_s, 100.0 + 7 / 60.0, 1e-6);
+  EXPECT_EQ(frame.depth_m.at(0, 0), 1.007F);
+  EXPECT_EQ(frame.depth_m.at(3, 2), 0.0F) << "confidence 0";
+  EXPECT_EQ(frame.depth_m.at(4, 2), 1.007F) << "confidence 1";
+  EXPECT_EQ(frame.depth_camera, (Intrinsics{16, 12, 12.5, 13, 7.5, 5.5}));
+  EXPECT_EQ(frame.colour_camera, (Intrinsics{64, 48, 50, 52, 31.5, 23.5}));
+  EXPECT_NEAR(frame.colour.at(30, 20).r, 56, 6);
+  // The recorded camera looks along +z of a world with y up: y of ours is -z of the recorded, z is its y.
+  EXPECT_TRUE((*frame.T_world_camera * Eigen::Vector3d(0, 0, 1)).isApprox(Eigen::Vector3d(1, -8, 2)));
+  EXPECT_TRUE(frame.down_camera->isApprox(Eigen::Vector3d(0, -1, 0)));
+}
+
+TEST(StrayScanner, SeeksInTheVideo) {
+  const TemporaryFolder folder;
+  write_stray(folder.path());
+  const auto source = open_folder(folder.path());
+  Frame frame;
+  for (const int i : {25, 3, 4, 29, 0}) {
+    ASSERT_TRUE(source->seek(i));
+    ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
+    EXPECT_NEAR(frame.colour.at(30, 20).r, 8 * i, 6) << i;
+  }
+}
+
+TEST(StrayScanner, SaysWhatIsWrong) {
+  const TemporaryFolder folder;
+  write_stray(folder.path());
+  const auto with = [&](const char* file, const std::string& text) {
+    const TemporaryFolder broken;
+    fs::copy(folder.path(), broken.path(), fs::copy_options::recursive);
+    write_text(broken.path() / file, text);
+    return error_of([&] { (void)open_folder(broken.path()); });
+  };
+  EXPECT_TRUE(contains(with("camera_matrix.csv", "1, 2"), "must have 3"));
+  EXPECT_TRUE(contains(with("camera_matrix.csv", "-1,0,1\n0,1,1\n0,0,1"), "fx"));
+  EXPECT_TRUE(contains(with("odometry.csv", "timestamp\n1, x, 3"), "line 2: 'x' is not a number"));
+  EXPECT_TRUE(contains(with("odometry.csv", "1, 2, 3"), "line 1: has 3 numbers; must have 9"));
+  EXPECT_TRUE(contains(with("rgb.mp4", "nothing"), "cannot be opened as a video"));
+}
+
+// ---- Redwood, Open3D, ICL-NUIM ----
+
+void write_images(const fs::path& folder, const char* colour, DepthEncoding encoding) {
+  fs::create_directories(folder / "depth");
+  fs::create_directories(folder / colour);
+  for (int i = 0; i < 12; ++i) {  // 10 and 11 come after 9
+    write_depth_file(DepthImage(64, 48, 1.0F + 0.01F * static_cast<float>(i)), encoding,
+                     folder / "depth" / (std::to_string(i) + ".png"));
+    write_colour_file(ColourImage(128, 96, {static_cast<std::uint8_t>(i), 0, 0}),
+                      folder / colour / (std::to_string(i) + ".png"));
+  }
+}
+
+TEST(Redwood, GivesThePosesOfItsLog) {
+  const TemporaryFolder folder;
+  write_images(folder.path(), "image", DepthEncoding::kMillimetres);
+  std::string log;
+  for (int i = 0; i < 11; ++i)
+    log += std::to_string(i) + " " + std::to_string(i) + " " + std::to_string(i + 1) + "\n1 0 0 " +
+           std::to_string(i) + "\n0 0 -1 5\n0 1 0 6\n0 0 0 1\n";
+  write_text(folder.path() / "livingroom.log", log);
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 12U);
+  const Frame& frame = all.frames[10];
+  EXPECT_NEAR(frame.stamp_s, 10 / 30.0, 1e-9);
+  EXPECT_NEAR(frame.depth_m.at(0, 0), 1.1, 1e-6);
+  EXPECT_EQ(frame.colour.at(0, 0).r, 10);
+  EXPECT_EQ(frame.depth_camera, (Intrinsics{64, 48, 52.5, 52.5, 31.5, 23.5}));
+  EXPECT_EQ(frame.colour_camera, (Intrinsics{128, 96, 105, 105, 63.5, 47.5}));
+  EXPECT_TRUE((*frame.T_world_camera * Eigen::Vector3d(0, 0, 1)).isApprox(Eigen::Vector3d(10, 4, 6)));
+  EXPECT_FALSE(all.frames[11].T_world_camera) << "the log has 11 poses";
+
+  write_text(folder.path() / "livingroom.log", log.substr(0, 40));
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "livingroom.log"));
+  write_text(folder.path() / "livingroom.log", "0 0 1\n2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_TRUE(
+      contains(error_of([&] { (void)open_folder(folder.path()); }), "line 5: the pose that ends here"));
+}
+
+TEST(Redwood, TakesTheIntrinsicsOfOpen3d) {
+  const TemporaryFolder folder;
+  write_images(folder.path(), "color", DepthEncoding::kMillimetres);
+  write_text(folder.path() / "intrinsic.json",
+             R"({"width":128,"height":96,"intrinsic_matrix":[110,0,0,0,112,0,63.5,47.5,1]})");
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 12U);
+  EXPECT_EQ(all.frames[0].depth_camera, (Intrinsics{64, 48, 55, 56, 31.5, 23.5}));
+  write_text(folder.path() / "intrinsic.json", R"({"width":128,"height":96,"intrinsic_matrix":[110]})");
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "must be 9 numbers"));
+}
+
+TEST(IclNuim, MirrorsItsLeftHandedFrames) {
+  const TemporaryFolder folder;
+  write_images(folder.path(), "rgb", DepthEncoding::kTum);
+  // Rotated by 90 degrees about x: in its frames (x right, y up, z forward), forward becomes -y.
+  write_text(folder.path() / "livingRoom.gt.freiburg",
+             "1 1 2 3 0.70710678118 0 0 0.70710678118\n2 1 2 3 0 0 0 0\n");
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 12U);
+  EXPECT_NEAR(all.frames[3].depth_m.at(0, 0), 1.03, 1e-6);
+  EXPECT_NEAR(all.frames[3].depth_camera.fy_px, 48.0, 1e-9);
+  const Eigen::Isometry3d& T = *all.frames[1].T_world_camera;
+  // A point 1 m ahead is at (1, 2 - 1, 3) of the recorded world, which is mirrored in y.
+  EXPECT_TRUE((T * Eigen::Vector3d(0, 0, 1)).isApprox(Eigen::Vector3d(1, -1, 3), 1e-6)) << T.matrix();
+  // A point 1 m below the axis has recorded y -1, which the rotation turns to -z.
+  EXPECT_TRUE((T * Eigen::Vector3d(0, 1, 0)).isApprox(Eigen::Vector3d(1, -2, 2), 1e-6)) << T.matrix();
+  EXPECT_GT(T.linear().determinant(), 0.999);
+  EXPECT_FALSE(all.frames[2].T_world_camera);
+}
+
+}  // namespace
+}  // namespace roomradar::numbered_recordings_test
