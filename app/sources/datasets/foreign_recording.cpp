@@ -6,9 +6,11 @@
 #include "app/sources/containers/matroska.hpp"
 #include "app/sources/containers/ros_bag.hpp"
 #include "app/sources/datasets/azure_recording.hpp"
+#include "app/sources/datasets/klg.hpp"
 #include "app/sources/datasets/record3d.hpp"
 #include "app/sources/datasets/redwood.hpp"
 #include "app/sources/datasets/ros_recording.hpp"
+#include "app/sources/datasets/scannet_sens.hpp"
 #include "app/sources/datasets/stray_scanner.hpp"
 #include "app/sources/formats/camera_rig.hpp"
 #include "mapping/types/system/error.hpp"
@@ -28,6 +30,8 @@ constexpr std::array kKinds = {
     Kind{"Record3D export", is_record3d, index_record3d},
     Kind{"Azure Kinect recording", is_matroska, index_azure_recording},
     Kind{"ROS 1 bag", is_ros_bag, index_ros1_bag},
+    Kind{"ScanNet recording", is_scannet_sens, index_scannet_sens},
+    Kind{"ElasticFusion recording", is_klg, index_klg},
     Kind{"Stray Scanner recording", is_stray_scanner, index_stray_scanner},
     Kind{"Redwood or Open3D recording", is_redwood, index_redwood},
     Kind{"ICL-NUIM recording", is_icl_nuim, index_icl_nuim},

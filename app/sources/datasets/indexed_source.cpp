@@ -1,6 +1,7 @@
 // indexed_source.cpp: reads images, removes lens distortion, counts unreadable frames.
 #include "app/sources/datasets/indexed_source.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -168,6 +169,14 @@ std::vector<std::optional<std::size_t>> pair_colours(const std::vector<double>& 
   pairing.finish();
   take_pairs();
   return colour_of;
+}
+
+void set_stamps(const std::vector<double>& stamps_s, std::vector<IndexedFrame>& frames) {
+  constexpr double kNominalRate_hz = 30.0;
+  const bool increase =
+      std::adjacent_find(stamps_s.begin(), stamps_s.end(), std::greater_equal<>()) == stamps_s.end();
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    frames[i].stamp_s = increase ? stamps_s[i] : static_cast<double>(i) / kNominalRate_hz;
 }
 
 std::string size_text(int width_px, int height_px) {

@@ -62,6 +62,10 @@ std::unique_ptr<FrameSource> indexed_source(IndexedRecording recording, const So
 std::vector<std::optional<std::size_t>> pair_colours(const std::vector<double>& colour_s, double tolerance_s,
                                                      std::vector<IndexedFrame>& frames);
 
+/// Sets the stamps of all frames. If they do not increase, as in files whose writer had no clock, frame N
+/// gets N / 30 s.
+void set_stamps(const std::vector<double>& stamps_s, std::vector<IndexedFrame>& frames);
+
 /// Returns the text of a size, "640 x 480".
 std::string size_text(int width_px, int height_px);
 

@@ -1,0 +1,19 @@
+// klg.hpp: recordings of ElasticFusion's and Kintinuous' Logger, .klg files.
+#pragma once
+#include <filesystem>
+
+#include "app/sources/datasets/indexed_source.hpp"
+
+namespace roomradar {
+
+/// Returns true if the file's name ends in .klg.
+[[nodiscard]] bool is_klg(const std::filesystem::path& path);
+
+/// Lists the frames of a .klg file: their number, then per frame a stamp (us), the sizes of both images,
+/// depth (16 bit, mm, zlib or raw) and colour (JPEG, raw RGB or none), registered. The file states no camera:
+/// ElasticFusion takes 528 px at a width of 640, and so does this reader. A file that was cut short is read
+/// up to its last whole frame.
+/// @throws Error naming the file if it is damaged
+IndexedRecording index_klg(const std::filesystem::path& path);
+
+}  // namespace roomradar

@@ -1,0 +1,141 @@
+// scannet_sens.cpp: walks the frames by their sizes.
+#include "app/sources/datasets/scannet_sens.hpp"
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "app/sources/containers/decompress.hpp"
+#include "app/sources/containers/random_access_file.hpp"
+#include "app/sources/formats/image_file.hpp"
+#include "app/sources/formats/raw_pixels.hpp"
+#include "mapping/types/serialize.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::uint32_t kSensVersion = 4;
+using Matrix4 = std::array<float, 16>;  // row by row
+enum class SensColour : std::int32_t { kRaw = 0, kPng = 1, kJpeg = 2 };
+enum class SensDepth : std::int32_t { kRaw = 0, kZlib = 1 };
+
+template <typename Number>
+Number take(ByteReader& bytes) {
+  Number number{};
+  bytes.raw(&number, sizeof number);
+  return number;
+}
+
+std::optional<Eigen::Isometry3d> rigid_transform(const Matrix4& m) {
+  const Eigen::Matrix4d matrix =
+      Eigen::Map<const Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(m.data()).cast<double>();
+  if (!matrix.allFinite()) return std::nullopt;
+  const auto rotation = nearest_rotation(matrix.topLeftCorner<3, 3>());
+  if (!rotation) return std::nullopt;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = *rotation;
+  T.translation() = matrix.topRightCorner<3, 1>();
+  return T;
+}
+
+Intrinsics sens_camera(const Matrix4& m, std::uint32_t width, std::uint32_t height,
+                       const std::string& where) {
+  if (width < 1 || height < 1 || width > 16384 || height > 16384)
+    throw Error(where + ": its images' width or height is not in 1..16384 px");
+  const auto at = [&](std::size_t i) { return static_cast<double>(m[i]); };
+  return {static_cast<int>(width), static_cast<int>(height), at(0), at(5), at(2), at(6)};
+}
+
+/// Where the images of a frame are in the file.
+struct SensFrame {
+  std::uint64_t colour_offset = 0, colour_bytes = 0, depth_bytes = 0;
+};
+
+}  // namespace
+
+bool is_scannet_sens(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (path.extension() != ".sens" || !std::filesystem::is_regular_file(path, ignored)) return false;
+  return RandomAccessFile(path).read_up_to(0, 4) == std::string("\x04\0\0\0", 4);
+}
+
+IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
+  const auto file = std::make_shared<const RandomAccessFile>(path);
+  const std::string where = file->name();
+  constexpr std::uint64_t kFixed_bytes = 4 * sizeof(Matrix4) + 2 * 4 + 4 * 4 + 4 + 8;
+  constexpr std::uint64_t kMaxName_bytes = 4096;
+  const std::string start = file->read(0, 12);
+  ByteReader start_reader(start, where);
+  if (take<std::uint32_t>(start_reader) != kSensVersion)
+    throw Error(where + ": is not of version 4, the one that is read");
+  const auto name_bytes = take<std::uint64_t>(start_reader);
+  if (name_bytes > kMaxName_bytes) throw Error(where + ": is damaged: the name of its sensor is too long");
+  const std::string head = file->read(12 + name_bytes, kFixed_bytes);
+  ByteReader reader(head, where);
+  const auto colour_matrix = take<Matrix4>(reader), colour_pose = take<Matrix4>(reader);
+  const auto depth_matrix = take<Matrix4>(reader), depth_pose = take<Matrix4>(reader);
+  const auto colour_kind = static_cast<SensColour>(take<std::int32_t>(reader));
+  const auto depth_kind = static_cast<SensDepth>(take<std::int32_t>(reader));
+  std::array<std::uint32_t, 4> sizes{};
+  for (std::uint32_t& size : sizes) size = take<std::uint32_t>(reader);
+  const auto units_per_m = static_cast<double>(take<float>(reader));
+  const auto count = take<std::uint64_t>(reader);
+  if (depth_kind != SensDepth::kRaw && depth_kind != SensDepth::kZlib)
+    throw Error(where + ": its depth is neither raw nor compressed by zlib, which are read");
+  if (!(units_per_m > 0.0 && std::isfinite(units_per_m)))
+    throw Error(where + ": is damaged: its depth's units per m are not > 0");
+
+  IndexedRecording recording{.name = std::filesystem::canonical(path).string()};
+  recording.rig.depth_camera = sens_camera(depth_matrix, sizes[2], sizes[3], where);
+  if (sizes[0] > 0) recording.rig.colour_camera = sens_camera(colour_matrix, sizes[0], sizes[1], where);
+  const auto T_device_colour = rigid_transform(colour_pose), T_device_depth = rigid_transform(depth_pose);
+  if (T_device_colour && T_device_depth)
+    recording.rig.T_colour_depth = T_device_colour->inverse() * *T_device_depth;
+
+  constexpr std::uint64_t kFrameHead_bytes = sizeof(Matrix4) + 4 * 8;
+  std::vector<SensFrame> places;
+  std::vector<double> stamps_s;
+  std::uint64_t at = 12 + name_bytes + kFixed_bytes;
+  for (std::uint64_t i = 0; i < count && file->has(at, kFrameHead_bytes); ++i) {
+    const std::string bytes = file->read(at, kFrameHead_bytes);
+    ByteReader frame_reader(bytes, where);
+    const auto pose = take<Matrix4>(frame_reader);
+    (void)take<std::uint64_t>(frame_reader);  // stamp of the colour image
+    const auto stamp_us = take<std::uint64_t>(frame_reader);
+    SensFrame place{at + kFrameHead_bytes, take<std::uint64_t>(frame_reader),
+                    take<std::uint64_t>(frame_reader)};
+    if (!file->has(place.colour_offset, place.colour_bytes) ||
+        !file->has(place.colour_offset + place.colour_bytes, place.depth_bytes))
+      break;
+    at = place.colour_offset + place.colour_bytes + place.depth_bytes;
+    recording.frames.push_back(
+        {.has_colour = place.colour_bytes > 0, .T_world_camera = rigid_transform(pose)});
+    stamps_s.push_back(1e-6 * static_cast<double>(stamp_us));
+    places.push_back(place);
+  }
+  set_stamps(stamps_s, recording.frames);
+
+  const RawLayout depth_layout{recording.rig.depth_camera.width_px, recording.rig.depth_camera.height_px};
+  recording.read_depth = [=](std::size_t frame, DepthImage& depth_m) {
+    const SensFrame& place = places[frame];
+    std::string bytes = file->read(place.colour_offset + place.colour_bytes, place.depth_bytes);
+    if (depth_kind == SensDepth::kZlib)
+      bytes = decompress(Compression::kZlib, bytes,
+                         std::uint64_t{2} * static_cast<std::uint64_t>(depth_layout.width_px) *
+                             static_cast<std::uint64_t>(depth_layout.height_px),
+                         where + ": a depth image");
+    convert_depth(bytes, depth_layout, DepthPixels::kUint16, 1.0 / units_per_m, where, depth_m);
+  };
+  const RawLayout colour_layout{static_cast<int>(sizes[0] & 0xFFFFU), static_cast<int>(sizes[1] & 0xFFFFU)};
+  recording.read_colour = [=](std::size_t frame, ColourImage& image) {
+    const std::string bytes = file->read(places[frame].colour_offset, places[frame].colour_bytes);
+    if (colour_kind == SensColour::kRaw)
+      convert_colour(bytes, colour_layout, ColourPixels::kRgb8, where, image);
+    else
+      decode_colour(bytes, where + ": a colour image", image);
+  };
+  return recording;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,7 @@
+// klg_fuzz.cpp: .klg files.
+#include "tests/fuzz/foreign_input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  roomradar::test::read_foreign(data, size, "recording.klg");
+  return 0;
+}
