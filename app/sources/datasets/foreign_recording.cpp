@@ -4,6 +4,7 @@
 #include <array>
 
 #include "app/sources/containers/matroska.hpp"
+#include "app/sources/containers/ros2_bag.hpp"
 #include "app/sources/containers/ros_bag.hpp"
 #include "app/sources/datasets/azure_recording.hpp"
 #include "app/sources/datasets/klg.hpp"
@@ -30,6 +31,7 @@ constexpr std::array kKinds = {
     Kind{"Record3D export", is_record3d, index_record3d},
     Kind{"Azure Kinect recording", is_matroska, index_azure_recording},
     Kind{"ROS 1 bag", is_ros_bag, index_ros1_bag},
+    Kind{"ROS 2 bag", is_ros2_bag, index_ros2_bag},
     Kind{"ScanNet recording", is_scannet_sens, index_scannet_sens},
     Kind{"ElasticFusion recording", is_klg, index_klg},
     Kind{"Stray Scanner recording", is_stray_scanner, index_stray_scanner},

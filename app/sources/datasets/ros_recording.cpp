@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/sources/containers/ros2_bag.hpp"
 #include "app/sources/containers/ros_bag.hpp"
 #include "app/sources/datasets/ros_images.hpp"
 #include "app/sources/datasets/ros_transforms.hpp"
@@ -216,6 +217,10 @@ IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& lo
 
 IndexedRecording index_ros1_bag(const std::filesystem::path& path) {
   return index_ros_recording(std::make_shared<const MessageLog>(open_ros_bag(path)));
+}
+
+IndexedRecording index_ros2_bag(const std::filesystem::path& path) {
+  return index_ros_recording(std::make_shared<const MessageLog>(open_ros2_bag(path)));
 }
 
 }  // namespace roomradar

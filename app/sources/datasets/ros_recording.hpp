@@ -22,5 +22,7 @@ IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& lo
 
 /// Opens a bag of ROS 1.
 IndexedRecording index_ros1_bag(const std::filesystem::path& path);
+/// Opens a bag of ROS 2.
+IndexedRecording index_ros2_bag(const std::filesystem::path& path);
 
 }  // namespace roomradar
