@@ -71,6 +71,7 @@ constexpr std::string_view kSources =
                      Record3D    an export "EXR + RGB": metadata, depth/0.exr (m), rgb/0.jpg
                      ROS 1       FILE.bag with depth, colour and camera_info; poses from tf, gravity from an IMU
                      ROS 2       FILE.db3, FILE.mcap or their folder, as ROS 1
+                     RTAB-Map    FILE.db
                      ScanNet     FILE.sens;  ElasticFusion: FILE.klg
                      Azure       FILE.mkv of k4arecorder (Azure Kinect, Femto), with its calibration
                      Stray       Stray Scanner's odometry.csv, camera_matrix.csv, depth/000000.png, rgb.mp4

@@ -11,6 +11,7 @@
 #include "app/sources/datasets/record3d.hpp"
 #include "app/sources/datasets/redwood.hpp"
 #include "app/sources/datasets/ros_recording.hpp"
+#include "app/sources/datasets/rtabmap.hpp"
 #include "app/sources/datasets/scannet_sens.hpp"
 #include "app/sources/datasets/stray_scanner.hpp"
 #include "app/sources/formats/camera_rig.hpp"
@@ -32,6 +33,7 @@ constexpr std::array kKinds = {
     Kind{"Azure Kinect recording", is_matroska, index_azure_recording},
     Kind{"ROS 1 bag", is_ros_bag, index_ros1_bag},
     Kind{"ROS 2 bag", is_ros2_bag, index_ros2_bag},
+    Kind{"RTAB-Map database", is_rtabmap, index_rtabmap},
     Kind{"ScanNet recording", is_scannet_sens, index_scannet_sens},
     Kind{"ElasticFusion recording", is_klg, index_klg},
     Kind{"Stray Scanner recording", is_stray_scanner, index_stray_scanner},

@@ -104,6 +104,18 @@ void decode_depth_png(std::string_view bytes, float units_per_m, const std::stri
   convert(decode_16_bit_png(bytes, name), units_per_m, 65535, depth_m);
 }
 
+void decode_float_png(std::string_view bytes, const std::string& name, DepthImage& depth_m) {
+  const ImageHeader header = read_image_header(span_of(bytes), name);
+  if (header.kind != ImageKind::kPng || header.bits != 8 || header.channels != 4)
+    throw Error(name + ": is a " + to_string(header) + "; must be a PNG of four 8 bit channels");
+  const cv::Mat image = decode(bytes, cv::IMREAD_UNCHANGED, CV_8UC4, header, name);
+  depth_m.resize(image.cols, image.rows);
+  for (int y = 0; y < image.rows; ++y)
+    std::memcpy(depth_m.row(y), image.ptr(y), static_cast<std::size_t>(image.cols) * sizeof(float));
+  for (float& depth : depth_m.pixels)
+    if (!(std::isfinite(depth) && depth > 0.0F)) depth = 0.0F;
+}
+
 void decode_grey_png(std::string_view bytes, const std::string& name, Image<std::uint8_t>& image) {
   const ImageHeader header = read_image_header(span_of(bytes), name);
   if (header.kind != ImageKind::kPng || header.bits != 8 || header.channels != 1)

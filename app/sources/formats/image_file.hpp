@@ -31,6 +31,9 @@ void read_colour_file(const std::filesystem::path& path, ColourImage& colour);
 /// @throws Error as read_depth_file() does, naming `name`
 void decode_depth_png(std::string_view bytes, float units_per_m, const std::string& name,
                       DepthImage& depth_m);
+/// Decodes a depth image whose pixels are floats in m, stored as the four 8 bit channels of a PNG, from
+/// memory.
+void decode_float_png(std::string_view bytes, const std::string& name, DepthImage& depth_m);
 /// Decodes a colour or grey image (PNG, JPEG or PPM) from memory. Throws Error naming `name`.
 void decode_colour(std::string_view bytes, const std::string& name, ColourImage& colour);
 /// Decodes a grey PNG of 8 bit from memory, such as a confidence map. Throws Error naming `name`.
