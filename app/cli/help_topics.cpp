@@ -72,6 +72,7 @@ constexpr std::string_view kSources =
                      ROS 1       FILE.bag with depth, colour and camera_info; poses from tf, gravity from an IMU
                      ROS 2       FILE.db3, FILE.mcap or their folder, as ROS 1
                      RTAB-Map    FILE.db
+                     OpenNI      FILE.oni
                      ScanNet     FILE.sens;  ElasticFusion: FILE.klg
                      Azure       FILE.mkv of k4arecorder (Azure Kinect, Femto), with its calibration
                      Stray       Stray Scanner's odometry.csv, camera_matrix.csv, depth/000000.png, rgb.mp4
@@ -81,6 +82,7 @@ constexpr std::string_view kSources =
   SESSION          a folder that `run --record-session` wrote: replayed with identical results
   kinect:N         a Kinect v1, numbered from 0. It continues until Ctrl-C is pressed once. kinect:0?depth=mm
                    and kinect:0?depth=registered let libfreenect convert or register the depth.
+  openni:N         an Xtion, PrimeSense or other device of OpenNI2, numbered from 0
   sim:ROOM[?KEY=VALUE&...]
                    a simulated Kinect in the room table, shelf, wall, random, flat (four
                    rooms) or board. Keys:
@@ -154,7 +156,7 @@ Exit status: 0: done. 1: the work failed; standard error says what, where and wh
 constexpr std::array<HelpTopic, 6> kTopics = {{
     {"script", "events of `run --script`: add, drop, throw, ... at a frame or a time", kScript},
     {"models", "which files can be objects, their axes, units and textures", kModels},
-    {"sources", "recordings, kinect:N and sim:ROOM with all keys", kSources},
+    {"sources", "recordings, devices and sim:ROOM with all keys", kSources},
     {"units", "metres, frames of reference, the radar's R, M and L", kUnits},
     {"calibrate", "how to calibrate a device, step by step", kCalibrate},
     {"files", "what the program writes, environment, exit status", kFiles},

@@ -11,6 +11,7 @@
 #include "app/sources/formats/camera_rig.hpp"
 #include "app/sources/kinect/fakenect_replay.hpp"
 #include "app/sources/kinect/kinect_source.hpp"
+#include "app/sources/kinect/openni_source.hpp"
 #include "app/sources/recordings/cached_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
 #include "app/sources/recordings/read_ahead.hpp"
@@ -21,6 +22,7 @@ namespace roomradar {
 namespace {
 
 constexpr std::string_view kKinect = "kinect:";
+constexpr std::string_view kOpenni = "openni:";
 constexpr std::string_view kSim = "sim:";
 constexpr std::string_view kRegistered = "?depth=registered";
 
@@ -46,12 +48,12 @@ std::unique_ptr<FrameSource> open_kinect_named(const std::string& source, Source
 
 std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceOptions& options) {
   if (source.starts_with(kKinect)) return open_kinect_named(source, options);
+  if (source.starts_with(kOpenni)) return open_openni(source.substr(kOpenni.size()), options);
   if (source.starts_with(kSim)) return std::make_unique<SimulatedSource>(parse_sim_spec(source));
   if (!std::filesystem::exists(source))
     throw Error(source +
                 ": no such file or folder. A source is a recording (`roomradar help sources` lists the "
-                "kinds), kinect:N "
-                "for a device, or sim:ROOM for the simulated one");
+                "kinds), kinect:N or openni:N for a device, or sim:ROOM for the simulated one");
   if (is_session_folder(source)) return open_session_frames(source);
   return open_folder(source, options);
 }
@@ -100,7 +102,8 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
     options.say(opened->name() + ": continues until Ctrl-C is pressed once");
   if (frames) opened = limit_frames(std::move(opened), frames->first, frames->last);
   if (options.cache_simulated && source.starts_with(kSim)) opened = cache_frames(std::move(opened));
-  return source.starts_with(kKinect) ? std::move(opened) : read_ahead(std::move(opened));
+  return source.starts_with(kKinect) || source.starts_with(kOpenni) ? std::move(opened)
+                                                                    : read_ahead(std::move(opened));
 }
 
 void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source) {

@@ -66,7 +66,7 @@ foreach(module ${opencv_modules})
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopencv-${module}${opencv_abi}")
 endforeach()
 # Component sources only.
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, libopenni2-dev, pkg-config")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, what moved, and frame sources.")
 include(CPack)

@@ -11,7 +11,7 @@ namespace roomradar {
 void add_source_argument(CLI::App& command, std::string& source, const std::string& more) {
   command
       .add_option("SOURCE", source,
-                  "recording (a folder or file), kinect:N or sim:ROOM" + more +
+                  "recording (a folder or file), kinect:N, openni:N or sim:ROOM" + more +
                       ";\n`roomradar help sources` explains them (required)")
       ->required();
 }

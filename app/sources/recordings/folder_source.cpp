@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/sources/datasets/foreign_recording.hpp"
+#include "app/sources/recordings/foreign_recording.hpp"
 #include "app/sources/recordings/recording_index.hpp"
 #include "mapping/types/system/error.hpp"
 

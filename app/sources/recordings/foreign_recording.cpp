@@ -1,13 +1,15 @@
 // foreign_recording.cpp: the list of kinds.
-#include "app/sources/datasets/foreign_recording.hpp"
+#include "app/sources/recordings/foreign_recording.hpp"
 
 #include <array>
 
 #include "app/sources/containers/matroska.hpp"
+#include "app/sources/containers/oni_file.hpp"
 #include "app/sources/containers/ros2_bag.hpp"
 #include "app/sources/containers/ros_bag.hpp"
 #include "app/sources/datasets/azure_recording.hpp"
 #include "app/sources/datasets/klg.hpp"
+#include "app/sources/datasets/oni_recording.hpp"
 #include "app/sources/datasets/record3d.hpp"
 #include "app/sources/datasets/redwood.hpp"
 #include "app/sources/datasets/ros_recording.hpp"
@@ -33,6 +35,7 @@ constexpr std::array kKinds = {
     Kind{"Azure Kinect recording", is_matroska, index_azure_recording},
     Kind{"ROS 1 bag", is_ros_bag, index_ros1_bag},
     Kind{"ROS 2 bag", is_ros2_bag, index_ros2_bag},
+    Kind{"OpenNI recording", is_oni, index_oni_recording},
     Kind{"RTAB-Map database", is_rtabmap, index_rtabmap},
     Kind{"ScanNet recording", is_scannet_sens, index_scannet_sens},
     Kind{"ElasticFusion recording", is_klg, index_klg},

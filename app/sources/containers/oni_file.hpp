@@ -1,0 +1,45 @@
+// oni_file.hpp: recordings of OpenNI and OpenNI2, .oni files.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/sources/containers/random_access_file.hpp"
+
+namespace roomradar {
+
+/// Kind of a node: what a sensor delivers.
+enum class OniNodeKind : std::uint32_t { kDevice = 1, kDepth = 2, kImage = 3, kIr = 4 };
+
+struct OniFrame {
+  std::uint64_t stamp_us = 0;
+  std::uint64_t offset = 0;
+  std::uint32_t bytes = 0;
+};
+
+struct OniNode {
+  OniNodeKind kind = OniNodeKind::kDevice;
+  std::string codec;                                ///< four characters: "16zT", "16zP", "JPEG" or "NONE"
+  std::map<std::string, std::uint64_t> integers{};  ///< properties by name
+  std::map<std::string, std::string> values{};      ///< properties of other types; at most 64 kB each
+  std::vector<OniFrame> frames{};                   ///< in the file's order
+};
+
+/// Returns true if the file begins as a .oni file does.
+[[nodiscard]] bool is_oni(const std::filesystem::path& path);
+
+/// Reads the properties of all nodes and lists their frames; skips the data. A file whose recorder was
+/// stopped is read up to its last whole record.
+/// @throws Error naming the file if it is not a .oni file of version 1.0, or a record before the data is
+/// damaged
+std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file);
+
+/// Decompresses 16 bit depth of the codecs 16zT (with a table of the values that occur) and 16zP (without).
+/// @param pixels  number of pixels
+/// @throws Error naming `where` if the data are damaged or have another number of pixels
+std::vector<std::uint16_t> decompress_oni_depth(std::string_view packed, bool has_table, std::size_t pixels,
+                                                const std::string& where);
+
+}  // namespace roomradar
