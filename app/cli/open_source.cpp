@@ -14,6 +14,7 @@
 #include "app/sources/kinect/openni_source.hpp"
 #include "app/sources/recordings/cached_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
+#include "app/sources/recordings/foreign_recording.hpp"
 #include "app/sources/recordings/read_ahead.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
@@ -76,7 +77,9 @@ bool was_calibrated(const std::string& source) {
 std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen) {
   if (!chosen.empty()) return chosen;
   const std::filesystem::path in_folder = std::filesystem::path(source) / "calibration.json";
-  return std::filesystem::exists(in_folder) ? in_folder : std::filesystem::path{};
+  // Recordings of other programs bring their own calibration, some in a file of that name.
+  return std::filesystem::exists(in_folder) && foreign_kind(source).empty() ? in_folder
+                                                                            : std::filesystem::path{};
 }
 
 bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen) {

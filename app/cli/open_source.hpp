@@ -14,7 +14,7 @@ namespace roomradar {
 struct MapInfo;
 
 /// Returns the calibration file for a source: `chosen` if it is not empty, otherwise calibration.json in the
-/// source's folder. Returns an empty path if neither exists.
+/// source's folder, unless it is a recording of another program. Returns an empty path if neither exists.
 std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen);
 
 /// Returns true if lens and depth errors are corrected in the frames of open_source(). They are corrected

@@ -130,7 +130,9 @@ std::optional<Eigen::Vector3d> gravity_at(const MessageLog& log, const Gravity& 
     try {
       const std::string bytes = log.read(*entry);
       const RosAcceleration reading = read_acceleration({log.encoding, bytes, log.name});
+      if (reading.header.stamp_s == stamp_s) near.clear();  // measured with the image, as by roomradar
       if (reading.acceleration_m_s2.allFinite()) near.push_back({entry->stamp_s, reading.acceleration_m_s2});
+      if (reading.header.stamp_s == stamp_s) break;
     } catch (const Error&) {  // one reading less
     }
   }

@@ -47,6 +47,13 @@ CameraRig figures(NominalRig kind) {
               Eigen::Isometry3d::Identity(),
               false,
               kKinectTiming};
+    case NominalRig::kBonn:
+      // Published with the dataset. Its small distortion (0.04, -0.10) is not removed.
+      return {{640, 480, 542.822841, 542.576870, 315.593520, 237.756098},
+              Intrinsics{640, 480, 542.822841, 542.576870, 315.593520, 237.756098},
+              Eigen::Isometry3d::Identity(),
+              false,
+              {}};
     case NominalRig::kNumbered:
       // Fitted to the numbered test recording, whose colour is not aligned with its depth. Overlaid, depth
       // edges deviate from colour edges by up to 20 px. They agree within about 3 px with a colour focal
@@ -131,9 +138,9 @@ CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
     return rig;
   }
   // A user who gives depth intrinsics for a numbered folder, but none for colour, has aligned images.
-  const bool is_registered =
-      has_camera_file ? !rig.colour_camera
-                      : kind == NominalRig::kTum || (kind == NominalRig::kNumbered && depth_is_given);
+  const bool is_registered = has_camera_file ? !rig.colour_camera
+                                             : kind == NominalRig::kTum || kind == NominalRig::kBonn ||
+                                                   (kind == NominalRig::kNumbered && depth_is_given);
   if (is_registered) {
     rig.colour_camera = fitted(rig.depth_camera, *colour);
     rig.T_colour_depth.setIdentity();

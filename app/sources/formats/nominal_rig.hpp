@@ -12,6 +12,8 @@ enum class NominalRig {
   kSevenScenes,
   /// A Kinect v1 with depth registered to colour.
   kTum,
+  /// The Xtion of the BONN RGB-D Dynamic Dataset, with depth registered to colour.
+  kBonn,
   /// An unknown sensor.
   kNumbered,
   /// A Kinect v1 through libfreenect. Depth is not registered to colour.

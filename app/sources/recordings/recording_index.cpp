@@ -124,7 +124,10 @@ RecordingIndex index_recording(const fs::path& folder) {
   std::error_code fault;
   if (!fs::exists(folder, fault)) throw Error(name + ": there is no such folder");
   if (!fs::is_directory(folder, fault))
-    throw Error(name + ": is not a folder; a recording is the folder that holds its files");
+    throw Error(name +
+                ": is neither a folder nor a recording in one file that is known here; `roomradar help "
+                "sources` lists "
+                "the kinds");
   try {
     if (fs::is_empty(folder)) throw Error(name + ": the folder is empty");
     RecordingIndex index;
@@ -144,7 +147,9 @@ RecordingIndex index_recording(const fs::path& folder) {
       throw Error(name +
                   ": is no recording that is known here; looked for INDEX.txt (fakenect), depth.txt and "
                   "rgb.txt (TUM RGB-D), "
-                  "frame-XXXXXX.depth.png (7-Scenes), and depth/NNNNN.png with color/NNNNN.jpg (numbered)");
+                  "frame-XXXXXX.depth.png (7-Scenes), depth/NNNNN.png with color/NNNNN.jpg (numbered), and "
+                  "recordings of "
+                  "other programs (`roomradar help sources`)");
     if (index.frames.empty()) throw Error(name + ": the recording holds no frames");
     return index;
   } catch (const fs::filesystem_error& error) {

@@ -167,7 +167,8 @@ RecordingIndex index_tum(const fs::path& folder) {
   });
   const auto accelerations = rows("accelerometer.txt", 4);
 
-  RecordingIndex index{DepthEncoding::kTum, NominalRig::kTum, {}};
+  const bool is_bonn = fs::weakly_canonical(folder).filename().string().starts_with("rgbd_bonn_");
+  RecordingIndex index{DepthEncoding::kTum, is_bonn ? NominalRig::kBonn : NominalRig::kTum, {}};
   for (const ListedImage& image : depth) {
     RecordedFrame frame{.stamp_s = image.stamp_s, .depth_file = image.file, .fault = image.fault};
     if (image.fault.empty()) {

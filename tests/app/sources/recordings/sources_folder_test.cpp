@@ -93,6 +93,17 @@ TEST(RecordingRoundTrip, TumKeepsDepthColourPosesGravityAndStamps) {
   }
 }
 
+TEST(RecordingRoundTrip, AFolderOfBonnsDatasetHasItsCamera) {
+  const TemporaryFolder folder;
+  const fs::path recording = folder.path() / "rgbd_bonn_balloon";
+  write_recording(recording, RecordingFormat::kTum, kFrames, 64, 48);
+  fs::remove(recording / "camera.json");
+  const auto all = read_all(*open_folder(recording));
+  ASSERT_FALSE(all.frames.empty());
+  EXPECT_NEAR(all.frames[0].depth_camera.fx_px, 54.2822841, 1e-9);
+  EXPECT_EQ(all.frames[0].colour_camera, all.frames[0].depth_camera);
+}
+
 TEST(RecordingRoundTrip, SevenScenesKeepsDepthColourAndPoses) {
   const TemporaryFolder folder;
   write_recording(folder.path(), RecordingFormat::kSevenScenes);
@@ -279,7 +290,7 @@ TEST(OpenFolder, SaysWhatItLookedFor) {
   EXPECT_TRUE(contains(error_of([&] { open_folder(folder.path() / "none"); }), "no such folder"));
   EXPECT_TRUE(contains(error_of([&] { open_folder(folder.path()); }), "empty"));
   write_text(folder.path() / "notes.txt", "hello");
-  EXPECT_TRUE(contains(error_of([&] { open_folder(folder.path() / "notes.txt"); }), "not a folder"));
+  EXPECT_TRUE(contains(error_of([&] { open_folder(folder.path() / "notes.txt"); }), "neither a folder nor"));
   const std::string unknown = error_of([&] { open_folder(folder.path()); });
   for (const char* wanted : {"INDEX.txt", "depth.txt", "frame-XXXXXX", "depth/NNNNN.png"})
     EXPECT_TRUE(contains(unknown, wanted));
