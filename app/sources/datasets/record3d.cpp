@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/sources/containers/exr_depth.hpp"
 #include "app/sources/datasets/arkit_axes.hpp"
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
-#include "app/sources/formats/exr_depth.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"

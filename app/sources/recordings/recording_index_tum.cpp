@@ -12,6 +12,7 @@
 #include "app/sources/formats/kinect_units.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/stamp_pairing.hpp"
+#include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 
@@ -20,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSameStamp_s = 2e-6;        // stamps are written to 1 us
 constexpr double kLongestPoseGap_s = 0.050;  // a hand-held camera's path is not straight for longer
 constexpr double kGravityWithin_s = 0.050;
 
@@ -85,33 +85,16 @@ std::vector<std::vector<double>> read_rows(const fs::path& path, std::size_t cou
   return rows;
 }
 
-Eigen::Quaterniond rotation_of(const std::vector<double>& row) { return {row[7], row[4], row[5], row[6]}; }
-
-/// Returns the pose at a stamp: the one recorded at exactly this stamp, else interpolated (linear and slerp)
-/// between two poses at most kLongestPoseGap_s apart.
-std::optional<Eigen::Isometry3d> pose_at(double stamp_s, const std::vector<std::vector<double>>& rows) {
-  const auto at = [&](const std::vector<double>& row) { return Eigen::Vector3d(row[1], row[2], row[3]); };
-  auto after = std::lower_bound(rows.begin(), rows.end(), stamp_s - kSameStamp_s,
-                                [](const auto& row, double s) { return row[0] < s; });
-  if (after == rows.end()) return std::nullopt;
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  if ((*after)[0] <= stamp_s + kSameStamp_s) {
-    T_world_camera.linear() = rotation_of(*after).normalized().toRotationMatrix();
-    T_world_camera.translation() = at(*after);
-    return T_world_camera;
-  }
-  if (after == rows.begin()) return std::nullopt;
-  const auto before = after - 1;
-  const double gap_s = (*after)[0] - (*before)[0];
-  if (gap_s > kLongestPoseGap_s) return std::nullopt;
-  const double part = (stamp_s - (*before)[0]) / gap_s;
-  T_world_camera.linear() =
-      rotation_of(*before).normalized().slerp(part, rotation_of(*after).normalized()).toRotationMatrix();
-  T_world_camera.translation() = at(*before) + part * (at(*after) - at(*before));
-  return T_world_camera;
+/// Returns the poses of rows `stamp tx ty tz qx qy qz qw`, without those of a tracker that was lost.
+std::vector<StampedPose> poses_of(const std::vector<std::vector<double>>& rows) {
+  std::vector<StampedPose> poses;
+  for (const std::vector<double>& row : rows)
+    if (const auto T = rigid_pose({row[1], row[2], row[3]}, {row[4], row[5], row[6], row[7]}))
+      poses.push_back({row[0], *T});
+  return poses;
 }
 
-std::optional<Eigen::Vector3d> down_at(double stamp_s, const std::vector<std::vector<double>>& rows) {
+std::optional<Eigen::Vector3d> gravity_near(double stamp_s, const std::vector<std::vector<double>>& rows) {
   const auto after = std::lower_bound(rows.begin(), rows.end(), stamp_s,
                                       [](const auto& row, double s) { return row[0] < s; });
   auto nearest = after;
@@ -160,11 +143,7 @@ RecordingIndex index_tum(const fs::path& folder) {
   const auto rows = [&](const char* name, std::size_t count) {
     return fs::exists(folder / name) ? read_rows(folder / name, count) : std::vector<std::vector<double>>();
   };
-  auto poses = rows("groundtruth.txt", 8);
-  std::erase_if(poses, [](const auto& row) {  // some trackers write zeros when lost
-    const double norm = rotation_of(row).norm();
-    return !(norm > 0.9 && norm < 1.1);
-  });
+  const auto poses = poses_of(rows("groundtruth.txt", 8));
   const auto accelerations = rows("accelerometer.txt", 4);
 
   const bool is_bonn = fs::weakly_canonical(folder).filename().string().starts_with("rgbd_bonn_");
@@ -172,8 +151,8 @@ RecordingIndex index_tum(const fs::path& folder) {
   for (const ListedImage& image : depth) {
     RecordedFrame frame{.stamp_s = image.stamp_s, .depth_file = image.file, .fault = image.fault};
     if (image.fault.empty()) {
-      frame.T_world_camera = pose_at(image.stamp_s, poses);
-      frame.down_camera = down_at(image.stamp_s, accelerations);
+      frame.T_world_camera = pose_at(poses, image.stamp_s, kLongestPoseGap_s);
+      frame.down_camera = gravity_near(image.stamp_s, accelerations);
     }
     index.frames.push_back(std::move(frame));
   }

@@ -6,11 +6,14 @@
 #include <gtest/gtest.h>
 #include <half.h>
 
+#include <cmath>
 #include <opencv2/imgcodecs.hpp>
 
+#include "app/sources/containers/exr_depth.hpp"
 #include "app/sources/datasets/arkit_axes.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/recordings/folder_source.hpp"
+#include "mapping/types/system/file_io.hpp"
 #include "tests/app/sources/datasets/datasets_support.hpp"
 #include "tests/app/sources/sources_support.hpp"
 #include "tests/support/recordings.hpp"
@@ -71,6 +74,58 @@ TEST(Record3d, GivesDepthInMetresWithTheCameraScaledToIt) {
   EXPECT_EQ(all.frames[1].depth_camera, (Intrinsics{6, 8, 10, 11, 2.5, 3.5}));
   EXPECT_EQ(all.frames[1].colour_camera, (Intrinsics{12, 16, 20, 22, 5.5, 7.5}));
   EXPECT_NEAR(all.frames[1].colour.at(5, 5).r, 199, 3);
+}
+
+TEST(ExrDepth, ReadsWhatOpenExrWrites) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "depth.exr").string();
+  constexpr int kWide = 37, kHigh = 35;  // blocks of 16 rows, the last one not full
+  for (const auto compression : {Imf::NO_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION})
+    for (const auto type : {Imf::HALF, Imf::FLOAT}) {
+      std::vector<half> halves;
+      std::vector<float> floats;
+      for (int i = 0; i < kWide * kHigh; ++i) {
+        // 0, denormal halves, small and large numbers, negative ones, not finite ones
+        const float value = i == 0   ? 0.0F
+                            : i == 1 ? 3e-7F
+                            : i == 2 ? 5e-5F
+                            : i == 3 ? -1.0F
+                            : i == 4 ? INFINITY
+                            : i == 5 ? NAN
+                            : i == 6 ? 65504.0F
+                                     : 0.4F + 0.01F * static_cast<float>(i * i % 997);
+        halves.emplace_back(value);
+        floats.push_back(value);
+      }
+      Imf::Header header(kWide, kHigh);
+      header.dataWindow() = {{5, -3}, {5 + kWide - 1, -3 + kHigh - 1}};
+      header.compression() = compression;
+      header.channels().insert("Z", Imf::Channel(type));
+      {
+        Imf::OutputFile file(path.c_str(), header, 0);
+        const std::size_t size = type == Imf::HALF ? sizeof(half) : sizeof(float);
+        char* first = type == Imf::HALF ? reinterpret_cast<char*>(halves.data())
+                                        : reinterpret_cast<char*>(floats.data());
+        Imf::FrameBuffer frame_buffer;
+        frame_buffer.insert("Z", Imf::Slice(type, first - static_cast<std::ptrdiff_t>(size) * (5 - 3 * kWide),
+                                            size, size * kWide));
+        file.setFrameBuffer(frame_buffer);
+        file.writePixels(kHigh);
+      }
+      DepthImage depth_m;
+      const std::string bytes = read_bytes(path, "an image");
+      decode_exr_depth(bytes, path, depth_m);
+      ASSERT_EQ(depth_m.width, kWide);
+      ASSERT_EQ(depth_m.height, kHigh);
+      for (std::size_t i = 0; i < depth_m.pixels.size(); ++i) {
+        const float value = type == Imf::HALF ? static_cast<float>(halves[i]) : floats[i];
+        ASSERT_EQ(depth_m.pixels[i], std::isfinite(value) && value > 0.0F ? value : 0.0F)
+            << compression << " " << i;
+      }
+      for (std::size_t size = 0; size < bytes.size(); size += 41)
+        EXPECT_GT(error_of([&] { decode_exr_depth(bytes.substr(0, size), path, depth_m); }).size(), 10U)
+            << size;
+    }
 }
 
 TEST(Record3d, TurnsArkitsAxesToZUpAndYDown) {
