@@ -10,6 +10,7 @@ namespace roomradar {
 namespace {
 
 constexpr std::size_t kFirstMessages = 500;
+constexpr std::uint32_t kFirstBlocks = 16;  // of a compressed file; some MB
 constexpr std::size_t kMaxChain = 64;
 constexpr double kTfWithin_s = 0.15;
 
@@ -31,11 +32,13 @@ RosTransforms::RosTransforms(const MessageLog& log) : log_(log) {
     const std::vector<MessageEntry> entries = messages_of(log, topic);
     const bool is_static = name.ends_with("tf_static");
     const std::size_t count = is_static ? entries.size() : std::min(entries.size(), kFirstMessages);
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!is_static && !log.reads_starts && entries[i].block > entries[0].block + kFirstBlocks) break;
       for (const RosTransform& transform : transforms_in(log, entries[i])) {
         if (!is_static && i == 0) header_offset_s_ = transform.header.stamp_s - entries[i].stamp_s;
         add(transform);
       }
+    }
     if (!is_static) moving_.insert(moving_.end(), entries.begin(), entries.end());
   }
   std::stable_sort(moving_.begin(), moving_.end(),

@@ -15,7 +15,8 @@ namespace roomradar {
 /// that move. Moving transforms are read around the time that is asked for.
 class RosTransforms {
  public:
-  /// Reads all messages of tf_static and the first 500 of tf; damaged ones are left out.
+  /// Reads all messages of tf_static and the first 500 of tf, fewer in a compressed file; damaged ones are
+  /// left out.
   /// @param log  must outlive this object
   explicit RosTransforms(const MessageLog& log);
 
