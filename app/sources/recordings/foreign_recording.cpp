@@ -51,14 +51,17 @@ const Kind* kind_of(const fs::path& path) {
   return nullptr;
 }
 
-/// Returns the one file with a recording in a folder; the path itself if it is none or has several.
+/// Returns the one file with a recording in a folder; the path itself if it has none or several, or if it
+/// holds a recording in files of its own.
 fs::path file_in(const fs::path& path) {
   std::error_code fault;
+  for (const char* own : {"depth.txt", "rgb.txt", "INDEX.txt", "depth"})
+    if (fs::exists(path / own, fault)) return path;
   fs::path found;
   constexpr int kMaxFiles = 30;  // a folder of images has more
   int files = 0;
   for (fs::directory_iterator each(path, fault), end; !fault && each != end; each.increment(fault)) {
-    if (++files > kMaxFiles) return path;
+    if (++files > kMaxFiles || each->path().filename().string().starts_with("frame-")) return path;
     if (!each->is_regular_file(fault) || !kind_of(each->path())) continue;
     if (!found.empty()) return path;
     found = each->path();

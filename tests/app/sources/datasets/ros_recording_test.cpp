@@ -74,6 +74,16 @@ TEST(RosBag, KeepsDepthColourAndPosesBitForBit) {
   expect_own_frames(folder.path());  // with the cameras of camera.json
 }
 
+TEST(RosBag, BesideAFolderInTumFormIsNotTakenForIt) {
+  const TemporaryFolder folder;
+  write_own_bag(folder.path() / "bag");
+  RecordingWriter writer(folder.path() / "tum", RecordingFormat::kTum);
+  for (int i = 0; i < 2; ++i) writer.write(some_frame(i));
+  writer.close();
+  fs::copy(folder.path() / "bag/recording.bag", folder.path() / "tum/recording.bag");
+  EXPECT_EQ(open_folder(folder.path() / "tum")->frame_count(), 2);
+}
+
 TEST(RosBag, ReadsCompressedChunks) {
   const TemporaryFolder folder;
   const std::string bag = read_bytes(write_own_bag(folder.path()), "a bag");
