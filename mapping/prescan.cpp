@@ -9,7 +9,9 @@
 #include "mapping/coverage/coverage.hpp"
 #include "mapping/deskewed_source.hpp"
 #include "mapping/map/map_merge.hpp"
+#include "mapping/mesh/ply_file.hpp"
 #include "mapping/prescan_passes.hpp"
+#include "mapping/texture_pass.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 
@@ -116,6 +118,11 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   if (map.mesh.triangles.empty())
     throw Error(source.name() + ": " + std::to_string(pass.fused.size()) + " frames show no surface at " +
                 format_number(config.resolution_m) + " m; try another --resolution");
+  if (config.bake_texture) {
+    // A triangle without area is not read from a file, and the texture must fit the mesh that is read.
+    std::erase_if(map.mesh.triangles, [&](const Triangle& t) { return !has_area(map.mesh, t); });
+    map.texture = run_texture_pass(work, map.trajectory, pass, map.mesh);
+  }
   map.keyframe_database = std::move(pass.found.keyframe_database);
   transform(map.keyframe_database, pass.T_world_found);
 
@@ -135,6 +142,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     append_session(*start.map, map);
     start.map->octree = std::move(map.octree);
     start.map->mesh = std::move(map.mesh);
+    start.map->texture = std::move(map.texture);
     map = std::move(*start.map);
   }
 

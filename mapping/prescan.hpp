@@ -32,6 +32,7 @@ struct PrescanConfig {
   bool remove_ghosts = true;  ///< remove surfaces of objects that moved during the scan
   GhostConfig ghosts;
   SurfaceConfig surface;
+  bool bake_texture = false;  ///< make SavedMap::texture from the frames' colours
   /// Cap on the process's memory; 0: no cap. The scan stops before it reaches the cap. The map then contains
   /// the frames fused so far.
   std::size_t max_memory_bytes = 0;
@@ -54,9 +55,9 @@ struct PrescanResult {
   SurfaceStats surface;
 };
 
-/// Callback after each frame. `stage` is "track", "track again" (from the first frame, with better
-/// times of the sensor), "fuse" or "ghosts", and `note` states the frame's outcome.
-/// Called once more, as "surface", when the frames have been read and the surface is to be extracted.
+/// Callback after each frame. `stage` is "track", "track again" (from the first frame, with better times of
+/// the sensor), "fuse" or "ghosts", and `note` states the frame's outcome. Called once more, as "surface",
+/// when the frames have been read and the surface is to be extracted, and as "texture" before it is baked.
 /// While tracking, the note also states the surface area observed in total and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
@@ -74,14 +75,14 @@ struct PrescanInput {
 
 /// Scans a room. Reads the source once to track the camera, and a second time to fuse the frames with their
 /// final poses. To remove ghosts (surface of objects that moved), reads selected frames a third time and, if
-/// there are ghosts, a fourth time.
+/// there are ghosts, a fourth time. To bake the texture, reads at most 160 frames once more.
 ///
 /// A new map's world has +z up. With recorded poses, the world's origin is the recording's. With tracked
 /// poses, the origin is on the floor below the first camera. If no level surface is measured, it is at the
 /// height of the first camera. With start.map, the map's world is kept.
 ///
-/// Stages timed: read, track, optimise, fuse, ghosts, surface, coverage, checkpoint (time during which the
-/// work is blocked), and frame (track plus fuse of one frame, without reading).
+/// Stages timed: read, track, optimise, fuse, ghosts, surface, texture, coverage, checkpoint (time during
+/// which the work is blocked), and frame (track plus fuse of one frame, without reading).
 ///
 /// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface. Also
 ///         throws if start.map shows another room, or overlaps the source too little for a reliable

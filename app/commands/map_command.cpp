@@ -12,6 +12,7 @@
 
 #include "app/cli/report.hpp"
 #include "mapping/map/level_surfaces.hpp"
+#include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"

@@ -62,6 +62,7 @@ nlohmann::json settings_of(const PrescanOptions& options) {
   if (options.up)
     settings["up"] = options.up->up_world ? to_json(*options.up->up_world) : nlohmann::json("camera");
   if (options.hold_out > 0) settings["hold_out"] = options.hold_out;
+  if (!options.texture) settings["texture"] = "off";
   if (options.max_memory_mb > 0.0) settings["max_memory_mb"] = options.max_memory_mb;
   if (!options.calibration.empty()) settings["calibration"] = options.calibration;
   if (options.frames) settings["frames"] = {options.frames->first, options.frames->last};
@@ -74,6 +75,7 @@ PrescanConfig config_of(const PrescanOptions& options) {
   config.poses = options.poses;
   config.up = options.up;
   config.hold_out = options.hold_out;
+  config.bake_texture = options.texture;
   config.max_memory_bytes = static_cast<std::size_t>(kMB * options.max_memory_mb);
   // Recorded poses may disagree with the depth by more than the threshold that tells a ghost from a wall;
   // ghost removal would then erase walls.

@@ -22,11 +22,13 @@ void ScanProgress::show(const std::string& stage, const std::string& note) {
   if (stage_.empty() && start_.checkpoints)  // the checkpoints have been read
     for (const std::string& fault : start_.checkpoints->faults())
       std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
-  if (stage == "surface") {
+  if (stage == "surface" || stage == "texture") {
     show_in_window(stage);
     progress_.reset();
-    std::fprintf(stderr,
-                 "surface: is extracted; then what the scan missed is listed, and the map is saved\n");
+    std::fprintf(stderr, "%s\n",
+                 stage == "texture"
+                     ? "texture: is baked from the best frames"
+                     : "surface: is extracted; then what the scan missed is listed, and the map is saved");
     return;
   }
   const bool is_again = stage == "ghosts" && note != kLookedAt;
@@ -53,7 +55,7 @@ void ScanProgress::show_in_window(const std::string& stage) {
   if (!window_.channel) return;
   throw_if_discarded(*window_.channel);
   window_.view.reset();  // the first pass is over
-  const bool has_frames = stage != "surface";
+  const bool has_frames = stage != "surface" && stage != "texture";
   window_.channel->set_stage({stage, has_frames ? ++shown_ : 0, has_frames ? total_of(stage) : std::nullopt});
 }
 

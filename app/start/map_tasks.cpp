@@ -7,6 +7,7 @@
 
 #include "app/cli/registered_maps.hpp"
 #include "app/start/map_list.hpp"
+#include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
 

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 }  // namespace
 
 bool is_map_part(const std::string& name) {
-  return name == kMapCoverageFile || name == kMapUnknownFile || name == kMapOldOctreeFile ||
-         name == kMapOldPlainOctreeFile ||
+  return name == kMapCoverageFile || name == kMapUnknownFile || name == kMapTextureFile ||
+         name == kMapTexturePointsFile || name == kMapOldOctreeFile || name == kMapOldPlainOctreeFile ||
          std::find(kMapParts.begin(), kMapParts.end(), name) != kMapParts.end();
 }
 

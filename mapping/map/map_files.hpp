@@ -22,6 +22,8 @@ inline constexpr const char* kMapOldPlainOctreeFile = "octree.bt";
 inline constexpr int kLastOldOctreeVersion = 2;
 inline constexpr const char* kMapCoverageFile = "coverage.png";  ///< optional
 inline constexpr const char* kMapUnknownFile = "unknown.bin";    ///< optional: missing in older maps
+inline constexpr const char* kMapTextureFile = "texture.jpg";    ///< optional, with kMapTexturePointsFile
+inline constexpr const char* kMapTexturePointsFile = "texture.bin";
 
 /// Returns true for the names of the files, other than map.json, that a folder with a map of any format
 /// version may contain.

@@ -1,9 +1,8 @@
-// map_folder.cpp: saves, verifies, loads and exports a map.
+// map_folder.cpp: saves, verifies and loads a map.
 #include "mapping/map/map_folder.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +17,7 @@
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/atomic_folder.hpp"
 #include "mapping/storage/sha256.hpp"
+#include "mapping/texture/surface_texture_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/process_memory.hpp"
@@ -135,6 +135,11 @@ void save_map(const fs::path& folder, const SavedMap& map) {
     write_bytes(partial.path() / kMapCoverageFile,
                 std::string(map.coverage_png.begin(), map.coverage_png.end()));
 
+  const std::shared_ptr<const SurfaceTexture> texture = *map.texture;
+  const bool has_texture = texture && fits(*texture, map.mesh);
+  if (has_texture)
+    write_surface_texture(*texture, partial.path() / kMapTextureFile, partial.path() / kMapTexturePointsFile);
+
   MapInfo info = map.info;
   info.format_version = kMapFormatVersion;
   info.tool_version = kVersion;
@@ -149,6 +154,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   std::vector<std::string> parts(kMapParts.begin(), kMapParts.end());
   parts.emplace_back(kMapUnknownFile);
   if (!map.coverage_png.empty()) parts.emplace_back(kMapCoverageFile);
+  if (has_texture) parts.insert(parts.end(), {kMapTextureFile, kMapTexturePointsFile});
   for (const std::string& part : parts)
     info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
   write_bytes(partial.path() / kMapInfoFile, to_json(info));
@@ -183,20 +189,29 @@ void require_sound(const fs::path& folder, const MapInfo& info, const std::strin
   throw_if(fault_of(folder / name, info.files.at(name)));
 }
 
-// Returns a part that is read when it is first used, if the folder still is the map that was opened.
+// Returns a part that is read from these files when it is first used, if the folder still is the map that was
+// opened.
 template <typename Part, typename Read>
-LazyPart<Part> read_later(const fs::path& folder, const MapInfo& info, const std::string& name,
+LazyPart<Part> read_later(const fs::path& folder, const MapInfo& info, const std::vector<std::string>& names,
                           const Read& read) {
-  return LazyPart<Part>([folder, info, name, read, version = folder_version(folder)]() -> Part {
+  return LazyPart<Part>([folder, info, names, read, version = folder_version(folder)]() -> Part {
     if (folder_version(folder) != version)
       fail(folder, "was saved again while it was in use; start again to use the map that is there now");
-    require_sound(folder, info, name);
+    for (const std::string& name : names) require_sound(folder, info, name);
     return read(folder, info);
   });
 }
 
 std::shared_ptr<const UnknownSurface> read_unknown(const fs::path& folder, const MapInfo&) {
   return std::make_shared<const UnknownSurface>(read_unknown_surface(folder / kMapUnknownFile));
+}
+
+bool has_texture(const MapInfo& info) {
+  return info.files.contains(kMapTextureFile) && info.files.contains(kMapTexturePointsFile);
+}
+
+SurfaceTexture read_texture(const fs::path& folder) {
+  return read_surface_texture(folder / kMapTextureFile, folder / kMapTexturePointsFile);
 }
 
 SavedMap read_map(const fs::path& folder) {
@@ -216,10 +231,15 @@ SavedMap read_map(const fs::path& folder) {
     require_sound(folder, info, kMapCoverageFile);
     map.coverage_png = read_picture(folder / kMapCoverageFile);
   }
-  map.octree = read_later<StaticMap>(folder, info, octree_file_of(info), read_octree);
+  map.octree = read_later<StaticMap>(folder, info, {octree_file_of(info)}, read_octree);
   if (info.files.contains(kMapUnknownFile))
     map.unknown =
-        read_later<std::shared_ptr<const UnknownSurface>>(folder, info, kMapUnknownFile, read_unknown);
+        read_later<std::shared_ptr<const UnknownSurface>>(folder, info, {kMapUnknownFile}, read_unknown);
+  if (has_texture(info))
+    map.texture = read_later<std::shared_ptr<const SurfaceTexture>>(
+        folder, info, {kMapTextureFile, kMapTexturePointsFile}, [](const fs::path& from, const MapInfo&) {
+          return std::make_shared<const SurfaceTexture>(read_texture(from));
+        });
   map.keyframe_database = keyframes.get();
   return map;
 }
@@ -249,6 +269,7 @@ std::vector<std::string> faults_of(const fs::path& folder) {
       if (name == kMapTrajectoryFile) static_cast<void>(read_trajectory(folder / part));
       if (name == kMapUnknownFile) static_cast<void>(read_unknown_surface(folder / part));
       if (name == kMapCoverageFile) static_cast<void>(read_picture(folder / part));
+      if (name == kMapTexturePointsFile) static_cast<void>(read_texture(folder));
     });
   }
   return faults;
@@ -277,30 +298,29 @@ Mesh load_map_mesh(const fs::path& folder) {
   });
 }
 
-std::vector<std::string> verify_map(const fs::path& folder) {
-  return read_consistent(folder, [&] { return faults_of(folder); });
-}
-
-void export_map(const fs::path& folder, const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const bool octree = extension == ".ot" || extension == ".bt";
-  if (!octree && extension != ".ply" && extension != ".obj" && extension != ".stl" && extension != ".glb")
-    fail(path, "the extension \"" + extension +
-                   "\" is no format to export to; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
-                   "the mesh");
-  require_outside_maps(path);
-  if (!octree) return write_mesh(load_map_mesh(folder), path);
-  const StaticMap read = read_consistent(folder, [&] {
+StaticMap load_map_octree(const fs::path& folder) {
+  return read_consistent(folder, [&] {
     const MapInfo info = read_info(folder);
     require_sound(folder, info, octree_file_of(info));
     return read_octree(folder, info);
   });
-  if (extension == ".ot")
-    read.write_ot(path);
-  else
-    read.write_bt(path);
+}
+
+std::pair<Mesh, SurfaceTexture> load_textured_map_mesh(const fs::path& folder) {
+  return read_consistent(folder, [&] {
+    const MapInfo info = read_info(folder);
+    require_sound(folder, info, kMapMeshFile);
+    std::pair<Mesh, SurfaceTexture> both{read_mesh(folder / kMapMeshFile), {}};
+    if (!has_texture(info)) return both;
+    for (const char* name : {kMapTextureFile, kMapTexturePointsFile}) require_sound(folder, info, name);
+    both.second = read_texture(folder);
+    if (!fits(both.second, both.first)) fail(folder / kMapTexturePointsFile, "belongs to another mesh");
+    return both;
+  });
+}
+
+std::vector<std::string> verify_map(const fs::path& folder) {
+  return read_consistent(folder, [&] { return faults_of(folder); });
 }
 
 }  // namespace roomradar

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
@@ -14,6 +15,7 @@
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/surface/unknown_surface.hpp"
+#include "mapping/texture/surface_texture.hpp"
 #include "mapping/types/mesh.hpp"
 #include "mapping/types/trajectory.hpp"
 
@@ -29,6 +31,8 @@ struct SavedMap {
   /// Border of unknown space, set by load_map(). Null if the map was not saved before, or was saved by an
   /// earlier version.
   LazyPart<std::shared_ptr<const UnknownSurface>> unknown{std::shared_ptr<const UnknownSurface>()};
+  /// Texture of the mesh; null: none. It may belong to an earlier mesh, see fits().
+  LazyPart<std::shared_ptr<const SurfaceTexture>> texture{std::shared_ptr<const SurfaceTexture>()};
 };
 
 /// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if
@@ -37,15 +41,15 @@ SurfaceConfig surface_config_of(const MapInfo& info);
 
 /// Writes the map to a folder beside `folder` (folder.partial-PID) and syncs it. Then renames it to `folder`
 /// atomically. Extracts the border of unknown space from map.octree and map.mesh, and writes it to
-/// unknown.bin. Afterwards `folder` is the complete new map or, after an Error, unchanged. Creates parent
-/// folders. Throws Error if `folder` exists and is not a map, the map has no surface or too many triangles,
-/// or the disk fails.
+/// unknown.bin. A texture that does not fit the mesh is left out. Afterwards `folder` is the complete new map
+/// or, after an Error, unchanged. Creates parent folders. Throws Error if `folder` exists and is not a map,
+/// the map has no surface or too many triangles, or the disk fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);
 
 /// Reads a map of this or an earlier format version. Verifies the sizes of all files, and the checksum of
-/// each file before parsing it. Octree and unknown surface are read and verified when they are first used.
-/// Throws Error naming the file and the fault. So does the first use of octree or unknown surface, also if
-/// the folder was replaced since.
+/// each file before parsing it. Octree, unknown surface and texture are read and verified when they are first
+/// used. Throws Error naming the file and the fault. So does the first use of those three, also if the folder
+/// was replaced since.
 SavedMap load_map(const std::filesystem::path& folder);
 
 /// Returns the SHA-256 of the file of the map's octree, 64 hexadecimal digits. Empty if the map was not
@@ -58,12 +62,14 @@ MapInfo load_map_info(const std::filesystem::path& folder);
 /// Reads the map's mesh after verifying its checksum. Throws Error naming the file and the fault.
 Mesh load_map_mesh(const std::filesystem::path& folder);
 
+/// Reads the map's octree, as load_map_mesh() does.
+StaticMap load_map_octree(const std::filesystem::path& folder);
+
+/// Reads the map's mesh and its texture, as load_map_mesh() does. Returns an empty texture (no corners) if
+/// the map has none.
+std::pair<Mesh, SurfaceTexture> load_textured_map_mesh(const std::filesystem::path& folder);
+
 /// Returns one sentence per fault, naming the file; empty for an intact map. Never throws for a damaged map.
 std::vector<std::string> verify_map(const std::filesystem::path& folder);
-
-/// Exports one part of a saved map, chosen by extension. Writes the octree as .ot or .bt, the mesh as .ply,
-/// .obj, .stl or .glb. Throws Error if the extension is none of these, the map is damaged, or `path` is in a
-/// map's folder.
-void export_map(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 }  // namespace roomradar

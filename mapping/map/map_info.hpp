@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-inline constexpr int kMapFormatVersion = 3;
+inline constexpr int kMapFormatVersion = 4;
 
 // Keys of MapInfo::settings that are read back.
 inline constexpr const char* kDeviationSetting = "deviation_m";       ///< SurfaceConfig::max_deviation_m

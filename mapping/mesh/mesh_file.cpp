@@ -2,6 +2,7 @@
 #include "mapping/mesh/mesh_file.hpp"
 
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/scene.h>
 
 #include <assimp/Exporter.hpp>
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mapping/mesh/assimp_import.hpp"
 #include "mapping/mesh/ply_file.hpp"
@@ -93,22 +95,64 @@ aiMesh* assimp_mesh(const Mesh& mesh, bool for_gltf) {
   return part.release();
 }
 
-// Exports to memory because assimp does not detect a full disk.
-std::string assimp_bytes(const Mesh& mesh, const Format& format, const std::filesystem::path& path) {
-  aiScene scene;  // owns everything below
+void fill_scene(const Mesh& mesh, bool for_gltf, aiScene& scene) {
   scene.mMaterials = new aiMaterial* [1] { new aiMaterial() };
   scene.mNumMaterials = 1;
-  scene.mMeshes = new aiMesh* [1] { assimp_mesh(mesh, is_gltf(format)) };
+  scene.mMeshes = new aiMesh* [1] { assimp_mesh(mesh, for_gltf) };
   scene.mNumMeshes = 1;
   scene.mRootNode = new aiNode("roomradar");
   scene.mRootNode->mMeshes = new unsigned[1]{0};
   scene.mRootNode->mNumMeshes = 1;
+}
+
+/// Adds the texture points and an unlit material. The texture is embedded for .glb, else a file beside.
+void add_texture(const TexturedMesh& textured, bool for_gltf, const std::string& file, aiScene& scene) {
+  aiMesh& part = *scene.mMeshes[0];
+  part.mNumUVComponents[0] = 2;
+  part.mTextureCoords[0] = new aiVector3D[textured.texture_points.size()];
+  for (std::size_t i = 0; i < textured.texture_points.size(); ++i)
+    // assimp has v upwards.
+    part.mTextureCoords[0][i] = {textured.texture_points[i].x(), 1.0F - textured.texture_points[i].y(), 0.0F};
+  aiMaterial& material = *scene.mMaterials[0];
+  const int unlit = aiShadingMode_Unlit;
+  material.AddProperty(&unlit, 1, AI_MATKEY_SHADING_MODEL);
+  const aiColor3D white(1.0F, 1.0F, 1.0F);
+  material.AddProperty(&white, 1, AI_MATKEY_COLOR_DIFFUSE);
+  const aiString texture(for_gltf ? "*0" : file);
+  material.AddProperty(&texture, AI_MATKEY_TEXTURE_DIFFUSE(0));
+  if (!for_gltf) return;
+  auto embedded = std::make_unique<aiTexture>();
+  const std::vector<std::uint8_t>& jpeg = textured.texture_jpeg;
+  embedded->mWidth = static_cast<unsigned>(jpeg.size());
+  std::strcpy(embedded->achFormatHint, "jpg");
+  embedded->pcData = new aiTexel[jpeg.size() / sizeof(aiTexel) + 1];
+  std::memcpy(static_cast<void*>(embedded->pcData), jpeg.data(), jpeg.size());
+  scene.mTextures = new aiTexture* [1] { embedded.release() };
+  scene.mNumTextures = 1;
+}
+
+// Exports to memory because assimp does not detect a full disk.
+std::string assimp_bytes(const aiScene& scene, const char* assimp_id, const std::filesystem::path& path) {
   Assimp::Exporter exporter;
-  const aiExportDataBlob* blob = exporter.ExportToBlob(&scene, format.assimp_id);
+  const aiExportDataBlob* blob = exporter.ExportToBlob(&scene, assimp_id);
   if (!blob || blob->size == 0)
     fail_for_file(path,
                   std::string("the mesh cannot be turned into this format: ") + exporter.GetErrorString());
   return {static_cast<const char*>(blob->data), blob->size};
+}
+
+void write_whole(const std::string& bytes, const std::filesystem::path& path) {
+  AtomicFile file(path);
+  file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.commit();
+}
+
+/// Replaces the rest of the first line that begins with `word`.
+void replace_line(std::string& text, const std::string& word, const std::string& rest) {
+  const std::size_t line = text.find("\n" + word);
+  if (line == std::string::npos) return;
+  const std::size_t from = line + 1 + word.size();
+  text.replace(from, text.find('\n', from) - from, rest);
 }
 
 void require_triangles(const std::filesystem::path& path, const Mesh& mesh) {
@@ -158,10 +202,40 @@ Mesh read_mesh(const std::filesystem::path& path) {
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
   const Format& format = format_of(path);
   require_writable(mesh, path);
-  const std::string bytes = format.assimp_id ? assimp_bytes(mesh, format, path) : ply_bytes(mesh);
-  AtomicFile file(path);
-  file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.commit();
+  if (!format.assimp_id) return write_whole(ply_bytes(mesh), path);
+  aiScene scene;  // owns everything in it
+  fill_scene(mesh, is_gltf(format), scene);
+  write_whole(assimp_bytes(scene, format.assimp_id, path), path);
+}
+
+bool keeps_texture(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".glb" || extension == ".obj";
+}
+
+void write_mesh(const TexturedMesh& textured, const std::filesystem::path& path) {
+  if (!keeps_texture(path)) fail_for_file(path, "only .glb and .obj keep a texture; use one of them");
+  require_writable(textured.mesh, path);
+  if (textured.texture_points.size() != textured.mesh.vertices.size() || textured.texture_jpeg.empty())
+    fail_for_file(path, "not written: its texture is missing, or has no point for each vertex");
+  const bool for_gltf = is_gltf(format_of(path));
+  std::filesystem::path picture = path, material = path;
+  picture.replace_extension(".jpg");
+  material.replace_extension(".mtl");
+  aiScene scene;  // owns everything in it
+  fill_scene(textured.mesh, for_gltf, scene);
+  add_texture(textured, for_gltf, picture.filename().string(), scene);
+  std::string bytes = assimp_bytes(scene, for_gltf ? "glb2" : "obj", path);
+  if (!for_gltf) {
+    // assimp does not know the name of the file that it writes to memory, nor how its material is called.
+    replace_line(bytes, "mtllib ", material.filename().string());
+    replace_line(bytes, "usemtl ", "room");
+    write_whole({textured.texture_jpeg.begin(), textured.texture_jpeg.end()}, picture);
+    write_whole("newmtl room\nillum 0\nKa 1 1 1\nKd 1 1 1\nmap_Ka " + picture.filename().string() +
+                    "\nmap_Kd " + picture.filename().string() + "\n",
+                material);
+  }
+  write_whole(bytes, path);
 }
 
 }  // namespace roomradar

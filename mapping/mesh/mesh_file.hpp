@@ -1,11 +1,22 @@
 // mesh_file.hpp: reads and writes triangle meshes as .ply, .obj, .stl and .glb.
 #pragma once
+#include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "mapping/mesh/assimp_import.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
+
+/// A mesh with one texture, which contains the light of the room.
+struct TexturedMesh {
+  Mesh mesh;
+  /// One per vertex; (0, 0) is the texture's top left corner, (1, 1) its bottom right corner.
+  std::vector<Eigen::Vector2f> texture_points;
+  std::vector<std::uint8_t> texture_jpeg;  ///< sRGB
+};
 
 /// Reads all triangles of a file, with normals and colours if every vertex has them. Vertices are read as
 /// metres in the file's own axes, unscaled. Only .glb is converted, from y up to z up and from linear colours
@@ -20,5 +31,13 @@ Mesh read_mesh(const std::filesystem::path& path);
 /// and normals. .stl has no colours. A .glb is rotated to y up. Throws Error if the extension is unknown, the
 /// mesh is empty or inconsistent, or writing fails.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
+
+/// Writes a textured mesh as .glb, with the texture in it, or as .obj, with NAME.mtl and NAME.jpg beside it.
+/// The material is unlit, since the texture contains the room's light. Throws Error as above, also for other
+/// extensions.
+void write_mesh(const TexturedMesh& textured, const std::filesystem::path& path);
+
+/// Returns true if write_mesh() writes textures in the format that the extension names.
+bool keeps_texture(const std::filesystem::path& path);
 
 }  // namespace roomradar

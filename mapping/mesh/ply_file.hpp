@@ -20,4 +20,8 @@ std::string ply_bytes(const Mesh& mesh);
 /// triangles.
 std::optional<Mesh> mesh_of_ply(std::string_view bytes, const std::filesystem::path& path);
 
+/// Returns true if the triangle has an area in a file, where the origin is added to its vertices. Others are
+/// dropped when a file is read.
+bool has_area(const Mesh& mesh, const Triangle& triangle);
+
 }  // namespace roomradar

@@ -53,6 +53,10 @@ void add_options(CLI::App& command, PrescanOptions& options) {
                   "(default: none)")
       ->check(whole_within(2, 1'000'000))
       ->type_name("N");
+  add_choice<bool>(
+      command, "--texture", options.texture, {{"on", true}, {"off", false}},
+      "bake a texture of the room's surface from the best frames; takes some seconds and 0.2 GB, and\n"
+      "is left out where --max-memory has no room for it (default: on)");
   command.add_flag(
       "--resume", options.resume,
       "continue the interrupted scan of this map (DIR.unfinished); if there is none, extend the\n"

@@ -40,6 +40,7 @@ const char* words_of(const std::string& stage) {
   if (stage == "fuse") return "Making the map: fusing the frames";
   if (stage == "ghosts") return "Making the map: looking for what has moved";
   if (stage == "fuse again") return "Making the map: fusing again where something moved";
+  if (stage == "texture") return "Making the map: colours of its surface";
   if (stage == "surface") return "Making the map: surface, and what the scan missed";
   return "Making the map";
 }

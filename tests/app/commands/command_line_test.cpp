@@ -997,7 +997,7 @@ TEST_F(CommandLine, ABrokenMapIsRefusedAndTheFileNamed) {
   }
   const fs::path later = broken_copy();
   std::string json = read_text(later / "map.json");
-  const std::size_t at = json.find("\"format_version\": 3");
+  const std::size_t at = json.find("\"format_version\": 4");
   ASSERT_NE(at, std::string::npos) << json.substr(0, 300);
   json.replace(at, 19, "\"format_version\": 9");
   std::ofstream(later / "map.json", std::ios::binary) << json;

@@ -18,6 +18,7 @@
 #include <string>
 #include <thread>
 
+#include "mapping/map/map_export.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/atomic_folder.hpp"
@@ -328,7 +329,7 @@ TEST_F(MapFolder, VerifyListsEveryFaultAtOnce) {
 }
 
 TEST_F(MapFolder, ALaterFormatIsRefusedWithAdvice) {
-  edit_info("\"format_version\": 3", "\"format_version\": 4");
+  edit_info("\"format_version\": 4", "\"format_version\": 5");
   expect_fault("map.json", "use a later roomradar");
 }
 
@@ -346,7 +347,7 @@ TEST_F(MapFolder, MapsOfEarlierFormatsAreReadAndSavedInThisOne) {
       EXPECT_TRUE(text_of(exported) == text_of(map_ / name)) << name;
     }
     save_map(map_, read);
-    EXPECT_EQ(load_map_info(map_).format_version, 3);
+    EXPECT_EQ(load_map_info(map_).format_version, 4);
     EXPECT_FALSE(fs::exists(map_ / "octree.ot"));
     EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
     test::expect_equal(load_map(map_).octree, room_.octree);

@@ -1,0 +1,44 @@
+// view_alignment.hpp: corrects the poses of views by the colours of the surface that they share.
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mapping/texture/texture_view.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// A point of the mesh's surface.
+struct MeshPoint {
+  std::uint32_t triangle = 0;
+  Eigen::Vector3f weights = Eigen::Vector3f::Zero();  ///< of the triangle's vertices
+  Eigen::Vector3f p_local = Eigen::Vector3f::Zero();  ///< relative to the mesh's origin
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit
+};
+
+/// @param weights  of the triangle's vertices, summing to 1
+MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3f& weights);
+
+/// Returns about `count` points, evenly distributed over the surface; the same at each call.
+std::vector<MeshPoint> sample_mesh(const Mesh& mesh, std::size_t count);
+
+/// Moves each view such that its colours meet those of the other views on the surface. Depth is fused with
+/// the poses of tracking, whose errors of some millimetres are some pixels of a picture; and colour may be
+/// taken by another camera, at another time. Each point's brightness is the mean over the views that show it;
+/// each view is aligned to these by Gauss-Newton steps; both are repeated, at a quarter and then half of the
+/// pictures' size. Visibility stays that of the first poses, from which views move by some centimetres at
+/// most.
+/// @param mesh   with normals
+/// @param views  with evened exposure
+/// Source: Zhou, Koltun, Color map optimization for 3D reconstruction with consumer depth cameras, ACM TOG
+/// 2014.
+void align_views(const Mesh& mesh, std::span<TextureView> views);
+
+/// Aligns one view to points of known brightness (0..255) in the same way.
+/// @param brightness  one per point; negative: unknown
+void align_view(std::span<const MeshPoint> points, std::span<const float> brightness, TextureView& view);
+
+}  // namespace roomradar

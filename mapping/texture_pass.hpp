@@ -1,0 +1,22 @@
+// texture_pass.hpp: the stage of a prescan that bakes the texture of its surface.
+#pragma once
+#include <memory>
+
+#include "mapping/prescan_passes.hpp"
+#include "mapping/texture/surface_texture.hpp"
+
+namespace roomradar {
+
+/// Reads a few well spread, slow frames of pass.fused again, and bakes a texture of the mesh from their
+/// colours. Their pictures take at most 160 MB. Returns null, and reads nothing, if the memory would exceed
+/// config.max_memory_bytes. Returns null if no frame has colour.
+///
+/// Stages timed: read (per frame), texture (per frame, then the whole).
+/// @param mesh        surface of the map, in the world of `trajectory`
+/// @param trajectory  poses of the frames, with their stamps
+/// @throws Error if the source cannot be rewound
+std::shared_ptr<const SurfaceTexture> run_texture_pass(PrescanWork& work,
+                                                       const std::vector<TimedPose>& trajectory,
+                                                       const FusionPass& pass, const Mesh& mesh);
+
+}  // namespace roomradar
