@@ -30,7 +30,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"mapping/odometry", "mapping/map", "radar/motion", "radar/depth", "radar/batch", "app/sources/kinect",
      "app/sim/sensor", "app/quality", "app/models"},
     {"mapping", "app/sim/scenarios", "app/sim", "app/physics", "app/physics/placement", "app/render",
-     "app/media"},
+     "app/media", "app/page"},
     {"app/objects", "app/evaluation", "app/evaluation/pareto"},
     {"app/session"},
     {"app/session/script"},

@@ -15,10 +15,16 @@ namespace roomradar {
 Registration require_registered(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                                 const std::string& name_b, Report& report);
 
-/// Returns the objects that appeared in map b or vanished since map a, largest first. Registers the maps
+/// What changed between two maps.
+struct MapChanges {
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< maps points from b's world to a's world
+  std::vector<Change> changes;                              ///< largest first
+};
+
+/// Returns the objects that appeared in map b or vanished since map a. Registers the maps
 /// first, unless map b was saved by a run in map a and so has its world. Throws Error as require_registered()
 /// does.
-std::vector<Change> changes_between(const SavedMap& a, const SavedMap& b, const std::string& name_a,
-                                    const std::string& name_b, Report& report);
+MapChanges changes_between(const SavedMap& a, const SavedMap& b, const std::string& name_a,
+                           const std::string& name_b, Report& report);
 
 }  // namespace roomradar

@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "app/cli/report.hpp"
+#include "app/page/map_page.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/surface/unknown_surface.hpp"
+#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
@@ -53,6 +55,12 @@ std::string describe(std::vector<LevelSurface> surfaces) {
   return text;
 }
 
+void export_page(const MapExportOptions& options) {
+  require_outside_maps(options.path);
+  require_writable(options.path);
+  write_map_page(load_map(options.map), options.map, options.path);
+}
+
 }  // namespace
 
 int run(const MapInfoOptions& options) {
@@ -74,7 +82,11 @@ int run(const MapVerifyOptions& options) {
 }
 
 int run(const MapExportOptions& options) {
-  if (options.unknown) {
+  if (is_page(options.path)) {
+    if (options.unknown)
+      throw Error(options.path + ": --unknown writes a mesh; give a .ply, .obj, .stl or .glb file");
+    export_page(options);
+  } else if (options.unknown) {
     require_outside_maps(options.path);
     const SavedMap map = load_map(options.map);
     write_mesh(unknown_surface(map.octree, map.mesh).mesh_world, options.path);

@@ -8,6 +8,7 @@
 #include "app/cli/report.hpp"
 #include "app/media/map_picture.hpp"
 #include "app/media/picture_file.hpp"
+#include "app/page/map_page.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -47,9 +48,14 @@ int run(const MapDiffOptions& options) {
   require_writable(options.report);
   require_png_name(options.picture);
   require_writable(options.picture);
+  if (!options.html.empty() && !is_page(options.html))
+    throw Error(options.html + ": a page's name must end in .html");
+  require_outside_maps(options.html);
+  require_writable(options.html);
   const SavedMap a = load_map(options.a);
   const SavedMap b = load_map(options.b);
-  const std::vector<Change> changes = changes_between(a, b, options.a, options.b, report);
+  const MapChanges found = changes_between(a, b, options.a, options.b, report);
+  const std::vector<Change>& changes = found.changes;
 
   nlohmann::json rows = nlohmann::json::array();
   if (!changes.empty())
@@ -68,6 +74,10 @@ int run(const MapDiffOptions& options) {
   if (changes.empty()) std::printf("nothing appeared, nothing vanished\n");
   report.results["changes"] = std::move(rows);
   if (!options.picture.empty()) write_png(draw_changes(a.mesh, changes), options.picture);
+  if (!options.html.empty())
+    report.times.timed("page", [&] {
+      write_diff_page({a, options.a}, {b, options.b}, found.T_a_b, changes, options.html);
+    });
   write_report(report, options.report);
   return 0;
 }

@@ -103,9 +103,9 @@ fs::path export_beside(const fs::path& map, const std::string& extension) {
 std::vector<std::string> compare_maps(const fs::path& a, const fs::path& b) {
   const SavedMap earlier = load_map(a), later = load_map(b);
   Report report;
-  const std::vector<Change> changes = changes_between(earlier, later, a.string(), b.string(), report);
+  const MapChanges found = changes_between(earlier, later, a.string(), b.string(), report);
   std::vector<std::string> sentences;
-  for (const Change& change : changes) sentences.push_back(sentence_of(change));
+  for (const Change& change : found.changes) sentences.push_back(sentence_of(change));
   if (sentences.empty()) sentences.emplace_back("Nothing appeared, nothing vanished.");
   return sentences;
 }

@@ -105,7 +105,7 @@ void fill_scene(const Mesh& mesh, bool for_gltf, aiScene& scene) {
   scene.mRootNode->mNumMeshes = 1;
 }
 
-/// Adds the texture points and an unlit material. The texture is embedded for .glb, else a file beside.
+/// Adds the texture points and a matt material. The texture is embedded for .glb, else a file beside.
 void add_texture(const TexturedMesh& textured, bool for_gltf, const std::string& file, aiScene& scene) {
   aiMesh& part = *scene.mMeshes[0];
   part.mNumUVComponents[0] = 2;
@@ -114,8 +114,9 @@ void add_texture(const TexturedMesh& textured, bool for_gltf, const std::string&
     // assimp has v upwards.
     part.mTextureCoords[0][i] = {textured.texture_points[i].x(), 1.0F - textured.texture_points[i].y(), 0.0F};
   aiMaterial& material = *scene.mMaterials[0];
-  const int unlit = aiShadingMode_Unlit;
-  material.AddProperty(&unlit, 1, AI_MATKEY_SHADING_MODEL);
+  // Not KHR_materials_unlit: VTK 9.1, and so f3d, then shows no texture.
+  const float rough = 1.0F;
+  material.AddProperty(&rough, 1, AI_MATKEY_ROUGHNESS_FACTOR);
   const aiColor3D white(1.0F, 1.0F, 1.0F);
   material.AddProperty(&white, 1, AI_MATKEY_COLOR_DIFFUSE);
   const aiString texture(for_gltf ? "*0" : file);

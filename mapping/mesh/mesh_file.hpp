@@ -33,8 +33,8 @@ Mesh read_mesh(const std::filesystem::path& path);
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
 /// Writes a textured mesh as .glb, with the texture in it, or as .obj, with NAME.mtl and NAME.jpg beside it.
-/// The material is unlit, since the texture contains the room's light. Throws Error as above, also for other
-/// extensions.
+/// The material is matt: highlights are in the texture, which contains the room's light. Throws Error as
+/// above, also for other extensions.
 void write_mesh(const TexturedMesh& textured, const std::filesystem::path& path);
 
 /// Returns true if write_mesh() writes textures in the format that the extension names.

@@ -21,10 +21,11 @@ namespace {
 
 constexpr int kBlock_px = 16;  // blocks of texels share their candidate views
 constexpr std::size_t kCandidates = 8;
-constexpr float kMinTexelsPerM = 50.0F;  // 2 cm: surface that no view shows
-constexpr float kDetailPower = 16.0F;    // a view with 90 % of the best score has 19 % of its weight
-constexpr float kOverexposed = 0.3F;     // factor of the score where a picture is white
-constexpr float kMaxShift = 24.0F;       // of the colour without detail, from the best view's to the mean
+constexpr float kMinTexelsPerM = 50.0F;   // 2 cm: surface that no view shows
+constexpr float kDetailPower = 4.0F;      // a view with 80 % of the best score has 41 % of its weight
+constexpr float kTexelsPerPixel = 1.25F;  // of the best view, since it is interpolated
+constexpr float kOverexposed = 0.3F;      // factor of the score where a picture is white
+constexpr float kMaxShift = 24.0F;        // of the colour without detail, from the best view's to the mean
 
 /// Colour of the mesh's vertices at a point.
 Eigen::Array3f mesh_colour(const Mesh& mesh, const MeshPoint& point) {
@@ -46,7 +47,7 @@ std::vector<float> texels_per_m(const Mesh& mesh, std::span<const TextureView> v
     const MeshPoint point = mesh_point(mesh, t, middle);
     for (const TextureView& view : views)
       wanted[t] = std::max(wanted[t], shown(view, point.p_local, point.normal).px_per_m);
-    wanted[t] = std::min(wanted[t], most);
+    wanted[t] = std::min(kTexelsPerPixel * wanted[t], most);
   }
   return wanted;
 }

@@ -54,11 +54,12 @@ Eigen::Vector3f area_normal(const Mesh& mesh, std::uint32_t triangle) {
   return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
 }
 
-/// Any two unit vectors perpendicular to the normal and to each other.
+/// Two unit vectors perpendicular to the normal and to each other; seen from outside, y points down if x
+/// points right, so that an atlas is not mirrored.
 Eigen::Matrix<float, 2, 3> axes_across(const Eigen::Vector3f& normal) {
   Eigen::Matrix<float, 2, 3> axes;
   axes.row(0) = normal.unitOrthogonal();
-  axes.row(1) = normal.cross(Eigen::Vector3f(axes.row(0)));
+  axes.row(1) = Eigen::Vector3f(axes.row(0)).cross(normal);
   return axes;
 }
 

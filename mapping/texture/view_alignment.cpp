@@ -13,7 +13,7 @@
 namespace roomradar {
 namespace {
 
-constexpr std::size_t kAlignedPoints = 40'000;
+constexpr std::size_t kAlignedPoints = 60'000;
 constexpr std::array<int, 3> kFactors = {8, 4, 2};  // the pictures are reduced by
 constexpr int kStepsPerFactor = 8;
 constexpr float kHuber = 12.0F;  // of 255: differences beyond count less

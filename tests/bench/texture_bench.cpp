@@ -41,7 +41,7 @@ namespace roomradar {
 namespace {
 
 constexpr std::int64_t kHoldOut = 20;
-constexpr std::size_t kPictures = 30;
+constexpr std::size_t kPictures = 3;
 constexpr std::size_t kPoints = 60'000;  // of the surface, by which held-out frames are aligned
 
 struct Cell {
@@ -236,7 +236,6 @@ nlohmann::json judge(const Cell& cell, const std::filesystem::path& pictures) {
       aligned[i].add(picture_of(best[i]), best[i], best[i].is_surface, best_gain);
       measured[i].add(picture_of(best[i]), best[i], best[i].is_measured, best_gain);
     }
-    { Difference a, b; a.add(best[0].vertices, best[0], best[0].is_measured, gains(best[0].vertices, best[0])); b.add(best[1].texture, best[1], best[1].is_measured, gains(best[1].texture, best[1])); const auto g = gains(best[1].texture, best[1]); std::fprintf(stderr, "DBG %d %.2f %.2f gain %.2f %.2f %.2f\n", (int)frame.index, a.psnr_db(), b.psnr_db(), g[0], g[1], g[2]); }
     if (!pictures.empty() && held_out < kPictures) {
       const std::string stem = (pictures / std::to_string(frame.index)).string();
       write_png(best[1].is_measured, stem + "-measured.png");

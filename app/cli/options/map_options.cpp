@@ -25,8 +25,10 @@ void add_options(CLI::App& command, MapVerifyOptions& options) { add_map_argumen
 void add_options(CLI::App& command, MapExportOptions& options) {
   add_map_argument(command, options.map);
   command
-      .add_option("FILE", options.path,
-                  "file to write, by extension: .ot .bt (octree), .ply .obj .stl .glb (mesh) (required)")
+      .add_option(
+          "FILE", options.path,
+          "file to write, by extension: .html (page for a browser: the room to turn, walk in and measure),\n"
+          ".glb .obj (mesh with texture), .ply .stl (mesh), .ot .bt (octree) (required)")
       ->required();
   command.add_flag("--unknown", options.unknown,
                    "write the border of unknown space instead of the room's mesh (default: off)");
@@ -56,6 +58,11 @@ void add_options(CLI::App& command, MapDiffOptions& options) {
       .add_option("--picture", options.picture,
                   "draw A, with appeared parts in green and vanished parts in red (default: not written)")
       ->type_name("FILE.png");
+  command
+      .add_option(
+          "--html", options.html,
+          "page for a browser: both rooms in 3D, with what appeared and vanished (default: not written)")
+      ->type_name("FILE.html");
 }
 
 }  // namespace roomradar

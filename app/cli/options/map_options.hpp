@@ -52,6 +52,8 @@ struct MapDiffOptions {
   std::string report;
   /// PNG file to write; empty: not written.
   std::string picture;
+  /// HTML file to write; empty: not written.
+  std::string html;
 };
 
 /// Adds the options of `map info` with their help texts and checks. For this function and those below,

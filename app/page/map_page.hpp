@@ -1,0 +1,35 @@
+// map_page.hpp: pages of saved maps.
+#pragma once
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "mapping/map/map_diff.hpp"
+#include "mapping/map/map_folder.hpp"
+
+namespace roomradar {
+
+/// Returns true if the path ends in .html.
+bool is_page(const std::filesystem::path& path);
+
+/// Writes a page of a map: its surface, with the texture if it has one, the scan's path and what it missed.
+/// Throws Error as write_room_page() does, or if a part of the map is damaged.
+/// @param folder  of the map; its name becomes the title
+void write_map_page(const SavedMap& map, const std::filesystem::path& folder,
+                    const std::filesystem::path& path);
+
+/// A loaded map and its folder.
+struct NamedMap {
+  const SavedMap& map;
+  std::string folder;
+};
+
+/// Writes a page of two maps of one room, and what appeared and vanished between them. Throws Error as
+/// write_map_page() does.
+/// @param T_a_b    maps points from b's world to a's world
+/// @param changes  in the world of map a
+void write_diff_page(const NamedMap& a, const NamedMap& b, const Eigen::Isometry3d& T_a_b,
+                     std::span<const Change> changes, const std::filesystem::path& path);
+
+}  // namespace roomradar

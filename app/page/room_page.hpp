@@ -1,0 +1,37 @@
+// room_page.hpp: one HTML file that shows a scanned room, or what changed between two scans, in a browser.
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mapping/coverage/hole.hpp"
+#include "mapping/map/map_diff.hpp"
+#include "mapping/texture/surface_texture.hpp"
+#include "mapping/types/mesh.hpp"
+#include "mapping/types/trajectory.hpp"
+
+namespace roomradar {
+
+/// A room's surface on a page. The pointers must not be null while the page is written, except `texture`.
+struct PageRoom {
+  std::string name;  ///< shown where the page has several rooms
+  const Mesh* mesh_world = nullptr;
+  const SurfaceTexture* texture = nullptr;  ///< must fit the mesh; null: the vertices' colours are shown
+};
+
+struct RoomPage {
+  std::string title;
+  std::vector<PageRoom> rooms;  ///< one or two, in one world
+  std::vector<Hole> holes;
+  std::vector<TimedPose> trajectory;
+  std::vector<Change> changes;  ///< kVanished belongs to rooms[0], kAppeared to rooms[1]
+};
+
+/// Writes the page: room, texture and program in one file that needs no network, only WebGL 2. Positions are
+/// rounded to 1/65535 of the room's size. The page turns the room, walks in it, cuts it, measures between two
+/// points, and lists holes and changes. An existing file is replaced once the new one is complete.
+/// @throws Error if a room has no triangles, or the file cannot be written
+void write_room_page(const RoomPage& page, const std::filesystem::path& path);
+
+}  // namespace roomradar
