@@ -301,7 +301,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   play_frames(run, std::move(frames));
   if (!options.stream.empty()) run.stream.emplace(options.stream, options.source, options.map);
   if (link != nullptr)
-    run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, run.is_live);
+    run.host.emplace(*link, *run.session, *run.playback, run.report.times, shown_room(run.map), run.is_live);
   return opened;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/process_memory.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/kept_source.hpp"
@@ -140,6 +141,44 @@ TEST(Prescan, ALongScanThatOnlyBeginsInTheMapIsAddedToIt) {
                longer.map.trajectory.front().T_world_camera.translation())
                   .norm(),
               14.4, 0.3);
+}
+
+/// Prescan that also bakes a texture.
+PrescanResult textured_prescan(std::vector<Frame> frames, std::size_t max_memory_bytes = 0) {
+  test::KeptSource source(std::move(frames));
+  PrescanConfig config;
+  config.poses = PoseOrigin::kRecorded;
+  config.resolution_m = 0.03;
+  config.bake_texture = true;
+  config.max_memory_bytes = max_memory_bytes;
+  StageTimes times;
+  return prescan(source, config, times);
+}
+
+TEST(Prescan, TheTextureFitsTheMeshThatIsSaved) {
+  const PrescanResult result = textured_prescan(posed_frames());
+  ASSERT_NE(*result.map.texture, nullptr);
+  const test::TemporaryFolder folder;
+  save_map(folder.path() / "map", result.map);
+  const auto [mesh, texture] = load_textured_map_mesh(folder.path() / "map");
+  EXPECT_TRUE(fits(texture, mesh));
+  EXPECT_EQ(verify_map(folder.path() / "map"), std::vector<std::string>{});
+  EXPECT_EQ(*prescan_of(posed_frames()).map.texture, nullptr);  // only where it is asked for
+}
+
+TEST(Prescan, WithoutColourThereIsNoTexture) {
+  std::vector<Frame> frames = posed_frames();
+  for (Frame& frame : frames) frame.colour = {};
+  const PrescanResult result = textured_prescan(std::move(frames));
+  EXPECT_EQ(*result.map.texture, nullptr);
+  EXPECT_FALSE(result.map.mesh.triangles.empty());
+}
+
+TEST(Prescan, AMemoryCapLeavesOutTheTextureNotTheMap) {
+  const std::size_t cap = resident_bytes() + 100'000'000;
+  const PrescanResult result = textured_prescan(posed_frames(), cap);
+  EXPECT_EQ(*result.map.texture, nullptr);
+  EXPECT_FALSE(result.counts.stopped_for_memory);
 }
 
 }  // namespace

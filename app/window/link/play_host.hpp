@@ -17,14 +17,19 @@
 
 namespace roomradar {
 
-/// Used by the session's thread if the run has a window. All arguments of the constructor must outlive the
+/// Used by the session's thread if the run has a window. The constructor's references must outlive the
 /// object.
 class PlayHost {
  public:
   /// @param is_live  true: frames are shown when they arrive. Only repeated frames wait for their timestamps
   PlayHost(UiChannel& link, const Session& session, const PlaybackSource& source, const StageTimes& times,
-           const Mesh& room, bool is_live)
-      : link_(link), session_(session), source_(source), times_(times), is_live_(is_live), maker_(room) {}
+           ShownRoom room, bool is_live)
+      : link_(link),
+        session_(session),
+        source_(source),
+        times_(times),
+        is_live_(is_live),
+        maker_(std::move(room)) {}
 
   /// Waits until the frame is due or the user requests a single step. Returns false if the window is closed.
   bool wait_turn(const Frame& frame);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/window/link/player.hpp"
+#include "mapping/texture/jpeg.hpp"
 
 namespace roomradar {
 namespace {
@@ -22,6 +23,16 @@ Mesh mesh_of(const TriangleTree& tree) {
 }
 
 }  // namespace
+
+ShownRoom shown_room(const SavedMap& map) {
+  const std::shared_ptr<const SurfaceTexture>& texture = *map.texture;
+  if (!texture || !fits(*texture, map.mesh)) return {.mesh = map.mesh};
+  TexturedMesh textured = textured_mesh(map.mesh, *texture);
+  return {.mesh = std::move(textured.mesh),
+          .texture_points = std::move(textured.texture_points),
+          .texture = picture_of_jpeg(texture->atlas_jpeg, texture->width_px, texture->height_px,
+                                     "the map's " + std::string(kMapTextureFile))};
+}
 
 void SnapshotMaker::fill(const Session& session, const FrameResult& result, const StageTimes& times,
                          const ViewsWanted& wanted, Snapshot& shown) {
@@ -51,7 +62,8 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
 
   const TriangleTree& room = session.room().touched;
   if (room_revision_ != 0 && room_revision_ != room.revision())
-    room_ = std::make_shared<const Mesh>(mesh_of(room));  // changed by a commit
+    // Changed by a commit: the texture belongs to the saved surface.
+    room_ = std::make_shared<const ShownRoom>(ShownRoom{.mesh = mesh_of(room)});
   room_revision_ = room.revision();
   shown.room = room_;
   shown.seen_world = wanted.models ? session.scene().dynamic_world().seen_world : Mesh{};

@@ -5,20 +5,25 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/session/session.hpp"
 #include "app/window/link/ui_channel.hpp"
+#include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/stage_times.hpp"
 #include "radar/exact/cyber_radar.hpp"
 
 namespace roomradar {
 
+/// Returns the map's surface, with its texture if it has one that fits. Throws Error if the texture is
+/// damaged.
+ShownRoom shown_room(const SavedMap& map);
+
 /// Fills snapshots for the window from a session.
 class SnapshotMaker {
  public:
-  /// @param room  mesh of the saved room; copied
-  explicit SnapshotMaker(const Mesh& room) : room_(std::make_shared<const Mesh>(room)) {}
+  explicit SnapshotMaker(ShownRoom room) : room_(std::make_shared<const ShownRoom>(std::move(room))) {}
 
   /// Sets the fields of `shown` that come from the session. The radar's images are those of object
   /// `shown.chosen`. Reuses the memory of `shown`.
@@ -26,7 +31,7 @@ class SnapshotMaker {
             const ViewsWanted& wanted, Snapshot& shown);
 
  private:
-  std::shared_ptr<const Mesh> room_;
+  std::shared_ptr<const ShownRoom> room_;
   std::uint64_t room_revision_ = 0;  ///< revision of the session's room in room_; 0: none
   std::map<std::shared_ptr<const ObjectModel>, std::shared_ptr<const Mesh>> object_meshes_;
   /// Number of samples per stage before this frame.

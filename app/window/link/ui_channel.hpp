@@ -85,6 +85,13 @@ struct ShownRadar {
   Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();
 };
 
+/// The room's surface in the world.
+struct ShownRoom {
+  Mesh mesh;
+  std::vector<Eigen::Vector2f> texture_points{};  ///< one per vertex, (0, 0) top left; empty: no texture
+  ColourImage texture{};
+};
+
 /// State of the session after a frame.
 struct Snapshot {
   std::int64_t run_frame = -1;
@@ -104,8 +111,8 @@ struct Snapshot {
   bool is_held = false;
   bool is_repeating = false;  ///< true: the frame is a repetition, since the source is held or has ended
   AtEnd at_end = AtEnd::kEnd;
-  std::shared_ptr<const Mesh> room;
-  Mesh seen_world, inferred_world;  ///< dynamic foreground
+  std::shared_ptr<const ShownRoom> room;  ///< the pointer changes only if the room changes
+  Mesh seen_world, inferred_world;        ///< dynamic foreground
   ShownRadar shown_radar;
   /// Point of the visible surface at ViewsWanted::point_px; unset: none.
   std::optional<Eigen::Vector3d> pointed_world;

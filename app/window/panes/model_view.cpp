@@ -54,7 +54,7 @@ struct ModelView::State {
   OrbitCanvas canvas;
   bool is_stale = true;
   bool is_placed = false;  ///< the orbit was set to show the room
-  std::shared_ptr<const Mesh> room;
+  std::shared_ptr<const ShownRoom> room;
   DrawnMesh drawn_room, drawn_seen, drawn_inferred;
   std::map<std::shared_ptr<const Mesh>, std::unique_ptr<DrawnMesh>> drawn_objects;
 };
@@ -67,8 +67,9 @@ void ModelView::upload(const Snapshot& shown) {
   state.is_stale = true;
   if (shown.room && shown.room != state.room) {
     state.room = shown.room;
-    state.drawn_room.upload(*shown.room, /*changes_often=*/false);
-    const Eigen::AlignedBox3d box = bounds_of(*shown.room);
+    state.drawn_room.upload(shown.room->mesh, /*changes_often=*/false);
+    state.drawn_room.upload_texture(shown.room->texture_points, shown.room->texture);
+    const Eigen::AlignedBox3d box = bounds_of(shown.room->mesh);
     if (!state.is_placed && !box.isEmpty()) {
       state.is_placed = true;
       state.canvas.orbit.target_world = box.center();

@@ -20,15 +20,18 @@ constexpr double kFieldOfView_rad = 0.85;
 constexpr const char* kVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 p_local;
 layout(location = 1) in vec3 colour_srgb;
+layout(location = 2) in vec2 texture_point;
 uniform mat4 clip_from_local;
 uniform mat4 eye_from_local;
 uniform vec4 plain;  // w: its weight against the vertices' colours
 out vec3 p_eye;
 out vec3 albedo;
+out vec2 uv;
 void main() {
   gl_Position = clip_from_local * vec4(p_local, 1.0);
   p_eye = (eye_from_local * vec4(p_local, 1.0)).xyz;
   albedo = mix(colour_srgb, plain.rgb, plain.a);
+  uv = texture_point;
 }
 )";
 
@@ -36,13 +39,17 @@ void main() {
 constexpr const char* kFragmentShader = R"(#version 330 core
 in vec3 p_eye;
 in vec3 albedo;
+in vec2 uv;
 uniform vec3 up_eye;
+uniform sampler2D atlas;
+uniform bool is_textured;
 out vec4 colour;
 void main() {
   vec3 n = normalize(cross(dFdx(p_eye), dFdy(p_eye)));
   float facing = abs(dot(n, normalize(-p_eye)));
   float above = 0.5 + 0.5 * dot(n, up_eye);
-  colour = vec4(albedo * (0.35 + 0.40 * facing + 0.35 * above), 1.0);
+  float light = 0.35 + 0.40 * facing + 0.35 * above;
+  colour = vec4(is_textured ? texture(atlas, uv).rgb * mix(1.0, light, 0.3) : albedo * light, 1.0);
 }
 )";
 
@@ -81,11 +88,12 @@ Eigen::Isometry3d eye_of(const Orbit& orbit) {
 
 DrawnMesh::DrawnMesh() {
   glGenVertexArrays(1, &vertex_array_);
-  glGenBuffers(3, buffers_.data());
+  glGenBuffers(4, buffers_.data());
 }
 
 DrawnMesh::~DrawnMesh() {
-  glDeleteBuffers(3, buffers_.data());
+  glDeleteBuffers(4, buffers_.data());
+  glDeleteTextures(1, &texture_);
   glDeleteVertexArrays(1, &vertex_array_);
 }
 
@@ -110,6 +118,33 @@ void DrawnMesh::upload(const Mesh& mesh, bool changes_often) {
     glDisableVertexAttribArray(1);
   }
   fill(GL_ELEMENT_ARRAY_BUFFER, buffers_[2], mesh.triangles);
+  glBindVertexArray(0);
+}
+
+void DrawnMesh::upload_texture(const std::vector<Eigen::Vector2f>& points, const ColourImage& texture) {
+  glDeleteTextures(1, &texture_);
+  texture_ = 0;
+  glBindVertexArray(vertex_array_);
+  glDisableVertexAttribArray(2);
+  if (!points.empty() && !texture.empty()) {
+    constexpr int kLevels = 4;  // coarser ones would mix charts
+    glBindBuffer(GL_ARRAY_BUFFER, buffers_[3]);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(points.size() * sizeof(points[0])), points.data(),
+                 GL_STATIC_DRAW);
+    glVertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glEnableVertexAttribArray(2);
+    glGenTextures(1, &texture_);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, texture.width, texture.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                 texture.pixels.data());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kLevels - 1);
+    glGenerateMipmap(GL_TEXTURE_2D);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  }
   glBindVertexArray(0);
 }
 
@@ -198,6 +233,8 @@ void OrbitCanvas::draw(const DrawnMesh& mesh, const Eigen::Isometry3d& T_world_m
   glUniformMatrix4fv(glGetUniformLocation(program_, "eye_from_local"), 1, GL_FALSE, eye_float.data());
   glUniform4f(glGetUniformLocation(program_, "plain"), tint.rgb[0], tint.rgb[1], tint.rgb[2],
               mesh.has_colours_ ? tint.fraction : 1.0F);
+  glUniform1i(glGetUniformLocation(program_, "is_textured"), mesh.texture_ != 0 ? 1 : 0);
+  glBindTexture(GL_TEXTURE_2D, mesh.texture_);
   glBindVertexArray(mesh.vertex_array_);
   glDrawElements(GL_TRIANGLES, mesh.index_count_, GL_UNSIGNED_INT, nullptr);
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "app/window/panes/annotate.hpp"
 #include "app/window/panes/window_layout.hpp"
@@ -31,17 +32,22 @@ class DrawnMesh {
 
   /// @param changes_often  true: the mesh is replaced every few frames
   void upload(const Mesh& mesh, bool changes_often);
+  /// Adds a texture to the uploaded mesh, in place of colours. Removes it if there are no points.
+  /// @param points  one per vertex; (0, 0) is the texture's top left corner, (1, 1) its bottom right corner
+  void upload_texture(const std::vector<Eigen::Vector2f>& points, const ColourImage& texture);
 
  private:
   friend class OrbitCanvas;
   unsigned vertex_array_ = 0;
-  std::array<unsigned, 3> buffers_{};  // positions, colours, indices
+  std::array<unsigned, 4> buffers_{};  // positions, colours, indices, texture points
+  unsigned texture_ = 0;               // 0: none
   int index_count_ = 0;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   bool has_colours_ = false;
 };
 
-/// Colour of a mesh without colours, and its fraction in the colours of a mesh that has some.
+/// Colour of a mesh without colours, and its fraction in the colours of a mesh that has some. Shading is
+/// lighter for a textured mesh, which has the room's light.
 struct Tint {
   std::array<float, 3> rgb{};
   float fraction = 1.0F;
