@@ -90,6 +90,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
   PrescanWork work{&source,       config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
                    start.observer};
+  if (config.bake_texture && start.map) (void)*start.map->texture;  // damaged: said before the work
   PrescanResult result;
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;
@@ -119,9 +120,11 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     throw Error(source.name() + ": " + std::to_string(pass.fused.size()) + " frames show no surface at " +
                 format_number(config.resolution_m) + " m; try another --resolution");
   if (config.bake_texture) {
+    EarlierTextures earlier;
+    if (start.map) add_texture_of(*start.map, Eigen::Isometry3d::Identity(), earlier);
     // A triangle without area is not read from a file, and the texture must fit the mesh that is read.
     std::erase_if(map.mesh.triangles, [&](const Triangle& t) { return !has_area(map.mesh, t); });
-    map.texture = run_texture_pass(work, map.trajectory, pass, map.mesh);
+    map.texture = run_texture_pass(work, map.trajectory, pass, earlier, map.mesh);
   }
   map.keyframe_database = std::move(pass.found.keyframe_database);
   transform(map.keyframe_database, pass.T_world_found);

@@ -61,7 +61,8 @@ bool exceeds_cap(const PrescanConfig& config) {
 
 std::shared_ptr<const SurfaceTexture> run_texture_pass(PrescanWork& work,
                                                        const std::vector<TimedPose>& trajectory,
-                                                       const FusionPass& pass, const Mesh& mesh) {
+                                                       const FusionPass& pass, const EarlierTextures& earlier,
+                                                       const Mesh& mesh) {
   if (exceeds_cap(work.config) || pass.fused.empty()) return nullptr;
   const std::vector<ViewCandidate> candidates = candidates_of(pass.fused, trajectory);
   std::vector<std::size_t> chosen = choose_views(candidates, most_views(work, pass, 0));
@@ -82,7 +83,7 @@ std::shared_ptr<const SurfaceTexture> run_texture_pass(PrescanWork& work,
   SurfaceTexture texture = work.times.timed("texture", [&] {
     even_exposure(mesh, views);
     align_views(mesh, views);
-    return bake_texture(mesh, views);
+    return bake_texture(mesh, views, earlier);
   });
   if (texture.corners.empty()) return nullptr;
   return std::make_shared<const SurfaceTexture>(std::move(texture));

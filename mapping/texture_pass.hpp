@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "mapping/map/map_texture.hpp"
 #include "mapping/prescan_passes.hpp"
 #include "mapping/texture/surface_texture.hpp"
 
@@ -11,12 +12,14 @@ namespace roomradar {
 /// colours. Their pictures take at most 160 MB. Returns null, and reads nothing, if the memory would exceed
 /// config.max_memory_bytes. Returns null if no frame has colour.
 ///
-/// Stages timed: read (per frame), texture (per frame, then the whole).
+/// Surface that these frames do not show keeps the colours of `earlier` textures. Stages timed: read (per
+/// frame), texture (per frame, then the whole).
 /// @param mesh        surface of the map, in the world of `trajectory`
 /// @param trajectory  poses of the frames, with their stamps
 /// @throws Error if the source cannot be rewound
 std::shared_ptr<const SurfaceTexture> run_texture_pass(PrescanWork& work,
                                                        const std::vector<TimedPose>& trajectory,
-                                                       const FusionPass& pass, const Mesh& mesh);
+                                                       const FusionPass& pass, const EarlierTextures& earlier,
+                                                       const Mesh& mesh);
 
 }  // namespace roomradar

@@ -23,9 +23,9 @@ struct PageRoom {
 struct RoomPage {
   std::string title;
   std::vector<PageRoom> rooms;  ///< one or two, in one world
-  std::vector<Hole> holes;
-  std::vector<TimedPose> trajectory;
-  std::vector<Change> changes;  ///< kVanished belongs to rooms[0], kAppeared to rooms[1]
+  std::vector<Hole> holes{};
+  std::vector<TimedPose> trajectory{};
+  std::vector<Change> changes{};  ///< kVanished belongs to rooms[0], kAppeared to rooms[1]
 };
 
 /// Writes the page: room, texture and program in one file that needs no network, only WebGL 2. Positions are

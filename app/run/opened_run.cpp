@@ -288,6 +288,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   if (!options.record_session.empty()) require_can_become_session(options.record_session);
   std::future<ObjectParts> first_object = first_object_of(run.script);
   run.map = load_map(options.map);
+  if (!options.save_map.empty()) (void)*run.map.texture;  // is carried over when the map is saved
   say_if_up_is_not_known(run.map.info, options.map);
   const bool has_picture = makes_picture(options, link != nullptr);
   std::unique_ptr<FrameSource> frames = open_frames(run);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -97,19 +96,6 @@ StaticMap read_octree(const fs::path& folder, const MapInfo& info) {
 }
 
 }  // namespace
-
-SurfaceConfig surface_config_of(const MapInfo& info) {
-  SurfaceConfig config;
-  const auto said = info.settings.find(kDeviationSetting);
-  if (said == info.settings.end()) return config;
-  const char* const end = said->second.data() + said->second.size();
-  const auto parsed = std::from_chars(said->second.data(), end, config.max_deviation_m);
-  if (parsed.ec != std::errc() || parsed.ptr != end || !(config.max_deviation_m >= 0.0F) ||
-      !std::isfinite(config.max_deviation_m))
-    throw Error("map.json: settings: " + std::string(kDeviationSetting) + " is \"" +
-                said->second.substr(0, 40) + "\"; must be metres, 0 or more");
-  return config;
-}
 
 void save_map(const fs::path& folder, const SavedMap& map) {
   const fs::path target = tidy_map_name(folder);

@@ -13,7 +13,6 @@
 #include "mapping/map/map_files.hpp"
 #include "mapping/map/map_info.hpp"
 #include "mapping/octree/static_map.hpp"
-#include "mapping/surface/surface_extraction.hpp"
 #include "mapping/surface/unknown_surface.hpp"
 #include "mapping/texture/surface_texture.hpp"
 #include "mapping/types/mesh.hpp"
@@ -34,10 +33,6 @@ struct SavedMap {
   /// Texture of the mesh; null: none. It may belong to an earlier mesh, see fits().
   LazyPart<std::shared_ptr<const SurfaceTexture>> texture{std::shared_ptr<const SurfaceTexture>()};
 };
-
-/// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if
-/// info.settings has one, else the default. Throws Error if the stored value is invalid.
-SurfaceConfig surface_config_of(const MapInfo& info);
 
 /// Writes the map to a folder beside `folder` (folder.partial-PID) and syncs it. Then renames it to `folder`
 /// atomically. Extracts the border of unknown space from map.octree and map.mesh, and writes it to

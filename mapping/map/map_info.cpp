@@ -33,6 +33,19 @@ bool knows_recorded_world(const MapInfo& info) {
          !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
 }
 
+SurfaceConfig surface_config_of(const MapInfo& info) {
+  SurfaceConfig config;
+  const auto said = info.settings.find(kDeviationSetting);
+  if (said == info.settings.end()) return config;
+  const char* const end = said->second.data() + said->second.size();
+  const auto parsed = std::from_chars(said->second.data(), end, config.max_deviation_m);
+  if (parsed.ec != std::errc() || parsed.ptr != end || !(config.max_deviation_m >= 0.0F) ||
+      !std::isfinite(config.max_deviation_m))
+    throw Error("map.json: settings: " + std::string(kDeviationSetting) + " is \"" +
+                said->second.substr(0, 40) + "\"; must be metres, 0 or more");
+  return config;
+}
+
 std::string describe(const MapInfo& info) {
   std::string text;
   const auto line = [&](const char* name, const std::string& value) {

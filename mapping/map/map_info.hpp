@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mapping/octree/static_map.hpp"
+#include "mapping/surface/surface_extraction.hpp"
 
 namespace roomradar {
 
@@ -47,6 +48,10 @@ struct MapInfo {
 /// Returns true if info.T_world_recorded is known. It is if the map was scanned with recorded poses, or the
 /// recording had poses.
 bool knows_recorded_world(const MapInfo& info);
+
+/// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if
+/// info.settings has one, else the default. Throws Error if the stored value is invalid.
+SurfaceConfig surface_config_of(const MapInfo& info);
 
 /// Returns the output of `roomradar map info`.
 std::string describe(const MapInfo& info);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mapping/coverage/coverage.hpp"
+#include "mapping/map/map_texture.hpp"
 #include "mapping/map/surface_points.hpp"
 #include "mapping/map/tsdf_interpolation.hpp"
 #include "mapping/types/system/error.hpp"
@@ -226,7 +227,11 @@ SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_
       a.info.settings["resolution_m"] = setting->second;
   }
   add_map(b.octree, T_a_b, a.octree);
+  EarlierTextures earlier;
+  add_texture_of(a, Eigen::Isometry3d::Identity(), earlier);
+  add_texture_of(b, T_a_b, earlier);
   a.mesh = extract_surface(a.octree, surface_config_of(a.info));
+  renew_texture(earlier, a);
   SavedMap session;
   session.info = b.info;
   session.keyframe_database = b.keyframe_database;

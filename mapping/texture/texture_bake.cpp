@@ -27,6 +27,8 @@ constexpr float kTexelsPerPixel = 1.25F;  // of the best view, since it is inter
 constexpr float kOverexposed = 0.3F;      // factor of the score where a picture is white
 constexpr float kMaxShift = 24.0F;        // of the colour without detail, from the best view's to the mean
 
+using Earlier = std::span<const std::unique_ptr<const EarlierTexture>>;
+
 /// Colour of the mesh's vertices at a point.
 Eigen::Array3f mesh_colour(const Mesh& mesh, const MeshPoint& point) {
   Eigen::Array3f colour = Eigen::Array3f::Zero();
@@ -39,7 +41,8 @@ Eigen::Array3f mesh_colour(const Mesh& mesh, const MeshPoint& point) {
 }
 
 /// Returns the number of texels per metre that each triangle deserves: as its best view at its centre.
-std::vector<float> texels_per_m(const Mesh& mesh, std::span<const TextureView> views, double min_texel_m) {
+std::vector<float> texels_per_m(const Mesh& mesh, std::span<const TextureView> views, Earlier earlier,
+                                double min_texel_m) {
   std::vector<float> wanted(mesh.triangles.size(), kMinTexelsPerM);
   const auto most = static_cast<float>(1.0 / min_texel_m);
   const Eigen::Vector3f middle = Eigen::Vector3f::Constant(1.0F / 3.0F);
@@ -47,7 +50,10 @@ std::vector<float> texels_per_m(const Mesh& mesh, std::span<const TextureView> v
     const MeshPoint point = mesh_point(mesh, t, middle);
     for (const TextureView& view : views)
       wanted[t] = std::max(wanted[t], shown(view, point.p_local, point.normal).px_per_m);
-    wanted[t] = std::min(kTexelsPerPixel * wanted[t], most);
+    wanted[t] *= kTexelsPerPixel;
+    if (const auto found = find_densest(earlier, mesh.origin + point.p_local.cast<double>(), point.normal))
+      wanted[t] = std::max(wanted[t], found->texels_per_m);
+    wanted[t] = std::min(wanted[t], most);
   }
   return wanted;
 }
@@ -114,8 +120,9 @@ std::optional<Eigen::Array3f> colour_of(const MeshPoint& point, std::span<const 
 /// Bakes one chart into the atlas.
 class ChartBaker {
  public:
-  ChartBaker(const Mesh& mesh, std::span<const TextureView> views, ColourImage& atlas, MaskImage& has_colour)
-      : mesh_(mesh), views_(views), atlas_(atlas), has_colour_(has_colour) {}
+  ChartBaker(const Mesh& mesh, std::span<const TextureView> views, Earlier earlier, ColourImage& atlas,
+             MaskImage& has_colour)
+      : mesh_(mesh), views_(views), earlier_(earlier), atlas_(atlas), has_colour_(has_colour) {}
 
   void bake(const TextureChart& chart) {
     const Image<std::uint32_t> owners = triangles_of_texels(mesh_, chart);
@@ -126,6 +133,7 @@ class ChartBaker {
  private:
   const Mesh& mesh_;
   std::span<const TextureView> views_;
+  Earlier earlier_;
   ColourImage& atlas_;
   MaskImage& has_colour_;
   std::vector<MeshPoint> points_;          // of a block
@@ -149,13 +157,18 @@ class ChartBaker {
     choose_candidates();
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Eigen::Array3f colour =
-          colour_of(points_[i], views_, candidates_, looks_).value_or(mesh_colour(mesh_, points_[i]));
+          colour_of(points_[i], views_, candidates_, looks_).value_or(colour_without_views(points_[i]));
       const Eigen::Array3f rounded = (colour + 0.5F).min(255.0F).max(0.0F);
       atlas_.at(texels_[i].x(), texels_[i].y()) = {static_cast<std::uint8_t>(rounded.x()),
                                                    static_cast<std::uint8_t>(rounded.y()),
                                                    static_cast<std::uint8_t>(rounded.z())};
       has_colour_.at(texels_[i].x(), texels_[i].y()) = 255;
     }
+  }
+
+  [[nodiscard]] Eigen::Array3f colour_without_views(const MeshPoint& point) const {
+    const auto found = find_densest(earlier_, mesh_.origin + point.p_local.cast<double>(), point.normal);
+    return found ? found->colour : mesh_colour(mesh_, point);
   }
 
   /// Sets candidates_ to the views with the highest sum of scores at some points of the block.
@@ -195,15 +208,17 @@ std::vector<std::array<AtlasPoint, 3>> corners_of(const Mesh& mesh, const std::v
 }  // namespace
 
 SurfaceTexture bake_texture(const Mesh& mesh, std::span<const TextureView> views,
+                            std::span<const std::unique_ptr<const EarlierTexture>> earlier,
                             const TextureConfig& config) {
-  if (views.empty() || mesh.triangles.empty() || mesh.normals.empty()) return {};
-  std::vector<TextureChart> charts = texture_charts(mesh, texels_per_m(mesh, views, config.min_texel_m));
+  if ((views.empty() && earlier.empty()) || mesh.triangles.empty() || mesh.normals.empty()) return {};
+  std::vector<TextureChart> charts =
+      texture_charts(mesh, texels_per_m(mesh, views, earlier, config.min_texel_m));
   const Eigen::Vector2i size_px = pack(charts, config.max_side_px);
   if (size_px.isZero()) return {};
   ColourImage atlas(size_px.x(), size_px.y());
   MaskImage has_colour(size_px.x(), size_px.y());
   const unsigned threads = hardware_threads();
-  std::vector<ChartBaker> bakers(threads, ChartBaker(mesh, views, atlas, has_colour));
+  std::vector<ChartBaker> bakers(threads, ChartBaker(mesh, views, earlier, atlas, has_colour));
   parallel_for(charts.size(), threads,
                [&](std::size_t i, unsigned thread) { bakers[thread].bake(charts[i]); });
   fill_gaps(atlas, has_colour);

@@ -1,7 +1,9 @@
 // texture_bake.hpp: bakes a texture of a mesh from pictures of the room.
 #pragma once
+#include <memory>
 #include <span>
 
+#include "mapping/texture/earlier_texture.hpp"
 #include "mapping/texture/surface_texture.hpp"
 #include "mapping/texture/texture_view.hpp"
 #include "mapping/types/mesh.hpp"
@@ -21,15 +23,19 @@ struct TextureConfig {
 /// Detail comes from the best view, or from those that are almost as good. The colour without detail is the
 /// mean of all good views, so no seam shows where the best view changes. Views whose colour is far from the
 /// median of three or more are left out: they show something that moved, or a reflection. Texels that no view
-/// shows get the mesh's colours. The result does not depend on the number of threads.
+/// shows get the colours of earlier textures of the room, else the mesh's. The result does not depend on the
+/// number of threads.
 ///
 /// Time: about 1 s per million texels on one processor. Memory: about 10 bytes per texel besides the views.
 /// @param mesh   with normals and colours
 /// @param views  with evened exposure
-/// @return an empty texture (no corners) if there are no views, or too many charts for an atlas
+/// @return an empty texture (no corners) if there are neither views nor earlier textures, or too many charts
+/// for an
+///         atlas
 /// Source: Waechter, Moehrle, Goesele, Let there be color!, ECCV 2014 (choice of views); Burt, Adelson, A
 /// multiresolution spline with application to image mosaics, ACM TOG 1983 (two bands).
 SurfaceTexture bake_texture(const Mesh& mesh, std::span<const TextureView> views,
+                            std::span<const std::unique_ptr<const EarlierTexture>> earlier = {},
                             const TextureConfig& config = {});
 
 }  // namespace roomradar

@@ -107,6 +107,33 @@ class CommandLine : public ::testing::Test {
   inline static Outcome scanned_;
 };
 
+TEST_F(CommandLine, AMapHasATextureAndAPage) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  EXPECT_TRUE(fs::exists(fs::path(map()) / "texture.jpg"));
+  const fs::path page = folder_ / "room.html";
+  EXPECT_EQ(roomradar("map export " + map() + " " + page.string()).status, 0);
+  EXPECT_NE(read_text(page).find("\"texture\":\"/9j/"), std::string::npos);  // a JPEG
+  expect_fault(roomradar("map export " + map() + " " + page.string() + " --unknown"), 1, "--unknown");
+  expect_fault(roomradar("map export " + map() + " " + map() + "/room.html"), 1,
+               "lies in the folder of a map");
+
+  const std::string plain = (folder_ / "plain").string();
+  ASSERT_EQ(
+      roomradar("prescan 'sim:table?frames=40&width=160' --map " + plain + " --resolution 0.03 --texture off")
+          .status,
+      0);
+  EXPECT_FALSE(fs::exists(fs::path(plain) / "texture.jpg"));
+  EXPECT_EQ(roomradar("map export " + plain + " " + page.string()).status, 0);
+  EXPECT_NE(read_text(page).find("\"colours\":"), std::string::npos);
+  expect_fault(roomradar("prescan sim:table --map " + plain + " --texture maybe"), 2, "must be off or on");
+
+  const Outcome diff = roomradar("map diff " + map() + " " + plain + " --html " + page.string());
+  EXPECT_EQ(diff.status, 0) << diff.out;
+  EXPECT_NE(read_text(page).find("\"name\":\"map and plain\""), std::string::npos);
+  expect_fault(roomradar("map diff " + map() + " " + plain + " --html " + (folder_ / "a.htm").string()), 1,
+               "must end in .html");
+}
+
 TEST_F(CommandLine, PrescanLeavesAMapThatVerifiesAndAReport) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   EXPECT_EQ(roomradar("map verify " + map()).status, 0);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "mapping/texture/atlas_fill.hpp"
 #include "mapping/texture/exposure_gains.hpp"
@@ -134,6 +135,24 @@ TEST(TextureBake, SurfaceThatNoViewShowsKeepsTheMeshsColours) {
                              static_cast<int>(p.y() * static_cast<float>(atlas.height)));
   EXPECT_NEAR(texel.r, 200, 12);
   EXPECT_NEAR(texel.g, 30, 12);
+}
+
+TEST(TextureBake, AnEarlierTextureFillsWhatNoViewShows) {
+  const Mesh mesh = wall_mesh();
+  const SurfaceTexture first = bake_texture(mesh, wall_views(mesh));
+  // The same wall in other triangles, 5 mm away and in another frame of the mesh.
+  Mesh again = wall_mesh(1.2F, 7);
+  again.origin = {2.005, 0.5, 0.0};
+  for (Eigen::Vector3f& vertex : again.vertices) vertex.y() -= 0.5F;
+  std::vector<std::unique_ptr<const EarlierTexture>> earlier;
+  earlier.push_back(std::make_unique<const EarlierTexture>(mesh, first));
+  const SurfaceTexture second = bake_texture(again, {}, earlier);
+  ASSERT_TRUE(fits(second, again));
+  EXPECT_LT(error_of(again, second, 1.0F), 4.0);
+  // Farther than 2 cm, it is another surface.
+  again.origin.x() = 2.03;
+  const SurfaceTexture grey = bake_texture(again, {}, earlier);
+  EXPECT_GT(error_of(again, grey, 1.0F), 20.0);
 }
 
 TEST(TextureBake, NoViewsGiveNoTexture) {

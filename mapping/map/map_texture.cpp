@@ -1,0 +1,30 @@
+// map_texture.cpp: carries textures from surface to surface.
+#include "mapping/map/map_texture.hpp"
+
+#include <utility>
+
+#include "mapping/mesh/ply_file.hpp"
+#include "mapping/texture/texture_bake.hpp"
+
+namespace roomradar {
+
+void add_texture_of(const SavedMap& map, const Eigen::Isometry3d& T_world_map, EarlierTextures& earlier) {
+  const std::shared_ptr<const SurfaceTexture>& texture = *map.texture;
+  if (!texture || !fits(*texture, map.mesh)) return;
+  Mesh mesh = map.mesh;
+  const Eigen::Matrix3f R = T_world_map.linear().cast<float>();
+  mesh.origin = T_world_map * mesh.origin;
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex = R * vertex;
+  earlier.push_back(std::make_unique<const EarlierTexture>(std::move(mesh), *texture));
+}
+
+void renew_texture(const EarlierTextures& earlier, SavedMap& map) {
+  map.texture = std::shared_ptr<const SurfaceTexture>();
+  if (earlier.empty()) return;
+  // A triangle without area is not read from a file, and the texture must fit the mesh that is read.
+  std::erase_if(map.mesh.triangles, [&](const Triangle& t) { return !has_area(map.mesh, t); });
+  SurfaceTexture texture = bake_texture(map.mesh, {}, earlier);
+  if (!texture.corners.empty()) map.texture = std::make_shared<const SurfaceTexture>(std::move(texture));
+}
+
+}  // namespace roomradar
