@@ -56,6 +56,11 @@ nlohmann::json results_of(const PrescanResult& scanned) {
     results["ate_rmse_m"] = counts.trajectory_error->rmse_m;
     results["ate_max_m"] = counts.trajectory_error->max_m;
   }
+  results["texture"] = nullptr;
+  if (const std::shared_ptr<const SurfaceTexture>& texture = *scanned.map.texture)
+    results["texture"] = {{"width_px", texture->width_px},
+                          {"height_px", texture->height_px},
+                          {"bytes", texture->atlas_jpeg.size()}};
   if (!counts.last_fault.empty()) results["last_fault"] = counts.last_fault;
   return results;
 }

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/cli/registered_maps.hpp"
+#include "app/page/map_page.hpp"
 #include "app/start/map_list.hpp"
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -96,7 +97,10 @@ void delete_map(const fs::path& map) {
 
 fs::path export_beside(const fs::path& map, const std::string& extension) {
   const fs::path path = free_path(tidy_map_name(map), extension);
-  export_map(map, path);
+  if (is_page(path))
+    write_map_page(load_map(map), map, path);
+  else
+    export_map(map, path);
   return path;
 }
 

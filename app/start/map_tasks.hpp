@@ -19,9 +19,9 @@ std::filesystem::path rename_map(const std::filesystem::path& map, const std::st
 /// folder is no map or holds anything that is no part of one.
 void delete_map(const std::filesystem::path& map);
 
-/// Exports the map's mesh beside the map, to NAME.glb, or NAME-2.glb if that is taken, and so on. Returns the
-/// path. Throws Error as export_map() does.
-/// @param extension  .glb or .ply
+/// Exports the map beside itself, to NAME.glb, or NAME-2.glb if that is taken, and so on. Returns the path.
+/// Throws Error as export_map() and write_map_page() do.
+/// @param extension  .html (a page), .glb or .ply
 std::filesystem::path export_beside(const std::filesystem::path& map, const std::string& extension);
 
 /// Returns sentences on what appeared in map b and what vanished since map a. Takes several seconds. Throws

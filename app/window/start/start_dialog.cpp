@@ -25,7 +25,8 @@ std::vector<DialogButton> buttons_of(DialogKind kind) {
     case DialogKind::kDelete:
       return {{"Delete", "Enter", DialogAnswer::kYes}, {"Keep", "Esc", DialogAnswer::kNo}};
     case DialogKind::kExport:
-      return {{".glb", "G", DialogAnswer::kGlb},
+      return {{".html", "H", DialogAnswer::kPage},
+              {".glb", "G", DialogAnswer::kGlb},
               {".ply", "P", DialogAnswer::kPly},
               {"Back", "Esc", DialogAnswer::kNo}};
     case DialogKind::kCompare:
@@ -128,7 +129,8 @@ DialogAnswer answer_of_key(int key, StartDialog& dialog) {
   const bool is_enter = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER;
   if (key == GLFW_KEY_ESCAPE || (is_enter && dialog.kind == DialogKind::kNotice)) return DialogAnswer::kNo;
   if (dialog.kind == DialogKind::kExport) {
-    if (key == GLFW_KEY_G || is_enter) return DialogAnswer::kGlb;
+    if (key == GLFW_KEY_H || is_enter) return DialogAnswer::kPage;
+    if (key == GLFW_KEY_G) return DialogAnswer::kGlb;
     return key == GLFW_KEY_P ? DialogAnswer::kPly : DialogAnswer::kNone;
   }
   const int last = static_cast<int>(dialog.choices.size()) - 1;

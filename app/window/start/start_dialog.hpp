@@ -11,7 +11,7 @@
 namespace roomradar {
 
 /// What the user answered.
-enum class DialogAnswer { kNone, kYes, kNo, kGlb, kPly };
+enum class DialogAnswer { kNone, kYes, kNo, kPage, kGlb, kPly };
 
 enum class DialogKind {
   kNone,

@@ -171,7 +171,8 @@ void StartUi::answer(DialogAnswer answer) {
     if (kind == DialogKind::kNewMap) scan();
     if (kind == DialogKind::kRename) rename();
     if (kind == DialogKind::kDelete) remove();
-    if (kind == DialogKind::kExport) export_mesh(answer == DialogAnswer::kPly ? ".ply" : ".glb");
+    if (kind == DialogKind::kExport)
+      export_map_to(answer == DialogAnswer::kPage ? ".html" : answer == DialogAnswer::kPly ? ".ply" : ".glb");
     if (kind == DialogKind::kCompare) compare();
   } catch (const std::exception& error) {
     if (kind != DialogKind::kNewMap && kind != DialogKind::kRename) return say(error.what(), true);
@@ -232,7 +233,7 @@ void StartUi::run_job(const std::string& name, Work work, Done done) {
       });
 }
 
-void StartUi::export_mesh(const std::string& extension) {
+void StartUi::export_map_to(const std::string& extension) {
   const MapEntry* map = chosen_map(state_);
   if (map == nullptr) throw Error("the map is gone");
   run_job(

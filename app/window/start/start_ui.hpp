@@ -52,7 +52,7 @@ class StartUi final : public WindowContent {
   void scan();
   void rename();
   void remove();
-  void export_mesh(const std::string& extension);
+  void export_map_to(const std::string& extension);
   void compare();
   void examine_setup();
   template <typename Work, typename Done>

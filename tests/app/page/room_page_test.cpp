@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -111,6 +112,24 @@ TEST(RoomPage, ChangesBelongToTheirRooms) {
   EXPECT_EQ(data["changes"][0]["kind"], "vanished");
   EXPECT_LE(data["changes"][0]["surface_m"].size(), 3U * 4000U);
   EXPECT_NE(data["changes"][0]["text"].get<std::string>().find("0.10 x 0.20 x 0.30 m"), std::string::npos);
+}
+
+TEST(RoomPage, ABrowserDrawsIt) {
+  if (std::system("command -v chromium > /dev/null") != 0) GTEST_SKIP() << "chromium is not installed";
+  const Mesh mesh = test::wall_mesh();
+  const SurfaceTexture texture = texture_for(mesh);
+  const test::TemporaryFolder folder;
+  const std::string page = (folder.path() / "room.html").string();
+  write_room_page({.title = "wall", .rooms = {{"wall", &mesh, &texture}}}, page);
+  // Writes the document after the page's program has run; it throws where WebGL or a shader fails.
+  const std::string dom = (folder.path() / "dom.txt").string();
+  const std::string browser =
+      "timeout 100 chromium --headless=new --no-sandbox --use-gl=angle --use-angle=swiftshader "
+      "--enable-unsafe-swiftshader --virtual-time-budget=5000 --user-data-dir=" +
+      (folder.path() / "profile").string() + " --dump-dom file://" + page + " > " + dom + " 2> /dev/null";
+  ASSERT_EQ(std::system(browser.c_str()), 0);
+  EXPECT_NE(read_bytes(dom, "a document").find(">0.0 × 1.2 × 1.2 m, 32 triangles<"), std::string::npos)
+      << read_bytes(dom, "a document").substr(0, 4000);
 }
 
 TEST(RoomPage, ARoomWithoutSurfaceIsRefused) {
