@@ -122,8 +122,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   if (config.bake_texture) {
     EarlierTextures earlier;
     if (start.map) add_texture_of(*start.map, Eigen::Isometry3d::Identity(), earlier);
-    // A triangle without area is not read from a file, and the texture must fit the mesh that is read.
-    std::erase_if(map.mesh.triangles, [&](const Triangle& t) { return !has_area(map.mesh, t); });
+    erase_flat_triangles(map.mesh);  // so that the texture fits the mesh that is read from the map
     map.texture = run_texture_pass(work, map.trajectory, pass, earlier, map.mesh);
   }
   map.keyframe_database = std::move(pass.found.keyframe_database);

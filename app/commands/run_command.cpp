@@ -19,8 +19,8 @@
 namespace roomradar {
 namespace {
 
-/// Saves the octree as changed by the session, with its whole surface extracted again
-/// and its texture carried over.
+/// Saves the octree as changed by the session, with its whole surface extracted again and its texture carried
+/// over.
 void save_changed(SavedMap& map, std::size_t changes, const std::string& folder) {
   if (changes > 0) {
     EarlierTextures earlier;

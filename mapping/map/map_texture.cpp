@@ -21,8 +21,7 @@ void add_texture_of(const SavedMap& map, const Eigen::Isometry3d& T_world_map, E
 void renew_texture(const EarlierTextures& earlier, SavedMap& map) {
   map.texture = std::shared_ptr<const SurfaceTexture>();
   if (earlier.empty()) return;
-  // A triangle without area is not read from a file, and the texture must fit the mesh that is read.
-  std::erase_if(map.mesh.triangles, [&](const Triangle& t) { return !has_area(map.mesh, t); });
+  erase_flat_triangles(map.mesh);  // so that the texture fits the mesh that is read from the map
   SurfaceTexture texture = bake_texture(map.mesh, {}, earlier);
   if (!texture.corners.empty()) map.texture = std::make_shared<const SurfaceTexture>(std::move(texture));
 }

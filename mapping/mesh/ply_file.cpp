@@ -78,14 +78,23 @@ Value take(std::string_view& bytes) {
   return value;
 }
 
+bool has_area(const Mesh& mesh, const Triangle& t) {
+  const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
+  const Eigen::Vector3d u = mesh.vertices[t[1]].cast<double>() - a;
+  const Eigen::Vector3d v = mesh.vertices[t[2]].cast<double>() - a;
+  return u.cross(v).squaredNorm() > 0.0;
+}
+
 }  // namespace
 
-bool has_area(const Mesh& mesh, const Triangle& t) {
+void erase_flat_triangles(Mesh& mesh) {
   const auto in_file = [&](std::uint32_t vertex) -> Eigen::Vector3d {
     return (mesh.origin + mesh.vertices[vertex].cast<double>()).cast<float>().cast<double>();
   };
-  const Eigen::Vector3d a = in_file(t[0]);
-  return (in_file(t[1]) - a).cross(in_file(t[2]) - a).squaredNorm() > 0.0;
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    const Eigen::Vector3d a = in_file(t[0]), u = in_file(t[1]) - a, v = in_file(t[2]) - a;
+    return u.cross(v).squaredNorm() <= 1e-24 * u.squaredNorm() * v.squaredNorm();
+  });
 }
 
 std::string ply_bytes(const Mesh& mesh) {

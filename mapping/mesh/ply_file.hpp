@@ -20,8 +20,8 @@ std::string ply_bytes(const Mesh& mesh);
 /// triangles.
 std::optional<Mesh> mesh_of_ply(std::string_view bytes, const std::filesystem::path& path);
 
-/// Returns true if the triangle has an area in a file, where the origin is added to its vertices. Others are
-/// dropped when a file is read.
-bool has_area(const Mesh& mesh, const Triangle& triangle);
+/// Erases triangles that are less than 10^-12 as high as long, in the coordinates of a file, where the origin
+/// is added. A superset of those that reading a file drops, whose area is 0 but for rounding.
+void erase_flat_triangles(Mesh& mesh);
 
 }  // namespace roomradar

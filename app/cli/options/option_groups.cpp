@@ -34,7 +34,8 @@ std::vector<CommandHelp> command_helps() {
         {"Source and window", {"--frames", "--calibration", "--poses", "--ui-scale"}},
         {"World", {"--up"}},
         {"Accuracy, time and memory",
-         {"--resolution", "--deviation", "--tracking-px", "--fuse-every", "--max-memory", "--presets"}},
+         {"--resolution", "--deviation", "--tracking-px", "--fuse-every", "--texture", "--max-memory",
+          "--presets"}},
         {"Interruption and measurement", {"--checkpoint-every", "--hold-out"}}},
        "  roomradar prescan kinect:0 --map maps/kitchen\n"
        "  roomradar prescan 'sim:table?frames=200' --map maps/table --report prescan.json\n"},
@@ -59,16 +60,17 @@ std::vector<CommandHelp> command_helps() {
        "  roomradar map verify maps/kitchen\n  for m in maps/*/; do roomradar map verify \"$m\"; done\n"},
       {"map export",
        {{"Options", {"--unknown"}}},
-       "  roomradar map export maps/kitchen kitchen.glb\n  roomradar map export maps/kitchen kitchen.bt    # "
+       "  roomradar map export maps/kitchen kitchen.html\n  roomradar map export maps/kitchen kitchen.bt    "
+       "# "
        "for octovis\n"},
       {"map merge",
        {{"Options", {"--map", "--deviation", "--report"}}},
        "  roomradar map merge maps/monday maps/tuesday --map maps/both\n"
        "  roomradar map merge maps/kitchen maps/hall --map maps/flat --report merge.json\n"},
       {"map diff",
-       {{"Options", {"--picture", "--report"}}},
+       {{"Options", {"--html", "--picture", "--report"}}},
        "  roomradar map diff maps/monday maps/tuesday\n"
-       "  roomradar map diff maps/monday maps/tuesday --picture diff.png\n"},
+       "  roomradar map diff maps/monday maps/tuesday --html changes.html\n"},
       {"record",
        {{"Options", {"--format", "--frames", "--calibration"}}},
        "  roomradar record kinect:0 recordings/kitchen\n"

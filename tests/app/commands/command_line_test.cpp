@@ -469,6 +469,8 @@ TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
   ASSERT_EQ(ran.status, 0) << ran.out;
   EXPECT_EQ(bytes_of(map()), before);
   EXPECT_EQ(roomradar("map verify " + changed).status, 0);
+  EXPECT_TRUE(fs::exists(fs::path(changed) / "texture.jpg"));  // carried over to the changed surface
+  EXPECT_EQ(roomradar("map export " + changed + " " + (folder_ / "changed.glb").string()).status, 0);
   const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
   ASSERT_EQ(report["adopted"].size(), 1U) << report["adopted"].dump(2);
   EXPECT_EQ(report["adopted"][0]["change"], "came");

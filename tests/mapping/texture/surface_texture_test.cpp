@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/mesh/mesh_file.hpp"
+#include "mapping/mesh/ply_file.hpp"
 #include "mapping/texture/jpeg.hpp"
 #include "mapping/texture/surface_texture_file.hpp"
 #include "mapping/types/system/error.hpp"
@@ -55,6 +56,29 @@ TEST(SurfaceTexture, FitsItsMeshAlsoAfterAFile) {
   Mesh recoloured = mesh;
   recoloured.colours[0] = {1, 2, 3};
   EXPECT_TRUE(fits(texture, recoloured));
+}
+
+TEST(SurfaceTexture, FitsAfterAFileAlsoWithTrianglesThatReadingDrops) {
+  const test::TemporaryFolder folder;
+  Mesh mesh = wall_mesh();
+  // Corners in a line: the area is 0 but for rounding.
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3f from(0.1F + 0.013F * static_cast<float>(i), -0.7F, 0.37F),
+        step(0.01F, 0.03F, 0.007F);
+    for (const float n : {0.0F, 1.0F, 2.0F}) {
+      mesh.vertices.push_back(from + n * step);
+      mesh.normals.emplace_back(-1.0F, 0.0F, 0.0F);
+      mesh.colours.push_back({1, 2, 3});
+    }
+    const std::uint32_t a = first + 3 * static_cast<std::uint32_t>(i);
+    mesh.triangles.push_back({a, a + 1, a + 2});
+    mesh.triangles.push_back({a, a, a + 1});
+  }
+  erase_flat_triangles(mesh);
+  const SurfaceTexture texture = texture_for(mesh);
+  write_mesh(mesh, folder.path() / "mesh.ply");
+  EXPECT_TRUE(fits(texture, read_mesh(folder.path() / "mesh.ply")));
 }
 
 TEST(SurfaceTexture, DoesNotFitAChangedMesh) {
