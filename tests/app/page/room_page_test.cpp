@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -114,22 +115,34 @@ TEST(RoomPage, ChangesBelongToTheirRooms) {
   EXPECT_NE(data["changes"][0]["text"].get<std::string>().find("0.10 x 0.20 x 0.30 m"), std::string::npos);
 }
 
-TEST(RoomPage, ABrowserDrawsIt) {
+TEST(RoomPage, ABrowserDrawsItAndMeasures) {
   if (std::system("command -v chromium > /dev/null") != 0) GTEST_SKIP() << "chromium is not installed";
   const Mesh mesh = test::wall_mesh();
   const SurfaceTexture texture = texture_for(mesh);
   const test::TemporaryFolder folder;
   const std::string page = (folder.path() / "room.html").string();
   write_room_page({.title = "wall", .rooms = {{"wall", &mesh, &texture}}}, page);
+  // Clicks two points of the wall, 0.5 m apart, in the view from its front.
+  std::ofstream(page, std::ios::app) << R"(<script>
+    view.azimuth = Math.PI - 0.3;
+    $('measure').click();
+    for (const p of [[2, 0.1, 0.4], [2, 0.4, 0]]) {
+      const [x, y] = onScreen(clipFromWorld(frame()), p);
+      for (const kind of ['pointerdown', 'pointerup'])
+        canvas.dispatchEvent(new PointerEvent(kind, {pointerId: 1, clientX: x, clientY: y}));
+    }
+  </script>)";
   // Writes the document after the page's program has run; it throws where WebGL or a shader fails.
   const std::string dom = (folder.path() / "dom.txt").string();
   const std::string browser =
       "timeout 100 chromium --headless=new --no-sandbox --use-gl=angle --use-angle=swiftshader "
-      "--enable-unsafe-swiftshader --virtual-time-budget=5000 --user-data-dir=" +
+      "--enable-unsafe-swiftshader --virtual-time-budget=5000 --window-size=900,700 --user-data-dir=" +
       (folder.path() / "profile").string() + " --dump-dom file://" + page + " > " + dom + " 2> /dev/null";
   ASSERT_EQ(std::system(browser.c_str()), 0);
-  EXPECT_NE(read_bytes(dom, "a document").find(">0.0 × 1.2 × 1.2 m, 32 triangles<"), std::string::npos)
-      << read_bytes(dom, "a document").substr(0, 4000);
+  const std::string shown = read_bytes(dom, "a document");
+  EXPECT_NE(shown.find(">0.0 × 1.2 × 1.2 m, 32 triangles<"), std::string::npos) << shown.substr(0, 4000);
+  EXPECT_NE(shown.find(">0.500 m  (height 0.400 m)<"), std::string::npos)
+      << shown.substr(shown.find("id=\"labels\""), 400);
 }
 
 TEST(RoomPage, ARoomWithoutSurfaceIsRefused) {

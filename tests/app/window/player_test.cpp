@@ -336,7 +336,7 @@ class Hosted : public Playing {
   std::string said_;
   UiChannel link_;
   PlaybackSource source_{std::make_unique<NoFrames>(), AtEnd::kEnd};
-  PlayHost host_{link_, session_, source_, times_, map_.mesh, /*is_live=*/true};
+  PlayHost host_{link_, session_, source_, times_, shown_room(map_), /*is_live=*/true};
 };
 
 TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
@@ -450,7 +450,7 @@ TEST(RecordedRun, AnObjectWhoseMeshCannotBeKeptDoesNotComeIn) {
       std::make_unique<AskedMeanwhile>(link, (folder.path() / "roof.obj").string(), said), AtEnd::kEnd);
   run.playback = source.get();
   run.source = std::move(source);
-  run.host.emplace(link, *run.session, *run.playback, run.report.times, run.map.mesh, /*is_live=*/true);
+  run.host.emplace(link, *run.session, *run.playback, run.report.times, shown_room(run.map), /*is_live=*/true);
   play_to_end(run);
   EXPECT_NE(said.find("cannot be copied"), std::string::npos) << said;
   EXPECT_TRUE(run.session->objects().empty());
