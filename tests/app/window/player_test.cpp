@@ -450,7 +450,8 @@ TEST(RecordedRun, AnObjectWhoseMeshCannotBeKeptDoesNotComeIn) {
       std::make_unique<AskedMeanwhile>(link, (folder.path() / "roof.obj").string(), said), AtEnd::kEnd);
   run.playback = source.get();
   run.source = std::move(source);
-  run.host.emplace(link, *run.session, *run.playback, run.report.times, shown_room(run.map), /*is_live=*/true);
+  run.host.emplace(link, *run.session, *run.playback, run.report.times, shown_room(run.map),
+                   /*is_live=*/true);
   play_to_end(run);
   EXPECT_NE(said.find("cannot be copied"), std::string::npos) << said;
   EXPECT_TRUE(run.session->objects().empty());
