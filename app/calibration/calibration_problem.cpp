@@ -92,7 +92,8 @@ struct NodeSize {
 };
 
 double inverse_sigma_per_m(double depth_m) {
-  return kDepthSigmas * static_cast<double>(depth_sigma_m(static_cast<float>(depth_m))) / (depth_m * depth_m);
+  return kDepthSigmas * static_cast<double>(depth_sigma_m(DepthNoise{}, static_cast<float>(depth_m))) /
+         (depth_m * depth_m);
 }
 
 }  // namespace

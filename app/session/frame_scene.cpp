@@ -55,6 +55,7 @@ const MaskImage& FrameScene::previous_dynamic_mask(const Intrinsics& camera) {
 }
 
 const FrameForeground& FrameScene::find_dynamic(const Frame& frame, const ExpectedView& expected) {
+  config_.foreground.noise = frame.depth_noise;
   foreground_.counts =
       mark_foreground(frame.depth_m, expected.depth_m, frame.depth_camera, expected.T_world_camera,
                       config_.foreground, foreground_history_, foreground_.labels, foreground_.dynamic_mask);
@@ -65,6 +66,7 @@ void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_wo
                                const ExpectedView& expected, const FrameForeground& foreground,
                                std::span<const FineRegion> fine) {
   if (config_.surfaces != SurfacePolicy::kMap) return mesh_all_pixels(frame, T_world_camera);
+  config_.moved.noise = frame.depth_noise;
   mesh_dynamic(frame.depth_m, foreground.dynamic_mask, expected.depth_m, frame.depth_camera, T_world_camera,
                fine, config_.moved, dynamic_scratch_, dynamic_world_);
   points_world_.swap(last_points_world_);
@@ -74,6 +76,7 @@ void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_wo
 }
 
 void FrameScene::mesh_all_pixels(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  config_.mesh.noise = frame.depth_noise;
   mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh, mesh_scratch_,
              dynamic_world_.seen_world);
   moved_.set(dynamic_world_.seen_world, MeshUsage::kStreamed);

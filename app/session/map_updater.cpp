@@ -83,6 +83,7 @@ void MapUpdater::watch(const Frame& frame, const DepthImage& expected_depth_m, c
                        const Eigen::Isometry3d& T_world_camera) {
   if (clock_.watched_frame == frame.index) return;
   clock_.watched_frame = frame.index;
+  tracker_.set_noise(frame.depth_noise);
   tracker_.update(frame.depth_m, expected_depth_m, labels, frame.depth_camera, T_world_camera, frame.stamp_s);
   if (working_.valid()) return;
   if (measured_.pending.empty())

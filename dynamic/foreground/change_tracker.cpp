@@ -69,7 +69,7 @@ bool is_labelled(const LabelImage& labels, int x, int y, PixelLabel label) {
 }
 
 float tolerance_m(const ChangeTrackerConfig& config, float z) {
-  const float sensor = depth_sigma_m(z);
+  const float sensor = depth_sigma_m(config.noise, z);
   const float pose = config.pose_sigma_m + config.pose_sigma_per_m * z;
   return config.agree_sigmas * std::sqrt(sensor * sensor + pose * pose);
 }

@@ -24,6 +24,8 @@ class ChangeTracker {
  public:
   explicit ChangeTracker(const ChangeTrackerConfig& config = {});
 
+  /// Sets the noise of the sensor of later frames.
+  void set_noise(const DepthNoise& noise) { config_.noise = noise; }
   /// Processes one frame. Images must have the camera's size. `labels` must be the result of
   /// mark_foreground() for this depth and expected depth. stamp_s is the frame's time. A gap between two
   /// frames counts as at most 0.5 s.

@@ -2,11 +2,14 @@
 #pragma once
 #include <cstddef>
 
+#include "mapping/types/depth_noise.hpp"
+
 namespace roomradar {
 
 /// One "sigma" is the combined standard deviation of sensor noise at the point's depth and pose error
 /// (pose_sigma_m, pose_sigma_per_m).
 struct ChangeTrackerConfig {
+  DepthNoise noise = {};            ///< of the sensor
   float spacing_m = 0.02F;          ///< distance between the points that represent a surface
   float agree_sigmas = 2.5F;        ///< max displacement of a surface that counts as unmoved
   float pose_sigma_m = 0.003F;      ///< apparent displacement of static surfaces by pose error

@@ -56,7 +56,8 @@ void sum_regions(ConnectedComponents& found) {
 }  // namespace
 
 void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
-                     const RegionBits& bits, const Intrinsics& camera, ConnectedComponents& found) {
+                     const RegionBits& bits, const Intrinsics& camera, const DepthNoise& noise,
+                     ConnectedComponents& found) {
   found.runs.reserve(depth_m.pixels.size());
   found.regions.reserve(depth_m.pixels.size());
   found.runs.clear();
@@ -67,7 +68,7 @@ void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>&
   const auto hang_together = [&](std::uint32_t a, std::uint32_t b) {
     if ((evidence[a] & evidence[b] & bits.strong) != 0) return true;
     const float z = std::min(depth[a], depth[b]);
-    return std::abs(depth[a] - depth[b]) <= 4.0F * depth_sigma_m(z) + slope * z;
+    return std::abs(depth[a] - depth[b]) <= 4.0F * depth_sigma_m(noise, z) + slope * z;
   };
 
   std::vector<PixelRun>& runs = found.runs;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mapping/types/depth_noise.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 
@@ -46,6 +47,7 @@ struct ConnectedComponents {
 ///
 /// Allocates only if the image is larger than those of earlier calls.
 void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
-                     const RegionBits& bits, const Intrinsics& camera, ConnectedComponents& found);
+                     const RegionBits& bits, const Intrinsics& camera, const DepthNoise& noise,
+                     ConnectedComponents& found);
 
 }  // namespace roomradar

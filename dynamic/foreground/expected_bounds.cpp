@@ -140,7 +140,7 @@ void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, 
       const float normal_z = z + u * slope_u + v * slope_v;
       const float normal2 = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z;
       const float cosine = z / std::sqrt(normal2 * (u * u / (fx * fx) + v_ray2) + 1e-12F);
-      const float sensor = depth_sigma_m(z, arc_cosine(cosine < 1.0F ? cosine : 1.0F));
+      const float sensor = depth_sigma_m(config.noise, z, arc_cosine(cosine < 1.0F ? cosine : 1.0F));
       const float model = config.model_sigma_m;
       const float misfit = misfit_per_m * z * z;
       const float slope = std::min(std::abs(slope_u) + std::abs(slope_v), kGrazing * z / focal_px);

@@ -42,8 +42,8 @@ inline constexpr float kNoDepth_m = 3.402823e38F;
 /// Returns the combined standard deviation of sensor noise and model error, for a surface at depth_m that
 /// faces the camera.
 /// @param misfit_per_m  error of the model's inverse depth (StaticResidual::misfit_per_m)
-inline float facing_sigma_m(float depth_m, float model_sigma_m, float misfit_per_m) {
-  const float sensor = depth_sigma_m(depth_m);
+inline float facing_sigma_m(const DepthNoise& noise, float depth_m, float model_sigma_m, float misfit_per_m) {
+  const float sensor = depth_sigma_m(noise, depth_m);
   const float misfit = misfit_per_m * depth_m * depth_m;
   return std::sqrt(sensor * sensor + model_sigma_m * model_sigma_m + misfit * misfit);
 }

@@ -42,7 +42,7 @@ Belief belief_in(const ConnectedComponent& region, const Difference& difference,
 // Labels the accepted regions of one kind; returns their number of pixels.
 std::size_t label_regions(const DepthImage& depth_m, const Difference& difference, const Intrinsics& camera,
                           const ForegroundConfig& config, ForegroundState& state, LabelImage& labels) {
-  find_components(depth_m, state.evidence.bits, difference.bits, camera, state.regions);
+  find_components(depth_m, state.evidence.bits, difference.bits, camera, config.noise, state.regions);
   const auto width = static_cast<std::uint32_t>(depth_m.width);
   std::size_t labelled = 0;
   for (const PixelRun& run : state.regions.runs) {
@@ -81,7 +81,7 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   if (depth_m.pixels.empty()) return {};
   state.evidence.resize(depth_m.width, depth_m.height);
 
-  follow_misfit(depth_m, expected_depth_m, state.fit);
+  follow_misfit(depth_m, expected_depth_m, config.noise, state.fit);
   find_bounds(expected_depth_m, camera, config, state.fit.misfit_per_m, state.bounds);
   warp_history(state.memory, depth_m, camera, T_world_camera, state.before);
   weigh_pixels(depth_m, expected_depth_m, config, state.bounds, state.fit.misfit_per_m, state.before,

@@ -1,5 +1,6 @@
 // foreground_config.hpp: thresholds for pixels that differ from the static model.
 #pragma once
+#include "mapping/types/depth_noise.hpp"
 
 namespace roomradar {
 
@@ -9,6 +10,7 @@ namespace roomradar {
 /// It is weak if they differ by more than weak_sigmas. Strong pixels seed a region. Weak pixels only join a
 /// region.
 struct ForegroundConfig {
+  DepthNoise noise = {};           ///< of the sensor
   float model_sigma_m = 0.003F;    ///< error of the expected depth; typical of a map with 1 cm cells
   float pose_sigma_m = 0.003F;     ///< position error of the pose; affects sloped surfaces
   float pose_sigma_rad = 0.0015F;  ///< rotation error of the pose

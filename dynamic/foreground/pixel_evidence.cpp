@@ -62,7 +62,7 @@ void weigh_row(const float* live, const float* expected, int width, const Foregr
   const float* around = bounds.around_hole_m.data();
   for (int x = 0; x < width; ++x) {
     if (expected[x] > 0.0F || !(live[x] > 0.0F) || around[x] == kNoDepth_m) continue;
-    const float sigma = facing_sigma_m(around[x], config.model_sigma_m, misfit_per_m);
+    const float sigma = facing_sigma_m(config.noise, around[x], config.model_sigma_m, misfit_per_m);
     if (live[x] < around[x] - config.strong_sigmas * sigma) bits[x] = kWeakMoved | kInHole;
   }
 }
@@ -99,8 +99,8 @@ std::uint8_t resolve_ambiguous(const DepthImage& depth_m, int column, int row, c
       if ((bits[i] & kAmbiguousMoved) == 0) continue;
       pixel[count] = i;
       depth[count] = depth_m.pixels[i];
-      tolerance[count] =
-          config.strong_sigmas * facing_sigma_m(depth[count], config.model_sigma_m, misfit_per_m);
+      tolerance[count] = config.strong_sigmas *
+                         facing_sigma_m(config.noise, depth[count], config.model_sigma_m, misfit_per_m);
       ++count;
     }
   }

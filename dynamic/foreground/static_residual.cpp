@@ -8,7 +8,8 @@
 
 namespace roomradar {
 
-void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, StaticResidual& fit) {
+void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, const DepthNoise& noise,
+                   StaticResidual& fit) {
   constexpr int kStep_px = 8;
   constexpr int kLeastSamples = 100;
   constexpr float kLargest_per_m = 0.03F;
@@ -28,8 +29,8 @@ void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, Stat
       const float apart = std::abs(live[x] - expected[x]) / (live[x] * expected[x]);
       if (apart >= kLargest_per_m) continue;
       ++fit.histogram[std::min(static_cast<std::size_t>(apart * bins_per_m), fit.histogram.size() - 1)];
-      const float noise = depth_sigma_m(expected[x]) / (expected[x] * expected[x]);
-      noise2 += noise * noise;
+      const float sigma_per_m = depth_sigma_m(noise, expected[x]) / (expected[x] * expected[x]);
+      noise2 += sigma_per_m * sigma_per_m;
       ++samples;
     }
   }

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 
+#include "mapping/types/depth_noise.hpp"
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
@@ -20,6 +21,7 @@ struct StaticResidual {
 
 /// Updates misfit_per_m from one frame. The value grows at once, shrinks over some frames, and stays within
 /// 0.0006 to 0.007 per metre. Pixels whose inverse depth differs by 0.03 / m or more are left out as dynamic.
-void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, StaticResidual& fit);
+void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, const DepthNoise& noise,
+                   StaticResidual& fit);
 
 }  // namespace roomradar

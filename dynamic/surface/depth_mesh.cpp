@@ -51,7 +51,8 @@ class GridMesher {
       : project_{static_cast<float>(1.0 / camera.fx_px), static_cast<float>(1.0 / camera.fy_px),
                  static_cast<float>(camera.cx_px), static_cast<float>(camera.cy_px),
                  T_world_camera.linear().cast<float>()},
-        rule_(config.jump_sigmas, config.jump_incidence_deg, static_cast<float>(config.stride_px), camera),
+        rule_(config.noise, config.jump_sigmas, config.jump_incidence_deg,
+              static_cast<float>(config.stride_px), camera),
         skirts_(skirts),
         mesh_(mesh) {}
 

@@ -12,7 +12,8 @@
 namespace roomradar {
 
 struct DepthMeshConfig {
-  int stride_px = 2;  ///< every stride-th pixel becomes a vertex; outlines lose up to stride - 1 pixels
+  DepthNoise noise = {};  ///< of the sensor
+  int stride_px = 2;      ///< every stride-th pixel becomes a vertex; outlines lose up to stride - 1 pixels
   float jump_sigmas = 4.0F;          ///< max noise, in sigmas, between the depths of one surface
   float jump_incidence_deg = 80.0F;  ///< max angle between view ray and normal of one surface
   int skirt_gap_px = 64;             ///< max width of unmeasured gaps (projector shadow) that a skirt closes

@@ -199,10 +199,11 @@ class CellSorter {
       least = std::min(least, value);
       most = std::max(most, value);
     }
-    const float sigma = inverse_depth_sigma(most, 0.0F);
+    const float sigma = lattice_.noise.sigma_per_m(most, 0.0F);
     if (most - least <= sigma) return true;
     const float slope = (most - least) / kCell_px * static_cast<float>(camera_.fx_px) / most;
-    return is_followed(part, values, arc, rules_.most_sigmas * inverse_depth_sigma(most, slope * slope));
+    return is_followed(part, values, arc,
+                       rules_.most_sigmas * lattice_.noise.sigma_per_m(most, slope * slope));
   }
 
   /// Returns the first ball that reaches the cell, or null.

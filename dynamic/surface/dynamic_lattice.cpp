@@ -11,24 +11,6 @@
 namespace roomradar {
 namespace {
 
-/// The angle-dependent term of the sensor's noise, times sqrt(depth), tabulated by the angle's cosine.
-struct GrazingNoise {
-  static constexpr int kSteps = 128;
-  std::array<float, kSteps + 2> by_cosine;
-  GrazingNoise() {
-    for (int i = 0; i < kSteps + 2; ++i) {
-      const float angle = std::acos(std::min(static_cast<float>(i) / kSteps, 1.0F));
-      by_cosine[static_cast<std::size_t>(i)] = depth_sigma_m(1.0F, angle) - depth_sigma_m(1.0F);
-    }
-  }
-  [[nodiscard]] float at(float cosine) const {
-    const float at = std::clamp(cosine, 0.0F, 1.0F) * kSteps;
-    const int i = static_cast<int>(at);
-    const auto k = static_cast<std::size_t>(i);
-    return by_cosine[k] + (at - static_cast<float>(i)) * (by_cosine[k + 1] - by_cosine[k]);
-  }
-};
-
 /// View ray of a lattice point, with the focal lengths.
 struct Ray {
   float u, v;  // x / z, y / z
@@ -119,23 +101,34 @@ void average_neighbours(DynamicLattice& lattice) {
 
 }  // namespace
 
-float smoothed_inverse_depth(const DynamicPixels& pixels, int x, int y) {
+float smoothed_inverse_depth(const DynamicPixels& pixels, const InverseDepthNoise& noise, int x, int y) {
   const auto width = static_cast<std::ptrdiff_t>(pixels.smooth.width);
   const float* middle = pixels.inverse_depth.data() + y * width + x;
-  return mean_of_pairs(middle, width, pixels.smooth.square(x - 2, y - 2), inverse_depth_sigma(*middle, 0.0F))
+  return mean_of_pairs(middle, width, pixels.smooth.square(x - 2, y - 2), noise.sigma_per_m(*middle, 0.0F))
       .mean;
 }
 
-float inverse_depth_sigma(float inverse_depth, float tangent2) {
-  static const GrazingNoise grazing;
-  const float z = 1.0F / inverse_depth;
-  const float cosine = 1.0F / std::sqrt(1.0F + tangent2);
-  const float sigma_m = depth_sigma_m(z) + grazing.at(cosine) / std::sqrt(std::max(z, 0.1F));
-  return sigma_m * inverse_depth * inverse_depth;
+InverseDepthNoise::InverseDepthNoise(const DepthNoise& noise) : noise_(noise) {
+  for (int i = 0; i < kSteps + 2; ++i) {
+    const float angle = std::acos(std::min(static_cast<float>(i) / kSteps, 1.0F));
+    grazing_by_cosine_[static_cast<std::size_t>(i)] =
+        depth_sigma_m(noise, 1.0F, angle) - depth_sigma_m(noise, 1.0F);
+  }
 }
 
-void make_lattice(const DynamicPixels& pixels, const Intrinsics& camera, float flat_sigmas,
-                  DynamicLattice& lattice) {
+float InverseDepthNoise::sigma_per_m(float inverse_depth, float tangent2) const {
+  const float z = 1.0F / inverse_depth;
+  const float at = std::clamp(1.0F / std::sqrt(1.0F + tangent2), 0.0F, 1.0F) * kSteps;
+  const int i = static_cast<int>(at);
+  const auto k = static_cast<std::size_t>(i);
+  const float grazing = grazing_by_cosine_[k] +
+                        (at - static_cast<float>(i)) * (grazing_by_cosine_[k + 1] - grazing_by_cosine_[k]);
+  return (depth_sigma_m(noise_, z) + grazing / std::sqrt(std::max(z, 0.1F))) * inverse_depth * inverse_depth;
+}
+
+void make_lattice(const DynamicPixels& pixels, const Intrinsics& camera, const DepthNoise& noise,
+                  float flat_sigmas, DynamicLattice& lattice) {
+  if (lattice.noise.model() != noise) lattice.noise = InverseDepthNoise(noise);
   const PixelBits& bits = pixels.smooth;
   constexpr int kSquare_px = kSquareCells * kCell_px;
   lattice.columns = (bits.width + kSquare_px - 1) / kSquare_px * kSquareCells + 1;
@@ -159,14 +152,14 @@ void make_lattice(const DynamicPixels& pixels, const Intrinsics& camera, float f
         Plane plane{middle[0], 0.0F, 0.0F, 0.0F};
         if (window == kWholeCell) plane = fit(middle - 2 * width - 2, width);
         lattice.sigma[i] =
-            inverse_depth_sigma(plane.mean, ray.tangent2(plane.mean, plane.slope_x, plane.slope_y));
+            lattice.noise.sigma_per_m(plane.mean, ray.tangent2(plane.mean, plane.slope_x, plane.slope_y));
         const float most = flat_sigmas * lattice.sigma[i];
         lattice.is_flat[i] = window == kWholeCell && plane.rms2 <= most * most;
         if (lattice.is_flat[i] == 0) {
           plane = mean_of_pairs(middle, static_cast<std::ptrdiff_t>(width), window,
-                                inverse_depth_sigma(middle[0], 0.0F));
+                                lattice.noise.sigma_per_m(middle[0], 0.0F));
           lattice.sigma[i] =
-              inverse_depth_sigma(plane.mean, ray.tangent2(plane.mean, plane.slope_x, plane.slope_y));
+              lattice.noise.sigma_per_m(plane.mean, ray.tangent2(plane.mean, plane.slope_x, plane.slope_y));
         }
         lattice.inverse_depth[i] = plane.mean;
       }

@@ -49,8 +49,8 @@ class Assembler {
     const auto value = [&](std::uint32_t pixel) {
       const std::uint32_t x = pixel % width_, y = pixel / width_;
       if ((x | y) % kCell_px == 0) return scratch_.values[lattice_point(x, y)];
-      return scratch_.smoothed[pixel] =
-                 smoothed_inverse_depth(scratch_.pixels, static_cast<int>(x), static_cast<int>(y));
+      return scratch_.smoothed[pixel] = smoothed_inverse_depth(scratch_.pixels, scratch_.lattice.noise,
+                                                               static_cast<int>(x), static_cast<int>(y));
     };
     walk(seen_, value, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
       seen_.triangles.push_back({a, b, c});
@@ -287,9 +287,10 @@ void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
   }
 
   take_dynamic_pixels(depth_m, dynamic_mask, scratch.pixels);
-  make_lattice(scratch.pixels, camera, config.flat_sigmas, scratch.lattice);
-  const CellRules cell_rules{DepthDiscontinuity(config.jump_sigmas, config.jump_incidence_deg, 1.0F, camera),
-                             config.cut_sigmas};
+  make_lattice(scratch.pixels, camera, config.noise, config.flat_sigmas, scratch.lattice);
+  const CellRules cell_rules{
+      DepthDiscontinuity(config.noise, config.jump_sigmas, config.jump_incidence_deg, 1.0F, camera),
+      config.cut_sigmas};
   make_cells(scratch.pixels, scratch.lattice, camera, scratch.fine, regions.size(), cell_rules,
              scratch.cells);
 
@@ -300,7 +301,7 @@ void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
                   static_cast<float>(camera.cx_px), static_cast<float>(camera.cy_px),
                   T_world_camera.linear().cast<float>()};
   const BackRules back_rules{
-      DepthDiscontinuity(config.jump_sigmas, config.jump_incidence_deg, kCell_px, camera),
+      DepthDiscontinuity(config.noise, config.jump_sigmas, config.jump_incidence_deg, kCell_px, camera),
       config.least_thickness_m, config.most_thickness_m, config.least_roundness, config.back_clearance_m};
   Assembler assembler(expected_depth_m, rays, back_rules, scratch, surface);
   assembler.make_seen();

@@ -2,10 +2,13 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "mapping/types/depth_noise.hpp"
+
 namespace roomradar {
 
 /// One "sigma" is the standard deviation of the sensor's noise at the surface's depth and angle.
 struct DynamicSurfaceConfig {
+  DepthNoise noise = {};  ///< of the sensor
   /// Max deviation of the mesh, in depth, from the average over 5 x 5 pixels.
   float deviation_sigmas = 0.8F;
   float flat_sigmas = 2.0F;  ///< max RMS distance of 5 x 5 pixels from a plane; above it: a bend

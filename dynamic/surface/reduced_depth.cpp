@@ -73,7 +73,7 @@ int usable_stride(const Intrinsics& depth_camera, int stride) {
 
 void reduce_depth(const Frame& frame, int stride, Frame& reduced) {
   reduced.depth_camera = scaled(frame.depth_camera, 1.0 / stride);
-  const DepthDiscontinuity jump(kJumpSigmas, kJumpIncidence_deg, 1.0F, frame.depth_camera);
+  const DepthDiscontinuity jump(frame.depth_noise, kJumpSigmas, kJumpIncidence_deg, 1.0F, frame.depth_camera);
   reduced.depth_m.resize(reduced.depth_camera.width_px, reduced.depth_camera.height_px);
   if (stride == 4)
     reduce<4>(frame.depth_m, jump, reduced.depth_m);

@@ -17,6 +17,7 @@ StoredView store(const ViewPyramid& pyramid, const Image<std::uint8_t>& measured
   const ViewPyramid::Level& finest = pyramid.levels.front();
   StoredView view;
   view.camera = finest.camera;
+  view.noise = pyramid.noise;
   view.measured = measured;
   view.inverse_depth.resize(finest.camera.width_px, finest.camera.height_px);
   std::transform(finest.inverse_depth_per_m.pixels.begin(), finest.inverse_depth_per_m.pixels.end(),
@@ -38,6 +39,7 @@ void restore(const StoredView& view, const ViewConfig& config, ViewPyramid& pyra
   pyramid.levels.resize(static_cast<std::size_t>(std::max(config.levels, 1)));
   ViewPyramid::Level& finest = pyramid.levels.front();
   finest.camera = view.camera;
+  pyramid.noise = view.noise;
   finest.inverse_depth_per_m.resize(view.camera.width_px, view.camera.height_px);
   std::transform(view.inverse_depth.pixels.begin(), view.inverse_depth.pixels.end(),
                  finest.inverse_depth_per_m.pixels.begin(),
@@ -78,7 +80,7 @@ void improve_depth(ViewPyramid& pyramid, Image<std::uint8_t>& measured, const Vi
       const float* upper = other.inverse_depth_per_m.row(v0) + u0;
       const float* lower = upper + other.camera.width_px;
       const float expected = q / p.z();
-      const float gate = 3.0F * depth_sigma_m(1.0F / expected) * expected * expected;
+      const float gate = 3.0F * depth_sigma_m(pyramid.noise, 1.0F / expected) * expected * expected;
       if (std::abs(upper[0] - expected) > gate || std::abs(upper[1] - expected) > gate ||
           std::abs(lower[0] - expected) > gate || std::abs(lower[1] - expected) > gate) {
         continue;

@@ -12,7 +12,8 @@ namespace roomradar {
 /// Compact form of a ViewPyramid (depth and intensity at several resolutions). Takes 4 bytes per pixel, a
 /// tenth of the size of the pyramid and its TargetView.
 struct StoredView {
-  Intrinsics camera;                   ///< camera of the finest level, the only level stored
+  Intrinsics camera;  ///< camera of the finest level, the only level stored
+  DepthNoise noise;
   Image<std::uint16_t> inverse_depth;  ///< in units of kInverseDepthStep_per_m; 0: no depth
   Image<std::uint8_t> intensity;       ///< 1..255; 0: unknown; empty image: no colour
   Image<std::uint8_t> measured;        ///< number of measurements averaged into each pixel's depth

@@ -24,8 +24,8 @@ constexpr float kMinGradient = 3.0F;
 /// Fits a plane to the samples on the pixel's surface among (2 kHalf + 1)^2 samples, `step` apart. Returns
 /// false if there are too few, or if they are not coplanar within the noise.
 template <int kHalf>
-bool fit_plane(const Image<float>& inverse_depth, int x, int y, int step, float& value, float& slope_u,
-               float& slope_v) {
+bool fit_plane(const Image<float>& inverse_depth, const DepthNoise& noise, int x, int y, int step,
+               float& value, float& slope_u, float& slope_v) {
   const float q0 = inverse_depth.at(x, y);
   const float gate = kSameSurface * q0;
   // Sums over the samples, relative to the centre: n, u, v, uu, uv, vv, q, uq, vq, qq.
@@ -57,7 +57,7 @@ bool fit_plane(const Image<float>& inverse_depth, int x, int y, int step, float&
   if (determinant < 0.012F * kSquares * kSquares) return false;
   const float a = (cuq * cvv - cvq * cuv) / determinant, b = (cvq * cuu - cuq * cuv) / determinant;
   const float residual = std::max(cqq - a * cuq - b * cvq, 0.0F) * inverse_n;
-  const float allowed = 3.0F * depth_sigma_m(1.0F / q0) * q0 * q0;
+  const float allowed = 3.0F * depth_sigma_m(noise, 1.0F / q0) * q0 * q0;
   if (residual > allowed * allowed) return false;
   slope_u = a / static_cast<float>(step), slope_v = b / static_cast<float>(step);
   value = q0 + (sq - a * su - b * sv) * inverse_n;
@@ -74,7 +74,8 @@ void fill_gradient(const Image<float>& intensity, int x, int y, TargetPixel& pix
 }
 
 template <int kHalf>
-void make_reference_level(const ViewPyramid::Level& level, int step, TargetLevel& out) {
+void make_reference_level(const ViewPyramid::Level& level, const DepthNoise& noise, int step,
+                          TargetLevel& out) {
   const TargetPixel none{Eigen::Vector3f::Zero(), 0.0F, 0.0F, -1.0F, 0.0F, 0.0F};
   const Intrinsics& camera = level.camera;
   out.camera = camera;
@@ -86,7 +87,7 @@ void make_reference_level(const ViewPyramid::Level& level, int step, TargetLevel
     for (int x = border; x < camera.width_px - border; ++x) {
       if (level.inverse_depth_per_m.at(x, y) <= 0.0F) continue;
       float q = 0, a = 0, b = 0;
-      if (!fit_plane<kHalf>(level.inverse_depth_per_m, x, y, step, q, a, b)) continue;
+      if (!fit_plane<kHalf>(level.inverse_depth_per_m, noise, x, y, step, q, a, b)) continue;
       // On a plane 1/z = n . ray / offset, so the gradient of 1/z gives n / offset.
       const float du = static_cast<float>(x) - cx, dv = static_cast<float>(y) - cy;
       const Eigen::Vector3f n(a * fx, b * fy, q - a * du - b * dv);
@@ -97,7 +98,7 @@ void make_reference_level(const ViewPyramid::Level& level, int step, TargetLevel
       const float z_m = 1.0F / q;
       const float cosine = distance_m * q;  // of the angle between normal and ray, times the ray's length at
                                             // z = 1
-      const float along_m = cosine * depth_sigma_m(z_m);
+      const float along_m = cosine * depth_sigma_m(noise, z_m);
       const float across_m = kLateralSigma_rad * z_m * std::sqrt(std::max(1.0F - cosine * cosine, 0.0F));
       pixel.inverse_sigma_per_m =
           1.0F / std::sqrt(along_m * along_m + across_m * across_m + kDistortion_m * kDistortion_m);
@@ -117,9 +118,10 @@ void make_target_view(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_wor
   for (std::size_t i = 0; i < pyramid.levels.size(); ++i) {
     const int reach_px = config.normal_reach_px >> i;
     if (config.noisy) {
-      make_reference_level<2>(pyramid.levels[i], std::max(1, reach_px / 2), reference.levels[i]);
+      make_reference_level<2>(pyramid.levels[i], pyramid.noise, std::max(1, reach_px / 2),
+                              reference.levels[i]);
     } else {
-      make_reference_level<1>(pyramid.levels[i], 1, reference.levels[i]);
+      make_reference_level<1>(pyramid.levels[i], pyramid.noise, 1, reference.levels[i]);
     }
   }
 }

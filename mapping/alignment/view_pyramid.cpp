@@ -193,7 +193,8 @@ void halve_intensity(ViewPyramid& pyramid) {
 }
 
 void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
-                  ViewPyramid& pyramid) {
+                  ViewPyramid& pyramid, const DepthNoise& noise) {
+  pyramid.noise = noise;
   make_depth_levels(depth_m, camera, config, pyramid);
   pyramid.grey.resize(0, 0);
   for (ViewPyramid::Level& level : pyramid.levels) level.intensity.resize(0, 0);
@@ -201,6 +202,7 @@ void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const Vie
 
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
                   const FrameMotion& motion) {
+  pyramid.noise = frame.depth_noise;
   const int block = make_depth_levels(frame.depth_m, frame.depth_camera, config, pyramid);
   if (frame.colour.empty()) {
     pyramid.grey.resize(0, 0);

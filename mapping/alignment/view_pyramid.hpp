@@ -34,6 +34,7 @@ struct ViewPyramid {
     Image<float> intensity;            ///< 0..255; -1: unknown; empty image: no colour
   };
   std::vector<Level> levels;
+  DepthNoise noise;  ///< of the depth's sensor
   /// Scratch: the colour image in grey levels, averaged down to about the finest level's size.
   Image<float> grey;
 };
@@ -52,9 +53,10 @@ struct FrameMotion {
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
                   const FrameMotion& motion = {});
 
-/// Builds a pyramid without intensity, for rendered depth.
+/// Builds a pyramid without intensity.
+/// @param noise  of the sensor; for rendered depth, that of the sensor whose images are compared with it
 void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
-                  ViewPyramid& pyramid);
+                  ViewPyramid& pyramid, const DepthNoise& noise = {});
 
 /// Recomputes the depth of all coarser levels from the finest level.
 void halve_depth(ViewPyramid& pyramid);

@@ -65,7 +65,7 @@ double yaw_of_walls_rad(const Mesh& mesh) {
 
 // Returns per vertex whether its surface is well observed.
 std::vector<std::uint8_t> seen_well(const StaticMap& map, const Mesh& mesh) {
-  const double sigma_1m = depth_sigma_m(1.0F);
+  const double sigma_1m = depth_sigma_m(DepthNoise{}, 1.0F);  // of weight 1
   const double least_weight = (sigma_1m / kSeenWell_m) * (sigma_1m / kSeenWell_m);
   std::vector<std::uint8_t> well(mesh.vertices.size(), 0);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {

@@ -38,7 +38,7 @@ Tracking align_with_model(Locator& locator, const AlignConfig& config, const Int
   tracking.T_world_camera = T_world_camera_guess;
   for (int round = 0; round < 2; ++round) {
     make_pyramid(expected_depth(T_world_view), camera, locator.expected_view,
-                 locator.buffers.expected_pyramid);
+                 locator.buffers.expected_pyramid, locator.buffers.live_pyramid.noise);
     make_target_view(locator.buffers.expected_pyramid, T_world_view, locator.expected_view,
                      locator.buffers.expected);
     tracking = align(locator.buffers.live, locator.buffers.expected, tracking.T_world_camera, config);
@@ -270,7 +270,8 @@ bool verify_tracking(Locator& locator, const Frame& frame, const KeyframeDatabas
 
 Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                 const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth) {
-  make_pyramid(frame.depth_m, frame.depth_camera, locator.live_view, locator.buffers.live_pyramid);
+  make_pyramid(frame.depth_m, frame.depth_camera, locator.live_view, locator.buffers.live_pyramid,
+               frame.depth_noise);
   make_source_points(locator.buffers.live_pyramid, locator.buffers.live, dynamic_mask, kLiveStep_px);
 
   Tracking tracking;

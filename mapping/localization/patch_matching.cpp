@@ -116,7 +116,7 @@ std::vector<std::size_t> agreeing_with(std::size_t vote, std::span<const Alike> 
 
 /// Max distance between the points of a pair, both measured.
 double gate_m(const SurfacePatch& seen) {
-  return 0.02 + 3.0 * static_cast<double>(depth_sigma_m(seen.point.z()));
+  return 0.02 + 3.0 * static_cast<double>(depth_sigma_m(DepthNoise{}, seen.point.z()));
 }
 
 /// Counts the distinct patches of the frame among the chosen pairs.

@@ -185,7 +185,7 @@ std::vector<SurfacePatch> describe_patches(const Frame& frame, int most) {
   ViewPyramid pyramid;
   TargetView surface;
   const ViewConfig config{.levels = 1, .max_depth_m = 8.0F};
-  make_pyramid(frame.depth_m, frame.depth_camera, config, pyramid);
+  make_pyramid(frame.depth_m, frame.depth_camera, config, pyramid, frame.depth_noise);
   make_target_view(pyramid, Eigen::Isometry3d::Identity(), config, surface);
   const TargetLevel& level = surface.levels.front();
   const Eigen::Isometry3d T_depth_colour = frame.T_colour_depth.inverse();

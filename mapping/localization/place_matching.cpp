@@ -107,7 +107,7 @@ KeyframeMatch match_keyframes(const MapKeyframe& a, const MapKeyframe& b) {
   for (const auto& [i, j] : matches(b.descriptors, a.descriptors)) {
     const Eigen::Vector3f& pa = a.points_camera[j];
     const Eigen::Vector3f& pb = b.points_camera[i];
-    const float sigma_m = depth_sigma_m(std::max(pa.z(), pb.z()));
+    const float sigma_m = depth_sigma_m(DepthNoise{}, std::max(pa.z(), pb.z()));
     pairs.push_back({pa.cast<double>(), pb.cast<double>(), 0.015 + 3.0 * static_cast<double>(sigma_m)});
   }
   return pairs.size() < kMinMatches ? KeyframeMatch{} : motion_of(pairs, kSamples);

@@ -178,7 +178,7 @@ Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_d
   const ViewConfig view{.finest_width_px = config.place.preview_width_px, .normal_reach_px = 2};
   ViewPyramid pyramid;
   SourcePoints live;
-  make_pyramid(frame.depth_m, frame.depth_camera, view, pyramid);
+  make_pyramid(frame.depth_m, frame.depth_camera, view, pyramid, frame.depth_noise);
   make_source_points(pyramid, live);
   constexpr std::size_t kMinPoints = 200;
   if (live.levels.front().size() < kMinPoints) {

@@ -12,7 +12,8 @@ namespace roomradar {
 float coarse_from_m(double resolution_m, const FusionConfig& config) {
   constexpr float kNever_m = std::numeric_limits<float>::infinity();
   if (config.max_cell_sigmas <= 0.0F) return kNever_m;
-  const float from_m = depth_of_sigma_m(2.0F * static_cast<float>(resolution_m) / config.max_cell_sigmas);
+  const float from_m =
+      depth_of_sigma_m(config.noise, 2.0F * static_cast<float>(resolution_m) / config.max_cell_sigmas);
   return from_m < config.max_range_m ? from_m : kNever_m;
 }
 

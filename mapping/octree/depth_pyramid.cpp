@@ -92,7 +92,10 @@ TruncationBand::TruncationBand(double resolution_m, const FusionConfig& config)
       sigmas_(config.truncation_sigmas),
       voxel_m_(static_cast<float>(resolution_m)),
       // A surface that is nearer by the band's half-width may be in a coarse cell's band.
-      coarse_from_m_(coarse_from_m(resolution_m, config) - 2.0F * voxels_ * voxel_m_) {}
+      coarse_from_m_(coarse_from_m(resolution_m, config) - 2.0F * voxels_ * voxel_m_),
+      noise_(config.noise),
+      most_m_(
+          std::max(2.0F * voxels_ * voxel_m_, sigmas_ * depth_sigma_m(DepthNoise{}, config.max_range_m))) {}
 
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid) {

@@ -15,13 +15,13 @@
 namespace roomradar {
 
 /// Half-widths of the truncation band. Signed distances are fused within this distance in front of and behind
-/// a measured surface.
+/// a measured surface. The band is at most as wide as that of a Kinect v1 at FusionConfig::max_range_m.
 class TruncationBand {
  public:
   TruncationBand(double resolution_m, const FusionConfig& config);
   /// Returns the half-width in which cells with an edge of cell_m are updated, m.
   [[nodiscard]] float half_width_m(float depth_m, float cell_m) const {
-    return std::max(voxels_ * cell_m, sigmas_ * depth_sigma_m(depth_m));
+    return std::min(std::max(voxels_ * cell_m, sigmas_ * depth_sigma_m(noise_, depth_m)), most_m_);
   }
   /// Returns the half-width of the widest band of cells at depth_m or near it, m.
   [[nodiscard]] float widest_m(float depth_m) const {
@@ -30,6 +30,8 @@ class TruncationBand {
 
  private:
   float voxels_, sigmas_, voxel_m_, coarse_from_m_;
+  DepthNoise noise_;
+  float most_m_;  ///< greatest distance that the octree can store
 };
 
 /// Bounds of the depth, along the optical axis, over all pixels of a rectangle. Space nearer than `front` is

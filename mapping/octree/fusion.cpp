@@ -110,7 +110,7 @@ class Descent {
     for (unsigned open = free; open != 0; open &= open - 1) {
       const auto i = static_cast<unsigned>(std::countr_zero(open));
       const double z_m = cell.centre.z() + offsets_.to_child(depth, i).z();
-      const float weight = weight_at(static_cast<float>(z_m));
+      const float weight = weight_at(config_.noise, static_cast<float>(z_m));
       block.slots[i] = mark_free(block.slots[i], depth + 1, weight, (clear >> i & 1U) != 0);
     }
     if (depth + 1 == kLeafDepth - 1) {

@@ -1,5 +1,6 @@
 // fusion_config.hpp: settings for fusing depth frames into the static map.
 #pragma once
+#include "mapping/types/depth_noise.hpp"
 
 namespace roomradar {
 
@@ -26,6 +27,8 @@ struct FusionConfig {
   float miss_log_odds = -0.405465F;
   float min_log_odds = -2.0F;  ///< lower clamping limit; OctoMap's default, p = 0.12
   float max_log_odds = 3.5F;   ///< upper clamping limit; OctoMap's default, p = 0.97
+  /// Noise of the depth sensor. StaticMap::fuse() uses that of the frame instead.
+  DepthNoise noise = {};
   /// Number of threads that fuse a frame, at most 8; 0: one per core. The map does not depend on it.
   int threads = 0;
 };

@@ -14,9 +14,12 @@
 
 namespace roomradar {
 
-/// Returns the weight of a measurement: variance at 1 m divided by the variance at depth_m, at most 1.
-inline float weight_at(float depth_m) {
-  const float ratio = depth_sigma_m(1.0F) / depth_sigma_m(depth_m);
+/// Standard deviation of a measurement of weight 1, m: that of a Kinect v1 at 1 m.
+inline const float kUnitWeightSigma_m = depth_sigma_m(DepthNoise{}, 1.0F);
+
+/// Returns the weight of a measurement: the variance of one of weight 1 divided by its own, at most 1.
+inline float weight_at(const DepthNoise& noise, float depth_m) {
+  const float ratio = kUnitWeightSigma_m / depth_sigma_m(noise, depth_m);
   return std::min(ratio * ratio, 1.0F);
 }
 
@@ -153,13 +156,14 @@ class LeafUpdate {
   [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }
 
   // Returns depth_sigma_m() of each element.
-  static Float8 sigma_of(const Float8& depth_m) {
-    const Float8 beyond_m = max(depth_m - 0.4F, 0.0F);
-    return beyond_m * beyond_m * 0.0019F + 0.0012F;
+  [[nodiscard]] Float8 sigma_of(const Float8& depth_m) const {
+    const DepthNoise& noise = config_.noise;
+    const Float8 beyond_m = max(depth_m - noise.from_m, 0.0F);
+    return beyond_m * beyond_m * noise.quadratic_per_m + noise.base_m + depth_m * noise.linear;
   }
 
   static Float8 weight_of(const Float8& sigma_m) {
-    const Float8 ratio = Float8(depth_sigma_m(1.0F)) / sigma_m;
+    const Float8 ratio = Float8(kUnitWeightSigma_m) / sigma_m;
     return min(ratio * ratio, 1.0F);
   }
 

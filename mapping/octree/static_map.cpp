@@ -63,11 +63,12 @@ FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_
     return FuseStatus::kInvalidFrame;
   if (!is_rigid(T_world_camera, 1e-3)) return FuseStatus::kInvalidPose;
   Octree& o = *octree_;
-  const unsigned threads = threads_for(frame.depth_m, o.config);
-  auto pyramid = std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&] {
-    build_pyramid(frame.depth_m, resolution_m(), o.config, o.scratch.pyramid);
-  });
-  switch (collect_hits(frame, T_world_camera, resolution_m(), o.config, o.scratch)) {
+  FusionConfig config = o.config;
+  config.noise = frame.depth_noise;
+  const unsigned threads = threads_for(frame.depth_m, config);
+  auto pyramid = std::async(threads > 1 ? std::launch::async : std::launch::deferred,
+                            [&] { build_pyramid(frame.depth_m, resolution_m(), config, o.scratch.pyramid); });
+  switch (collect_hits(frame, T_world_camera, resolution_m(), config, o.scratch)) {
     case HitStatus::kNone:
       return FuseStatus::kNothingMeasured;
     case HitStatus::kOutOfBounds:
@@ -76,7 +77,7 @@ FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_
       break;
   }
   pyramid.get();
-  fuse_depth(o.tree, frame, T_world_camera, o.config, o.scratch, threads);
+  fuse_depth(o.tree, frame, T_world_camera, config, o.scratch, threads);
   return FuseStatus::kFused;
 }
 

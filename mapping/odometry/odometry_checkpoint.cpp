@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kStateMagic = "RRODOMET", kViewMagic = "RRKEYFRM";
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr int kMaxSide_px = 8192;
 
 fs::path view_name(std::size_t number, std::uint32_t revision) {
@@ -100,6 +100,9 @@ void write_view(const StoredView& view, const fs::path& path) {
   for (const double number : {view.camera.fx_px, view.camera.fy_px, view.camera.cx_px, view.camera.cy_px}) {
     put(out, number);
   }
+  const DepthNoise& noise = view.noise;
+  for (const float number : {noise.base_m, noise.linear, noise.quadratic_per_m, noise.from_m, noise.grazing})
+    put(out, static_cast<double>(number));
   put_image(out, view.inverse_depth);
   put_image(out, view.intensity);
   put_image(out, view.measured);
@@ -113,6 +116,10 @@ StoredView read_view(const fs::path& path) {
   for (double* number : {&view.camera.fx_px, &view.camera.fy_px, &view.camera.cx_px, &view.camera.cy_px}) {
     *number = in.take_finite("camera");
   }
+  DepthNoise& noise = view.noise;
+  for (float* number : {&noise.base_m, &noise.linear, &noise.quadratic_per_m, &noise.from_m, &noise.grazing})
+    *number = static_cast<float>(in.take_finite("noise"));
+  if (!is_valid(noise)) in.fail("its noise is no noise model");
   view.inverse_depth = take_image<std::uint16_t>(in, "depth");
   view.intensity = take_image<std::uint8_t>(in, "intensity");
   view.measured = take_image<std::uint8_t>(in, "counts");

@@ -159,8 +159,8 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
     };
     const bool has_colour = votes.coarse != 0 || i % kEveryColour == 0;
     const auto margin_m = [&, this](float depth) {
-      return std::max(
-          {least_margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
+      return std::max({least_margin_m, config_.margin_sigmas * depth_sigma_m(frame.depth_noise, depth),
+                       config_.margin_per_m * depth});
     };
     if (!(measured_m > 0.0F)) {
       if (hidden.is_hidden(x, y)) return;

@@ -1,32 +1,67 @@
-// depth_noise.hpp: noise model of Kinect v1 depth.
+// depth_noise.hpp: noise model of a depth sensor.
 #pragma once
 #include <algorithm>
 #include <cmath>
 
 namespace roomradar {
 
-/// Returns the standard deviation (m) of a Kinect v1 depth measurement along the optical axis: sigma(z) =
-/// 0.0012 + 0.0019 (z - 0.4)^2, constant below 0.4 m. Valid for surfaces seen at up to 60 degrees from the
-/// normal. Source: Nguyen, Izadi, Lovell, Modeling Kinect Sensor Noise for Improved 3D Reconstruction and
-/// Tracking, 3DIMPVT 2012, equation (3) without the angular term.
-inline float depth_sigma_m(float depth_m) {
-  const float beyond_m = std::max(depth_m - 0.4F, 0.0F);
-  return 0.0012F + 0.0019F * beyond_m * beyond_m;
+/// Standard deviation of a depth measurement along the optical axis: sigma(z) = base + linear z + quadratic
+/// max(z - from, 0)^2, m. At large angles of incidence a term is added, see depth_sigma_m(). The defaults are
+/// those of a Kinect v1. Source: Nguyen, Izadi, Lovell, Modeling Kinect Sensor Noise for Improved 3D
+/// Reconstruction and Tracking, 3DIMPVT 2012, equation (3).
+struct DepthNoise {
+  float base_m = 0.0012F;
+  float linear = 0.0F;              ///< m per m of depth
+  float quadratic_per_m = 0.0019F;  ///< of a triangulating sensor
+  float from_m = 0.4F;
+  float grazing = 0.0001F;  ///< factor of the term for the angle of incidence, m^1.5
+  friend bool operator==(const DepthNoise&, const DepthNoise&) = default;
+};
+
+/// Returns true if the model gives a finite deviation above 0 at every depth, and one that never falls.
+inline bool is_valid(const DepthNoise& noise) {
+  constexpr float kMost = 1.0F;  // m, or m per m
+  const auto is_within = [](float value, float most) { return value >= 0.0F && value <= most; };
+  return noise.base_m > 0.0F && is_within(noise.base_m, kMost) && is_within(noise.linear, kMost) &&
+         is_within(noise.quadratic_per_m, kMost) && is_within(noise.from_m, 10.0F) &&
+         is_within(noise.grazing, kMost);
 }
 
-/// Returns the depth, m, of at least 0.4 m, at which depth_sigma_m() is sigma_m.
-inline float depth_of_sigma_m(float sigma_m) {
-  return 0.4F + std::sqrt(std::max(sigma_m - 0.0012F, 0.0F) / 0.0019F);
+/// Returns the standard deviation, m, at a depth, for surfaces seen at up to 60 degrees from their normal.
+inline float depth_sigma_m(const DepthNoise& noise, float depth_m) {
+  const float beyond_m = std::max(depth_m - noise.from_m, 0.0F);
+  return noise.base_m + noise.quadratic_per_m * beyond_m * beyond_m + noise.linear * depth_m;
 }
 
-/// Returns depth_sigma_m(depth_m) plus the term for the angle theta between viewing ray and surface normal.
-/// sigma(z, theta) = sigma(z) + 0.0001 / sqrt(z) * theta^2 / (pi/2 - theta)^2. The term matters beyond 60
-/// degrees. theta is clamped to 85 degrees, and z in the added term to at least 0.1 m.
-inline float depth_sigma_m(float depth_m, float incidence_rad) {
+/// Returns the depth, m, of at least DepthNoise::from_m, at which depth_sigma_m() is sigma_m; infinite if
+/// there is none.
+inline float depth_of_sigma_m(const DepthNoise& noise, float sigma_m) {
+  const float rest_m = std::max(sigma_m - noise.base_m - noise.linear * noise.from_m, 0.0F);
+  if (noise.quadratic_per_m <= 0.0F) return noise.from_m + rest_m / noise.linear;
+  if (noise.linear == 0.0F) return noise.from_m + std::sqrt(rest_m / noise.quadratic_per_m);
+  return noise.from_m +
+         (std::sqrt(noise.linear * noise.linear + 4.0F * noise.quadratic_per_m * rest_m) - noise.linear) /
+             (2.0F * noise.quadratic_per_m);
+}
+
+/// Returns depth_sigma_m(noise, depth_m) plus the term for the angle theta between viewing ray and surface
+/// normal: grazing / sqrt(z) * theta^2 / (pi/2 - theta)^2. The term matters beyond 60 degrees. theta is
+/// clamped to 85 degrees, and z in the added term to at least 0.1 m.
+inline float depth_sigma_m(const DepthNoise& noise, float depth_m, float incidence_rad) {
   const float theta = std::clamp(incidence_rad, 0.0F, 1.4835F);
   const float from_grazing = 1.5707963F - theta;
-  return depth_sigma_m(depth_m) +
-         0.0001F / std::sqrt(std::max(depth_m, 0.1F)) * theta * theta / (from_grazing * from_grazing);
+  return depth_sigma_m(noise, depth_m) +
+         noise.grazing / std::sqrt(std::max(depth_m, 0.1F)) * theta * theta / (from_grazing * from_grazing);
+}
+
+/// Returns a lower bound, within 1 %, of the relative standard deviation at any depth > 0, depth_sigma_m() /
+/// z.
+inline float least_relative_sigma(const DepthNoise& noise) {
+  // Without a quadratic part, the relative deviation falls towards `linear`. Otherwise its minimum is where
+  // the derivative of base / z + quadratic (z - from)^2 / z is 0.
+  if (noise.quadratic_per_m <= 0.0F) return noise.linear;
+  const float z = std::sqrt(noise.base_m / noise.quadratic_per_m + noise.from_m * noise.from_m);
+  return 0.99F * depth_sigma_m(noise, z) / z;
 }
 
 }  // namespace roomradar

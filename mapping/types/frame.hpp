@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "mapping/types/depth_noise.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 
@@ -27,6 +28,7 @@ struct Frame {
 
   DepthImage depth_m;  ///< same size as depth_camera
   Intrinsics depth_camera;
+  DepthNoise depth_noise;  ///< of the sensor
 
   ColourImage colour;  ///< same size as colour_camera; empty if the source has none
   Intrinsics colour_camera;
@@ -45,6 +47,7 @@ inline void copy_all_but_images(const Frame& from, Frame& to) {
   to.index = from.index;
   to.stamp_s = from.stamp_s;
   to.depth_camera = from.depth_camera;
+  to.depth_noise = from.depth_noise;
   to.colour_camera = from.colour_camera;
   to.colour_after_depth_s = from.colour_after_depth_s;
   to.T_colour_depth = from.T_colour_depth;

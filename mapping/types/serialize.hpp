@@ -129,6 +129,12 @@ void serialize(Archive& archive, Intrinsics& camera) {
 }
 
 template <typename Archive>
+void serialize(Archive& archive, DepthNoise& noise) {
+  for (float* value : {&noise.base_m, &noise.linear, &noise.quadratic_per_m, &noise.from_m, &noise.grazing})
+    serialize(archive, *value);
+}
+
+template <typename Archive>
 void serialize(Archive& archive, SensorTiming& timing) {
   for (double* time_s : {&timing.depth_readout_s, &timing.colour_readout_s, &timing.colour_delay_s})
     serialize(archive, *time_s);

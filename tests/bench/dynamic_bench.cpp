@@ -91,7 +91,7 @@ void measure_watching(Rows& rows) {
       for (std::size_t p = 0; p < labels.pixels.size(); ++p) {
         const float z = labels.pixels[p] == PixelLabel::kMoved ? plate_m : kWall_m;
         const auto key = hash_of(7, static_cast<std::uint64_t>(i), p);
-        depth_m[static_cast<std::size_t>(i)].pixels[p] = z + depth_sigma_m(z) * gaussian(key);
+        depth_m[static_cast<std::size_t>(i)].pixels[p] = z + depth_sigma_m(DepthNoise{}, z) * gaussian(key);
       }
     ChangeTracker tracker;
     Times watching, looking;

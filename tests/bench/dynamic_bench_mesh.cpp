@@ -32,7 +32,7 @@ void put_in_front(DepthImage& depth_m) {
       const double r = std::hypot(x - depth_m.width / 2, y - depth_m.height / 2) / radius_px;
       if (r >= 1.0) continue;
       const auto z = static_cast<float>(0.8 - 0.2 * std::sqrt(1.0 - r * r));
-      depth_m.at(x, y) = z + depth_sigma_m(z) * normal(random);
+      depth_m.at(x, y) = z + depth_sigma_m(DepthNoise{}, z) * normal(random);
     }
   }
 }
@@ -105,8 +105,8 @@ void compare(const Mesh& seen, const Mesh& full, const Intrinsics& camera,
       }
       const float exact = truth.depth_m.at(x, y);
       if (!(a > 0.0F) || !(b > 0.0F) || truth.moved.at(x, y) == 0 || !(exact > 0.0F)) continue;
-      const float sigma_m =
-          depth_sigma_m(exact, std::atan(tangent_at(truth.depth_m, x, y, static_cast<float>(camera.fx_px))));
+      const float sigma_m = depth_sigma_m(
+          DepthNoise{}, exact, std::atan(tangent_at(truth.depth_m, x, y, static_cast<float>(camera.fx_px))));
       quality.from_full_sigmas.push_back(std::abs(a - b) / sigma_m);
       quality.from_truth_sigmas.push_back(std::abs(a - exact) / sigma_m);
       quality.full_from_truth_sigmas.push_back(std::abs(b - exact) / sigma_m);

@@ -224,7 +224,7 @@ nlohmann::json bench(const Case& chosen, const Settings& settings) {
     if (off_m < 0.87 * leaf_m || without.has_near(leaf.voxel, 1)) continue;
     const double seen_from_m = passage.seen_from_m(leaf.centre_room, 2.0 * leaf_m);
     if (!std::isfinite(seen_from_m)) continue;
-    if (off_m < 0.87 * leaf_m + 4.0 * depth_sigma_m(static_cast<float>(seen_from_m))) continue;
+    if (off_m < 0.87 * leaf_m + 4.0 * depth_sigma_m(DepthNoise{}, static_cast<float>(seen_from_m))) continue;
     ++hers[0];
     hers[1] += off_m > 0.06 ? 1 : 0;
     hers[2] += off_m > 0.10 ? 1 : 0;

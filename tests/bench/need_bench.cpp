@@ -219,7 +219,7 @@ void measure_mesh(Rows& rows) {
         const double r = std::hypot(x - 160 * column - 80, y - 240 * row - 120) / kRadius_px;
         if (r >= 1.0) continue;
         const auto z = static_cast<float>(1.0 - 0.12 * std::sqrt(1.0 - r * r));
-        depth_m.at(x, y) = z + depth_sigma_m(z) * gaussian(hash_of(7, depth_m.index(x, y), 0));
+        depth_m.at(x, y) = z + depth_sigma_m(DepthNoise{}, z) * gaussian(hash_of(7, depth_m.index(x, y), 0));
         mask.at(x, y) = 255;
       }
     }

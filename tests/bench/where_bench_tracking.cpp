@@ -31,7 +31,7 @@ int put_ball(const Vector3d& centre_camera, double radius_m, Frame& frame) {
       ++covered;
       const auto pixel = static_cast<std::uint64_t>(frame.depth_m.index(x, y));
       const float noise = gaussian(hash_of(static_cast<std::uint64_t>(frame.index), pixel));
-      measured_m = depth_m + depth_sigma_m(depth_m) * noise;
+      measured_m = depth_m + depth_sigma_m(DepthNoise{}, depth_m) * noise;
       if (frame.colour.width == frame.depth_m.width)
         frame.colour.at(x, y) = {static_cast<std::uint8_t>(120.0 + 100.0 * std::sqrt(inside) / radius_m), 90,
                                  40};

@@ -54,7 +54,7 @@ inline void add_depth_noise(Frame& frame, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
   for (float& depth_m : frame.depth_m.pixels) {
-    if (depth_m > 0.0F) depth_m += depth_sigma_m(depth_m) * normal(random);
+    if (depth_m > 0.0F) depth_m += depth_sigma_m(DepthNoise{}, depth_m) * normal(random);
   }
 }
 

@@ -166,7 +166,8 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
       if (scratch.projector.is_blocked(u - disparity_px_m / z, v, z - kShadowMargin_m)) continue;
 
       z = reported_m(faults, x, y, z);
-      const double sigma_m = noise_scale * depth_sigma_m(static_cast<float>(z), std::acos(cosine));
+      const double sigma_m =
+          noise_scale * depth_sigma_m(DepthNoise{}, static_cast<float>(z), std::acos(cosine));
       const double step_m = quantisation_step_m(camera, z);
       const double before_quantising_m = std::sqrt(std::max(sigma_m * sigma_m - step_m * step_m / 12.0, 0.0));
       const double noisy_m = z + before_quantising_m * patch_noise.at(x, y);

@@ -107,6 +107,7 @@ class IndexedSource final : public FrameSource {
     frame.colour_camera = rig.colour_camera.value_or(Intrinsics{});
     frame.T_colour_depth = rig.T_colour_depth;
     frame.timing = rig.timing;
+    frame.depth_noise = rig.depth_noise;
     frame.T_world_camera = recording_.read_pose ? recording_.read_pose(position) : indexed.T_world_camera;
     frame.down_camera = recording_.read_down ? recording_.read_down(position) : indexed.down_camera;
 

@@ -96,6 +96,17 @@ SensorTiming timing_from(const Json& object, const std::string& where) {
           time_s(object, "colour_delay_s", -0.1, where)};
 }
 
+DepthNoise noise_from(const Json& object, const std::string& where) {
+  const auto number = [&](const char* name) { return static_cast<float>(json_number(object, name, where)); };
+  const DepthNoise noise{number("base_m"), number("linear"), number("quadratic_per_m"), number("from_m"),
+                         number("grazing")};
+  if (!is_valid(noise))
+    throw Error(where +
+                ": is no noise model: base_m must be above 0, all values at least 0 and at most 1, "
+                "from_m at most 10");
+  return noise;
+}
+
 }  // namespace
 
 Json parse_json_of_format(const std::filesystem::path& path, const char* format, int version) {
@@ -126,6 +137,7 @@ CameraRig rig_from_json(const Json& root, const std::string& name) {
   if (root.contains("T_colour_depth"))
     rig.T_colour_depth = pose_from(root["T_colour_depth"], name + ", T_colour_depth");
   if (root.contains("timing")) rig.timing = timing_from(root["timing"], name + ", timing");
+  if (root.contains("depth_noise")) rig.depth_noise = noise_from(root["depth_noise"], name + ", depth_noise");
   return rig;
 }
 
@@ -145,6 +157,13 @@ Json json_of(const CameraRig& rig) {
     root["timing"] = {{"depth_readout_s", timing.depth_readout_s},
                       {"colour_readout_s", timing.colour_readout_s},
                       {"colour_delay_s", timing.colour_delay_s}};
+  const DepthNoise& noise = rig.depth_noise;
+  if (noise != DepthNoise{})
+    root["depth_noise"] = {{"base_m", noise.base_m},
+                           {"linear", noise.linear},
+                           {"quadratic_per_m", noise.quadratic_per_m},
+                           {"from_m", noise.from_m},
+                           {"grazing", noise.grazing}};
   return root;
 }
 

@@ -18,7 +18,8 @@ struct CameraRig {
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
   /// True if lens and depth errors were removed from the frames before recording.
   bool was_calibrated = false;
-  SensorTiming timing = {};  ///< 0 where unknown
+  SensorTiming timing = {};     ///< 0 where unknown
+  DepthNoise depth_noise = {};  ///< that of a Kinect v1 where unknown
 };
 
 /// Reads camera.json:
@@ -27,8 +28,10 @@ struct CameraRig {
 ///    "colour": {... the same fields; absent if there is no colour},
 ///    "T_colour_depth": [[r, r, r, tx], [r, r, r, ty], [r, r, r, tz], [0, 0, 0, 1]],       (metres)
 ///    "timing": {"depth_readout_s": 0.03, "colour_readout_s": 0.026, "colour_delay_s": 0},   (absent if
-///    unknown) "calibrated": true}                           (absent if frames are as the device delivered
-///    them)
+///    unknown)
+///    "depth_noise": {"base_m": 0.0012, "linear": 0, "quadratic_per_m": 0.0019, "from_m": 0.4, "grazing":
+///    0.0001},                                        (see DepthNoise; absent: a Kinect v1's)
+///    "calibrated": true}                           (absent if frames are as the device delivered them)
 /// Throws Error naming the file and a field that is missing, has the wrong type or an invalid value.
 CameraRig read_camera_file(const std::filesystem::path& path);
 /// Writes camera.json. Throws Error with the file's name if it cannot be written.

@@ -115,6 +115,7 @@ class KinectSource final : public FrameSource {
     frame.colour_camera = *rig_.colour_camera;
     frame.T_colour_depth = rig_.T_colour_depth;
     frame.timing = rig_.timing;
+    frame.depth_noise = rig_.depth_noise;
     frame.T_world_camera.reset();
     frame.down_camera = raw_.down_camera;
     frame.depth_m.resize(kSize.width_px, kSize.height_px);

@@ -93,7 +93,8 @@ void RecordingWriter::write(const Frame& frame) {
     throw Error(where + "stamp " + fixed_6(frame.stamp_s) + " s is not later than the one before, " +
                 fixed_6(last_stamp_s_) + " s");
 
-  CameraRig rig{frame.depth_camera, {}, frame.T_colour_depth, are_calibrated_, frame.timing};
+  CameraRig rig{frame.depth_camera, {},           frame.T_colour_depth,
+                are_calibrated_,    frame.timing, frame.depth_noise};
   if (frame.colour_camera.width_px > 0) rig.colour_camera = frame.colour_camera;
   if (!rig_) {
     rig_ = rig;

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "RRSPOOL2";
-constexpr std::string_view kMagicWithoutTiming = "RRSPOOL1";
+constexpr std::string_view kMagicWithoutSensor = "RRSPOOL1";
 
 fs::path depth_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".depth.png");
@@ -26,9 +26,9 @@ fs::path colour_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".colour.png");
 }
 
-/// @param has_timing  false: an entry of a list that was written before frames had a SensorTiming
+/// @param has_sensor  false: an entry of a list that was written before frames had a sensor's times and noise
 template <typename Archive>
-void serialize_entry(Archive& archive, SpoolEntry& entry, bool has_timing = true) {
+void serialize_entry(Archive& archive, SpoolEntry& entry, bool has_sensor = true) {
   Frame& frame = entry.frame;
   serialize(archive, entry.fault);
   if (!entry.fault.empty()) return;
@@ -40,27 +40,29 @@ void serialize_entry(Archive& archive, SpoolEntry& entry, bool has_timing = true
   serialize(archive, coloured);
   if (coloured) serialize(archive, frame.colour_camera);
   serialize(archive, frame.T_colour_depth);
-  if (has_timing) serialize(archive, frame.timing);
+  if (has_sensor) serialize(archive, frame.timing);
+  if (has_sensor) serialize(archive, frame.depth_noise);
   serialize(archive, frame.T_world_camera);
   serialize(archive, frame.down_camera);
 }
 
-/// Parses an entry, with or without a SensorTiming; a damaged entry becomes an unreadable frame. A list that
-/// an earlier version began may hold both: an entry with timing is 24 bytes longer.
+/// Parses an entry, with or without the sensor's times and noise; a damaged entry becomes an unreadable
+/// frame. A list that an earlier version began may hold both: an entry with a sensor is 44 bytes longer.
 SpoolEntry entry_of(std::string_view bytes, const fs::path& list) {
-  const auto parsed = [&](bool has_timing) {
+  const auto parsed = [&](bool has_sensor) {
     SpoolEntry entry;
     ByteReader reader(bytes, list.string());
-    serialize_entry(reader, entry, has_timing);
+    serialize_entry(reader, entry, has_sensor);
     reader.require_end();
+    if (!is_valid(entry.frame.depth_noise)) reader.fail("its noise is no noise model");
     return entry;
   };
   try {
-    return parsed(/*has_timing=*/true);
+    return parsed(/*has_sensor=*/true);
   } catch (const Error&) {
   }
   try {
-    return parsed(/*has_timing=*/false);
+    return parsed(/*has_sensor=*/false);
   } catch (const Error& damage) {
     return {{}, damage.what()};
   }
@@ -82,7 +84,7 @@ SpoolList read_spool_list(const fs::path& folder) {
   ByteReader list(bytes, path.string());
   std::string magic(kMagic.size(), '\0');
   list.raw(magic.data(), magic.size());
-  if (magic != kMagic && magic != kMagicWithoutTiming)
+  if (magic != kMagic && magic != kMagicWithoutSensor)
     list.fail("is no list of spooled frames, or of another version");
   SpoolList left;
   serialize(list, left.name);

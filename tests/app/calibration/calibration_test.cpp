@@ -79,8 +79,9 @@ BoardView view_of_board(const Calibration& truth, const Isometry3d& T_colour_boa
         continue;
       const double offset = offset_per_m(truth.depth_correction, depth.width_px, depth.height_px, x, y);
       const double reported = truth.depth_correction.inverse_scale / (1.0 / z - offset);
-      view.depth.push_back({static_cast<double>(x), static_cast<double>(y),
-                            reported + depth_sigma_m(static_cast<float>(z)) * gaussian(random)});
+      view.depth.push_back(
+          {static_cast<double>(x), static_cast<double>(y),
+           reported + depth_sigma_m(DepthNoise{}, static_cast<float>(z)) * gaussian(random)});
     }
   return view;
 }

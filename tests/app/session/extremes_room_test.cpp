@@ -279,7 +279,7 @@ TEST(Extremes, TheEndsOfAKinectsRange) {
     Mesh mesh;
     const StaticMap map = wall_at(away_m, mesh);
     const Quantiles error = errors_m(mesh, Eigen::Isometry3d::Identity(), distance_m);
-    const double sigma_m = depth_sigma_m(static_cast<float>(away_m));
+    const double sigma_m = depth_sigma_m(DepthNoise{}, static_cast<float>(away_m));
     EXPECT_GT(mesh.triangles.size(), 0U);
     EXPECT_LT(error.median, sigma_m);
     print_row(text("a wall at %.1f m", away_m), "a surface there, within the sensor's sigma (median)",

@@ -63,7 +63,7 @@ class Watched {
       const DepthImage expected_m = test::exact_frame(model_, kCamera, T_world_camera).depth_m;
       const LabelImage labels = labels_of(depth_m, expected_m);
       for (float& z : depth_m.pixels)
-        if (z > 0.0F) z += noise_(random_) * depth_sigma_m(z);
+        if (z > 0.0F) z += noise_(random_) * depth_sigma_m(DepthNoise{}, z);
       tracker.update(depth_m, expected_m, labels, kCamera, T_world_camera, t_s);
     }
   }

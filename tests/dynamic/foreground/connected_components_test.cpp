@@ -20,7 +20,7 @@ bool hang_together(const DepthImage& depth_m, const std::vector<std::uint8_t>& e
   if ((evidence[a] & 2) != 0 && (evidence[b] & 2) != 0) return true;
   const float z = std::min(depth_m.pixels[a], depth_m.pixels[b]);
   const auto slope = static_cast<float>(5.67 / focal_px);
-  return std::abs(depth_m.pixels[a] - depth_m.pixels[b]) <= 4.0F * depth_sigma_m(z) + slope * z;
+  return std::abs(depth_m.pixels[a] - depth_m.pixels[b]) <= 4.0F * depth_sigma_m(DepthNoise{}, z) + slope * z;
 }
 
 // Component number of each pixel, 0 for none.
@@ -62,7 +62,7 @@ TEST(ConnectedComponents, AreThoseOfAFloodFill) {
       evidence[i] = static_cast<std::uint8_t>(random() % holes == 0 && holes > 1 ? 0 : random() % 32);
     }
     ConnectedComponents found;
-    find_components(depth_m, evidence, kBits, camera, found);
+    find_components(depth_m, evidence, kBits, camera, {}, found);
     const std::vector<int> truth = flood(depth_m, evidence, 100.0);
 
     std::vector<int> number(evidence.size(), 0);

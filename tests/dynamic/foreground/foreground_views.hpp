@@ -27,7 +27,7 @@ inline void add_noise(DepthImage& depth_m, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
   for (float& z : depth_m.pixels) {
-    if (z > 0.0F) z += depth_sigma_m(z) * normal(random);
+    if (z > 0.0F) z += depth_sigma_m(DepthNoise{}, z) * normal(random);
   }
 }
 

@@ -151,7 +151,7 @@ TEST(DepthMesh, OneSurfaceStaysOneInNoiseAndAtGrazingAngles) {
       for (int x = 0; x < 640; ++x) {
         const float z =
             2.0F / (1.0F - tangent * (static_cast<float>(x) - 640.0F) / 585.0F);  // z = 2 + tangent X
-        depth_m.at(x, y) = z + depth_sigma_m(z) * normal(random);
+        depth_m.at(x, y) = z + depth_sigma_m(DepthNoise{}, z) * normal(random);
       }
     }
     const Mesh mesh = whole(depth_m, SurfacePolicy::kHoles, config);

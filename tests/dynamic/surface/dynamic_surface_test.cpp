@@ -59,7 +59,7 @@ struct Scene {
   void add_noise(unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<float> normal;
-    for (float& z : depth_m.pixels) z += depth_sigma_m(z) * normal(random);
+    for (float& z : depth_m.pixels) z += depth_sigma_m(DepthNoise{}, z) * normal(random);
   }
 };
 
@@ -201,7 +201,7 @@ TEST(DynamicSurface, WorksAtFortyCentimetresAndAtEightMetres) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
       if (!(seen.pixels[i] > 0.0F)) continue;
-      squares += std::pow((seen.pixels[i] - z) / depth_sigma_m(z), 2);
+      squares += std::pow((seen.pixels[i] - z) / depth_sigma_m(DepthNoise{}, z), 2);
       ++count;
     }
     EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 1.0) << z;
@@ -222,7 +222,8 @@ TEST(DynamicSurface, ABallIsATenthOfTheTrianglesWithinASigma) {
       if (!(seen.at(x, y) > 0.0F) || scene.mask.at(x, y) == 0) continue;
       const Eigen::Vector3d p = back_project(kKinect, x, y, scene.depth_m.at(x, y));
       const double cosine = -(p - Eigen::Vector3d(0.05, -0.03, 0.9)).normalized().dot(p.normalized());
-      const float sigma = depth_sigma_m(scene.depth_m.at(x, y), static_cast<float>(std::acos(cosine)));
+      const float sigma =
+          depth_sigma_m(DepthNoise{}, scene.depth_m.at(x, y), static_cast<float>(std::acos(cosine)));
       sigmas.push_back(std::abs(seen.at(x, y) - scene.depth_m.at(x, y)) / sigma);
     }
   }
@@ -248,7 +249,7 @@ TEST(DynamicSurface, WhereEveryPixelIsAVertexTheNoiseIsAveragedAway) {
   constexpr double kRadius_m = 0.12;
   Scene scene;
   scene.put_ball(centre, kRadius_m);
-  const double sigma_m = depth_sigma_m(1.1F);
+  const double sigma_m = depth_sigma_m(DepthNoise{}, 1.1F);
   scene.add_noise(5);
   const FineRegion everywhere[] = {{scene.T_world_camera * centre, 0.3}};
   const DynamicSurface surface = meshed(scene, {}, everywhere);
@@ -412,7 +413,8 @@ TEST(DynamicSurface, RegionsAreAsFineAsTheImage) {
       const Eigen::Vector3d p = back_project(kKinect, x, y, scene.depth_m.at(x, y));
       if ((p - Eigen::Vector3d(0.03, 0.0, 0.8)).norm() > 0.05) continue;
       ++inside;
-      ASSERT_NEAR(seen.at(x, y), scene.depth_m.at(x, y), 0.3F * depth_sigma_m(scene.depth_m.at(x, y)));
+      ASSERT_NEAR(seen.at(x, y), scene.depth_m.at(x, y),
+                  0.3F * depth_sigma_m(DepthNoise{}, scene.depth_m.at(x, y)));
     }
   }
   EXPECT_GT(inside, 1000U);

@@ -60,14 +60,14 @@ bool is_inside(const SurfaceSample& sample) {
 TEST(CellLevels, CellsAreCoarseFromTheDepthWhoseNoiseFitsThem) {
   const FusionConfig config;
   const float from_m = coarse_from_m(0.01, config);
-  EXPECT_NEAR(depth_sigma_m(from_m) * config.max_cell_sigmas, 0.02F, 1e-6F);
+  EXPECT_NEAR(depth_sigma_m(DepthNoise{}, from_m) * config.max_cell_sigmas, 0.02F, 1e-6F);
   EXPECT_GT(from_m, 2.0F);
   EXPECT_LT(from_m, 2.5F);
   EXPECT_GT(coarse_from_m(0.02, config), from_m + 0.5F);
   constexpr float kNever_m = std::numeric_limits<float>::infinity();
   EXPECT_EQ(coarse_from_m(0.1, config), kNever_m) << "no depth within range is that noisy";
   EXPECT_EQ(coarse_from_m(0.01, voxels_only()), kNever_m);
-  EXPECT_NEAR(depth_of_sigma_m(0.0F), 0.4F, 1e-6F);
+  EXPECT_NEAR(depth_of_sigma_m(DepthNoise{}, 0.0F), 0.4F, 1e-6F);
   FusionConfig bad;
   for (const float value : {-1.0F, std::nanf(""), 1e9F}) {
     bad.max_cell_sigmas = value;
@@ -180,7 +180,7 @@ TEST(CellLevels, TheSurfaceHasNoStepOrCrackWhereFineAndCoarseCellsMeet) {
     const double x_m = i < 40 ? 0.005 * i : 2.9;
     Frame frame = wall_from(x_m);
     for (float& depth_m : frame.depth_m.pixels)
-      depth_m += std::normal_distribution<float>(0.0F, 0.2F * depth_sigma_m(depth_m))(random);
+      depth_m += std::normal_distribution<float>(0.0F, 0.2F * depth_sigma_m(DepthNoise{}, depth_m))(random);
     ASSERT_EQ(map.fuse(frame, camera_at(x_m)), FuseStatus::kFused);
   }
   SurfaceConfig config;

@@ -94,7 +94,8 @@ TEST(FusionEdges, AveragesInWholeStepsStayWithinATenthOfAMillimetreOfTrueOnes) {
   for (int i = 0; i < 500; ++i) {
     const double x_m = 2.013 + noise_m(random);
     ASSERT_EQ(map.fuse(wall_at(x_m), kAtOrigin), FuseStatus::kFused);
-    const double sigma_m = depth_sigma_m(static_cast<float>(x_m)), at_1m = depth_sigma_m(1.0F);
+    const double sigma_m = depth_sigma_m(DepthNoise{}, static_cast<float>(x_m)),
+                 at_1m = depth_sigma_m(DepthNoise{}, 1.0F);
     const double weight = at_1m * at_1m / (sigma_m * sigma_m);
     sum += weight * (x_m - p.x());
     weights += weight;

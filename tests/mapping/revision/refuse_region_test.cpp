@@ -29,7 +29,7 @@ Frame seen(const test::Scene& scene, const Eigen::Isometry3d& T_world_camera, un
   std::mt19937 random(seed);
   std::normal_distribution<float> noise(0.0F, 1.0F);
   for (float& z : frame.depth_m.pixels)
-    if (z > 0.0F) z += noise(random) * depth_sigma_m(z);
+    if (z > 0.0F) z += noise(random) * depth_sigma_m(DepthNoise{}, z);
   return frame;
 }
 // Fuses views of the crate's front and of its two sides.

@@ -102,11 +102,11 @@ TEST(RotationBetween, TurnsOneDirectionToTheOtherByTheSmallestAngle) {
 }
 
 TEST(DepthNoise, FollowsNguyenAndStaysFiniteAtTheEnds) {
-  EXPECT_NEAR(depth_sigma_m(0.4F), 0.0012F, 1e-7F);
-  EXPECT_NEAR(depth_sigma_m(2.4F), 0.0012F + 0.0019F * 4.0F, 1e-6F);
-  EXPECT_NEAR(depth_sigma_m(0.0F), 0.0012F, 1e-7F);
-  EXPECT_TRUE(std::isfinite(depth_sigma_m(8.0F, 1.5707963F)));
-  EXPECT_GT(depth_sigma_m(2.0F, 1.4F), depth_sigma_m(2.0F));
+  EXPECT_NEAR(depth_sigma_m(DepthNoise{}, 0.4F), 0.0012F, 1e-7F);
+  EXPECT_NEAR(depth_sigma_m(DepthNoise{}, 2.4F), 0.0012F + 0.0019F * 4.0F, 1e-6F);
+  EXPECT_NEAR(depth_sigma_m(DepthNoise{}, 0.0F), 0.0012F, 1e-7F);
+  EXPECT_TRUE(std::isfinite(depth_sigma_m(DepthNoise{}, 8.0F, 1.5707963F)));
+  EXPECT_GT(depth_sigma_m(DepthNoise{}, 2.0F, 1.4F), depth_sigma_m(DepthNoise{}, 2.0F));
 }
 
 TEST(StageTimes, PercentilesAreNearestRank) {

@@ -50,7 +50,7 @@ DepthImage view_of(const std::vector<Box>& boxes, const Eigen::Isometry3d& T_wor
       }
       if (!std::isfinite(nearest)) continue;
       float z_m = static_cast<float>(nearest);
-      if (is_noisy) z_m += depth_sigma_m(z_m) * unit(random);
+      if (is_noisy) z_m += depth_sigma_m(DepthNoise{}, z_m) * unit(random);
       depth_m.at(u, v) = z_m;
     }
   }

@@ -75,7 +75,7 @@ TEST(SimDepth, NoiseHasTheModelsSigmaAtEveryDepth) {
     ASSERT_GT(count, 300'000U);
     const double mean_m = sum / static_cast<double>(count);
     const double sigma_m = std::sqrt(squares / static_cast<double>(count) - mean_m * mean_m);
-    const double model_m = depth_sigma_m(static_cast<float>(depth_m));
+    const double model_m = depth_sigma_m(DepthNoise{}, static_cast<float>(depth_m));
     EXPECT_NEAR(sigma_m, model_m, 0.1 * model_m) << "at " << depth_m << " m";
     EXPECT_LT(std::abs(mean_m), 0.15 * model_m) << "at " << depth_m << " m";
   }
