@@ -61,6 +61,15 @@ TEST(Foreground, HandThreeCentimetresBeforeASurfaceIsFoundToItsEdges) {
   }
 }
 
+TEST(Foreground, WhatIsWithinTheNoiseOfTheSensorDoesNotMove) {
+  DepthImage live_m = flat(1.0F);
+  fill_rectangle(live_m, 200, 150, 320, 260, 0.94F);
+  ForegroundConfig phone;
+  phone.noise = {0.012F, 0.008F, 0.0F, 0.0F, 0.0F};  // 6 cm are 3 sigmas
+  EXPECT_EQ(mark(live_m, flat(1.0F), phone).counts.moved, 0U);
+  EXPECT_GT(mark(live_m, flat(1.0F)).counts.moved, 10'000U);
+}
+
 TEST(Foreground, HandThreeCentimetresOverAnObliqueTableIsFound) {
   for (const double below_deg : {35.0, 50.0, 70.0, 89.0}) {
     MaskImage truth;

@@ -106,6 +106,29 @@ TEST(FusionEdges, AveragesInWholeStepsStayWithinATenthOfAMillimetreOfTrueOnes) {
   EXPECT_NEAR(sample->weight, weights, 0.01 * weights);
 }
 
+TEST(FusionEdges, ANoisierSensorWeighsLessInTheSameMap) {
+  StaticMap map(0.02);
+  const DepthNoise phone{0.003F, 0.008F, 0.0F, 0.0F, 0.0F};
+  const double near_m = 2.003, far_m = 2.023;
+  Frame by_phone = wall_at(far_m);
+  by_phone.depth_noise = phone;
+  ASSERT_EQ(map.fuse(wall_at(near_m), kAtOrigin), FuseStatus::kFused);
+  ASSERT_EQ(map.fuse(by_phone, kAtOrigin), FuseStatus::kFused);
+  const auto sigma_m = [](const DepthNoise& noise, double depth_m) {
+    return static_cast<double>(depth_sigma_m(noise, static_cast<float>(depth_m)));
+  };
+  const double unit = std::pow(sigma_m({}, 1.0), 2);
+  const double kinect_weight = unit / std::pow(sigma_m({}, near_m), 2),
+               phone_weight = unit / std::pow(sigma_m(phone, far_m), 2);
+  ASSERT_LT(phone_weight, 0.3 * kinect_weight);
+  const Eigen::Vector3d p(2.01, 0.01, 0.01);  // a voxel's centre
+  const auto sample = map.sample_at(p);
+  ASSERT_TRUE(sample);
+  EXPECT_NEAR(sample->weight, kinect_weight + phone_weight, 0.01 * kinect_weight);
+  EXPECT_NEAR(p.x() + sample->distance_m,
+              (kinect_weight * near_m + phone_weight * far_m) / (kinect_weight + phone_weight), 2e-4);
+}
+
 TEST(FusionEdges, AMillimetreAndAMetreBothHoldTheWall) {
   for (const double resolution_m : {0.001, 1.0}) {
     constexpr Intrinsics kSmall{32, 24, 30.0, 30.0, 15.5, 11.5};

@@ -109,6 +109,28 @@ TEST(DepthNoise, FollowsNguyenAndStaysFiniteAtTheEnds) {
   EXPECT_GT(depth_sigma_m(DepthNoise{}, 2.0F, 1.4F), depth_sigma_m(DepthNoise{}, 2.0F));
 }
 
+TEST(DepthNoise, OfEverySensorCanBeInvertedAndBounded) {
+  const DepthNoise kinect, phone{0.003F, 0.008F, 0.0F, 0.0F, 0.0F},
+      stereo{0.001F, 0.002F, 0.004F, 0.3F, 0.0F};
+  for (const DepthNoise& noise : {kinect, phone, stereo}) {
+    ASSERT_TRUE(is_valid(noise));
+    for (const float depth_m : {0.5F, 1.0F, 2.5F, 8.0F}) {
+      const float sigma_m = depth_sigma_m(noise, depth_m);
+      EXPECT_NEAR(depth_of_sigma_m(noise, sigma_m), depth_m, 1e-4F * depth_m);
+      EXPECT_LE(least_relative_sigma(noise), sigma_m / depth_m);
+    }
+  }
+  EXPECT_NEAR(depth_sigma_m(phone, 2.0F), 0.019F, 1e-6F);
+  const DepthNoise constant{0.01F, 0.0F, 0.0F, 0.0F, 0.0F};
+  EXPECT_TRUE(std::isinf(depth_of_sigma_m(constant, 0.02F)));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const DepthNoise& wrong :
+       {DepthNoise{0.0F, 0, 0, 0, 0}, DepthNoise{-0.1F, 0, 0, 0, 0}, DepthNoise{nan, 0, 0, 0, 0},
+        DepthNoise{0.001F, nan, 0, 0, 0}, DepthNoise{0.001F, 0, -0.1F, 0, 0},
+        DepthNoise{0.001F, 0, 0, 50.0F, 0}, DepthNoise{2.0F, 0, 0, 0, 0}})
+    EXPECT_FALSE(is_valid(wrong));
+}
+
 TEST(StageTimes, PercentilesAreNearestRank) {
   StageTimes times;
   for (int ms = 1; ms <= 100; ++ms) times.add_ms("fuse", ms);

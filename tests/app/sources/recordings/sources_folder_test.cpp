@@ -719,6 +719,12 @@ TEST(Intrinsics, BrokenFilesAreNamed) {
   EXPECT_TRUE(contains(fails("camera.json", head + R"({"width_px": 16})" + "}"), "'height_px' is missing"));
   EXPECT_TRUE(
       contains(fails("camera.json", head + R"({"width_px": "16"})" + "}"), "width_px is not a number"));
+  EXPECT_TRUE(contains(
+      fails(
+          "camera.json",
+          head + depth +
+              R"(, "depth_noise": {"base_m": 0, "linear": 0, "quadratic_per_m": 0, "from_m": 0, "grazing": 0}})"),
+      "depth_noise: is no noise model"));
   EXPECT_TRUE(
       contains(fails("camera.json", head + depth + R"(, "T_colour_depth": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]})"),
                "four rows"));
@@ -732,11 +738,13 @@ TEST(CameraFile, ComesBackAsWritten) {
   const TemporaryFolder folder;
   const Frame frame = some_frame(2);
   CameraRig rig{frame.depth_camera, frame.colour_camera, *frame.T_world_camera, false, {}};
+  rig.depth_noise = {0.003F, 0.008F, 0.001F, 0.25F, 0.0F};
   write_camera_file(rig, folder.path() / "camera.json");
   const CameraRig read = read_camera_file(folder.path() / "camera.json");
   EXPECT_EQ(read.depth_camera, rig.depth_camera);
   EXPECT_EQ(read.colour_camera, rig.colour_camera);
   EXPECT_TRUE(read.T_colour_depth.isApprox(rig.T_colour_depth, 1e-14));
+  EXPECT_EQ(read.depth_noise, rig.depth_noise);
 }
 
 TEST(OpenFolder, RewindsAndSeeks) {
