@@ -8,6 +8,7 @@
 
 #include "app/sources/datasets/indexed_source.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
+#include "app/sources/formats/nominal_noise.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -99,6 +100,7 @@ AzureCalibration read_azure_calibration(const std::string& text, ImageSize depth
 
   AzureCalibration calibration;
   const Json& depth_json = entry_with(cameras, "Location", "CALIBRATION_CameraLocationD0", where);
+  calibration.rig.depth_noise = kTimeOfFlightNoise;
   calibration.rig.depth_camera = camera_of(depth_json, depth, kDepthModes, calibration.depth_lens, where);
   const Eigen::Isometry3d T_depth_device = sensor_pose(depth_json, where);
   if (colour) {

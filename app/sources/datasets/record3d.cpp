@@ -10,6 +10,7 @@
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/image_file.hpp"
+#include "app/sources/formats/nominal_noise.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -69,6 +70,7 @@ IndexedRecording index_record3d(const fs::path& folder) {
   const Intrinsics colour = colour_camera_of(metadata, where);
   recording.rig.colour_camera = colour;
   const int depth_width = size_px(metadata, "dw", where), depth_height = size_px(metadata, "dh", where);
+  recording.rig.depth_noise = kPhoneLidarNoise;
   recording.rig.depth_camera = scaled_to_depth(colour, {depth_width, depth_height}, where);
 
   const Json& poses = json_field(metadata, "poses", where);

@@ -9,6 +9,7 @@
 #include "app/sources/containers/ros_bag.hpp"
 #include "app/sources/datasets/ros_images.hpp"
 #include "app/sources/datasets/ros_transforms.hpp"
+#include "app/sources/formats/nominal_noise.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -175,6 +176,7 @@ IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& lo
 
   IndexedRecording recording{.name = log->name, .depth_lens = depth.lens};
   recording.rig.depth_camera = depth.camera;
+  if (depth_sensor.topic.starts_with("/device_")) recording.rig.depth_noise = kRealSenseNoise;
   double depth_offset_s = 0.0, colour_offset_s = 0.0;
   std::vector<double> depth_s = stamps_of(*log, depth.messages, depth_offset_s);
   sort_both(depth.messages, depth_s);

@@ -11,6 +11,7 @@
 #include "app/sources/datasets/arkit_axes.hpp"
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/image_file.hpp"
+#include "app/sources/formats/nominal_noise.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
@@ -102,6 +103,7 @@ IndexedRecording index_stray_scanner(const fs::path& folder) {
   const Intrinsics colour =
       camera_matrix_of(folder / "camera_matrix.csv", video->width_px(), video->height_px());
   recording.rig.colour_camera = colour;
+  recording.rig.depth_noise = kPhoneLidarNoise;
 
   const std::map<std::int64_t, Odometry> odometry = odometry_of(folder / "odometry.csv");
   const auto files = numbered_files(folder / "depth", {".png"});
