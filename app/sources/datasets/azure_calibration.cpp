@@ -8,7 +8,7 @@
 
 #include "app/sources/datasets/indexed_source.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
-#include "app/sources/formats/nominal_noise.hpp"
+#include "app/sources/formats/nominal_rig.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

@@ -10,7 +10,7 @@
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/image_file.hpp"
-#include "app/sources/formats/nominal_noise.hpp"
+#include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"

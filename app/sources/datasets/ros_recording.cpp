@@ -9,7 +9,7 @@
 #include "app/sources/containers/ros_bag.hpp"
 #include "app/sources/datasets/ros_images.hpp"
 #include "app/sources/datasets/ros_transforms.hpp"
-#include "app/sources/formats/nominal_noise.hpp"
+#include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 

@@ -11,7 +11,7 @@
 #include "app/sources/datasets/arkit_axes.hpp"
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/image_file.hpp"
-#include "app/sources/formats/nominal_noise.hpp"
+#include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
