@@ -263,7 +263,10 @@ TEST_F(DeferredErrors, AMapIsReadWholeWhileAnotherProcessSavesItAnew) {
   ASSERT_EQ(scan(at("map")), 0) << said();
   SavedMap a = load_map(at("map"));
   SavedMap b = load_map(at("map"));
-  for (const SavedMap* map : {&a, &b}) static_cast<void>(*map->octree);  // before its folder is replaced
+  for (const SavedMap* map : {&a, &b}) {  // before its folder is replaced
+    static_cast<void>(*map->octree);
+    static_cast<void>(*map->texture);
+  }
   b.trajectory.pop_back();
   b.info.source = "another";
   const pid_t child = fork();
