@@ -88,11 +88,15 @@ bool has_area(const Mesh& mesh, const Triangle& t) {
 }  // namespace
 
 void erase_flat_triangles(Mesh& mesh) {
-  const auto in_file = [&](std::uint32_t vertex) -> Eigen::Vector3d {
-    return (mesh.origin + mesh.vertices[vertex].cast<double>()).cast<float>().cast<double>();
-  };
+  // Kept in memory: if a vertex is rounded to float and converted back in one go, GCC 12 drops the rounding
+  // of x and y where it vectorises them.
+  std::vector<Eigen::Vector3f> in_file;
+  in_file.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    in_file.emplace_back((mesh.origin + vertex.cast<double>()).cast<float>());
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    const Eigen::Vector3d a = in_file(t[0]), u = in_file(t[1]) - a, v = in_file(t[2]) - a;
+    const Eigen::Vector3d a = in_file[t[0]].cast<double>(), u = in_file[t[1]].cast<double>() - a,
+                          v = in_file[t[2]].cast<double>() - a;
     return u.cross(v).squaredNorm() <= 1e-24 * u.squaredNorm() * v.squaredNorm();
   });
 }

@@ -81,6 +81,31 @@ TEST(SurfaceTexture, FitsAfterAFileAlsoWithTrianglesThatReadingDrops) {
   EXPECT_TRUE(fits(texture, read_mesh(folder.path() / "mesh.ply")));
 }
 
+// Triangles that have an area in memory, but none once their corners are rounded to float in a file.
+TEST(SurfaceTexture, FitsAfterAFileAlsoWithTrianglesThatRoundingFlattens) {
+  const test::TemporaryFolder folder;
+  Mesh mesh = wall_mesh();
+  mesh.origin = {1000.0, -2000.0, 500.0};
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    const float at = 0.01F * static_cast<float>(i);
+    // 20 um wide; floats at 1000 m are 61 um apart.
+    for (const Eigen::Vector3f& corner :
+         {Eigen::Vector3f(at, 0, 0), Eigen::Vector3f(at + 2e-5F, 1e-5F, 0), Eigen::Vector3f(at, 0, 1)}) {
+      mesh.vertices.push_back(corner);
+      mesh.normals.emplace_back(-1.0F, 0.0F, 0.0F);
+      mesh.colours.push_back({1, 2, 3});
+    }
+    mesh.triangles.push_back({first + 3 * i, first + 3 * i + 1, first + 3 * i + 2});
+  }
+  const std::size_t before = mesh.triangles.size();
+  erase_flat_triangles(mesh);
+  EXPECT_LT(mesh.triangles.size(), before - 100);
+  const SurfaceTexture texture = texture_for(mesh);
+  write_mesh(mesh, folder.path() / "mesh.ply");
+  EXPECT_TRUE(fits(texture, read_mesh(folder.path() / "mesh.ply")));
+}
+
 TEST(SurfaceTexture, DoesNotFitAChangedMesh) {
   const Mesh mesh = wall_mesh();
   const SurfaceTexture texture = texture_for(mesh);
