@@ -184,7 +184,8 @@ class EmbreePeer final : public Peer {
 }  // namespace
 }  // namespace roomradar::bench
 
-extern "C" void make_peers(std::vector<std::unique_ptr<roomradar::bench::Peer>>& peers) {
+extern "C" [[gnu::visibility("default")]] void make_peers(
+    std::vector<std::unique_ptr<roomradar::bench::Peer>>& peers) {
   using namespace roomradar::bench;
   peers.push_back(std::make_unique<EmbreePeer>(Rays::kShortenedPackets16));
   peers.push_back(std::make_unique<EmbreePeer>(Rays::kSingleFullLength));

@@ -90,6 +90,7 @@ class FclPeer final : public Peer {
 }  // namespace
 }  // namespace roomradar::bench
 
-extern "C" void make_peers(std::vector<std::unique_ptr<roomradar::bench::Peer>>& peers) {
+extern "C" [[gnu::visibility("default")]] void make_peers(
+    std::vector<std::unique_ptr<roomradar::bench::Peer>>& peers) {
   peers.push_back(std::make_unique<roomradar::bench::FclPeer>());
 }
