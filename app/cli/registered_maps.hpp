@@ -15,7 +15,7 @@ namespace roomradar {
 Registration require_registered(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                                 const std::string& name_b, Report& report);
 
-/// What changed between two maps.
+/// Differences between two maps.
 struct MapChanges {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< maps points from b's world to a's world
   std::vector<Change> changes;                              ///< largest first

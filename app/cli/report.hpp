@@ -33,6 +33,8 @@ struct Report {
 
 /// Returns the vector as an array [x, y, z].
 nlohmann::json to_json(const Eigen::Vector3d& v);
+/// Returns [x, y, z, w].
+nlohmann::json to_json(const Eigen::Quaterniond& q);
 
 /// Returns the report as one JSON object, with the current values of peak_rss_mb and wall_s. Numbers that are
 /// not finite become null.

@@ -128,7 +128,7 @@ PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, S
   ScanProgress progress(options.map, start, window);
   PrescanResult scanned = or_say_what_is_kept(start, [&] {
     const auto show = [&](const std::string& stage, const std::string& note) {
-      if (stage.starts_with("track")) last_frame_s = report.seconds();
+      if (is_tracking(stage)) last_frame_s = report.seconds();
       progress.show(stage, note);
     };
     return prescan(*start.source, config, report.times, show,
@@ -170,7 +170,7 @@ HeldOut score_map(const PrescanOptions& options, FrameSource& source, const Pres
 
 /// Returns the holes that are numbered in coverage.png and in the report.
 std::vector<Hole> holes_inside(std::vector<Hole> holes) {
-  std::erase_if(holes, [](const Hole& hole) { return hole.kind == HoleKind::kOuterBorder; });
+  std::erase_if(holes, [](const Hole& hole) { return !is_inside_scan(hole); });
   return holes;
 }
 

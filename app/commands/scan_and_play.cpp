@@ -38,10 +38,9 @@ PrescanOptions scan_options(const RunOptions& options, const std::optional<Place
 }
 
 /// Alternates until the user asks for neither.
-/// @param scan   unset: begins with `play`
-/// @param window  keeps the window open between two parts
-int run_in_turn(std::optional<PrescanOptions> scan, RunOptions play, std::shared_ptr<void> window) {
-  for (;;) {
+/// @param scan  unset: begins with `play`
+int run_in_turn(std::optional<PrescanOptions> scan, RunOptions play) {
+  for (std::shared_ptr<void> window;;) {  // keeps the window open between two parts
     if (scan) {
       const ScanWindowResult scanned = scan_in_window(*scan);
       if (!scanned.wants_to_play) return scanned.status;
@@ -57,12 +56,10 @@ int run_in_turn(std::optional<PrescanOptions> scan, RunOptions play, std::shared
 
 }  // namespace
 
-int run(const PrescanOptions& options) {
-  return options.window ? run_in_turn(options, {}, nullptr) : scan(options);
-}
+int run(const PrescanOptions& options) { return options.window ? run_in_turn(options, {}) : scan(options); }
 
 int run(const RunOptions& options) {
-  return options.window ? run_in_turn(std::nullopt, options, nullptr) : play(options);
+  return options.window ? run_in_turn(std::nullopt, options) : play(options);
 }
 
 }  // namespace roomradar

@@ -121,7 +121,7 @@ void write_room_page(const RoomPage& page, const std::filesystem::path& path) {
   for (const PageRoom& room : page.rooms) json["meshes"].push_back(json_of(room));
   json["holes"] = Json::array();
   for (const Hole& hole : page.holes)
-    if (hole.kind != HoleKind::kOuterBorder) json["holes"].push_back(json_of(hole));
+    if (is_inside_scan(hole)) json["holes"].push_back(json_of(hole));
   json["changes"] = Json::array();
   for (const Change& change : page.changes) json["changes"].push_back(json_of(change));
   json["path_m"] = flat(page.trajectory, kMaxPathPoints, [](const TimedPose& pose) -> Eigen::Vector3d {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "app/cli/report.hpp"
-#include "mapping/types/disjoint_sets.hpp"
+#include "mapping/mesh/components.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -16,13 +16,9 @@ namespace {
 
 constexpr std::size_t kLeastTriangles = 8;  // smaller components of the dynamic mesh have no box
 
-nlohmann::json orientation_xyzw(const Eigen::Isometry3d& T) {
-  const Eigen::Quaterniond q(T.linear());
-  return {q.x(), q.y(), q.z(), q.w()};
-}
-
 nlohmann::json pose(const Eigen::Isometry3d& T) {
-  return {{"position_m", to_json(T.translation())}, {"orientation_xyzw", orientation_xyzw(T)}};
+  return {{"position_m", to_json(T.translation())},
+          {"orientation_xyzw", to_json(Eigen::Quaterniond(T.linear()))}};
 }
 
 std::string_view state_of(const VirtualObject& object) {
@@ -61,8 +57,7 @@ std::string text_of(const nlohmann::json& json) {
 
 std::vector<Eigen::AlignedBox3d> component_boxes(const Mesh& mesh, std::size_t min_triangles) {
   const auto count = static_cast<std::uint32_t>(mesh.vertices.size());
-  DisjointSets<std::uint32_t> components(count);
-  for (const Triangle& t : mesh.triangles) components.join(t[0], t[1]), components.join(t[0], t[2]);
+  DisjointSets<std::uint32_t> components = components_of(mesh);
   struct Component {
     Eigen::AlignedBox3f box;
     std::size_t triangles = 0;

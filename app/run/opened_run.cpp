@@ -296,7 +296,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   open_session(run, has_picture, std::move(first_object));
   open_outputs(run);
   if (!options.frames_csv.empty()) run.frames_csv.emplace(options.frames_csv);
-  if (!options.trajectory.empty()) run.trajectory.emplace(options.trajectory);
+  if (!options.trajectory.empty()) run.trajectory.emplace(options.trajectory, kTrajectoryHeader);
   record_frames(run, frames);  // last, so a run that fails to open leaves no folder that blocks the next
                                // attempt
   play_frames(run, std::move(frames));

@@ -9,7 +9,7 @@
 #include "app/cli/session_folder.hpp"
 #include "app/media/video_writer.hpp"
 #include "app/run/frame_stream.hpp"
-#include "app/run/pose_file.hpp"
+#include "app/run/growing_file.hpp"
 #include "app/run/run_budget.hpp"
 #include "app/run/run_results.hpp"
 #include "app/session/script/script.hpp"
@@ -49,7 +49,7 @@ struct OpenedRun {
   /// Set with --frames-csv.
   std::optional<FrameUseFile> frames_csv;
   /// Set with --trajectory.
-  std::optional<PoseFile> trajectory;
+  std::optional<GrowingFile> trajectory;
   /// Set with --stream.
   std::optional<FrameStream> stream;
   /// Connection to the window; unset if there is no window.

@@ -290,7 +290,7 @@ void RunLoop::keep(const FrameResult& result) {
   if (run_.frames_csv && result.status == FrameStatus::kDone)
     run_.frames_csv->write(frame_.index, result.use, session.objects());
   if (run_.trajectory && result.status == FrameStatus::kDone)
-    run_.trajectory->write({frame_.index, frame_.stamp_s, result.T_world_camera});
+    run_.trajectory->append(trajectory_line({frame_.index, frame_.stamp_s, result.T_world_camera}));
   if (run_.stream)
     run_.report.times.timed("stream", [&] {
       run_.stream->write(run_frame_, run_time_s_, frame_, result, *run_.session, run_.report.times);

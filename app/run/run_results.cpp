@@ -47,7 +47,6 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : session.objects()) {
     const Eigen::Matrix3d R_world_object = object->body.T_world_object.linear();
-    const Eigen::Quaterniond q(R_world_object);
     const double turned_deg = Eigen::AngleAxisd(object->R_world_put.transpose() * R_world_object).angle() *
                               (180.0 / std::numbers::pi);
     const Coefficients surface = on_room(object->body.material, session.config().physics);
@@ -64,7 +63,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                        {"left_the_map", object->departures},
                        {"position_m", to_json(object->body.T_world_object.translation())},
                        {"middle_m", to_json(middle_world(*object))},
-                       {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+                       {"orientation_xyzw", to_json(Eigen::Quaterniond(R_world_object))},
                        {"turned_deg", turned_deg}});
   }
   nlohmann::json committed_changes = nlohmann::json::array();

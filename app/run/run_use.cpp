@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <utility>
 
 #include "app/objects/virtual_object.hpp"
-#include "mapping/types/system/file_io.hpp"
 
 namespace roomradar {
 namespace {
@@ -126,29 +126,20 @@ std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<Virt
   return why;
 }
 
-FrameUseFile::FrameUseFile(std::filesystem::path path) : path_(std::move(path)) {}
-
-void FrameUseFile::open() {
-  file_.open(path_, std::ios::trunc);
-  file_ << "frame,room_triangles,views_drawn,room_drawn,room_asked_by_radar,valid_px,meshed_px,"
-           "mesh_triangles,flat_cells,cut_cells,full_cells,why\n";
-  require_written(file_.flush(), path_);
-}
+FrameUseFile::FrameUseFile(std::filesystem::path path)
+    : file_(std::move(path),
+            "frame,room_triangles,views_drawn,room_drawn,room_asked_by_radar,valid_px,meshed_px,"
+            "mesh_triangles,flat_cells,cut_cells,full_cells,why\n") {}
 
 void FrameUseFile::write(std::int64_t frame, const FrameUse& use,
                          std::span<const std::unique_ptr<VirtualObject>> objects) {
-  if (!file_.is_open()) open();
   std::string why = reasons_of(use, objects);
   std::replace(why.begin(), why.end(), '"', '\'');  // names of objects may contain quotes
-  file_ << frame << ',' << use.room_triangles << ',' << use.views_drawn << ',' << use.room_drawn << ','
-        << use.room_asked << ',' << use.valid_px << ',' << use.meshed_px << ',' << use.mesh_triangles << ','
-        << use.cells.flat << ',' << use.cells.cut << ',' << use.cells.full << ",\"" << why << "\"\n";
-}
-
-void FrameUseFile::close() {
-  if (!file_.is_open()) return;
-  file_.close();
-  require_written(file_, path_);
+  std::ostringstream line;
+  line << frame << ',' << use.room_triangles << ',' << use.views_drawn << ',' << use.room_drawn << ','
+       << use.room_asked << ',' << use.valid_px << ',' << use.meshed_px << ',' << use.mesh_triangles << ','
+       << use.cells.flat << ',' << use.cells.cut << ',' << use.cells.full << ",\"" << why << "\"\n";
+  file_.append(line.str());
 }
 
 }  // namespace roomradar

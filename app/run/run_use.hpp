@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
+#include "app/run/growing_file.hpp"
 #include "app/session/frame_use.hpp"
 
 namespace roomradar {
@@ -77,13 +77,10 @@ class FrameUseFile {
   void write(std::int64_t frame, const FrameUse& use,
              std::span<const std::unique_ptr<VirtualObject>> objects);
   /// Closes the file. Throws Error if it could not be written completely.
-  void close();
+  void close() { file_.close(); }
 
  private:
-  void open();
-
-  std::filesystem::path path_;
-  std::ofstream file_;
+  GrowingFile file_;
 };
 
 }  // namespace roomradar

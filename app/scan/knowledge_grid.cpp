@@ -46,7 +46,7 @@ void visit_samples(const Frame& frame, const Eigen::Isometry3d& T_to_camera, con
 
 /// Weight of a frame's sample in a cell: the frame's weight, shared by the samples that meet the cell.
 float weight_of(const Frame& frame, float depth_m) {
-  const float sigma = depth_sigma_m(DepthNoise{}, 1.0F) / depth_sigma_m(frame.depth_noise, depth_m);
+  const float sigma = kUnitWeightSigma_m / depth_sigma_m(frame.depth_noise, depth_m);
   const float spacing_m = static_cast<float>(KnowledgeGrid::kStep_px / frame.depth_camera.fx_px) * depth_m;
   const float share = std::min(spacing_m / static_cast<float>(kCell_m), 1.0F);
   return sigma * sigma * share * share;

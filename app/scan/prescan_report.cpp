@@ -129,8 +129,7 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
 
 void print_holes(const std::vector<Hole>& holes) {
   constexpr std::size_t kShown = 5;
-  const auto inside = std::count_if(holes.begin(), holes.end(),
-                                    [](const Hole& hole) { return hole.kind != HoleKind::kOuterBorder; });
+  const auto inside = std::count_if(holes.begin(), holes.end(), is_inside_scan);
   std::printf("holes: %zu, %td of them inside the scan%s\n", holes.size(), inside,
               inside > 0 ? "; the largest, numbered as in coverage.png and the report:" : "");
   for (std::size_t i = 0; i < std::min(static_cast<std::size_t>(inside), kShown); ++i)

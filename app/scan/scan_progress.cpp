@@ -12,8 +12,6 @@
 namespace roomradar {
 namespace {
 
-bool is_tracking(const std::string& stage) { return stage == "track" || stage == "track again"; }
-
 constexpr const char* kLookedAt = "looked";  // the note of each frame in which ghosts are searched
 
 }  // namespace

@@ -17,6 +17,9 @@ inline constexpr const char* kStopsWithoutMap =
     "\nroomradar: stops after the next frame, without a map; after the last frame the map is still made. "
     "Press Ctrl-C again to end at once\n";
 
+/// Returns true for the stages of PrescanProgress in which frames are tracked.
+inline bool is_tracking(const std::string& stage) { return stage == "track" || stage == "track again"; }
+
 /// The window of a scan, and what it shows of the first pass. Both null: there is no window.
 struct ScanWindow {
   ScanChannel* channel = nullptr;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/physics/physics.hpp"
+#include "app/physics/sleeper_contacts.hpp"
 #include "radar/geometry/tree_pairs.hpp"
 #include "radar/motion/joint_motion.hpp"
 #include "radar/motion/time_of_impact.hpp"
@@ -154,7 +155,7 @@ void keep_contacts(std::span<const DueObject> due, std::span<AdvancedBody> advan
     if (!advanced[i].near.empty() || !due[i].object->body.asleep) due[i].object->contacts.clear();
   for (std::size_t i = 0; i < due.size(); ++i) {
     for (const ClosestPoint& p : advanced[i].near) {
-      const Body* other = p.tree < due[i].bodies.size() ? due[i].bodies[p.tree].body : nullptr;
+      const Body* other = body_of(due[i].bodies, p);
       due[i].object->contacts.push_back({p, other});
       const auto met = std::find_if(due.begin(), due.end(),
                                     [&](const DueObject& one) { return &one.object->body == other; });

@@ -65,7 +65,7 @@ double area_m2(const Mesh& mesh) {
 
 void count_holes(const SavedMap& map, MapDetails& details) {
   for (const Hole& hole : survey_coverage(map.octree, map.mesh, map.trajectory).holes) {
-    if (hole.kind == HoleKind::kOuterBorder) continue;
+    if (!is_inside_scan(hole)) continue;
     ++details.holes;
     details.largest_hole_m2 = std::max(details.largest_hole_m2, hole.area_m2);
   }

@@ -65,8 +65,7 @@ double yaw_of_walls_rad(const Mesh& mesh) {
 
 // Returns per vertex whether its surface is well observed.
 std::vector<std::uint8_t> seen_well(const StaticMap& map, const Mesh& mesh) {
-  const double sigma_1m = depth_sigma_m(DepthNoise{}, 1.0F);  // of weight 1
-  const double least_weight = (sigma_1m / kSeenWell_m) * (sigma_1m / kSeenWell_m);
+  const double least_weight = std::pow(double{kUnitWeightSigma_m} / kSeenWell_m, 2);
   std::vector<std::uint8_t> well(mesh.vertices.size(), 0);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vector3d p_world = mesh.origin + mesh.vertices[i].cast<double>();
@@ -140,7 +139,7 @@ void draw_border(const Frontier& frontier, const Projection& view, cv::Mat3b& pi
   for (const FrontierCell& cell : frontier.cells) {
     if (cell.hole < 0) continue;
     const Hole& hole = frontier.holes[static_cast<std::size_t>(cell.hole)];
-    const bool is_outer = hole.kind == HoleKind::kOuterBorder;
+    const bool is_outer = !is_inside_scan(hole);
     if (is_outer && std::abs(hole.look_direction_world.dot(view.into)) > 0.5) continue;
     const cv::Point2d at = view.at(cell.centre_world);
     cv::rectangle(is_outer ? outside : inside,
@@ -285,7 +284,7 @@ std::array<Projection, 3> lay_out(const Mesh& mesh, const Frontier& frontier,
   for (const Eigen::Vector3f& v : mesh.vertices) extend(mesh.origin + v.cast<double>());
   for (const TimedPose& pose : trajectory) extend(pose.T_world_camera.translation());
   for (const FrontierCell& cell : frontier.cells)
-    if (cell.hole >= 0 && frontier.holes[static_cast<std::size_t>(cell.hole)].kind != HoleKind::kOuterBorder)
+    if (cell.hole >= 0 && is_inside_scan(frontier.holes[static_cast<std::size_t>(cell.hole)]))
       extend(cell.centre_world);
   constexpr double kRim_m = 0.15;
   const Vector3d low = box.min().array() - kRim_m;

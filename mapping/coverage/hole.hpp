@@ -26,4 +26,7 @@ struct Hole {
   std::optional<Eigen::Vector3d> viewpoint_world;
 };
 
+/// Returns true for holes inside the scan, not at its end.
+inline bool is_inside_scan(const Hole& hole) { return hole.kind != HoleKind::kOuterBorder; }
+
 }  // namespace roomradar

@@ -121,9 +121,8 @@ void save_map(const fs::path& folder, const SavedMap& map) {
     write_bytes(partial.path() / kMapCoverageFile,
                 std::string(map.coverage_png.begin(), map.coverage_png.end()));
 
-  const std::shared_ptr<const SurfaceTexture> texture = *map.texture;
-  const bool has_texture = texture && fits(*texture, map.mesh);
-  if (has_texture)
+  const std::shared_ptr<const SurfaceTexture> texture = fitting_texture(map);
+  if (texture)
     write_surface_texture(*texture, partial.path() / kMapTextureFile, partial.path() / kMapTexturePointsFile);
 
   MapInfo info = map.info;
@@ -140,7 +139,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   std::vector<std::string> parts(kMapParts.begin(), kMapParts.end());
   parts.emplace_back(kMapUnknownFile);
   if (!map.coverage_png.empty()) parts.emplace_back(kMapCoverageFile);
-  if (has_texture) parts.insert(parts.end(), {kMapTextureFile, kMapTexturePointsFile});
+  if (texture) parts.insert(parts.end(), {kMapTextureFile, kMapTexturePointsFile});
   for (const std::string& part : parts)
     info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
   write_bytes(partial.path() / kMapInfoFile, to_json(info));
@@ -290,6 +289,11 @@ StaticMap load_map_octree(const fs::path& folder) {
     require_sound(folder, info, octree_file_of(info));
     return read_octree(folder, info);
   });
+}
+
+std::shared_ptr<const SurfaceTexture> fitting_texture(const SavedMap& map) {
+  const std::shared_ptr<const SurfaceTexture>& texture = *map.texture;
+  return texture && fits(*texture, map.mesh) ? texture : nullptr;
 }
 
 std::pair<Mesh, SurfaceTexture> load_textured_map_mesh(const fs::path& folder) {

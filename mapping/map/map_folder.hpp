@@ -60,6 +60,9 @@ Mesh load_map_mesh(const std::filesystem::path& folder);
 /// Reads the map's octree, as load_map_mesh() does.
 StaticMap load_map_octree(const std::filesystem::path& folder);
 
+/// Returns the map's texture; null if it has none that fits its mesh. Throws Error if the texture is damaged.
+std::shared_ptr<const SurfaceTexture> fitting_texture(const SavedMap& map);
+
 /// Reads the map's mesh and its texture, as load_map_mesh() does. Returns an empty texture (no corners) if
 /// the map has none.
 std::pair<Mesh, SurfaceTexture> load_textured_map_mesh(const std::filesystem::path& folder);

@@ -9,13 +9,8 @@
 namespace roomradar {
 
 void add_texture_of(const SavedMap& map, const Eigen::Isometry3d& T_world_map, EarlierTextures& earlier) {
-  const std::shared_ptr<const SurfaceTexture>& texture = *map.texture;
-  if (!texture || !fits(*texture, map.mesh)) return;
-  Mesh mesh = map.mesh;
-  const Eigen::Matrix3f R = T_world_map.linear().cast<float>();
-  mesh.origin = T_world_map * mesh.origin;
-  for (Eigen::Vector3f& vertex : mesh.vertices) vertex = R * vertex;
-  earlier.push_back(std::make_unique<const EarlierTexture>(std::move(mesh), *texture));
+  if (const auto texture = fitting_texture(map))
+    earlier.push_back(std::make_unique<const EarlierTexture>(transformed(map.mesh, T_world_map), *texture));
 }
 
 void renew_texture(const EarlierTextures& earlier, SavedMap& map) {

@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "mapping/types/disjoint_sets.hpp"
-
 namespace roomradar {
 namespace {
 
@@ -16,6 +14,15 @@ float area_m2(const Mesh& mesh, const Triangle& t) {
 }
 
 }  // namespace
+
+DisjointSets<std::uint32_t> components_of(const Mesh& mesh) {
+  DisjointSets<std::uint32_t> pieces(static_cast<std::uint32_t>(mesh.vertices.size()));
+  for (const Triangle& t : mesh.triangles) {
+    pieces.join(t[1], t[0]);
+    pieces.join(t[2], t[0]);
+  }
+  return pieces;
+}
 
 Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles) {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
@@ -40,11 +47,7 @@ Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles) {
 }
 
 Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2) {
-  DisjointSets<std::uint32_t> pieces(static_cast<std::uint32_t>(mesh.vertices.size()));
-  for (const Triangle& t : mesh.triangles) {
-    pieces.join(t[1], t[0]);
-    pieces.join(t[2], t[0]);
-  }
+  DisjointSets<std::uint32_t> pieces = components_of(mesh);
   std::vector<float> piece_area_m2(mesh.vertices.size(), 0.0F);
   for (const Triangle& t : mesh.triangles) piece_area_m2[pieces.find(t[0])] += area_m2(mesh, t);
   std::vector<Triangle> kept;

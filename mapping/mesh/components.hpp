@@ -1,8 +1,14 @@
 // components.hpp: connected components of a mesh, and removal of small ones.
 #pragma once
+#include <cstdint>
+
+#include "mapping/types/disjoint_sets.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
+
+/// Returns the connected components of the vertices, by shared triangles.
+DisjointSets<std::uint32_t> components_of(const Mesh& mesh);
 
 /// Returns a mesh of the given triangles and the vertices they use, in order of first use. Their vertex
 /// indices refer to `mesh`.

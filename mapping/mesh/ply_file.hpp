@@ -21,7 +21,7 @@ std::string ply_bytes(const Mesh& mesh);
 std::optional<Mesh> mesh_of_ply(std::string_view bytes, const std::filesystem::path& path);
 
 /// Erases triangles that are less than 10^-12 as high as long, in the coordinates of a file, where the origin
-/// is added. A superset of those that reading a file drops, whose area is 0 but for rounding.
+/// is added. A superset of those that reading a file drops, whose area is 0 except for rounding.
 void erase_flat_triangles(Mesh& mesh);
 
 }  // namespace roomradar

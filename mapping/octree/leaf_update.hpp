@@ -14,9 +14,6 @@
 
 namespace roomradar {
 
-/// Standard deviation of a measurement of weight 1, m: that of a Kinect v1 at 1 m.
-inline const float kUnitWeightSigma_m = depth_sigma_m(DepthNoise{}, 1.0F);
-
 /// Returns the weight of a measurement: the variance of one of weight 1 divided by its own, at most 1.
 inline float weight_at(const DepthNoise& noise, float depth_m) {
   const float ratio = kUnitWeightSigma_m / depth_sigma_m(noise, depth_m);

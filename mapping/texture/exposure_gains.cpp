@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "mapping/texture/view_alignment.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -34,14 +36,11 @@ std::vector<std::vector<Sample>> shared_points(const Mesh& mesh, std::span<const
   std::vector<std::vector<Sample>> points;
   const std::size_t step = std::max<std::size_t>(1, mesh.triangles.size() / kPoints);
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
-    Eigen::Vector3f centre = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
-    for (const std::uint32_t vertex : mesh.triangles[t]) {
-      centre += mesh.vertices[vertex] / 3.0F;
-      normal += mesh.normals[vertex];
-    }
+    const MeshPoint centre =
+        mesh_point(mesh, static_cast<std::uint32_t>(t), Eigen::Vector3f::Constant(1.0F / 3.0F));
     std::vector<Sample> samples;
     for (std::uint32_t v = 0; v < views.size(); ++v) {
-      const ShownPoint point = shown(views[v], centre, normal.normalized());
+      const ShownPoint point = shown(views[v], centre.p_local, centre.normal);
       if (!(point.score > 0.0F)) continue;
       const Eigen::Array3f colour = low_colour_at(views[v], point.pixel);
       if (colour.minCoeff() > kDark && colour.maxCoeff() < kBright)

@@ -140,9 +140,7 @@ ShownPoint shown(const TextureView& view, const Eigen::Vector3f& p_local, const 
   const float cosine = -(view.T_camera_local.linear() * normal).dot(p) / p.norm();
   if (!(cosine > kMinFrontality)) return {};
   const Intrinsics& camera = view.camera;
-  const Eigen::Vector2f pixel(
-      static_cast<float>(camera.fx_px) * p.x() / p.z() + static_cast<float>(camera.cx_px),
-      static_cast<float>(camera.fy_px) * p.y() / p.z() + static_cast<float>(camera.cy_px));
+  const Eigen::Vector2f pixel = pixel_of(camera, p);
   const float to_border_px =
       std::min({pixel.x(), pixel.y(), static_cast<float>(camera.width_px - 1) - pixel.x(),
                 static_cast<float>(camera.height_px - 1) - pixel.y()}) -

@@ -31,6 +31,12 @@ struct TextureView {
 TextureView make_texture_view(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const Mesh& mesh,
                               double image_speed_pxps);
 
+/// Returns the image coordinates of a point in front of the camera.
+inline Eigen::Vector2f pixel_of(const Intrinsics& camera, const Eigen::Vector3f& p_camera) {
+  return {static_cast<float>(camera.fx_px) * p_camera.x() / p_camera.z() + static_cast<float>(camera.cx_px),
+          static_cast<float>(camera.fy_px) * p_camera.y() / p_camera.z() + static_cast<float>(camera.cy_px)};
+}
+
 /// A point of the mesh's surface as a view shows it.
 struct ShownPoint {
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  ///< in TextureView::colour

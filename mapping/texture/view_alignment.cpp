@@ -68,13 +68,6 @@ Grey grey_at(const GreyPicture& picture, const Eigen::Vector2f& pixel) {
            picture.scale * ((1.0F - u) * (c - a) + u * (d - b))}};
 }
 
-Eigen::Vector2f pixel_of(const TextureView& view, const Eigen::Vector3f& p_camera) {
-  return {static_cast<float>(view.camera.fx_px) * p_camera.x() / p_camera.z() +
-              static_cast<float>(view.camera.cx_px),
-          static_cast<float>(view.camera.fy_px) * p_camera.y() / p_camera.z() +
-              static_cast<float>(view.camera.cy_px)};
-}
-
 /// A view while it is aligned.
 struct Aligned {
   TextureView* view = nullptr;
@@ -109,7 +102,7 @@ void step(std::span<const MeshPoint> points, std::span<const float> brightness, 
     if (brightness[i] < 0.0F) continue;
     const Eigen::Vector3f p = view.T_camera_local * points[i].p_local;
     if (!(p.z() > 0.1F)) continue;
-    const Grey grey = grey_at(aligned.picture, pixel_of(view, p));
+    const Grey grey = grey_at(aligned.picture, pixel_of(view.camera, p));
     if (!grey.is_inside) continue;
     const float difference = grey.value - brightness[i];
     const float weight = std::min(1.0F, kHuber / std::max(std::abs(difference), 1e-3F));
@@ -144,8 +137,8 @@ void set_brightness(std::span<const MeshPoint> points, std::span<const Aligned> 
   brightness.assign(points.size(), 0.0F);
   for (const Aligned& aligned : all)
     for (const std::uint32_t i : aligned.visible) {
-      const Grey grey =
-          grey_at(aligned.picture, pixel_of(*aligned.view, aligned.view->T_camera_local * points[i].p_local));
+      const Grey grey = grey_at(
+          aligned.picture, pixel_of(aligned.view->camera, aligned.view->T_camera_local * points[i].p_local));
       if (!grey.is_inside) continue;
       brightness[i] += grey.value;
       count[i] += 1.0F;

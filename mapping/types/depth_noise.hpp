@@ -33,6 +33,9 @@ inline float depth_sigma_m(const DepthNoise& noise, float depth_m) {
   return noise.base_m + noise.quadratic_per_m * beyond_m * beyond_m + noise.linear * depth_m;
 }
 
+/// Standard deviation, m, of a measurement of weight 1 in a map: that of a Kinect v1 at 1 m.
+inline const float kUnitWeightSigma_m = depth_sigma_m(DepthNoise{}, 1.0F);
+
 /// Returns the depth, m, of at least DepthNoise::from_m, at which depth_sigma_m() is sigma_m; infinite if
 /// there is none.
 inline float depth_of_sigma_m(const DepthNoise& noise, float sigma_m) {

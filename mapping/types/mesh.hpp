@@ -1,6 +1,6 @@
 // mesh.hpp: triangle meshes. Vertices are floats relative to a local origin, and thus precise far from zero.
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -20,5 +20,14 @@ struct Mesh {
   std::vector<Rgb> colours;                          ///< empty or one per vertex
   std::vector<Triangle> triangles;
 };
+
+/// Returns the mesh in the frame `to`. Vertices stay relative to a local origin.
+inline Mesh transformed(Mesh mesh, const Eigen::Isometry3d& T_to_mesh) {
+  const Eigen::Matrix3f R = T_to_mesh.linear().cast<float>();
+  mesh.origin = T_to_mesh * mesh.origin;
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex = R * vertex;
+  for (Eigen::Vector3f& normal : mesh.normals) normal = R * normal;
+  return mesh;
+}
 
 }  // namespace roomradar

@@ -43,6 +43,14 @@ class ByteReader {
     if (count > 0) std::memcpy(to, bytes_.data(), count);
     bytes_.remove_prefix(count);
   }
+  /// Returns the next number, or array of numbers, as memory has it.
+  template <typename Number>
+  Number number() {
+    static_assert(std::is_trivially_copyable_v<Number>);
+    Number value{};
+    raw(&value, sizeof value);
+    return value;
+  }
   /// Throws Error if fewer than `count` * `item_bytes` bytes are left.
   void require(std::uint64_t count, std::size_t item_bytes) const {
     if (count > bytes_.size() / item_bytes) fail("is cut short");

@@ -61,9 +61,8 @@ std::vector<CommandHelp> command_helps() {
        "  roomradar map verify maps/kitchen\n  for m in maps/*/; do roomradar map verify \"$m\"; done\n"},
       {"map export",
        {{"Options", {"--unknown"}}},
-       "  roomradar map export maps/kitchen kitchen.html\n  roomradar map export maps/kitchen kitchen.bt    "
-       "# "
-       "for octovis\n"},
+       "  roomradar map export maps/kitchen kitchen.html\n"
+       "  roomradar map export maps/kitchen kitchen.bt    # for octovis\n"},
       {"map merge",
        {{"Options", {"--map", "--deviation", "--report"}}},
        "  roomradar map merge maps/monday maps/tuesday --map maps/both\n"

@@ -24,14 +24,6 @@ SavedMap mapped(FrameSource& source) {
   return std::move(prescan(source, config, times).map);
 }
 
-Mesh moved(Mesh mesh, const Eigen::Isometry3d& T_to_from) {
-  const Eigen::Matrix3f turn = T_to_from.linear().cast<float>();
-  mesh.origin = T_to_from * mesh.origin;
-  for (Eigen::Vector3f& vertex : mesh.vertices) vertex = turn * vertex;
-  for (Eigen::Vector3f& normal : mesh.normals) normal = turn * normal;
-  return mesh;
-}
-
 void add_run_frames(const SimOptions& options, RunScene& scene) {
   SimulatedSource source(options);
   for (Frame frame; source.next(frame).status == ReadStatus::kFrame;) {
@@ -82,7 +74,7 @@ std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const Trade
   scan.depth_camera = run.depth_camera;
   SimulatedSource source(scan);
   scene->map = mapped(source);
-  scene->mesh_room = moved(scene->map.mesh, scene->map.info.T_world_recorded.inverse());
+  scene->mesh_room = transformed(scene->map.mesh, scene->map.info.T_world_recorded.inverse());
   add_run_frames(run, *scene);
   for (int number = 0; number < scale.scenarios; ++number) {
     scene->scenarios.push_back(std::make_unique<PreparedScenario>(*scene->room, run.seed, number));

@@ -6,21 +6,31 @@
 #include <string>
 #include <utility>
 
+#include "app/sources/containers/decompress.hpp"
+#include "app/sources/containers/random_access_file.hpp"
+
 namespace roomradar {
+
+/// A block of a file, as stored.
+struct PackedBlock {
+  std::uint64_t offset = 0, packed_bytes = 0, bytes = 0;
+  Compression compression = Compression::kNone;
+};
 
 /// Up to four blocks, or as many as 64 MB hold. The messages of one frame, and the transforms around its
 /// time, are in neighbouring blocks: reading in order decompresses each block once. Not thread safe.
 class BlockCache {
  public:
-  /// Returns the block `number`, made by make() unless it is cached. The reference is valid until the next
-  /// call.
-  template <typename Make>
-  const std::string& get(std::uint32_t number, const Make& make) {
+  /// Returns the block `number`, decompressed unless it is cached. The reference is valid until the next
+  /// call. Throws Error naming the file if the block is damaged.
+  const std::string& get(std::uint32_t number, const RandomAccessFile& file, const PackedBlock& block) {
     constexpr std::size_t kMaxBlocks = 4, kMax_bytes = std::size_t{64} << 20U;
     const auto found = std::find_if(blocks_.begin(), blocks_.end(),
-                                    [number](const auto& block) { return block.first == number; });
+                                    [number](const auto& cached) { return cached.first == number; });
     if (found != blocks_.end()) return found->second;
-    blocks_.emplace_back(number, make());
+    blocks_.emplace_back(
+        number, decompress(block.compression, file.read(block.offset, block.packed_bytes), block.bytes,
+                           file.name() + ": the chunk at byte " + std::to_string(block.offset)));
     bytes_ += blocks_.back().second.size();
     while (blocks_.size() > kMaxBlocks && bytes_ > kMax_bytes) {
       bytes_ -= blocks_.front().second.size();

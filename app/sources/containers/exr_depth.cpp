@@ -18,17 +18,10 @@ constexpr std::uint32_t kExrMagic = 20000630, kExrVersion = 2, kLongNames = 0x40
 constexpr std::int32_t kHalf = 1, kFloat = 2;
 enum class ExrCompression : std::uint8_t { kNone = 0, kZipPerRow = 2, kZip = 3 };
 
-template <typename Number>
-Number take_number(ByteReader& reader) {
-  Number number{};
-  reader.raw(&number, sizeof number);
-  return number;
-}
-
 /// Reads a text that ends with a zero, of at most 255 characters.
 std::string zero_ended(ByteReader& reader) {
   std::string text;
-  for (char c = take_number<char>(reader); c != '\0'; c = take_number<char>(reader)) {
+  for (char c = reader.number<char>(); c != '\0'; c = reader.number<char>()) {
     text += c;
     if (text.size() > 255) reader.fail("is damaged: a name in its header is too long");
   }
@@ -45,10 +38,10 @@ struct ExrHeader {
 void read_channels(std::string_view value, const std::string& where, ExrHeader& header) {
   ByteReader reader(value, where);
   const std::string name = zero_ended(reader);
-  header.pixel_type = take_number<std::int32_t>(reader);
+  header.pixel_type = reader.number<std::int32_t>();
   (void)reader.take(4);
-  const auto x_sampling = take_number<std::int32_t>(reader), y_sampling = take_number<std::int32_t>(reader);
-  if (name.empty() || take_number<char>(reader) != '\0' || x_sampling != 1 || y_sampling != 1 ||
+  const auto x_sampling = reader.number<std::int32_t>(), y_sampling = reader.number<std::int32_t>();
+  if (name.empty() || reader.number<char>() != '\0' || x_sampling != 1 || y_sampling != 1 ||
       (header.pixel_type != kHalf && header.pixel_type != kFloat))
     throw Error(where + ": must have one channel of half or float, the depth in metres");
 }
@@ -57,13 +50,13 @@ ExrHeader read_header(ByteReader& reader) {
   ExrHeader header;
   for (std::string name = zero_ended(reader); !name.empty(); name = zero_ended(reader)) {
     (void)zero_ended(reader);  // its type
-    const auto size = take_number<std::int32_t>(reader);
+    const auto size = reader.number<std::int32_t>();
     if (size < 0) reader.fail("is damaged: an attribute's size is below 0");
     const std::string_view value = reader.take(static_cast<std::size_t>(size));
     ByteReader value_reader(value, reader.where());
     if (name == "channels") read_channels(value, reader.where(), header);
-    if (name == "compression") header.compression = take_number<ExrCompression>(value_reader);
-    if (name == "dataWindow") header.data_window = take_number<std::array<std::int32_t, 4>>(value_reader);
+    if (name == "compression") header.compression = value_reader.number<ExrCompression>();
+    if (name == "dataWindow") header.data_window = value_reader.number<std::array<std::int32_t, 4>>();
   }
   return header;
 }
@@ -97,9 +90,9 @@ void decode_exr_depth(std::string_view bytes, const std::string& where, DepthIma
   constexpr std::int64_t kMaxSide_px = 16384;
   constexpr std::int64_t kMostPacked = 1032;  // deflate compresses by no more
   ByteReader reader(bytes, where);
-  if (bytes.size() < 8 || take_number<std::uint32_t>(reader) != kExrMagic)
+  if (bytes.size() < 8 || reader.number<std::uint32_t>() != kExrMagic)
     throw Error(where + ": is not an EXR image");
-  if ((take_number<std::uint32_t>(reader) & ~kLongNames) != kExrVersion)
+  if ((reader.number<std::uint32_t>() & ~kLongNames) != kExrVersion)
     throw Error(where +
                 ": is tiled, deep, of several parts or of another version; must be a plain EXR image");
   const ExrHeader header = read_header(reader);
@@ -122,8 +115,8 @@ void decode_exr_depth(std::string_view bytes, const std::string& where, DepthIma
 
   depth_m.resize(static_cast<int>(width), static_cast<int>(height));
   for (std::int64_t block = 0; block < blocks; ++block) {
-    const std::int64_t first_row = std::int64_t{take_number<std::int32_t>(reader)} - top;
-    const auto size = take_number<std::int32_t>(reader);
+    const std::int64_t first_row = std::int64_t{reader.number<std::int32_t>()} - top;
+    const auto size = reader.number<std::int32_t>();
     if (first_row < 0 || first_row >= height || first_row % rows_per_block != 0 || size < 0)
       reader.fail("is damaged: a block of rows is out of place");
     const std::int64_t rows = std::min(rows_per_block, height - first_row);

@@ -158,11 +158,7 @@ std::uint64_t read_cluster(const RandomAccessFile& file, const Element& cluster,
 
 }  // namespace
 
-bool is_matroska(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  return RandomAccessFile(path).read_up_to(0, 4) == "\x1A\x45\xDF\xA3";
-}
+bool is_matroska(const std::filesystem::path& path) { return begins_with(path, "\x1A\x45\xDF\xA3"); }
 
 MatroskaIndex index_matroska(const RandomAccessFile& file) {
   Elements top(file, 0, file.size());

@@ -24,29 +24,12 @@ constexpr std::uint64_t kMessageHead_bytes = 22;  // channel, sequence, two time
 constexpr std::uint64_t kMaxRecord_bytes = 1U << 26U;
 constexpr std::uint32_t kNoChunk = 0xFFFFFFFF;
 
-template <typename Number>
-Number next(ByteReader& reader) {
-  Number number{};
-  reader.raw(&number, sizeof number);
-  return number;
-}
-std::string next_text(ByteReader& reader) { return std::string(reader.take(next<std::uint32_t>(reader))); }
-
-struct McapChunk {
-  std::uint64_t offset = 0, packed_bytes = 0, bytes = 0;
-  Compression compression = Compression::kNone;
-};
+std::string next_text(ByteReader& reader) { return std::string(reader.take(reader.number<std::uint32_t>())); }
 
 struct McapChannel {
   std::uint16_t schema = 0;
   std::string topic, encoding;
 };
-
-/// Returns a type's name as ROS 1 writes it: without the "/msg" of ROS 2.
-std::string without_msg(std::string type) {
-  const std::size_t msg = type.find("/msg/");
-  return msg == std::string::npos ? type : type.erase(msg, 4);
-}
 
 class Mcap {
  public:
@@ -67,7 +50,7 @@ class Mcap {
     for (const auto& [id, channel] : channels_) {
       if (channel.encoding != wanted || !schemas_.contains(channel.schema)) continue;
       topic_of[id] = static_cast<std::uint32_t>(log.topics.size());
-      log.topics.push_back({channel.topic, without_msg(schemas_[channel.schema])});
+      log.topics.push_back({channel.topic, ros1_type_name(schemas_[channel.schema])});
     }
     for (MessageEntry& entry : messages_) {
       const auto topic = topic_of.find(static_cast<std::uint16_t>(entry.topic));
@@ -75,7 +58,7 @@ class Mcap {
       entry.topic = topic->second;
       log.messages.push_back(entry);
     }
-    log.reads_starts = std::all_of(chunks_.begin(), chunks_.end(), [](const McapChunk& chunk) {
+    log.reads_starts = std::all_of(chunks_.begin(), chunks_.end(), [](const PackedBlock& chunk) {
       return chunk.compression == Compression::kNone;
     });
     return log;
@@ -97,8 +80,8 @@ class Mcap {
     if (entry.offset > end) damaged_index();
     const std::string head = read(entry.offset, kRecordHead_bytes);
     ByteReader reader(head, file_.name());
-    if (next<std::uint8_t>(reader) != kMessageRecord) damaged_index();
-    const auto length = next<std::uint64_t>(reader);
+    if (reader.number<std::uint8_t>() != kMessageRecord) damaged_index();
+    const auto length = reader.number<std::uint64_t>();
     if (length < kMessageHead_bytes || length > kMaxBlock_bytes) damaged_index();
     return read(entry.offset + kRecordHead_bytes + kMessageHead_bytes,
                 std::min(max_bytes, length - kMessageHead_bytes));
@@ -109,21 +92,15 @@ class Mcap {
     throw Error(file_.name() + ": is damaged: no message is at a place where its index says so");
   }
 
-  const std::string& decompressed(std::uint32_t number) {
-    return cache_.get(number, [&] {
-      const McapChunk& chunk = chunks_[number];
-      return decompress(chunk.compression, file_.read(chunk.offset, chunk.packed_bytes), chunk.bytes,
-                        file_.name() + ": the chunk at byte " + std::to_string(chunk.offset));
-    });
-  }
+  const std::string& decompressed(std::uint32_t number) { return cache_.get(number, file_, chunks_[number]); }
 
   void walk() {
     std::set<std::uint32_t> indexed;  // chunks with a message index
     for (std::uint64_t at = kMcapMagic.size(); file_.has(at, kRecordHead_bytes);) {
       const std::string head = file_.read(at, kRecordHead_bytes);
       ByteReader reader(head, file_.name());
-      const auto kind = next<std::uint8_t>(reader);
-      const auto length = next<std::uint64_t>(reader);
+      const auto kind = reader.number<std::uint8_t>();
+      const auto length = reader.number<std::uint64_t>();
       const std::uint64_t content = at + kRecordHead_bytes;
       if (!file_.has(content, length)) break;  // the recorder was stopped
       if (kind == kMessageRecord && length >= kMessageHead_bytes) {
@@ -163,11 +140,11 @@ class Mcap {
     const std::string bytes = file_.read(content, std::min(length, kMaxHead_bytes));
     ByteReader reader(bytes, file_.name());
     (void)reader.take(16);  // first and last time
-    McapChunk chunk;
-    chunk.bytes = next<std::uint64_t>(reader);
-    (void)next<std::uint32_t>(reader);  // check sum
+    PackedBlock chunk;
+    chunk.bytes = reader.number<std::uint64_t>();
+    (void)reader.number<std::uint32_t>();  // check sum
     const std::string compression = next_text(reader);
-    chunk.packed_bytes = next<std::uint64_t>(reader);
+    chunk.packed_bytes = reader.number<std::uint64_t>();
     const std::uint64_t head_bytes = bytes.size() - reader.left();
     chunk.offset = content + head_bytes;
     if (compression == "lz4")
@@ -185,31 +162,32 @@ class Mcap {
 
   void add_index(const std::string& bytes, std::uint32_t chunk) {
     ByteReader reader(bytes, file_.name());
-    const auto channel = next<std::uint16_t>(reader);
-    const auto array_bytes = next<std::uint32_t>(reader);
+    const auto channel = reader.number<std::uint16_t>();
+    const auto array_bytes = reader.number<std::uint32_t>();
     constexpr std::uint32_t kEntry_bytes = 16;
     for (std::uint32_t i = 0; i + kEntry_bytes <= array_bytes; i += kEntry_bytes) {
-      const auto time_ns = next<std::uint64_t>(reader);
-      messages_.push_back({1e-9 * static_cast<double>(time_ns), channel, chunk, next<std::uint64_t>(reader)});
+      const auto time_ns = reader.number<std::uint64_t>();
+      messages_.push_back(
+          {1e-9 * static_cast<double>(time_ns), channel, chunk, reader.number<std::uint64_t>()});
     }
   }
 
   void add_message(const std::string& head, std::uint32_t chunk, std::uint64_t offset) {
     ByteReader reader(head, file_.name());
-    const auto channel = next<std::uint16_t>(reader);
-    (void)next<std::uint32_t>(reader);  // sequence number
-    messages_.push_back({1e-9 * static_cast<double>(next<std::uint64_t>(reader)), channel, chunk, offset});
+    const auto channel = reader.number<std::uint16_t>();
+    (void)reader.number<std::uint32_t>();  // sequence number
+    messages_.push_back({1e-9 * static_cast<double>(reader.number<std::uint64_t>()), channel, chunk, offset});
   }
 
   void add_description(std::uint8_t kind, std::string_view bytes) {
     ByteReader reader(bytes, file_.name());
-    const auto id = next<std::uint16_t>(reader);
+    const auto id = reader.number<std::uint16_t>();
     if (kind == kSchemaRecord) {
       schemas_.try_emplace(id, next_text(reader));
       return;
     }
     McapChannel channel;
-    channel.schema = next<std::uint16_t>(reader);
+    channel.schema = reader.number<std::uint16_t>();
     channel.topic = next_text(reader);
     channel.encoding = next_text(reader);
     channels_.try_emplace(id, channel);
@@ -221,8 +199,8 @@ class Mcap {
     ByteReader reader(bytes, file_.name());
     while (reader.left() >= kRecordHead_bytes) {
       const std::uint64_t offset = bytes.size() - reader.left();
-      const auto kind = next<std::uint8_t>(reader);
-      const auto length = next<std::uint64_t>(reader);
+      const auto kind = reader.number<std::uint8_t>();
+      const auto length = reader.number<std::uint64_t>();
       const std::string_view content = reader.take(length);
       if (kind == kSchemaRecord || kind == kChannelRecord) add_description(kind, content);
       if (kind == kMessageRecord && messages_too && length >= kMessageHead_bytes)
@@ -231,7 +209,7 @@ class Mcap {
   }
 
   RandomAccessFile file_;
-  std::vector<McapChunk> chunks_;
+  std::vector<PackedBlock> chunks_;
   std::map<std::uint16_t, std::string> schemas_;  // names of types
   std::map<std::uint16_t, McapChannel> channels_;
   std::vector<MessageEntry> messages_;  // `topic` is the channel
@@ -240,11 +218,7 @@ class Mcap {
 
 }  // namespace
 
-bool is_mcap(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  return RandomAccessFile(path).read_up_to(0, kMcapMagic.size()) == kMcapMagic;
-}
+bool is_mcap(const std::filesystem::path& path) { return begins_with(path, kMcapMagic); }
 
 MessageLog open_mcap(const std::filesystem::path& path) {
   const auto mcap = std::make_shared<Mcap>(path);

@@ -5,6 +5,19 @@
 
 namespace roomradar {
 
+std::string ros1_type_name(std::string type) {
+  const std::size_t msg = type.find("/msg/");
+  return msg == std::string::npos ? type : type.erase(msg, 4);
+}
+
+std::uint32_t number_of_topic(const MessageTopic& topic, std::vector<MessageTopic>& topics) {
+  const auto found = std::find_if(topics.begin(), topics.end(),
+                                  [&](const MessageTopic& each) { return each.name == topic.name; });
+  const auto number = static_cast<std::uint32_t>(found - topics.begin());
+  if (found == topics.end()) topics.push_back(topic);
+  return number;
+}
+
 std::vector<MessageEntry> messages_of(const MessageLog& log, std::uint32_t topic) {
   std::vector<MessageEntry> entries;
   for (const MessageEntry& entry : log.messages)

@@ -40,6 +40,12 @@ struct MessageLog {
   }
 };
 
+/// Returns a type's name as ROS 1 writes it: without the "/msg" of ROS 2.
+[[nodiscard]] std::string ros1_type_name(std::string type);
+
+/// Returns the number of the topic of this name, which is added if there is none.
+std::uint32_t number_of_topic(const MessageTopic& topic, std::vector<MessageTopic>& topics);
+
 /// Returns the messages of a topic, by stamp.
 [[nodiscard]] std::vector<MessageEntry> messages_of(const MessageLog& log, std::uint32_t topic);
 

@@ -13,23 +13,16 @@ constexpr std::uint32_t kNodeAddedOldest = 2, kIntegerProperty = 3, kRealPropert
 constexpr std::uint64_t kFileHeader_bytes = 24;
 constexpr std::uint32_t kMaxFields_bytes = 1U << 16U;
 
-template <typename Number>
-Number read_number(ByteReader& reader) {
-  Number number{};
-  reader.raw(&number, sizeof number);
-  return number;
-}
-
 /// Reads a text with its length, which counts a zero at its end.
 std::string read_oni_text(ByteReader& reader) {
-  std::string text(reader.take(read_number<std::uint32_t>(reader)));
+  std::string text(reader.take(reader.number<std::uint32_t>()));
   while (text.ends_with('\0')) text.pop_back();
   return text;
 }
 
 void add_property(std::uint32_t type, ByteReader& reader, OniNode& node) {
   const std::string name = read_oni_text(reader);
-  const std::string value(reader.take(read_number<std::uint32_t>(reader)));
+  const std::string value(reader.take(reader.number<std::uint32_t>()));
   std::uint64_t number = 0;
   if (type == kIntegerProperty && value.size() <= sizeof number) {
     std::memcpy(&number, value.data(), value.size());
@@ -41,19 +34,15 @@ void add_property(std::uint32_t type, ByteReader& reader, OniNode& node) {
 
 }  // namespace
 
-bool is_oni(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  return RandomAccessFile(path).read_up_to(0, 4) == "NI10";
-}
+bool is_oni(const std::filesystem::path& path) { return begins_with(path, "NI10"); }
 
 std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file) {
   const std::string head = file.read(0, kFileHeader_bytes);
   ByteReader head_reader(head, file.name());
   if (head_reader.take(4) != "NI10") throw Error(file.name() + ": is not a recording of OpenNI");
-  const auto major = read_number<std::uint8_t>(head_reader), minor = read_number<std::uint8_t>(head_reader);
-  const auto maintenance = read_number<std::uint16_t>(head_reader);
-  const auto build = read_number<std::uint32_t>(head_reader);
+  const auto major = head_reader.number<std::uint8_t>(), minor = head_reader.number<std::uint8_t>();
+  const auto maintenance = head_reader.number<std::uint16_t>();
+  const auto build = head_reader.number<std::uint32_t>();
   if (major != 1 || minor != 0) throw Error(file.name() + ": is of another version of OpenNI than 1.0");
   // Offsets had 32 bits before version 1.0.0.5.
   const std::uint64_t header_bytes = maintenance == 0 && build < 5 ? 24 : 28;
@@ -62,10 +51,10 @@ std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file) {
   for (std::uint64_t at = kFileHeader_bytes; file.has(at, header_bytes);) {
     const std::string bytes = file.read(at, header_bytes);
     ByteReader reader(bytes, file.name());
-    if (read_number<std::uint32_t>(reader) != kRecordMagic) break;
-    const auto type = read_number<std::uint32_t>(reader), id = read_number<std::uint32_t>(reader);
-    const auto fields_bytes = read_number<std::uint32_t>(reader);  // with the header
-    const auto payload_bytes = read_number<std::uint32_t>(reader);
+    if (reader.number<std::uint32_t>() != kRecordMagic) break;
+    const auto type = reader.number<std::uint32_t>(), id = reader.number<std::uint32_t>();
+    const auto fields_bytes = reader.number<std::uint32_t>();  // with the header
+    const auto payload_bytes = reader.number<std::uint32_t>();
     if (fields_bytes < header_bytes || fields_bytes > kMaxFields_bytes || type == kEnd) break;
     if (!file.has(at + fields_bytes, payload_bytes)) break;  // the recorder was stopped
     const std::string fields = file.read(at + header_bytes, fields_bytes - header_bytes);
@@ -73,14 +62,13 @@ std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file) {
     if (type == kNodeAdded || type == kNodeAddedOld || type == kNodeAddedOldest) {
       OniNode& node = nodes[id];
       (void)read_oni_text(field_reader);
-      node.kind = static_cast<OniNodeKind>(read_number<std::uint32_t>(field_reader));
+      node.kind = static_cast<OniNodeKind>(field_reader.number<std::uint32_t>());
       node.codec = std::string(field_reader.take(4));
     } else if (type == kIntegerProperty || type == kRealProperty || type == kStringProperty ||
                type == kGeneralProperty) {
       add_property(type, field_reader, nodes[id]);
     } else if (type == kNewData) {
-      nodes[id].frames.push_back(
-          {read_number<std::uint64_t>(field_reader), at + fields_bytes, payload_bytes});
+      nodes[id].frames.push_back({field_reader.number<std::uint64_t>(), at + fields_bytes, payload_bytes});
     }
     at += std::uint64_t{fields_bytes} + payload_bytes;
   }
@@ -95,7 +83,7 @@ std::vector<std::uint16_t> decompress_oni_depth(std::string_view packed, bool ha
   ByteReader reader(packed, where);
   std::vector<std::uint16_t> table;
   if (has_table) {
-    const auto count = read_number<std::uint16_t>(reader);
+    const auto count = reader.number<std::uint16_t>();
     reader.require(count, sizeof(std::uint16_t));
     table.resize(count);
     reader.raw(table.data(), table.size() * sizeof(std::uint16_t));
@@ -109,21 +97,21 @@ std::vector<std::uint16_t> decompress_oni_depth(std::string_view packed, bool ha
     values.insert(values.end(), times, has_table ? table[last] : last);
   };
   const auto put_long = [&] {  // after 0xF or 0xFF
-    const auto first = read_number<std::uint8_t>(reader);
+    const auto first = reader.number<std::uint8_t>();
     if (first & 0x80U)
       last = static_cast<std::uint16_t>(last - (first - 192));
     else
-      last = static_cast<std::uint16_t>(first << 8U | read_number<std::uint8_t>(reader));
+      last = static_cast<std::uint16_t>(first << 8U | reader.number<std::uint8_t>());
     put(1);
   };
   const auto put_nibble = [&](unsigned nibble) {
     last = static_cast<std::uint16_t>(last - (static_cast<int>(nibble) - 6));
     put(1);
   };
-  last = read_number<std::uint16_t>(reader);
+  last = reader.number<std::uint16_t>();
   put(1);
   while (reader.left() > 0) {
-    const auto byte = read_number<std::uint8_t>(reader);
+    const auto byte = reader.number<std::uint8_t>();
     const unsigned high = byte >> 4U, low = byte & 0x0FU;
     if (byte < 0xE0U) {
       put_nibble(high);

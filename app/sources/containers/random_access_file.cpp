@@ -46,4 +46,10 @@ std::string RandomAccessFile::read_up_to(std::uint64_t offset, std::uint64_t cou
   return offset >= size_ ? std::string{} : read(offset, std::min(count, size_ - offset));
 }
 
+bool begins_with(const std::filesystem::path& path, std::string_view bytes) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) &&
+         RandomAccessFile(path).read_up_to(0, bytes.size()) == bytes;
+}
+
 }  // namespace roomradar

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace roomradar {
 
@@ -34,5 +35,9 @@ class RandomAccessFile {
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
 };
+
+/// Returns true if the path is a regular file that begins with these bytes. Throws Error if it cannot be
+/// read.
+[[nodiscard]] bool begins_with(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace roomradar

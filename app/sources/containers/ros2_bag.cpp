@@ -15,11 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string ros1_name(std::string type) {
-  const std::size_t msg = type.find("/msg/");
-  return msg == std::string::npos ? type : type.erase(msg, 4);
-}
-
 bool is_db3(const fs::path& path) { return path.extension() == ".db3" && is_sqlite(path); }
 
 /// Decompresses a message that begins with zstd's magic number. CDR begins with a zero.
@@ -36,7 +31,7 @@ MessageLog open_db3(const fs::path& path) {
   std::map<std::int64_t, std::uint32_t> topic_of;
   database->query("SELECT id, name, type FROM topics", {}, [&](const SqliteRow& row) {
     topic_of[row.integer(0)] = static_cast<std::uint32_t>(log.topics.size());
-    log.topics.push_back({std::string(row.bytes(1)), ros1_name(std::string(row.bytes(2)))});
+    log.topics.push_back({std::string(row.bytes(1)), ros1_type_name(std::string(row.bytes(2)))});
   });
   database->query("SELECT rowid, topic_id, timestamp FROM messages", {}, [&](const SqliteRow& row) {
     const auto topic = topic_of.find(row.integer(1));
@@ -79,12 +74,7 @@ MessageLog joined(std::vector<MessageLog> parts, const std::string& name) {
     const MessageLog& each = (*logs)[part];
     log.reads_starts = log.reads_starts && each.reads_starts;
     std::vector<std::uint32_t> topic_of;
-    for (const MessageTopic& topic : each.topics) {
-      std::uint32_t number = 0;
-      while (number < log.topics.size() && log.topics[number].name != topic.name) ++number;
-      if (number == log.topics.size()) log.topics.push_back(topic);
-      topic_of.push_back(number);
-    }
+    for (const MessageTopic& topic : each.topics) topic_of.push_back(number_of_topic(topic, log.topics));
     for (std::size_t i = 0; i < each.messages.size(); ++i)
       log.messages.push_back({each.messages[i].stamp_s, topic_of[each.messages[i].topic], part, i});
   }

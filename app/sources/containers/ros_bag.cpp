@@ -11,13 +11,12 @@
 #include "app/sources/containers/block_cache.hpp"
 #include "app/sources/containers/decompress.hpp"
 #include "app/sources/containers/random_access_file.hpp"
+#include "app/sources/containers/ros_bag_format.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::uint8_t kMessageOp = 2, kBagHeaderOp = 3, kIndexOp = 4, kChunkOp = 5, kConnectionOp = 7;
 constexpr std::uint32_t kMaxHeader_bytes = 1U << 20U;
 constexpr std::uint32_t kMaxIndex_bytes = 1U << 28U;
 
@@ -55,7 +54,7 @@ std::optional<Number> field_number(const std::map<std::string_view, std::string_
 struct Record {
   std::string header;
   std::map<std::string_view, std::string_view> fields{};  // refer to `header`
-  std::uint8_t op = 0;
+  RosBagOp op{};                                          ///< 0: damaged
   std::uint64_t data_offset = 0;
   std::uint32_t data_bytes = 0;
 };
@@ -72,7 +71,7 @@ std::unique_ptr<Record> record_at(std::uint64_t offset, const Read& read) {
   const auto data_bytes = number_at<std::uint32_t>(record->header, *header_bytes);
   if (!data_bytes) return nullptr;
   record->fields = fields_of(std::string_view(record->header).substr(0, *header_bytes));
-  record->op = field_number<std::uint8_t>(record->fields, "op").value_or(0);
+  record->op = field_number<RosBagOp>(record->fields, "op").value_or(RosBagOp{});
   record->data_offset = offset + 8 + *header_bytes;
   record->data_bytes = *data_bytes;
   return record;
@@ -82,18 +81,12 @@ double seconds_of(std::uint64_t time) {
   return static_cast<double>(time & 0xFFFFFFFFU) + 1e-9 * static_cast<double>(time >> 32U);
 }
 
-struct Chunk {
-  std::uint64_t offset = 0;
-  std::uint32_t packed_bytes = 0, bytes = 0;
-  Compression compression = Compression::kNone;
-};
-
 /// Returns a chunk's description; nullopt for a compression that is not known.
-std::optional<Chunk> chunk_of(const Record& record) {
+std::optional<PackedBlock> chunk_of(const Record& record) {
   const auto named = record.fields.find("compression");
   const auto bytes = field_number<std::uint32_t>(record.fields, "size");
   if (named == record.fields.end() || !bytes) return std::nullopt;
-  Chunk chunk{record.data_offset, record.data_bytes, *bytes, Compression::kNone};
+  PackedBlock chunk{record.data_offset, record.data_bytes, *bytes, Compression::kNone};
   if (named->second == "bz2")
     chunk.compression = Compression::kBz2;
   else if (named->second == "lz4")
@@ -106,8 +99,8 @@ std::optional<Chunk> chunk_of(const Record& record) {
 class Bag {
  public:
   explicit Bag(const std::filesystem::path& path) : file_(path) {
-    const std::string magic = file_.read_up_to(0, kMagic.size());
-    if (magic != kMagic)
+    const std::string magic = file_.read_up_to(0, kRosBagMagic.size());
+    if (magic != kRosBagMagic)
       throw Error(
           file_.name() +
           (magic.starts_with("#ROSBAG V")
@@ -121,13 +114,13 @@ class Bag {
   std::vector<MessageEntry> messages;
 
   [[nodiscard]] bool is_uncompressed() const {
-    for (const Chunk& chunk : chunks_)
+    for (const PackedBlock& chunk : chunks_)
       if (chunk.compression != Compression::kNone) return false;
     return true;
   }
 
   std::string read_up_to(const MessageEntry& entry, std::uint64_t max_bytes) {
-    const Chunk& chunk = chunks_[entry.block];
+    const PackedBlock& chunk = chunks_[entry.block];
     if (chunk.compression == Compression::kNone) {
       const std::uint64_t end = chunk.offset + chunk.bytes;
       const auto read = [&](std::uint64_t offset, std::uint64_t count) {
@@ -149,19 +142,13 @@ class Bag {
   template <typename Read>
   std::unique_ptr<Record> message_at(std::uint64_t offset, const Read& read, std::uint64_t end) const {
     auto record = record_at(offset, read);
-    if (!record || record->op != kMessageOp || record->data_offset > end ||
+    if (!record || record->op != RosBagOp::kMessage || record->data_offset > end ||
         record->data_bytes > end - record->data_offset)
       throw Error(file_.name() + ": is damaged: no message is at a place where its index says so");
     return record;
   }
 
-  const std::string& decompressed(std::uint32_t number) {
-    return cache_.get(number, [&] {
-      const Chunk& chunk = chunks_[number];
-      return decompress(chunk.compression, file_.read(chunk.offset, chunk.packed_bytes), chunk.bytes,
-                        file_.name() + ": the chunk at byte " + std::to_string(chunk.offset));
-    });
-  }
+  const std::string& decompressed(std::uint32_t number) { return cache_.get(number, file_, chunks_[number]); }
 
   void walk() {
     const auto read = [this](std::uint64_t offset, std::uint64_t count) {
@@ -173,21 +160,21 @@ class Bag {
       MessageEntry entry;
     };
     std::vector<Unnamed> entries;
-    for (std::uint64_t at = kMagic.size(); at < file_.size();) {
+    for (std::uint64_t at = kRosBagMagic.size(); at < file_.size();) {
       const auto record = record_at(at, read);
       if (!record || !file_.has(record->data_offset, record->data_bytes)) break;  // the recorder was stopped
       at = record->data_offset + record->data_bytes;
-      if (record->op == kConnectionOp) {
+      if (record->op == RosBagOp::kConnection) {
         add_connection(*record,
                        file_.read(record->data_offset, std::min(record->data_bytes, kMaxHeader_bytes)),
                        topic_of);
-      } else if (record->op == kChunkOp) {
+      } else if (record->op == RosBagOp::kChunk) {
         const auto chunk = chunk_of(*record);
         if (!chunk)
           throw Error(file_.name() + ": the chunk at byte " + std::to_string(record->data_offset) +
                       " is damaged, or its compression is neither none, bz2 nor lz4");
         chunks_.push_back(*chunk);
-      } else if (record->op == kIndexOp && !chunks_.empty()) {
+      } else if (record->op == RosBagOp::kIndex && !chunks_.empty()) {
         const auto connection = field_number<std::uint32_t>(record->fields, "conn");
         const auto version = field_number<std::uint32_t>(record->fields, "ver");
         if (!connection || version != 1 || record->data_bytes > kMaxIndex_bytes) continue;
@@ -218,7 +205,7 @@ class Bag {
 
   /// Adds the connections in a chunk.
   void find_connections(std::uint32_t number, std::map<std::uint32_t, std::uint32_t>& topic_of) {
-    const Chunk& chunk = chunks_[number];
+    const PackedBlock& chunk = chunks_[number];
     const std::string stored =
         chunk.compression == Compression::kNone ? file_.read(chunk.offset, chunk.bytes) : std::string{};
     const std::string& bytes = chunk.compression == Compression::kNone ? stored : decompressed(number);
@@ -229,7 +216,7 @@ class Bag {
       const auto record = record_at(at, read);
       if (!record || record->data_offset + record->data_bytes > bytes.size()) return;
       at = record->data_offset + record->data_bytes;
-      if (record->op == kConnectionOp)
+      if (record->op == RosBagOp::kConnection)
         add_connection(*record, bytes.substr(record->data_offset, record->data_bytes), topic_of);
     }
   }
@@ -244,24 +231,17 @@ class Bag {
         topic_of.contains(*connection))
       return;
     // Several programs may publish on one topic, each through its own connection.
-    std::uint32_t number = 0;
-    while (number < topics.size() && topics[number].name != topic->second) ++number;
-    if (number == topics.size()) topics.push_back({std::string(topic->second), std::string(type->second)});
-    topic_of[*connection] = number;
+    topic_of[*connection] = number_of_topic({std::string(topic->second), std::string(type->second)}, topics);
   }
 
   RandomAccessFile file_;
-  std::vector<Chunk> chunks_;
+  std::vector<PackedBlock> chunks_;
   BlockCache cache_;
 };
 
 }  // namespace
 
-bool is_ros_bag(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  return RandomAccessFile(path).read_up_to(0, 9) == "#ROSBAG V";
-}
+bool is_ros_bag(const std::filesystem::path& path) { return begins_with(path, "#ROSBAG V"); }
 
 MessageLog open_ros_bag(const std::filesystem::path& path) {
   const auto bag = std::make_shared<Bag>(path);

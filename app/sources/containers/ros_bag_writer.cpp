@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "app/sources/containers/ros_bag_format.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 
@@ -28,7 +29,7 @@ std::string field(std::string_view name, std::string_view value) {
   const std::string text = std::string(name) + '=' + std::string(value);
   return bytes_of(static_cast<std::uint32_t>(text.size())) + text;
 }
-std::string op_field(std::uint8_t op) { return field("op", bytes_of(op)); }
+std::string op_field(RosBagOp op) { return field("op", bytes_of(op)); }
 
 std::string record(const std::string& fields, std::string_view data) {
   std::string bytes = bytes_of(static_cast<std::uint32_t>(fields.size())) + fields +
@@ -54,7 +55,7 @@ std::uint64_t ros_time(double stamp_s) {
 }
 
 RosBagWriter::RosBagWriter(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
-  put("#ROSBAG V2.0\n");
+  put(kRosBagMagic);
   write_bag_header(0);
 }
 
@@ -65,7 +66,7 @@ void RosBagWriter::put(std::string_view bytes) {
 }
 
 void RosBagWriter::write_bag_header(std::uint64_t index_position) {
-  const std::string fields = op_field(3) + field("index_pos", bytes_of(index_position)) +
+  const std::string fields = op_field(RosBagOp::kBagHeader) + field("index_pos", bytes_of(index_position)) +
                              field("conn_count", bytes_of(static_cast<std::uint32_t>(connections_.size()))) +
                              field("chunk_count", bytes_of(static_cast<std::uint32_t>(chunks_.size())));
   put(record(fields, std::string(kBagHeader_bytes - fields.size() - 8, ' ')));
@@ -73,9 +74,10 @@ void RosBagWriter::write_bag_header(std::uint64_t index_position) {
 
 std::uint32_t RosBagWriter::add_topic(std::string_view name, const RosType& type) {
   const auto number = static_cast<std::uint32_t>(connections_.size());
-  connections_.push_back(record(op_field(7) + field("conn", bytes_of(number)) + field("topic", name),
-                                field("topic", name) + field("type", type.name) + field("md5sum", type.md5) +
-                                    field("message_definition", type.definition)));
+  connections_.push_back(
+      record(op_field(RosBagOp::kConnection) + field("conn", bytes_of(number)) + field("topic", name),
+             field("topic", name) + field("type", type.name) + field("md5sum", type.md5) +
+                 field("message_definition", type.definition)));
   return number;
 }
 
@@ -83,13 +85,14 @@ void RosBagWriter::write(std::uint32_t topic, std::uint64_t time, std::string_vi
   if (chunk_.size() >= kChunk_bytes) write_chunk();
   if (!index_.contains(topic)) chunk_ += connections_[topic];
   index_[topic].push_back({time, static_cast<std::uint32_t>(chunk_.size())});
-  chunk_ += record(op_field(2) + field("conn", bytes_of(topic)) + field("time", bytes_of(time)), message);
+  chunk_ += record(
+      op_field(RosBagOp::kMessage) + field("conn", bytes_of(topic)) + field("time", bytes_of(time)), message);
 }
 
 void RosBagWriter::write_chunk() {
   if (chunk_.empty()) return;
   ChunkInfo info{position_, ~std::uint64_t{0}, 0, {}};
-  put(record(op_field(5) + field("compression", "none") +
+  put(record(op_field(RosBagOp::kChunk) + field("compression", "none") +
                  field("size", bytes_of(static_cast<std::uint32_t>(chunk_.size()))),
              chunk_));
   for (const auto& [topic, messages] : index_) {
@@ -101,8 +104,8 @@ void RosBagWriter::write_chunk() {
     }
     const auto count = static_cast<std::uint32_t>(messages.size());
     info.counts[topic] = count;
-    put(record(op_field(4) + field("ver", bytes_of(std::uint32_t{1})) + field("conn", bytes_of(topic)) +
-                   field("count", bytes_of(count)),
+    put(record(op_field(RosBagOp::kIndex) + field("ver", bytes_of(std::uint32_t{1})) +
+                   field("conn", bytes_of(topic)) + field("count", bytes_of(count)),
                data));
   }
   file_.flush();
@@ -118,14 +121,14 @@ void RosBagWriter::close() {
   for (const ChunkInfo& chunk : chunks_) {
     std::string data;
     for (const auto& [topic, count] : chunk.counts) data += bytes_of(topic) + bytes_of(count);
-    put(record(op_field(6) + field("ver", bytes_of(std::uint32_t{1})) +
+    put(record(op_field(RosBagOp::kChunkInfo) + field("ver", bytes_of(std::uint32_t{1})) +
                    field("chunk_pos", bytes_of(chunk.position)) +
                    field("start_time", bytes_of(sortable(chunk.first_time))) +
                    field("end_time", bytes_of(sortable(chunk.last_time))) +
                    field("count", bytes_of(static_cast<std::uint32_t>(chunk.counts.size()))),
                data));
   }
-  file_.seekp(13);
+  file_.seekp(static_cast<std::streamoff>(kRosBagMagic.size()));
   write_bag_header(index_position);
   file_.close();
   require_written(file_, path_);

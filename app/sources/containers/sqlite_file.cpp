@@ -90,9 +90,7 @@ std::string SqliteFile::read_up_to(const char* table, const char* column, std::i
 }
 
 bool is_sqlite(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  return RandomAccessFile(path).read_up_to(0, 16) == std::string("SQLite format 3\0", 16);
+  return begins_with(path, std::string_view("SQLite format 3\0", 16));
 }
 
 }  // namespace roomradar

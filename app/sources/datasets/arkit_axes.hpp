@@ -21,4 +21,9 @@ inline Eigen::Isometry3d world_from_arkit(const Eigen::Isometry3d& T_arkitworld_
   return world_from_arkit_world(T_arkitworld_arkitcamera * T_arkitcamera_camera);
 }
 
+/// Returns the unit direction of gravity in the camera's frame, for a world with z up.
+inline Eigen::Vector3d down_in_camera(const Eigen::Isometry3d& T_world_camera) {
+  return -T_world_camera.linear().row(2).transpose();
+}
+
 }  // namespace roomradar

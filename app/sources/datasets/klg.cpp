@@ -28,8 +28,7 @@ ImageSize klg_size(const RandomAccessFile& file, const std::vector<KlgFrame>& pl
   const KlgFrame& first = places.front();
   const std::string bytes = file.read(first.depth_offset + first.depth_bytes, first.colour_bytes);
   if (!is_jpeg(bytes)) return kUsual;
-  const ImageHeader header =
-      read_image_header({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, file.name());
+  const ImageHeader header = read_image_header(bytes, file.name());
   return {header.width_px, header.height_px};
 }
 
@@ -46,8 +45,7 @@ IndexedRecording index_klg(const std::filesystem::path& path) {
   constexpr std::uint64_t kFrameHead_bytes = 16;
   const std::string count_bytes = file->read(0, 4);
   ByteReader count_reader(count_bytes, where);
-  std::int32_t count = 0;
-  serialize(count_reader, count);
+  const auto count = count_reader.number<std::int32_t>();
   if (count < 0) throw Error(where + ": is damaged: it states " + std::to_string(count) + " frames");
 
   IndexedRecording recording{.name = std::filesystem::canonical(path).string()};
@@ -57,11 +55,8 @@ IndexedRecording index_klg(const std::filesystem::path& path) {
   for (std::int32_t i = 0; i < count && file->has(at, kFrameHead_bytes); ++i) {
     const std::string head = file->read(at, kFrameHead_bytes);
     ByteReader reader(head, where);
-    std::int64_t stamp_us = 0;
-    std::int32_t depth_bytes = 0, colour_bytes = 0;
-    serialize(reader, stamp_us);
-    serialize(reader, depth_bytes);
-    serialize(reader, colour_bytes);
+    const auto stamp_us = reader.number<std::int64_t>();
+    const auto depth_bytes = reader.number<std::int32_t>(), colour_bytes = reader.number<std::int32_t>();
     if (depth_bytes < 0 || colour_bytes < 0)
       throw Error(where + ": is damaged: frame " + std::to_string(i) + " states a size below 0");
     const KlgFrame place{at + kFrameHead_bytes, static_cast<std::uint64_t>(depth_bytes),

@@ -34,8 +34,7 @@ ImageSize size_of_first_png(const std::vector<fs::path>& files, const fs::path& 
   for (std::size_t i = 0; i < std::min(files.size(), kTried); ++i) {
     try {
       const std::string bytes = read_bytes(files[i], "an image", kMaxImage_bytes);
-      const ImageHeader header = read_image_header(
-          {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, files[i].string());
+      const ImageHeader header = read_image_header(bytes, files[i].string());
       return {header.width_px, header.height_px};
     } catch (const Error& fault) {
       if (first_fault.empty()) first_fault = fault.what();

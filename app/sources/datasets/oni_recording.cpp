@@ -16,16 +16,17 @@
 namespace roomradar {
 namespace {
 
-constexpr double kPrimeSenseFov_rad = 1.0226;
-constexpr double kPrimeSenseBaseline_m = 0.025;
-
 /// Formats of pixels, as the property oniPixelFormat states them.
 constexpr std::uint64_t kOniDepth100um = 101, kOniRgb888 = 200, kOniYuv422 = 201, kOniGray8 = 202,
                         kOniYuyv = 205;
 
-const OniNode* node_of(const std::map<std::uint32_t, OniNode>& nodes, OniNodeKind kind) {
-  for (const auto& [id, node] : nodes)
-    if (node.kind == kind && !node.frames.empty()) return &node;
+using OniNodes = std::map<std::uint32_t, OniNode>;
+
+/// Returns the first node of a kind that has frames; it shares the ownership of all nodes. Null: there is
+/// none.
+std::shared_ptr<const OniNode> node_of(const std::shared_ptr<const OniNodes>& nodes, OniNodeKind kind) {
+  for (const auto& [id, node] : *nodes)
+    if (node.kind == kind && !node.frames.empty()) return {nodes, &node};
   return nullptr;
 }
 
@@ -41,17 +42,13 @@ ImageSize oni_size(const OniNode& node, const std::string& where) {
   return {static_cast<int>(size[0]), static_cast<int>(size[1])};
 }
 
-/// Returns the camera of a field of view (property xnFOV: two doubles, rad), with square pixels.
-Intrinsics oni_camera(const OniNode& node, ImageSize size) {
-  double fov_rad = kPrimeSenseFov_rad;
+/// Returns the horizontal field of view, from the property xnFOV (two doubles, rad); 0: not stated.
+double stated_fov_rad(const OniNode& node) {
+  double fov_rad = 0.0;
   const auto stated = node.values.find("xnFOV");
-  if (stated != node.values.end() && stated->second.size() >= sizeof fov_rad) {
-    double value = 0.0;
-    std::memcpy(&value, stated->second.data(), sizeof value);
-    if (value > 0.1 && value < 3.0) fov_rad = value;
-  }
-  const double f_px = size.width_px / 2.0 / std::tan(fov_rad / 2.0);
-  return {size.width_px, size.height_px, f_px, f_px, (size.width_px - 1) / 2.0, (size.height_px - 1) / 2.0};
+  if (stated != node.values.end() && stated->second.size() >= sizeof fov_rad)
+    std::memcpy(&fov_rad, stated->second.data(), sizeof fov_rad);
+  return fov_rad;
 }
 
 std::uint64_t integer_of(const OniNode& node, const char* name) {
@@ -94,9 +91,8 @@ void decode_oni_colour(const std::string& bytes, const OniNode& node, ImageSize 
 IndexedRecording index_oni_recording(const std::filesystem::path& path) {
   const auto file = std::make_shared<const RandomAccessFile>(path);
   const std::string where = file->name();
-  const auto nodes = std::make_shared<const std::map<std::uint32_t, OniNode>>(index_oni(*file));
-  const OniNode* depth = node_of(*nodes, OniNodeKind::kDepth);
-  const OniNode* colour = node_of(*nodes, OniNodeKind::kImage);
+  const auto nodes = std::make_shared<const OniNodes>(index_oni(*file));
+  const auto depth = node_of(nodes, OniNodeKind::kDepth), colour = node_of(nodes, OniNodeKind::kImage);
   if (!depth) throw Error(where + ": holds no depth image");
   if (depth->codec != "16zT" && depth->codec != "16zP" && depth->codec != "NONE")
     throw Error(where + ": its depth is compressed by '" + depth->codec + "', which is not read");
@@ -106,29 +102,26 @@ IndexedRecording index_oni_recording(const std::filesystem::path& path) {
   const ImageSize colour_size = colour ? oni_size(*colour, where) : ImageSize{};
   const auto seconds = [](const OniFrame& frame) { return 1e-6 * static_cast<double>(frame.stamp_us); };
   for (const OniFrame& frame : depth->frames) recording.frames.push_back({.stamp_s = seconds(frame)});
-  recording.rig.depth_camera = oni_camera(*depth, depth_size);
+  recording.rig.depth_camera = openni_camera(depth_size, stated_fov_rad(*depth));
   std::vector<std::optional<std::size_t>> colour_of;
   if (colour) {
-    recording.rig.colour_camera = oni_camera(*colour, colour_size);
+    recording.rig.colour_camera = openni_camera(colour_size, stated_fov_rad(*colour));
     if (integer_of(*depth, "RegistrationType") == 0)
       recording.rig.T_colour_depth.translation().x() = -kPrimeSenseBaseline_m;
     std::vector<double> stamps_s;
     for (const OniFrame& frame : colour->frames) stamps_s.push_back(seconds(frame));
     colour_of = pair_colours(stamps_s, kPairWithin_s, recording.frames);
   }
-  // The lambdas share the nodes, which own *depth and *colour.
   recording.read_depth = [=](std::size_t frame, DepthImage& depth_m) {
     const OniFrame& at = depth->frames[frame];
     decode_oni_depth(file->read(at.offset, at.bytes), *depth, depth_size, where + ": a depth image", depth_m);
     if (integer_of(*depth, "xnMirror") != 0) mirror(depth_m);
-    (void)nodes;
   };
   recording.read_colour = [=](std::size_t frame, ColourImage& image) {
     const OniFrame& at = colour->frames[*colour_of[frame]];
     decode_oni_colour(file->read(at.offset, at.bytes), *colour, colour_size, where + ": a colour image",
                       image);
     if (integer_of(*colour, "xnMirror") != 0) mirror(image);
-    (void)nodes;
   };
   return recording;
 }

@@ -97,7 +97,7 @@ IndexedRecording index_record3d(const fs::path& folder) {
       const std::vector<double> p = listed_numbers(poses[at], 7, where + ", poses" + item);
       if (const auto T_arkit = rigid_pose({p[4], p[5], p[6]}, {p[0], p[1], p[2], p[3]})) {
         frame.T_world_camera = world_from_arkit(*T_arkit);
-        frame.down_camera = frame.T_world_camera->linear().transpose() * Eigen::Vector3d(0, 0, -1);
+        frame.down_camera = down_in_camera(*frame.T_world_camera);
       }
     }
     const fs::path image = folder / "rgb" / (std::to_string(number) + ".jpg");

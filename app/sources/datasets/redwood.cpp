@@ -83,11 +83,8 @@ std::vector<std::optional<Eigen::Isometry3d>> read_log(const fs::path& path) {
       poses.emplace_back();
       return;
     }
-    const auto rotation = nearest_rotation(matrix.topLeftCorner<3, 3>());
-    if (!rotation) throw Error(where + ": the pose that ends here is no rotation and translation");
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.linear() = *rotation;
-    T.translation() = matrix.topRightCorner<3, 1>();
+    const auto T = rigid_transform(matrix.topRows<3>());
+    if (!T) throw Error(where + ": the pose that ends here is no rotation and translation");
     poses.emplace_back(T);
   });
   if (row >= 0) throw Error(path.string() + ": ends within a pose; is it cut short?");

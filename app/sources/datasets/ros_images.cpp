@@ -149,14 +149,28 @@ bool set_camera(const MessageLog& log, RosStream& stream) {
   return true;
 }
 
-std::vector<Candidate> candidates_of(const MessageLog& log, bool is_depth) {
+/// Returns the topics of images, the best first.
+std::vector<Candidate> candidates_of(const MessageLog& log) {
   std::vector<Candidate> candidates;
   for (std::uint32_t topic = 0; topic < log.topics.size(); ++topic)
-    if (auto candidate = candidate_of(log, topic); candidate && candidate->is_depth == is_depth)
-      candidates.push_back(std::move(*candidate));
+    if (auto candidate = candidate_of(log, topic)) candidates.push_back(std::move(*candidate));
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   return candidates;
+}
+
+[[noreturn]] void fail_without_depth(const MessageLog& log, const std::vector<Candidate>& candidates) {
+  for (const Candidate& candidate : candidates) {
+    const RosStream& stream = candidate.stream;
+    if (candidate.is_depth)
+      throw Error(log.name + ": holds no camera_info of " + size_text(stream.width_px, stream.height_px) +
+                  " for its depth images on " + log.topics[stream.topic].name + "; record that topic too");
+  }
+  std::string topics;
+  for (const MessageTopic& topic : log.topics)
+    if (topics.size() < 400) topics += (topics.empty() ? "" : ", ") + topic.name;
+  throw Error(log.name + ": holds no depth images (16UC1, 32FC1 or compressedDepth); its topics are " +
+              (topics.empty() ? "none" : topics));
 }
 
 /// Decodes compressedDepth: the kind of compression and two floats, then a PNG of 16 bit. 32FC1 holds a /
@@ -190,26 +204,16 @@ RawLayout layout_of(const RosImage& image) {
 
 }  // namespace
 
-RosStream find_depth_stream(const MessageLog& log) {
-  std::vector<Candidate> candidates = candidates_of(log, /*is_depth=*/true);
-  for (Candidate& candidate : candidates)
-    if (set_camera(log, candidate.stream)) return std::move(candidate.stream);
-  if (!candidates.empty()) {
-    const RosStream& stream = candidates.front().stream;
-    throw Error(log.name + ": holds no camera_info of " + size_text(stream.width_px, stream.height_px) +
-                " for its depth images on " + log.topics[stream.topic].name + "; record that topic too");
+RosStreams find_streams(const MessageLog& log) {
+  std::optional<RosStream> depth, colour;
+  std::vector<Candidate> candidates = candidates_of(log);
+  for (Candidate& candidate : candidates) {
+    std::optional<RosStream>& wanted = candidate.is_depth ? depth : colour;
+    const bool is_colour_of_infrared = !candidate.is_depth && candidate.score < 0;
+    if (!wanted && !is_colour_of_infrared && set_camera(log, candidate.stream)) wanted = candidate.stream;
   }
-  std::string topics;
-  for (const MessageTopic& topic : log.topics)
-    if (topics.size() < 400) topics += (topics.empty() ? "" : ", ") + topic.name;
-  throw Error(log.name + ": holds no depth images (16UC1, 32FC1 or compressedDepth); its topics are " +
-              (topics.empty() ? "none" : topics));
-}
-
-std::optional<RosStream> find_colour_stream(const MessageLog& log) {
-  for (Candidate& candidate : candidates_of(log, /*is_depth=*/false))
-    if (candidate.score >= 0 && set_camera(log, candidate.stream)) return std::move(candidate.stream);
-  return std::nullopt;
+  if (!depth) fail_without_depth(log, candidates);
+  return {std::move(*depth), std::move(colour)};
 }
 
 double depth_unit_m(const MessageLog& log, const RosStream& depth) {

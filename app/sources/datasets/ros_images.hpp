@@ -24,13 +24,15 @@ struct RosStream {
   std::vector<MessageEntry> messages{};  ///< by time of reception
 };
 
-/// Returns the topic of depth images: 16UC1, mono16, 32FC1 or compressedDepth. Of several, one that is not
-/// registered to colour is preferred.
-/// @throws Error naming the topics that were found if none is depth, or the topic has no camera_info
-RosStream find_depth_stream(const MessageLog& log);
+struct RosStreams {
+  RosStream depth;
+  std::optional<RosStream> colour;  ///< unset: there is none with a camera_info
+};
 
-/// Returns the topic of colour images; nullopt if there is none with a camera_info.
-std::optional<RosStream> find_colour_stream(const MessageLog& log);
+/// Returns the topics of depth images (16UC1, mono16, 32FC1 or compressedDepth) and of colour images. Of
+/// several depth topics, one that is not registered to colour is preferred.
+/// @throws Error naming the topics that were found if none is depth, or the topic has no camera_info
+RosStreams find_streams(const MessageLog& log);
 
 /// Returns the length of a unit of 16 bit depth, m: from the option Depth Units of a RealSense, else 0.001.
 double depth_unit_m(const MessageLog& log, const RosStream& depth);

@@ -169,8 +169,7 @@ std::optional<Eigen::Isometry3d> exact_pose_at(const MessageLog& log, const std:
 }  // namespace
 
 IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& log) {
-  RosStream depth = find_depth_stream(*log);
-  std::optional<RosStream> colour = find_colour_stream(*log);
+  auto [depth, colour] = find_streams(*log);
   const auto transforms = std::make_shared<const RosTransforms>(*log);
   const Sensor depth_sensor{log->topics[depth.topic].name, depth.frame_id};
 

@@ -8,6 +8,7 @@
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/image_header.hpp"
+#include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -16,14 +17,8 @@ namespace {
 
 /// Returns the transform of 12 floats, row by row; nullopt if it is not rigid.
 std::optional<Eigen::Isometry3d> transform_of(const std::array<float, 12>& m) {
-  const Eigen::Matrix<double, 3, 4> matrix =
-      Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(m.data()).cast<double>();
-  const auto rotation = nearest_rotation(matrix.leftCols<3>());
-  if (!rotation || !matrix.allFinite()) return std::nullopt;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = *rotation;
-  T.translation() = matrix.col(3);
-  return T;
+  return rigid_transform(
+      Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(m.data()).cast<double>());
 }
 
 std::optional<Eigen::Isometry3d> pose_in(std::string_view bytes) {
@@ -44,16 +39,14 @@ struct RtabmapCamera {
 /// (floats).
 RtabmapCamera read_camera(std::string_view bytes, const std::string& where) {
   ByteReader reader(bytes, where + ": a camera");
-  std::array<std::int32_t, 11> head{};
-  reader.raw(head.data(), sizeof head);
+  const auto head = reader.number<std::array<std::int32_t, 11>>();
   const std::int32_t kind = head[3], k_count = head[6], d_count = head[7], r_count = head[8],
                      p_count = head[9], pose_count = head[10];
   if (head[0] < 0 || head[0] > 1000 || kind != 0 || k_count != 9 || d_count < 0 || d_count > 14 ||
       (r_count != 0 && r_count != 9) || (p_count != 0 && p_count != 12) ||
       (pose_count != 0 && pose_count != 12))
     throw Error(where + ": its camera is of a stereo pair, of an RTAB-Map before 0.18, or damaged");
-  std::array<double, 9> K{};
-  reader.raw(K.data(), sizeof K);
+  const auto K = reader.number<std::array<double, 9>>();
   std::array<double, 14> D{};
   reader.raw(D.data(), static_cast<std::size_t>(d_count) * sizeof(double));
   (void)reader.take(static_cast<std::size_t>(r_count + p_count) * sizeof(double));
@@ -62,25 +55,21 @@ RtabmapCamera read_camera(std::string_view bytes, const std::string& where) {
   // Six coefficients are those of a fisheye lens; its images are stored rectified.
   if (d_count != 6) result.lens = {D[0], D[1], D[2], D[3], D[4], D[5], D[6], D[7]};
   if (pose_count == 12) {
-    std::array<float, 12> m{};
-    reader.raw(m.data(), sizeof m);
-    if (const auto T = transform_of(m)) result.T_robot_camera = *T;
+    if (const auto T = transform_of(reader.number<std::array<float, 12>>())) result.T_robot_camera = *T;
   }
   if (reader.left() > 0) throw Error(where + ": has several cameras; recordings of one are read");
   return result;
 }
 
 ImageSize image_size(const std::string& bytes, const std::string& where) {
-  const ImageHeader header =
-      read_image_header({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, where);
+  const ImageHeader header = read_image_header(bytes, where);
   return {header.width_px, header.height_px};
 }
 
 void decode_rtabmap_depth(const std::string& bytes, const std::string& where, DepthImage& depth_m) {
   if (bytes.starts_with("DRVL"))
     throw Error(where + " is compressed by RVL, which is not read; set Mem/DepthCompressionFormat to .png");
-  const ImageHeader header =
-      read_image_header({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, where);
+  const ImageHeader header = read_image_header(bytes, where);
   if (header.channels == 4)
     decode_float_png(bytes, where, depth_m);
   else

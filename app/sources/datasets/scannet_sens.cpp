@@ -9,6 +9,7 @@
 #include "app/sources/containers/random_access_file.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/raw_pixels.hpp"
+#include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -20,23 +21,9 @@ using Matrix4 = std::array<float, 16>;  // row by row
 enum class SensColour : std::int32_t { kRaw = 0, kPng = 1, kJpeg = 2 };
 enum class SensDepth : std::int32_t { kRaw = 0, kZlib = 1 };
 
-template <typename Number>
-Number take(ByteReader& bytes) {
-  Number number{};
-  bytes.raw(&number, sizeof number);
-  return number;
-}
-
-std::optional<Eigen::Isometry3d> rigid_transform(const Matrix4& m) {
-  const Eigen::Matrix4d matrix =
-      Eigen::Map<const Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(m.data()).cast<double>();
-  if (!matrix.allFinite()) return std::nullopt;
-  const auto rotation = nearest_rotation(matrix.topLeftCorner<3, 3>());
-  if (!rotation) return std::nullopt;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = *rotation;
-  T.translation() = matrix.topRightCorner<3, 1>();
-  return T;
+std::optional<Eigen::Isometry3d> transform_of(const Matrix4& m) {
+  return rigid_transform(
+      Eigen::Map<const Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(m.data()).topRows<3>().cast<double>());
 }
 
 Intrinsics sens_camera(const Matrix4& m, std::uint32_t width, std::uint32_t height,
@@ -55,9 +42,7 @@ struct SensFrame {
 }  // namespace
 
 bool is_scannet_sens(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (path.extension() != ".sens" || !std::filesystem::is_regular_file(path, ignored)) return false;
-  return RandomAccessFile(path).read_up_to(0, 4) == std::string("\x04\0\0\0", 4);
+  return path.extension() == ".sens" && begins_with(path, std::string_view("\x04\0\0\0", 4));
 }
 
 IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
@@ -67,20 +52,20 @@ IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
   constexpr std::uint64_t kMaxName_bytes = 4096;
   const std::string start = file->read(0, 12);
   ByteReader start_reader(start, where);
-  if (take<std::uint32_t>(start_reader) != kSensVersion)
+  if (start_reader.number<std::uint32_t>() != kSensVersion)
     throw Error(where + ": is not of version 4, the one that is read");
-  const auto name_bytes = take<std::uint64_t>(start_reader);
+  const auto name_bytes = start_reader.number<std::uint64_t>();
   if (name_bytes > kMaxName_bytes) throw Error(where + ": is damaged: the name of its sensor is too long");
   const std::string head = file->read(12 + name_bytes, kFixed_bytes);
   ByteReader reader(head, where);
-  const auto colour_matrix = take<Matrix4>(reader), colour_pose = take<Matrix4>(reader);
-  const auto depth_matrix = take<Matrix4>(reader), depth_pose = take<Matrix4>(reader);
-  const auto colour_kind = static_cast<SensColour>(take<std::int32_t>(reader));
-  const auto depth_kind = static_cast<SensDepth>(take<std::int32_t>(reader));
+  const auto colour_matrix = reader.number<Matrix4>(), colour_pose = reader.number<Matrix4>();
+  const auto depth_matrix = reader.number<Matrix4>(), depth_pose = reader.number<Matrix4>();
+  const auto colour_kind = static_cast<SensColour>(reader.number<std::int32_t>());
+  const auto depth_kind = static_cast<SensDepth>(reader.number<std::int32_t>());
   std::array<std::uint32_t, 4> sizes{};
-  for (std::uint32_t& size : sizes) size = take<std::uint32_t>(reader);
-  const auto units_per_m = static_cast<double>(take<float>(reader));
-  const auto count = take<std::uint64_t>(reader);
+  for (std::uint32_t& size : sizes) size = reader.number<std::uint32_t>();
+  const auto units_per_m = static_cast<double>(reader.number<float>());
+  const auto count = reader.number<std::uint64_t>();
   if (depth_kind != SensDepth::kRaw && depth_kind != SensDepth::kZlib)
     throw Error(where + ": its depth is neither raw nor compressed by zlib, which are read");
   if (!(units_per_m > 0.0 && std::isfinite(units_per_m)))
@@ -89,7 +74,7 @@ IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
   IndexedRecording recording{.name = std::filesystem::canonical(path).string()};
   recording.rig.depth_camera = sens_camera(depth_matrix, sizes[2], sizes[3], where);
   if (sizes[0] > 0) recording.rig.colour_camera = sens_camera(colour_matrix, sizes[0], sizes[1], where);
-  const auto T_device_colour = rigid_transform(colour_pose), T_device_depth = rigid_transform(depth_pose);
+  const auto T_device_colour = transform_of(colour_pose), T_device_depth = transform_of(depth_pose);
   if (T_device_colour && T_device_depth)
     recording.rig.T_colour_depth = T_device_colour->inverse() * *T_device_depth;
 
@@ -100,17 +85,16 @@ IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
   for (std::uint64_t i = 0; i < count && file->has(at, kFrameHead_bytes); ++i) {
     const std::string bytes = file->read(at, kFrameHead_bytes);
     ByteReader frame_reader(bytes, where);
-    const auto pose = take<Matrix4>(frame_reader);
-    (void)take<std::uint64_t>(frame_reader);  // stamp of the colour image
-    const auto stamp_us = take<std::uint64_t>(frame_reader);
-    SensFrame place{at + kFrameHead_bytes, take<std::uint64_t>(frame_reader),
-                    take<std::uint64_t>(frame_reader)};
+    const auto pose = frame_reader.number<Matrix4>();
+    (void)frame_reader.number<std::uint64_t>();  // stamp of the colour image
+    const auto stamp_us = frame_reader.number<std::uint64_t>();
+    SensFrame place{at + kFrameHead_bytes, frame_reader.number<std::uint64_t>(),
+                    frame_reader.number<std::uint64_t>()};
     if (!file->has(place.colour_offset, place.colour_bytes) ||
         !file->has(place.colour_offset + place.colour_bytes, place.depth_bytes))
       break;
     at = place.colour_offset + place.colour_bytes + place.depth_bytes;
-    recording.frames.push_back(
-        {.has_colour = place.colour_bytes > 0, .T_world_camera = rigid_transform(pose)});
+    recording.frames.push_back({.has_colour = place.colour_bytes > 0, .T_world_camera = transform_of(pose)});
     stamps_s.push_back(1e-6 * static_cast<double>(stamp_us));
     places.push_back(place);
   }

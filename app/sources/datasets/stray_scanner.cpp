@@ -117,8 +117,7 @@ IndexedRecording index_stray_scanner(const fs::path& folder) {
     } else {
       frame.stamp_s = row->second.stamp_s;
       frame.T_world_camera = row->second.T_world_camera;
-      if (frame.T_world_camera)
-        frame.down_camera = frame.T_world_camera->linear().transpose() * Eigen::Vector3d(0, 0, -1);
+      if (frame.T_world_camera) frame.down_camera = down_in_camera(*frame.T_world_camera);
     }
     recording.frames.push_back(std::move(frame));
     paths.push_back(path);

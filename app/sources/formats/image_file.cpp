@@ -6,7 +6,6 @@
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -22,10 +21,6 @@ constexpr std::uintmax_t kLargestImage_bytes = std::uintmax_t{1} << 30;
 
 std::string read_image_bytes(const std::filesystem::path& path) {
   return read_bytes(path, "an image", kLargestImage_bytes);
-}
-
-std::span<const std::uint8_t> span_of(std::string_view bytes) {
-  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
 void write_png(const cv::Mat& image, const std::filesystem::path& path) {
@@ -53,7 +48,7 @@ cv::Mat decode(std::string_view bytes, int flags, int type, const ImageHeader& h
 }
 
 cv::Mat decode_16_bit_png(std::string_view bytes, const std::string& name) {
-  const ImageHeader header = read_image_header(span_of(bytes), name);
+  const ImageHeader header = read_image_header(bytes, name);
   if (header.kind != ImageKind::kPng || header.bits != 16 || header.channels != 1)
     throw Error(name + ": is a " + to_string(header) + "; depth must be a 16 bit grey PNG");
   return decode(bytes, cv::IMREAD_UNCHANGED, CV_16UC1, header, name);
@@ -73,11 +68,11 @@ void convert(const cv::Mat& image, float units_per_m, int invalid, DepthImage& d
 void read_kinect_raw(const std::filesystem::path& path, DepthImage& depth_m) {
   const std::string name = path.string();
   const std::string bytes = read_image_bytes(path);
-  const ImageHeader header = read_image_header(span_of(bytes), name);
+  const ImageHeader header = read_image_header(bytes, name);
   if (header.kind != ImageKind::kPgm || header.bits != 16)
     throw Error(name + ": is a " + to_string(header) + "; raw Kinect depth must be a 16 bit PGM");
   depth_m.resize(header.width_px, header.height_px);
-  const std::uint8_t* raw = span_of(bytes).data() + header.pixels_at;
+  const std::uint8_t* raw = reinterpret_cast<const std::uint8_t*>(bytes.data()) + header.pixels_at;
   for (float& pixel : depth_m.pixels) {
     pixel = raw_depth_m(static_cast<std::uint16_t>(raw[0] | raw[1] << 8));
     raw += 2;
@@ -105,7 +100,7 @@ void decode_depth_png(std::string_view bytes, float units_per_m, const std::stri
 }
 
 void decode_float_png(std::string_view bytes, const std::string& name, DepthImage& depth_m) {
-  const ImageHeader header = read_image_header(span_of(bytes), name);
+  const ImageHeader header = read_image_header(bytes, name);
   if (header.kind != ImageKind::kPng || header.bits != 8 || header.channels != 4)
     throw Error(name + ": is a " + to_string(header) + "; must be a PNG of four 8 bit channels");
   const cv::Mat image = decode(bytes, cv::IMREAD_UNCHANGED, CV_8UC4, header, name);
@@ -117,7 +112,7 @@ void decode_float_png(std::string_view bytes, const std::string& name, DepthImag
 }
 
 void decode_grey_png(std::string_view bytes, const std::string& name, Image<std::uint8_t>& image) {
-  const ImageHeader header = read_image_header(span_of(bytes), name);
+  const ImageHeader header = read_image_header(bytes, name);
   if (header.kind != ImageKind::kPng || header.bits != 8 || header.channels != 1)
     throw Error(name + ": is a " + to_string(header) + "; must be an 8 bit grey PNG");
   const cv::Mat grey = decode(bytes, cv::IMREAD_UNCHANGED, CV_8UC1, header, name);
@@ -131,7 +126,7 @@ void read_colour_file(const std::filesystem::path& path, ColourImage& colour) {
 }
 
 void decode_colour(std::string_view bytes, const std::string& name, ColourImage& colour) {
-  const ImageHeader header = read_image_header(span_of(bytes), name);
+  const ImageHeader header = read_image_header(bytes, name);
   if (header.kind == ImageKind::kPpm && header.bits == 8) {
     colour.resize(header.width_px, header.height_px);
     std::memcpy(colour.pixels.data(), bytes.data() + header.pixels_at, colour.pixels.size() * sizeof(Rgb));

@@ -137,6 +137,11 @@ ImageHeader read_image_header(std::span<const std::uint8_t> bytes, const std::st
               (text ? "; it looks like text" : ""));
 }
 
+ImageHeader read_image_header(std::string_view bytes, const std::string& name) {
+  return read_image_header(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()),
+                           name);
+}
+
 std::string to_string(const ImageHeader& header) {
   constexpr std::array<std::string_view, 4> kKinds = {"PNG", "JPEG", "PGM", "PPM"};
   return std::to_string(header.width_px) + " x " + std::to_string(header.height_px) + " " +

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace roomradar {
 
@@ -27,6 +28,7 @@ struct ImageHeader {
 /// @param name  file name for error messages
 /// @throws Error if the file is empty, of another type, truncated, or wider or higher than 16384 px
 ImageHeader read_image_header(std::span<const std::uint8_t> bytes, const std::string& name);
+ImageHeader read_image_header(std::string_view bytes, const std::string& name);
 
 /// Returns a description, for example "640 x 480 16 bit grey PNG".
 std::string to_string(const ImageHeader& header);

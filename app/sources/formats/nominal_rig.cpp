@@ -1,6 +1,7 @@
 // nominal_rig.cpp: published and measured intrinsics of Kinects, and the precedence of their sources.
 #include "app/sources/formats/nominal_rig.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "mapping/types/system/error.hpp"
@@ -102,6 +103,13 @@ void require_fit(const Intrinsics& camera, ImageSize images, const char* which, 
 }
 
 }  // namespace
+
+Intrinsics openni_camera(ImageSize size, double stated_fov_rad) {
+  constexpr double kPrimeSenseFov_rad = 1.0226;
+  const double fov_rad = stated_fov_rad > 0.1 && stated_fov_rad < 3.0 ? stated_fov_rad : kPrimeSenseFov_rad;
+  const double f_px = size.width_px / 2.0 / std::tan(fov_rad / 2.0);
+  return {size.width_px, size.height_px, f_px, f_px, (size.width_px - 1) / 2.0, (size.height_px - 1) / 2.0};
+}
 
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour) {
   CameraRig rig = figures(kind);

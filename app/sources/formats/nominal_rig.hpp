@@ -36,11 +36,18 @@ inline constexpr DepthNoise kTimeOfFlightNoise{0.001F, 0.0F, 0.0004F, 0.5F, 0.00
 /// Depth Cameras, section on RMS error.
 inline constexpr DepthNoise kRealSenseNoise{0.0005F, 0.0F, 0.0025F, 0.0F, 0.0001F};
 
+/// Distance of a PrimeSense's or Xtion's colour camera from its depth camera, m.
+inline constexpr double kPrimeSenseBaseline_m = 0.025;
+
 struct ImageSize {
   int width_px = 0;
   int height_px = 0;
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
+
+/// Returns the camera of a device of OpenNI, with square pixels, from the horizontal field of view that it
+/// states, rad. A field of view outside 0.1 to 3 is replaced by that of a PrimeSense.
+Intrinsics openni_camera(ImageSize size, double stated_fov_rad);
 
 /// Returns published or measured default intrinsics for a kind of recording, scaled to the images' width. If
 /// the images' aspect ratio differs from that of the calibrated images, equal numbers of rows are assumed to

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/sources/formats/kinect_units.hpp"
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -65,6 +66,16 @@ std::optional<Eigen::Isometry3d> rigid_pose(const Eigen::Vector3d& t_m, const Ei
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = Eigen::Quaterniond(q_xyzw).normalized().toRotationMatrix();
   T.translation() = t_m;
+  return T;
+}
+
+std::optional<Eigen::Isometry3d> rigid_transform(const Eigen::Matrix<double, 3, 4>& matrix) {
+  if (!matrix.allFinite()) return std::nullopt;
+  const auto rotation = nearest_rotation(matrix.leftCols<3>());
+  if (!rotation) return std::nullopt;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = *rotation;
+  T.translation() = matrix.col(3);
   return T;
 }
 

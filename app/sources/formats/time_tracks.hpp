@@ -36,4 +36,8 @@ void sort_by_stamp(std::vector<StampedAcceleration>& accelerations);
 [[nodiscard]] std::optional<Eigen::Isometry3d> rigid_pose(const Eigen::Vector3d& t_m,
                                                           const Eigen::Vector4d& q_xyzw);
 
+/// Returns the pose of a rotation and a translation (m). Returns nullopt if a number is not finite or the
+/// left part is not a rotation, see nearest_rotation().
+[[nodiscard]] std::optional<Eigen::Isometry3d> rigid_transform(const Eigen::Matrix<double, 3, 4>& matrix);
+
 }  // namespace roomradar

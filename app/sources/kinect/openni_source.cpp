@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/raw_pixels.hpp"
 #include "app/sources/formats/stamp_pairing.hpp"
@@ -16,8 +17,6 @@
 namespace roomradar {
 namespace {
 
-constexpr double kUsualFov_rad = 1.0226;  // of a PrimeSense
-constexpr double kBaseline_m = 0.025;     // from its depth to its colour camera
 constexpr int kSilence_ms = 1000;
 
 /// Returns what OpenNI2 last complained about, as the end of a sentence.
@@ -53,11 +52,8 @@ void choose_mode(openni::VideoStream& stream, openni::PixelFormat format) {
 
 Intrinsics camera_of(const openni::VideoStream& stream) {
   const openni::VideoMode mode = stream.getVideoMode();
-  const double stated_rad = static_cast<double>(stream.getHorizontalFieldOfView());
-  const double fov_rad = stated_rad > 0.1 && stated_rad < 3.0 ? stated_rad : kUsualFov_rad;
-  const int width_px = mode.getResolutionX(), height_px = mode.getResolutionY();
-  const double f_px = width_px / 2.0 / std::tan(fov_rad / 2.0);
-  return {width_px, height_px, f_px, f_px, (width_px - 1) / 2.0, (height_px - 1) / 2.0};
+  return openni_camera({mode.getResolutionX(), mode.getResolutionY()},
+                       static_cast<double>(stream.getHorizontalFieldOfView()));
 }
 
 std::string_view bytes_of(const openni::VideoFrameRef& image) {
@@ -92,7 +88,7 @@ class OpenniSource final : public FrameSource {
       const bool is_registered = device_.isImageRegistrationModeSupported(mode) &&
                                  device_.setImageRegistrationMode(mode) == openni::STATUS_OK;
       if (!is_registered)
-        T_colour_depth_.translation().x() = -kBaseline_m;
+        T_colour_depth_.translation().x() = -kPrimeSenseBaseline_m;
       else if (colour_camera_.width_px == depth_camera_.width_px)
         depth_camera_ = colour_camera_;
     }

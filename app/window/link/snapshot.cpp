@@ -25,8 +25,8 @@ Mesh mesh_of(const TriangleTree& tree) {
 }  // namespace
 
 ShownRoom shown_room(const SavedMap& map) {
-  const std::shared_ptr<const SurfaceTexture>& texture = *map.texture;
-  if (!texture || !fits(*texture, map.mesh)) return {.mesh = map.mesh};
+  const std::shared_ptr<const SurfaceTexture> texture = fitting_texture(map);
+  if (!texture) return {.mesh = map.mesh};
   TexturedMesh textured = textured_mesh(map.mesh, *texture);
   return {.mesh = std::move(textured.mesh),
           .texture_points = std::move(textured.texture_points),

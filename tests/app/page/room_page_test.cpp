@@ -10,7 +10,6 @@
 
 #include "app/page/map_page.hpp"
 #include "app/page/page_template.hpp"
-#include "mapping/texture/jpeg.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/mapping/texture/texture_scene.hpp"
 #include "tests/support/error_of.hpp"
@@ -20,16 +19,6 @@ namespace roomradar::room_page_test {
 namespace {
 
 using Json = nlohmann::json;
-
-SurfaceTexture texture_for(const Mesh& mesh) {
-  SurfaceTexture texture;
-  texture.width_px = texture.height_px = 32;
-  texture.atlas_jpeg = jpeg_of(ColourImage(32, 32, {200, 40, 40}), 90);
-  texture.corners.assign(mesh.triangles.size(),
-                         {AtlasPoint{0, 0}, AtlasPoint{65535, 0}, AtlasPoint{0, 65535}});
-  texture.mesh_fingerprint = fingerprint(mesh);
-  return texture;
-}
 
 std::string written(const RoomPage& page) {
   const test::TemporaryFolder folder;
@@ -59,7 +48,7 @@ std::vector<std::uint8_t> bytes_of(const std::string& base64) {
 
 TEST(RoomPage, HoldsTheRoomAndNeedsNoNetwork) {
   const Mesh mesh = test::wall_mesh();
-  const SurfaceTexture texture = texture_for(mesh);
+  const SurfaceTexture texture = test::red_texture(mesh);
   RoomPage page{.title = "kitchen", .rooms = {{"kitchen", &mesh, &texture}}};
   Hole hole;
   hole.position_world = {1.0, 2.0, 0.5};
@@ -118,7 +107,7 @@ TEST(RoomPage, ChangesBelongToTheirRooms) {
 TEST(RoomPage, ABrowserDrawsItAndMeasures) {
   if (std::system("command -v chromium > /dev/null") != 0) GTEST_SKIP() << "chromium is not installed";
   const Mesh mesh = test::wall_mesh();
-  const SurfaceTexture texture = texture_for(mesh);
+  const SurfaceTexture texture = test::red_texture(mesh);
   const test::TemporaryFolder folder;
   const std::string page = (folder.path() / "room.html").string();
   write_room_page({.title = "wall", .rooms = {{"wall", &mesh, &texture}}}, page);

@@ -18,6 +18,12 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
   std::ofstream(path, std::ios::binary) << text;
 }
 
+/// Returns a number as memory has it.
+template <typename Number>
+std::string bytes_of(Number number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+
 inline void cut_to(const std::filesystem::path& path, double part) {
   std::filesystem::resize_file(
       path, static_cast<std::uintmax_t>(static_cast<double>(std::filesystem::file_size(path)) * part));

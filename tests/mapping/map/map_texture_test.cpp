@@ -7,7 +7,6 @@
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/mesh/mesh_file.hpp"
-#include "mapping/texture/jpeg.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/mapping/texture/texture_scene.hpp"
 #include "tests/support/error_of.hpp"
@@ -18,16 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SurfaceTexture texture_for(const Mesh& mesh) {
-  SurfaceTexture texture;
-  texture.width_px = texture.height_px = 32;
-  texture.atlas_jpeg = jpeg_of(ColourImage(32, 32, {200, 40, 40}), 90);
-  texture.corners.assign(mesh.triangles.size(),
-                         {AtlasPoint{0, 0}, AtlasPoint{65535, 0}, AtlasPoint{0, 65535}});
-  texture.mesh_fingerprint = fingerprint(mesh);
-  return texture;
-}
-
 class MapTexture : public ::testing::Test {
  protected:
   MapTexture() {
@@ -35,7 +24,7 @@ class MapTexture : public ::testing::Test {
     map_.octree->fuse(test::wall_frame(test::wall_scene(), T_world_camera), T_world_camera);
     map_.mesh = test::wall_mesh();
     map_.trajectory = {{0, 0.0, T_world_camera}};
-    map_.texture = std::make_shared<const SurfaceTexture>(texture_for(map_.mesh));
+    map_.texture = std::make_shared<const SurfaceTexture>(test::red_texture(map_.mesh));
     save_map(path_, map_);
   }
   test::TemporaryFolder folder_;

@@ -61,7 +61,7 @@ TEST(SurfaceTexture, FitsItsMeshAlsoAfterAFile) {
 TEST(SurfaceTexture, FitsAfterAFileAlsoWithTrianglesThatReadingDrops) {
   const test::TemporaryFolder folder;
   Mesh mesh = wall_mesh();
-  // Corners in a line: the area is 0 but for rounding.
+  // Corners in a line: the area is 0 except for rounding.
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3f from(0.1F + 0.013F * static_cast<float>(i), -0.7F, 0.37F),

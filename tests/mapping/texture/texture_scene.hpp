@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "mapping/texture/jpeg.hpp"
+#include "mapping/texture/surface_texture.hpp"
 #include "mapping/texture/texture_view.hpp"
 #include "mapping/types/mesh.hpp"
 #include "tests/support/exact_depth.hpp"
@@ -53,6 +55,17 @@ inline Frame wall_frame(const Scene& scene, const Eigen::Isometry3d& T_world_cam
 inline std::vector<Eigen::Isometry3d> wall_poses() {
   return {looking_at({0.8, 0.0, 0.0}, {2.0, 0.0, 0.0}), looking_at({0.7, 0.5, 0.2}, {2.0, 0.1, 0.0}),
           looking_at({0.6, -0.5, -0.2}, {2.0, -0.1, 0.0}), looking_at({0.5, 0.1, 0.5}, {2.0, 0.0, 0.1})};
+}
+
+/// A red texture of 32 x 32 pixels that fits the mesh; every triangle shows half of it.
+inline SurfaceTexture red_texture(const Mesh& mesh) {
+  SurfaceTexture texture;
+  texture.width_px = texture.height_px = 32;
+  texture.atlas_jpeg = jpeg_of(ColourImage(32, 32, {200, 40, 40}), 90);
+  texture.corners.assign(mesh.triangles.size(),
+                         {AtlasPoint{0, 0}, AtlasPoint{65535, 0}, AtlasPoint{0, 65535}});
+  texture.mesh_fingerprint = fingerprint(mesh);
+  return texture;
 }
 
 }  // namespace roomradar::test

@@ -13,16 +13,12 @@ namespace roomradar::binary_recordings_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::bytes_of;
 using test::contains;
 using test::error_of;
 using test::read_all;
 using test::TemporaryFolder;
 using test::write_text;
-
-template <typename Number>
-std::string bytes_of(Number number) {
-  return {reinterpret_cast<const char*>(&number), sizeof number};
-}
 
 std::string depth_bytes(int width_px, int height_px, int first_mm) {
   std::string bytes;

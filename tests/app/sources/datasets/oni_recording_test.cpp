@@ -12,49 +12,45 @@ namespace roomradar::oni_recording_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::bytes_of;
 using test::contains;
 using test::error_of;
 using test::read_all;
 using test::TemporaryFolder;
 using test::write_text;
 
-template <typename Number>
-std::string number(Number value) {
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
 std::string oni_text(const std::string& text) {
-  return number(static_cast<std::uint32_t>(text.size() + 1)) + text + '\0';
+  return bytes_of(static_cast<std::uint32_t>(text.size() + 1)) + text + '\0';
 }
 
 std::string record(std::uint32_t type, std::uint32_t node, const std::string& fields,
                    const std::string& payload = "") {
-  return number(std::uint32_t{0x0052494E}) + number(type) + number(node) +
-         number(static_cast<std::uint32_t>(28 + fields.size())) +
-         number(static_cast<std::uint32_t>(payload.size())) + number(std::uint64_t{0}) + fields + payload;
+  return bytes_of(std::uint32_t{0x0052494E}) + bytes_of(type) + bytes_of(node) +
+         bytes_of(static_cast<std::uint32_t>(28 + fields.size())) +
+         bytes_of(static_cast<std::uint32_t>(payload.size())) + bytes_of(std::uint64_t{0}) + fields + payload;
 }
 
 std::string node(std::uint32_t id, std::uint32_t kind, const std::string& codec, std::uint32_t width,
                  std::uint32_t height) {
-  const std::string mode = number(width) + number(height) + number(std::uint32_t{30});
-  return record(
-             13, id,
-             oni_text("a node") + number(kind) + codec + number(std::uint32_t{0}) + std::string(24, '\0')) +
-         record(6, id, oni_text("xnMapOutputMode") + number(std::uint32_t{12}) + mode);
+  const std::string mode = bytes_of(width) + bytes_of(height) + bytes_of(std::uint32_t{30});
+  return record(13, id,
+                oni_text("a node") + bytes_of(kind) + codec + bytes_of(std::uint32_t{0}) +
+                    std::string(24, '\0')) +
+         record(6, id, oni_text("xnMapOutputMode") + bytes_of(std::uint32_t{12}) + mode);
 }
 
 std::string integer(std::uint32_t id, const std::string& name, std::uint64_t value) {
-  return record(3, id, oni_text(name) + number(std::uint32_t{8}) + number(value));
+  return record(3, id, oni_text(name) + bytes_of(std::uint32_t{8}) + bytes_of(value));
 }
 
 std::string frame(std::uint32_t id, std::uint64_t stamp_us, const std::string& data) {
-  return record(10, id, number(stamp_us) + number(std::uint32_t{1}), data);
+  return record(10, id, bytes_of(stamp_us) + bytes_of(std::uint32_t{1}), data);
 }
 
 /// Compresses values as OpenNI does, with every kind of code: differences of 4, 8 and 16 bits, and
 /// repetitions.
 std::string compressed(const std::vector<std::uint16_t>& values) {
-  std::string bytes = number(values.front());
+  std::string bytes = bytes_of(values.front());
   int open = -1;  // upper 4 bits of a byte that waits for its lower ones
   const auto close = [&] {
     if (open >= 0) bytes += static_cast<char>(open << 4 | 0x0D);
@@ -122,7 +118,7 @@ std::string oni(const std::string& codec, bool is_mirrored = false) {
       for (const std::uint16_t mm : depth_mm)
         indices.push_back(
             static_cast<std::uint16_t>(std::lower_bound(table.begin(), table.end(), mm) - table.begin()));
-      data = number(static_cast<std::uint16_t>(table.size())) +
+      data = bytes_of(static_cast<std::uint16_t>(table.size())) +
              std::string(reinterpret_cast<const char*>(table.data()), 2 * table.size()) + compressed(indices);
     }
     const std::uint64_t stamp_us = 1'000'000U + 33'000U * static_cast<unsigned>(i);

@@ -1,0 +1,26 @@
+// growing_file.hpp: a text file that grows with the run.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace roomradar {
+
+class GrowingFile {
+ public:
+  /// The file is not created or changed before the first line is appended.
+  /// @param head  written before the first line, with its end of line
+  GrowingFile(std::filesystem::path path, std::string head);
+  /// Appends a line, with its end of line. Throws Error if the file cannot be created.
+  void append(std::string_view line);
+  /// Closes the file. Throws Error if it could not be written completely.
+  void close();
+
+ private:
+  std::filesystem::path path_;
+  std::string head_;
+  std::ofstream file_;
+};
+
+}  // namespace roomradar
