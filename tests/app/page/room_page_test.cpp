@@ -113,13 +113,15 @@ TEST(RoomPage, ABrowserDrawsItAndMeasures) {
   write_room_page({.title = "wall", .rooms = {{"wall", &mesh, &texture}}}, page);
   // Clicks two points of the wall, 0.5 m apart, in the view from its front.
   std::ofstream(page, std::ios::app) << R"(<script>
-    view.azimuth = Math.PI - 0.3;
-    $('measure').click();
-    for (const p of [[2, 0.1, 0.4], [2, 0.4, 0]]) {
-      const [x, y] = onScreen(clipFromWorld(frame()), p);
-      for (const kind of ['pointerdown', 'pointerup'])
-        canvas.dispatchEvent(new PointerEvent(kind, {pointerId: 1, clientX: x, clientY: y}));
-    }
+    setTimeout(() => {  // when the page has its final size
+      view.azimuth = Math.PI - 0.3;
+      $('measure').click();
+      for (const p of [[2, 0.1, 0.4], [2, 0.4, 0]]) {
+        const [x, y] = onScreen(clipFromWorld(frame()), p);
+        for (const kind of ['pointerdown', 'pointerup'])
+          canvas.dispatchEvent(new PointerEvent(kind, {pointerId: 1, clientX: x, clientY: y}));
+      }
+    }, 1000);
   </script>)";
   // Writes the document after the page's program has run; it throws where WebGL or a shader fails.
   const std::string dom = (folder.path() / "dom.txt").string();
