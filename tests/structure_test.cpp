@@ -31,7 +31,7 @@ const std::vector<std::vector<std::string>> kFloors = {
      "app/sim/sensor", "app/quality", "app/models"},
     {"mapping", "app/sim/scenarios", "app/sim", "app/physics", "app/physics/placement", "app/render",
      "app/media", "app/page"},
-    {"app/objects", "app/evaluation", "app/evaluation/pareto"},
+    {"app/objects", "app/evaluation", "app/evaluation/pareto", "app/scan/live"},
     {"app/session"},
     {"app/session/script"},
     {"app/cli/options"},

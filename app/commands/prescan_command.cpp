@@ -18,7 +18,7 @@
 #include "app/evaluation/held_out.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/scan/controlled_source.hpp"
-#include "app/scan/next_view.hpp"
+#include "app/scan/live/next_view.hpp"
 #include "app/scan/prescan_report.hpp"
 #include "app/scan/scan_end.hpp"
 #include "app/scan/scan_progress.hpp"
@@ -233,7 +233,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   std::fflush(stdout);  // the window may stay open
   if (channel)
     channel->finish({outcome_of(options, scanned), std::make_shared<const Mesh>(scanned.map.mesh),
-                     holes_inside(scanned.holes)});
+                     numbered(holes_inside(scanned.holes))});
   write_report(report, options.report);
   if (!held_out.fault.empty())
     std::fprintf(stderr, "roomradar: %s: is saved; its held-out frames could not be compared with it: %s\n",
@@ -259,7 +259,7 @@ int scan(const PrescanOptions& options) {
 ScanWindowResult scan_in_window(const PrescanOptions& options) {
   require_can_save(options);
   return run_in_scan_window(
-      "roomradar scan - " + options.source, options.ui_scale, [&](ScanChannel& channel) {
+      "roomradar scan - " + options.source, options.ui_scale, options.lost_signal, [&](ScanChannel& channel) {
         try {
           return scan_and_save(options, &channel);
         } catch (const ScanDiscarded&) {

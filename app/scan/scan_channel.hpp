@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/scan/scan_advice.hpp"
-#include "mapping/coverage/hole.hpp"
+#include "app/scan/live/holes_so_far.hpp"
+#include "app/scan/live/scan_advice.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
@@ -37,7 +37,8 @@ struct ScanCounts {
   std::int64_t keyframes = 0;
   std::int64_t loops = 0;
   double seen_m2 = 0.0;
-  double well_known = 0.0;  ///< fraction of the surface seen so far
+  double well_known = 0.0;                   ///< fraction of the surface seen so far
+  std::optional<double> table_tops_known{};  ///< fraction known well; unset: none seen above a floor
   std::size_t memory_bytes = 0;
   std::optional<double> left_s{};  ///< until memory or disk run out; unset: not known, or not in sight
 };
@@ -56,6 +57,7 @@ struct ShownScan {
   std::vector<ShownPart> parts;
   std::vector<Eigen::Vector3f> path_world;  ///< positions of the keyframes and of the camera
   std::optional<ShownNextView> next_view;   ///< unset: not known, or nothing unseen is near
+  std::vector<NumberedHole> holes;          ///< the largest above the floor, near the camera
   ScanCounts counts;
 };
 
@@ -63,8 +65,7 @@ struct ShownScan {
 struct ScanOutcome {
   std::string text;                       ///< empty: the scan goes on
   std::shared_ptr<const Mesh> surface{};  ///< of the saved map; null: there is no map
-  /// Holes inside the scan, largest first, in the map's world; the window numbers them from 1.
-  std::vector<Hole> holes{};
+  std::vector<NumberedHole> holes{};      ///< inside the scan, in the map's world
 };
 
 /// Work of a scan after its last frame.

@@ -1,6 +1,6 @@
 // scan_picture.hpp: the camera's picture in the scan window, tinted by how well each place is known.
 #pragma once
-#include "app/scan/knowledge_grid.hpp"
+#include "app/scan/live/knowledge_grid.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {

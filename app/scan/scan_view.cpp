@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "app/scan/live/table_tops.hpp"
 #include "app/scan/scan_picture.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/types/system/process_memory.hpp"
@@ -138,27 +139,38 @@ void ScanView::explore(const Work& work) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kEvery = std::chrono::seconds(1);
   constexpr double kReached_m = 0.25, kReached_rad = 0.35;
-  if (search_.valid() && search_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+  if (search_.valid() && search_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     explored_ = search_.get();
+    holes_ = numbered(explored_.holes, holes_);
+  }
   if (!search_.valid() && !work.keyframes.empty()) {
     searched_ = Clock::now();
-    const Eigen::Vector3d up_world = T_shown_world_.linear().row(2).transpose();
-    search_ = std::async(std::launch::async, [keyframes = work.keyframes, up_world,
+    search_ = std::async(std::launch::async, [keyframes = work.keyframes, T_shown_world = T_shown_world_,
                                               T_world_camera = work.tracking.T_world_camera] {
       lower_priority();
-      Explored explored{explored_around(T_world_camera.translation(), keyframes), std::nullopt};
-      explored.next_view = best_next_view(*explored.grid, T_world_camera, up_world);
+      Explored explored;
+      explored.T_shown_world = T_shown_world;
+      explored.grid = explored_around(T_world_camera.translation(), keyframes, T_shown_world);
+      explored.next_view =
+          best_next_view(*explored.grid, T_shown_world * T_world_camera, Eigen::Vector3d::UnitZ());
+      explored.holes = holes_so_far(*explored.grid);
       return explored;
     });
   }
   if (!search_.valid() && Clock::now() - searched_ > kEvery) wants_keyframes_ = true;
-  if (!work.tracking) return;
-  for (std::optional<NextView>* next : {&explored_.next_view, &first_view_}) {
-    if (!*next || (next == &first_view_ && !work.is_located)) continue;
-    const Eigen::Isometry3d left = (*next)->T_world_camera.inverse() * work.tracking.T_world_camera;
-    if (left.translation().norm() < kReached_m && Eigen::AngleAxisd(left.linear()).angle() < kReached_rad)
-      next->reset();
-  }
+  const std::optional<NextView> next = next_view(work);
+  if (!next || !work.tracking) return;
+  const Eigen::Isometry3d left = next->T_world_camera.inverse() * shown_.T_world_camera;
+  if (left.translation().norm() < kReached_m && Eigen::AngleAxisd(left.linear()).angle() < kReached_rad)
+    (first_view_ && work.is_located ? first_view_ : explored_.next_view).reset();
+}
+
+/// Returns the view to go to, in the shown world.
+std::optional<NextView> ScanView::next_view(const Work& work) const {
+  if (!first_view_ || !work.is_located) return explored_.next_view;
+  NextView next = *first_view_;
+  next.T_world_camera = T_shown_world_ * next.T_world_camera;
+  return next;
 }
 
 void ScanView::show(const Work& work) {
@@ -184,12 +196,16 @@ void ScanView::show(const Work& work) {
   }
   if (since_counted_++ % kCountedEvery == 0) {
     well_known_ = knowledge_.well_known_fraction();
+    if (explored_.grid)
+      table_tops_known_ =
+          table_tops_known(model_.parts(), work.T_world_anchor, T_shown_world_, knowledge_, *explored_.grid);
     forecast_.add(resources_now(now_s(), max_memory_bytes_, folder_));
   }
+  shown_.T_world_camera = T_shown_world_ * T_world_camera;
   explore(work);
   ScanFacts facts = work.facts;
   if (explored_.grid && work.tracking)
-    facts.moved_fraction = moved_fraction(*explored_.grid, frame, T_world_camera);
+    facts.moved_fraction = moved_fraction(*explored_.grid, frame, explored_.T_shown_world * T_world_camera);
   advice_.add(facts, frame.stamp_s);
 
   shown_.frame_index = frame.index;
@@ -198,16 +214,14 @@ void ScanView::show(const Work& work) {
   shown_.fault = advice_.fault();
   shown_.relative_speed = relative_speed(work.facts);
   shown_.camera = frame.depth_camera;
-  shown_.T_world_camera = T_shown_world_ * T_world_camera;
   shown_.path_world = work.path_world;
   for (Eigen::Vector3f& position : shown_.path_world)
     position = T_shown_world_.linear().cast<float>() * position;
   shown_.next_view.reset();
-  const std::optional<NextView>& next = first_view_ && work.is_located ? first_view_ : explored_.next_view;
-  if (next && work.tracking)
+  if (const std::optional<NextView> next = next_view(work); next && work.tracking)
     shown_.next_view =
-        ShownNextView{T_shown_world_ * next->T_world_camera,
-                      way_to(*next, T_world_camera, T_shown_world_.linear().row(2).transpose())};
+        ShownNextView{next->T_world_camera, way_to(*next, shown_.T_world_camera, Eigen::Vector3d::UnitZ())};
+  shown_.holes = holes_;
   shown_.parts.clear();
   for (const LiveModelPart& part : model_.parts())
     if (part.anchor < work.T_world_anchor.size() && work.T_world_anchor[part.anchor])
@@ -215,6 +229,7 @@ void ScanView::show(const Work& work) {
   shown_.counts = work.counts;
   shown_.counts.seen_m2 = seen_.total_m2();
   shown_.counts.well_known = well_known_;
+  shown_.counts.table_tops_known = table_tops_known_;
   shown_.counts.memory_bytes = resident_bytes();
   shown_.counts.left_s = forecast_.left_s();
   channel_.publish(shown_);

@@ -12,13 +12,14 @@
 #include <thread>
 #include <vector>
 
-#include "app/scan/anchors.hpp"
-#include "app/scan/knowledge_grid.hpp"
-#include "app/scan/live_model.hpp"
-#include "app/scan/next_view.hpp"
-#include "app/scan/scan_advice.hpp"
+#include "app/scan/live/anchors.hpp"
+#include "app/scan/live/holes_so_far.hpp"
+#include "app/scan/live/knowledge_grid.hpp"
+#include "app/scan/live/live_model.hpp"
+#include "app/scan/live/next_view.hpp"
+#include "app/scan/live/scan_advice.hpp"
+#include "app/scan/live/scan_resources.hpp"
 #include "app/scan/scan_channel.hpp"
-#include "app/scan/scan_resources.hpp"
 #include "mapping/coverage/observed_area.hpp"
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/scan_observer.hpp"
@@ -79,17 +80,22 @@ class ScanView final : public ScanObserver {
   std::int64_t up_frames_ = 0, up_due_ = 1;
   Eigen::Isometry3d T_shown_world_ = Eigen::Isometry3d::Identity();  ///< rotates up to +z
   double well_known_ = 0.0;
+  std::optional<double> table_tops_known_;
   std::int64_t since_counted_ = 0;  ///< frames since well_known_ was counted
   const std::size_t max_memory_bytes_;
   const std::filesystem::path folder_;
   ResourceForecast forecast_;
   LiveModel model_;
+  /// In the shown world of that time.
   struct Explored {
+    Eigen::Isometry3d T_shown_world = Eigen::Isometry3d::Identity();
     std::optional<ExplorationGrid> grid;
     std::optional<NextView> next_view;
+    std::vector<Hole> holes;
   };
-  Explored explored_;  ///< in the odometry's world
-  std::optional<NextView> first_view_;
+  Explored explored_;
+  std::vector<NumberedHole> holes_;
+  std::optional<NextView> first_view_;  ///< in the odometry's world
   std::chrono::steady_clock::time_point searched_{};
   std::future<Explored> search_;
 
@@ -104,6 +110,7 @@ class ScanView final : public ScanObserver {
   void serve();
   void show(const Work& work);
   void explore(const Work& work);
+  [[nodiscard]] std::optional<NextView> next_view(const Work& work) const;
   void estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 };
 

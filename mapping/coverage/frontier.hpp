@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mapping/coverage/hole.hpp"
-#include "mapping/octree/static_map.hpp"
+#include "mapping/coverage/occupancy_cells.hpp"
 
 namespace roomradar {
 
@@ -34,11 +34,12 @@ struct Frontier {
   std::vector<FrontierCell> cells;
 };
 
-/// Copies the octree into a grid of cells, with larger cells if there would be more than 16 million. A cell
-/// is occupied if any of its voxels is occupied, else free if at least half of its volume is free. Border
-/// cells are unknown cells that share a face with a free cell. Adjacent border cells form one hole. Each
-/// face's area is projected along the border's normal. The area of a slanted border is thus not that of its
-/// staircase. Returns no holes for an empty map. Throws Error if the config is invalid.
+/// Finds the border cells: unknown cells that share a face with a free cell. Adjacent border cells form one
+/// hole. Each face's area is projected along the border's normal. The area of a slanted border is thus not
+/// that of its staircase. Returns no holes for an empty grid. Throws Error if the config is invalid.
+/// FrontierConfig::cell_m is not used.
+Frontier find_frontier(const OccupancyCells& grid, const FrontierConfig& config = {});
+/// As above, in the octree's occupancy_cells().
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config = {});
 
 }  // namespace roomradar

@@ -15,7 +15,7 @@
 
 namespace roomradar {
 
-enum class Occupancy { kUnknown, kFree, kOccupied };
+enum class Occupancy : std::uint8_t { kUnknown, kFree, kOccupied };
 
 enum class FuseStatus {
   kFused,

@@ -16,6 +16,11 @@ inline std::uint64_t voxel_key(std::int64_t x, std::int64_t y, std::int64_t z) {
 inline std::uint64_t voxel_key(const Eigen::Vector3i& cell) {
   return voxel_key(cell.x(), cell.y(), cell.z());
 }
+/// Returns the cell of a key: the inverse of voxel_key() for coordinates from -2^20 to 2^20 - 1.
+inline Eigen::Vector3i voxel_of(std::uint64_t key) {
+  const auto field = [&](unsigned shift) { return static_cast<int>(key >> shift & 0x1F'FFFFU) - (1 << 20); };
+  return {field(0), field(21), field(42)};
+}
 
 inline constexpr int kCellsRound = 27;
 inline constexpr int kOwnCell = 13;

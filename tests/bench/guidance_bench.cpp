@@ -14,7 +14,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "app/scan/next_view.hpp"
+#include "app/scan/live/next_view.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/alignment/view_pyramid.hpp"
 #include "mapping/types/system/error.hpp"

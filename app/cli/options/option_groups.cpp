@@ -31,7 +31,7 @@ std::vector<CommandHelp> command_helps() {
        "  roomradar start maps/kitchen\n  roomradar start recordings/kitchen maps/kitchen\n"},
       {"prescan",
        {{"Everyday options", {"--map", "--window", "--resume", "--preset", "--report", "--trajectory"}},
-        {"Source and window", {"--frames", "--calibration", "--poses", "--ui-scale"}},
+        {"Source and window", {"--frames", "--calibration", "--poses", "--ui-scale", "--lost-signal"}},
         {"World", {"--up"}},
         {"Accuracy, time and memory",
          {"--resolution", "--deviation", "--tracking-px", "--fuse-every", "--texture", "--max-memory",

@@ -1,6 +1,8 @@
 // prescan_options.cpp: option names, help texts and checks of `roomradar prescan`.
 #include "app/cli/options/prescan_options.hpp"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
@@ -35,6 +37,14 @@ void add_options(CLI::App& command, PrescanOptions& options) {
   command.add_flag("--window", options.window,
                    "open a window: watch the model grow, see what is known and what is wrong; pause, finish\n"
                    "(default: off)");
+  add_choice<LostSignal>(
+      command, "--lost-signal", options.lost_signal,
+      {{"none", LostSignal::kNone},
+       {"flash", LostSignal::kFlash},
+       {"bell", LostSignal::kBell},
+       {"both", LostSignal::kBoth}},
+      "what the window does when the camera is lost: the picture's frame flashes, the terminal's\n"
+      "bell rings, or both (default: flash)");
   add_poses_option(command, options.poses,
                    "estimate the camera poses (tracked), or use those of the recording (recorded)\n"
                    "(default: tracked)");
@@ -88,6 +98,12 @@ void add_options(CLI::App& command, PrescanOptions& options) {
 void complete_options(const CLI::App& command, PrescanOptions& options) {
   if (command.count("--presets") > 0 && command.count("--preset") == 0)
     throw CLI::ValidationError("--presets: used only with --preset NAME, which is not given");
+  if (command.count("--lost-signal") > 0 && !options.window)
+    throw CLI::ValidationError("--lost-signal: a signal of --window, which is not given");
+  const bool rings = options.lost_signal == LostSignal::kBell || options.lost_signal == LostSignal::kBoth;
+  if (rings && isatty(STDERR_FILENO) == 0)
+    throw CLI::ValidationError(
+        "--lost-signal: the bell is that of the terminal, but stderr is not one; use flash");
   complete_quality(options.quality, options.preset, options.presets, options.fixed);
 }
 

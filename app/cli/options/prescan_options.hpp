@@ -16,6 +16,14 @@ class App;
 
 namespace roomradar {
 
+/// How the scan window draws attention to a lost camera.
+enum class LostSignal {
+  kNone,
+  kFlash,  ///< the picture's frame flashes red
+  kBell,   ///< the terminal's bell rings once
+  kBoth,
+};
+
 struct PrescanOptions {
   /// Source of the frames, in the form that open_source() accepts.
   std::string source;
@@ -49,6 +57,8 @@ struct PrescanOptions {
   double max_memory_mb = 0.0;
   /// True: opens a window that shows the scan.
   bool window = false;
+  /// Signal of the window when tracking is lost.
+  LostSignal lost_signal = LostSignal::kFlash;
   /// Place that the window asks to be scanned first, in the world of the map that is extended. No option sets
   /// it.
   std::optional<PlaceToScan> look_at;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -25,12 +26,12 @@ void draw_path(ImDrawList& list, const ShownScan& shown, const ToWindow& to_wind
 }
 
 /// Draws a disc with its number at each hole, the largest hole on top.
-void draw_holes(ImDrawList& list, std::span<const Hole> holes, const ToWindow& to_window,
+void draw_holes(ImDrawList& list, std::span<const NumberedHole> holes, const ToWindow& to_window,
                 const look::Fonts& fonts) {
-  for (std::size_t i = holes.size(); i-- > 0;) {
-    const std::optional<ImVec2> at = to_window(holes[i].position_world);
+  for (auto hole = holes.rbegin(); hole != holes.rend(); ++hole) {
+    const std::optional<ImVec2> at = to_window(hole->hole.position_world);
     if (!at) continue;
-    const std::string number = std::to_string(i + 1);
+    const std::string number = std::to_string(hole->number);
     const ImVec2 size = fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e4F, 0.0F, number.c_str());
     const float radius = 0.5F * std::max(size.x, size.y) + look::px(3.0F);
     list.AddCircleFilled(*at, radius, IM_COL32(16, 19, 24, 220));
@@ -81,8 +82,7 @@ void LiveModelView::look_at(const Mesh& mesh) {
   is_stale_ = true;
 }
 
-void LiveModelView::draw(const Area& area, const ShownScan& shown, std::span<const Hole> holes,
-                         const look::Fonts& fonts) {
+void LiveModelView::draw(const Area& area, const ShownScan& shown, const look::Fonts& fonts) {
   look::begin_pane("live model", area, look::kGround);
   ImGui::SetCursorScreenPos({area.x, area.y});
   ImGui::InvisibleButton("orbit", {area.width, area.height},
@@ -110,7 +110,7 @@ void LiveModelView::draw(const Area& area, const ShownScan& shown, std::span<con
                                 to = to_window(shown.next_view->T_world_camera * Eigen::Vector3d(0, 0, 0.25));
     if (from && to) list.AddLine(*from, *to, look::kWarn, look::px(2.0F));
   }
-  draw_holes(list, holes, to_window, fonts);
+  draw_holes(list, shown.holes, to_window, fonts);
   if (shown.frame_index >= 0) draw_camera(list, {shown.camera, shown.T_world_camera}, 0.35, to_window);
   if (shown.parts.empty())
     list.AddText(fonts.text, fonts.text->FontSize, {area.x + look::px(16.0F), area.y + look::px(16.0F)},

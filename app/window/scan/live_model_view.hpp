@@ -2,7 +2,6 @@
 #pragma once
 #include <map>
 #include <memory>
-#include <span>
 
 #include "app/scan/scan_channel.hpp"
 #include "app/window/panes/orbit_canvas.hpp"
@@ -15,8 +14,7 @@ class LiveModelView {
  public:
   /// Takes the meshes that are new.
   void upload(const ShownScan& shown);
-  /// @param holes  marked by their numbers, from 1
-  void draw(const Area& area, const ShownScan& shown, std::span<const Hole> holes, const look::Fonts& fonts);
+  void draw(const Area& area, const ShownScan& shown, const look::Fonts& fonts);
   /// Ends following, and places the eye so that it sees a whole mesh.
   void look_at(const Mesh& mesh);
 

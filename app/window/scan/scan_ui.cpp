@@ -47,7 +47,8 @@ const char* words_of(const std::string& stage) {
 
 }  // namespace
 
-ScanUi::ScanUi(ScanChannel& channel, const look::Fonts& fonts) : channel_(channel), fonts_(fonts) {}
+ScanUi::ScanUi(ScanChannel& channel, const look::Fonts& fonts, LostSignal lost_signal)
+    : channel_(channel), fonts_(fonts), lost_signal_(lost_signal) {}
 
 void ScanUi::take_news() {
   stage_ = channel_.stage();
@@ -55,11 +56,19 @@ void ScanUi::take_news() {
     outcome_ = channel_.outcome();
     if (outcome_.surface) show_result();
   }
+  const std::optional<ScanFault> fault_before = shown_.fault;
   if (outcome_.surface || !channel_.take(shown_)) return;
+  signal_loss(fault_before);
   newest_s_ = ImGui::GetTime();
   picture_.upload(shown_.picture);
   if (!shown_.tint.empty()) tint_.upload(shown_.tint);
   model_.upload(shown_);
+}
+
+/// Rings the bell if the camera was lost since the last news.
+void ScanUi::signal_loss(std::optional<ScanFault> fault_before) const {
+  const bool rings = lost_signal_ == LostSignal::kBell || lost_signal_ == LostSignal::kBoth;
+  if (rings && shown_.fault == ScanFault::kLost && fault_before != ScanFault::kLost) std::fputs("\a", stderr);
 }
 
 /// Shows the map's surface in place of the live model.
@@ -67,6 +76,7 @@ void ScanUi::show_result() {
   shown_.parts = {{outcome_.surface, Eigen::Isometry3d::Identity()}};
   shown_.path_world.clear();
   shown_.next_view.reset();
+  shown_.holes = outcome_.holes;
   shown_.frame_index = -1;  // the camera's pose is in another world
   model_.upload(shown_);
   model_.look_at(*outcome_.surface);
@@ -106,7 +116,7 @@ void ScanUi::draw(float width, float height) {
   const ScanLayout layout = scan_layout(width, height, look::px(1.0F));
   draw_bar(layout.bar);
   draw_picture(layout.camera);
-  model_.draw(layout.model, shown_, outcome_.holes, fonts_);
+  model_.draw(layout.model, shown_, fonts_);
   if (is_tracking())
     draw_counts(layout.counts);
   else
@@ -177,7 +187,8 @@ void ScanUi::draw_picture(const Area& area) {
 void ScanUi::draw_advice(const Area& area) {
   std::optional<ScanFault> fault = shown_.fault;
   const bool is_bright = std::fmod(ImGui::GetTime(), 0.8) < 0.4;
-  if (fault == ScanFault::kLost && is_bright && !channel_.is_paused())
+  const bool flashes = lost_signal_ == LostSignal::kFlash || lost_signal_ == LostSignal::kBoth;
+  if (fault == ScanFault::kLost && flashes && is_bright && !channel_.is_paused())
     ImGui::GetWindowDrawList()->AddRect({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                         look::kBad, 0.0F, 0, look::px(8.0F));
   if (newest_s_ >= 0.0 && ImGui::GetTime() - newest_s_ > kSilent_s) fault = ScanFault::kSilent;
@@ -247,9 +258,10 @@ void ScanUi::draw_counts(const Area& area) {
     ImGui::EndGroup();
   };
   fact(text_of("%.0f", counts.frames_per_s), "frames/s");
-  fact(text_of("%lld", static_cast<long long>(counts.frames)), "frames");
   fact(text_of("%.1f m\u00B2", counts.seen_m2), "surface seen");
   fact(text_of("%.0f %%", 100.0 * counts.well_known), "of it known well");
+  if (counts.table_tops_known) fact(text_of("%.0f %%", 100.0 * *counts.table_tops_known), "of table tops");
+  fact(text_of("%zu", shown_.holes.size()), shown_.holes.size() == 1 ? "hole left" : "holes left");
   fact(text_of("%lld", static_cast<long long>(counts.loops)), "loops closed");
   fact(text_of("%.0f MB", static_cast<double>(counts.memory_bytes) / 1e6), "memory");
   if (counts.left_s && *counts.left_s < kWorthSaying_s)

@@ -1,7 +1,9 @@
 // scan_ui.hpp: content of the scan window, and the actions of its keys.
 #pragma once
+#include <optional>
 #include <string>
 
+#include "app/cli/options/prescan_options.hpp"
 #include "app/scan/scan_channel.hpp"
 #include "app/window/imgui_window.hpp"
 #include "app/window/panes/gl_texture.hpp"
@@ -14,7 +16,7 @@ namespace roomradar {
 /// Draws the scan window and handles its keys. All calls must come from the window's thread.
 class ScanUi final : public WindowContent {
  public:
-  ScanUi(ScanChannel& channel, const look::Fonts& fonts);
+  ScanUi(ScanChannel& channel, const look::Fonts& fonts, LostSignal lost_signal = LostSignal::kFlash);
 
   void take_news() override;
   void press(const Key& key) override;
@@ -24,6 +26,7 @@ class ScanUi final : public WindowContent {
  private:
   ScanChannel& channel_;
   const look::Fonts& fonts_;
+  const LostSignal lost_signal_;
   ShownScan shown_;
   ScanStage stage_;
   ScanOutcome outcome_;
@@ -34,6 +37,7 @@ class ScanUi final : public WindowContent {
 
   [[nodiscard]] bool is_tracking() const { return stage_.name.empty() && outcome_.text.empty(); }
   void show_result();
+  void signal_loss(std::optional<ScanFault> before) const;
   void press_key(int key, int modifiers);
   void draw_bar(const Area& area);
   void draw_picture(const Area& area);

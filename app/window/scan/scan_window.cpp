@@ -16,7 +16,7 @@
 namespace roomradar {
 
 ScanWindowResult run_in_scan_window(const std::string& title, std::optional<double> ui_scale,
-                                    const std::function<int(ScanChannel&)>& work) {
+                                    LostSignal lost_signal, const std::function<int(ScanChannel&)>& work) {
   ScanWindowResult result;
   const std::shared_ptr<GlfwWindow> window = open_window(title);
   ScanChannel channel([] { glfwPostEmptyEvent(); });
@@ -32,8 +32,9 @@ ScanWindowResult run_in_scan_window(const std::string& title, std::optional<doub
       glfwSetWindowShouldClose(window->get(), GLFW_TRUE);  // allowed on any thread
     glfwPostEmptyEvent();
   });
-  show_until_closed(*window, ui_scale,
-                    [&](const look::Fonts& fonts) { return std::make_unique<ScanUi>(channel, fonts); });
+  show_until_closed(*window, ui_scale, [&](const look::Fonts& fonts) {
+    return std::make_unique<ScanUi>(channel, fonts, lost_signal);
+  });
   channel.set_paused(false);
   if (channel.outcome().text.empty() && channel.requested() == ScanRequest::kGoOn) std::raise(SIGINT);
   result.wants_to_play = channel.requested() == ScanRequest::kPlay;

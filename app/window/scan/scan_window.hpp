@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/cli/options/prescan_options.hpp"
 #include "app/scan/scan_channel.hpp"
 
 namespace roomradar {
@@ -22,9 +23,10 @@ struct ScanWindowResult {
 ///
 /// @param title     title of the window
 /// @param ui_scale  scale of text and panes; unset: that of the monitor
+/// @param lost_signal  signal when tracking is lost
 /// @throws Error with advice if the program was built without a window, or if there is no display with OpenGL
 ///         3.3. Exceptions of `work` are rethrown
 ScanWindowResult run_in_scan_window(const std::string& title, std::optional<double> ui_scale,
-                                    const std::function<int(ScanChannel&)>& work);
+                                    LostSignal lost_signal, const std::function<int(ScanChannel&)>& work);
 
 }  // namespace roomradar

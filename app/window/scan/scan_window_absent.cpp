@@ -5,6 +5,7 @@
 namespace roomradar {
 
 ScanWindowResult run_in_scan_window(const std::string& /*title*/, std::optional<double> /*ui_scale*/,
+                                    LostSignal /*lost_signal*/,
                                     const std::function<int(ScanChannel&)>& /*work*/) {
   throw Error(
       "--window: this roomradar was built without it; install libglfw3-dev and libimgui-dev and configure "

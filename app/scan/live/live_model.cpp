@@ -1,5 +1,5 @@
 // live_model.cpp: the thread that fuses and extracts.
-#include "app/scan/live_model.hpp"
+#include "app/scan/live/live_model.hpp"
 
 #include <sys/resource.h>
 #include <unistd.h>

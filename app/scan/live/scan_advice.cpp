@@ -1,5 +1,5 @@
 // scan_advice.cpp: thresholds and sentences.
-#include "app/scan/scan_advice.hpp"
+#include "app/scan/live/scan_advice.hpp"
 
 #include <algorithm>
 

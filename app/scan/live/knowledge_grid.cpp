@@ -1,5 +1,5 @@
 // knowledge_grid.cpp: weights by cell, kept per anchor and summed in the world.
-#include "app/scan/knowledge_grid.hpp"
+#include "app/scan/live/knowledge_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,24 +11,15 @@
 namespace roomradar {
 namespace {
 
-constexpr double kCell_m = 0.04;
 constexpr float kFarthest_m = 5.0F;
 constexpr float kWellKnown = 5.0F;  ///< times SurfaceConfig::min_weight
 
-Eigen::Vector3d in_cells(const Eigen::Vector3d& p) { return (p / kCell_m).array().floor(); }
-
-std::uint64_t cell_of(const Eigen::Vector3d& p) {
-  const Eigen::Vector3d cell = in_cells(p);
-  return voxel_key(static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
-                   static_cast<std::int64_t>(cell.z()));
+std::uint64_t key_of(const Eigen::Vector3d& p) {
+  return voxel_key((p / KnowledgeGrid::kCell_m).array().floor().cast<int>().matrix().eval());
 }
 
-/// Returns the centre of a cell: the inverse of cell_of().
-Eigen::Vector3d centre_of(std::uint64_t key) {
-  const auto field = [&](unsigned shift) {
-    return static_cast<double>(static_cast<std::int64_t>(key >> shift & 0x1F'FFFFU) - (1 << 20));
-  };
-  return kCell_m * (Eigen::Vector3d(field(0), field(21), field(42)).array() + 0.5).matrix();
+Eigen::Vector3d centre_of(std::uint64_t cell) {
+  return KnowledgeGrid::kCell_m * (voxel_of(cell).cast<double>().array() + 0.5).matrix();
 }
 
 /// Calls visit(column, row, point) for every kStep_px-th pixel with depth.
@@ -48,7 +39,7 @@ void visit_samples(const Frame& frame, const Eigen::Isometry3d& T_to_camera, con
 float weight_of(const Frame& frame, float depth_m) {
   const float sigma = kUnitWeightSigma_m / depth_sigma_m(frame.depth_noise, depth_m);
   const float spacing_m = static_cast<float>(KnowledgeGrid::kStep_px / frame.depth_camera.fx_px) * depth_m;
-  const float share = std::min(spacing_m / static_cast<float>(kCell_m), 1.0F);
+  const float share = std::min(spacing_m / static_cast<float>(KnowledgeGrid::kCell_m), 1.0F);
   return sigma * sigma * share * share;
 }
 
@@ -60,8 +51,8 @@ void KnowledgeGrid::add(const Frame& frame, std::size_t anchor, const Eigen::Iso
   Weights& own = in_anchor_[anchor];
   visit_samples(frame, T_anchor_camera, [&](int, int, float depth_m, const Eigen::Vector3d& p_anchor) {
     const float weight = weight_of(frame, depth_m);
-    own[cell_of(p_anchor)] += weight;
-    in_world_[cell_of(T_world_anchor * p_anchor)] += weight;
+    own[key_of(p_anchor)] += weight;
+    in_world_[key_of(T_world_anchor * p_anchor)] += weight;
   });
 }
 
@@ -69,22 +60,24 @@ void KnowledgeGrid::move(const AnchorPoses& T_world_anchor) {
   in_world_.clear();
   for (std::size_t i = 0; i < in_anchor_.size() && i < T_world_anchor.size(); ++i)
     for (const auto& [cell, weight] : in_anchor_[i])
-      if (T_world_anchor[i]) in_world_[cell_of(*T_world_anchor[i] * centre_of(cell))] += weight;
+      if (T_world_anchor[i]) in_world_[key_of(*T_world_anchor[i] * centre_of(cell))] += weight;
 }
 
 Image<Knowledge> KnowledgeGrid::knowledge_of(const Frame& frame,
                                              const Eigen::Isometry3d& T_world_camera) const {
-  const float least = SurfaceConfig{}.min_weight;
   const auto samples = [](int pixels) { return (pixels + kStep_px - 1 - kStep_px / 2) / kStep_px; };
   Image<Knowledge> knowledge(samples(frame.depth_m.width), samples(frame.depth_m.height), Knowledge::kNone);
   visit_samples(frame, T_world_camera, [&](int x, int y, float, const Eigen::Vector3d& p_world) {
-    const auto found = in_world_.find(cell_of(p_world));
-    const float weight = found == in_world_.end() ? 0.0F : found->second;
-    knowledge.at(x, y) = weight < least                ? Knowledge::kNew
-                         : weight < kWellKnown * least ? Knowledge::kThin
-                                                       : Knowledge::kWell;
+    knowledge.at(x, y) = at(p_world);
   });
   return knowledge;
+}
+
+Knowledge KnowledgeGrid::at(const Eigen::Vector3d& p_world) const {
+  const float least = SurfaceConfig{}.min_weight;
+  const auto found = in_world_.find(key_of(p_world));
+  const float weight = found == in_world_.end() ? 0.0F : found->second;
+  return weight < least ? Knowledge::kNew : weight < kWellKnown * least ? Knowledge::kThin : Knowledge::kWell;
 }
 
 double KnowledgeGrid::well_known_fraction() const {

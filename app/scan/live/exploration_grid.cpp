@@ -1,12 +1,12 @@
 // exploration_grid.cpp: walks along the rays of keyframes in steps of half a cell.
-#include "app/scan/exploration_grid.hpp"
+#include "app/scan/live/exploration_grid.hpp"
 
 #include <algorithm>
 
 namespace roomradar {
 namespace {
 
-constexpr std::int64_t kEdge = 256;  // cells
+constexpr int kEdge = 256;  // cells
 constexpr double kFarthestCell_m = 5.0;
 // A Kinect measures between these depths. A ray without depth that crosses a cell between them means that the
 // cell cannot be measured from there.
@@ -17,22 +17,28 @@ constexpr std::uint8_t kManyTries = 24;
 }  // namespace
 
 ExplorationGrid::ExplorationGrid(const Eigen::Vector3d& centre_world)
-    : lowest_world_(centre_world - Eigen::Vector3d::Constant(0.5 * kEdge * kCell_m)),
+    : first_((centre_world / kCell_m).array().floor().cast<int>().matrix() -
+             Eigen::Vector3i::Constant(kEdge / 2)),
       cells_(static_cast<std::size_t>(kEdge * kEdge * kEdge), 0) {}
 
-std::int64_t ExplorationGrid::index_of(const Eigen::Vector3d& p_world) const {
-  const Eigen::Array3d cell = ((p_world - lowest_world_) / kCell_m).array().floor();
-  if (!(cell >= 0.0).all() || !(cell < static_cast<double>(kEdge)).all()) return -1;
-  return (static_cast<std::int64_t>(cell.z()) * kEdge + static_cast<std::int64_t>(cell.y())) * kEdge +
-         static_cast<std::int64_t>(cell.x());
+Eigen::Vector3i ExplorationGrid::cell_of(const Eigen::Vector3d& p_world) const {
+  return (p_world / kCell_m).array().floor().cast<int>().matrix() - first_;
+}
+
+std::int64_t ExplorationGrid::index_of(const Eigen::Vector3i& cell) {
+  if (!(cell.array() >= 0).all() || !(cell.array() < kEdge).all()) return -1;
+  return (static_cast<std::int64_t>(cell.z()) * kEdge + cell.y()) * kEdge + cell.x();
 }
 
 void ExplorationGrid::add(const StoredView& view, const Eigen::Isometry3d& T_world_camera) {
   const int step_px = std::max(1, view.camera.width_px / 40);
   const auto mark = [&](const Eigen::Vector3d& ray_world, double from_m, double to_m, const auto& change) {
     for (double depth_m = from_m; depth_m < to_m; depth_m += 0.5 * kCell_m) {
-      const std::int64_t index = index_of(T_world_camera.translation() + depth_m * ray_world);
-      if (index >= 0) change(cells_[static_cast<std::size_t>(index)]);
+      const Eigen::Vector3i cell = cell_of(T_world_camera.translation() + depth_m * ray_world);
+      const std::int64_t index = index_of(cell);
+      if (index < 0) continue;
+      change(cells_[static_cast<std::size_t>(index)]);
+      marked_.extend(cell);
     }
   };
   for (int y = step_px / 2; y < view.camera.height_px; y += step_px)
@@ -46,7 +52,7 @@ void ExplorationGrid::add(const StoredView& view, const Eigen::Isometry3d& T_wor
         continue;
       }
       const double depth_m = 1.0 / static_cast<double>(static_cast<float>(inverse) * kInverseDepthStep_per_m);
-      mark(ray_world, 0.3, std::min(depth_m - kCell_m, kFarthestCell_m),
+      mark(ray_world, 0.0, std::min(depth_m - kCell_m, kFarthestCell_m),
            [](std::uint8_t& cell) { cell |= kFreeBit; });
       if (depth_m <= kFarthestCell_m)
         mark(ray_world, depth_m, depth_m + 0.25 * kCell_m, [](std::uint8_t& cell) { cell |= kOccupiedBit; });
@@ -54,12 +60,37 @@ void ExplorationGrid::add(const StoredView& view, const Eigen::Isometry3d& T_wor
 }
 
 CellState ExplorationGrid::at(const Eigen::Vector3d& p_world) const {
-  const std::int64_t index = index_of(p_world);
+  return state_of(index_of(cell_of(p_world)));
+}
+
+CellState ExplorationGrid::state_of(std::int64_t index) const {
   if (index < 0) return CellState::kUnmeasurable;
   const std::uint8_t cell = cells_[static_cast<std::size_t>(index)];
   if ((cell & kOccupiedBit) != 0) return CellState::kOccupied;
   if ((cell & kFreeBit) != 0) return CellState::kFree;
   return cell / kOneTry >= kManyTries ? CellState::kUnmeasurable : CellState::kUnknown;
+}
+
+OccupancyCells ExplorationGrid::occupancy() const {
+  OccupancyCells grid;
+  if (marked_.isEmpty()) return grid;
+  grid.cell_m = kCell_m;
+  grid.first = first_ + marked_.min();
+  grid.size = marked_.sizes() + Eigen::Vector3i::Ones();
+  grid.cells.reserve(static_cast<std::size_t>(grid.size.cast<std::int64_t>().prod()));
+  for (int z = marked_.min().z(); z <= marked_.max().z(); ++z)
+    for (int y = marked_.min().y(); y <= marked_.max().y(); ++y)
+      for (int x = marked_.min().x(); x <= marked_.max().x(); ++x) {
+        const Eigen::Vector3i cell(x, y, z);
+        const CellState state = state_of(index_of(cell));
+        grid.cells.push_back(state == CellState::kFree      ? Occupancy::kFree
+                             : state == CellState::kUnknown ? Occupancy::kUnknown
+                                                            : Occupancy::kOccupied);
+        if (state != CellState::kOccupied) continue;
+        const Eigen::Vector3d lowest_world = kCell_m * (first_ + cell).cast<double>();
+        grid.occupied_world.extend(lowest_world).extend(lowest_world + Eigen::Vector3d::Constant(kCell_m));
+      }
+  return grid;
 }
 
 double moved_fraction(const ExplorationGrid& grid, const Frame& frame,
@@ -84,7 +115,8 @@ double moved_fraction(const ExplorationGrid& grid, const Frame& frame,
   return pixels > 0 ? static_cast<double>(moved) / static_cast<double>(pixels) : 0.0;
 }
 
-ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes) {
+ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes,
+                                const Eigen::Isometry3d& T_grid_world) {
   constexpr std::size_t kMost = 200;
   std::vector<const Keyframe*> nearest;
   for (const Keyframe& keyframe : keyframes) nearest.push_back(&keyframe);
@@ -94,8 +126,9 @@ ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::
   const std::size_t count = std::min(kMost, nearest.size());
   std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count), nearest.end(),
                     [&](const Keyframe* a, const Keyframe* b) { return distance(a) < distance(b); });
-  ExplorationGrid grid(camera_world);
-  for (std::size_t i = 0; i < count; ++i) grid.add(*nearest[i]->view, nearest[i]->T_world_camera);
+  ExplorationGrid grid(T_grid_world * camera_world);
+  for (std::size_t i = 0; i < count; ++i)
+    grid.add(*nearest[i]->view, T_grid_world * nearest[i]->T_world_camera);
   return grid;
 }
 

@@ -1,5 +1,5 @@
 // anchors.cpp: places anchors along the camera's path.
-#include "app/scan/anchors.hpp"
+#include "app/scan/live/anchors.hpp"
 
 #include <limits>
 #include <numbers>

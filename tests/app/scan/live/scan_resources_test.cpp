@@ -1,5 +1,5 @@
 // scan_resources_test.cpp: what is left is extrapolated from the last minute.
-#include "app/scan/scan_resources.hpp"
+#include "app/scan/live/scan_resources.hpp"
 
 #include <gtest/gtest.h>
 

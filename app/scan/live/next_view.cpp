@@ -1,5 +1,5 @@
 // next_view.cpp: casts few rays from many views through the grid.
-#include "app/scan/next_view.hpp"
+#include "app/scan/live/next_view.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // scan_advice_test.cpp: each fault is stated soon, once it lasts; a good scan has none.
-#include "app/scan/scan_advice.hpp"
+#include "app/scan/live/scan_advice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapping/alignment/keyframe.hpp"
+#include "mapping/coverage/occupancy_cells.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
@@ -30,13 +31,21 @@ class ExplorationGrid {
   /// Returns the state of the cell that contains a point; kUnmeasurable outside the grid.
   [[nodiscard]] CellState at(const Eigen::Vector3d& p_world) const;
 
+  /// Returns the cells between the outermost that a ray crossed. Unmeasurable cells count as occupied: there
+  /// is nothing to find.
+  [[nodiscard]] OccupancyCells occupancy() const;
+
  private:
-  Eigen::Vector3d lowest_world_;
+  Eigen::Vector3i first_;       ///< lowest cell; cell 0 begins at the world's origin
+  Eigen::AlignedBox3i marked_;  ///< cells that rays crossed
   /// Bit 0: a ray has crossed the cell. Bit 1: a ray has ended in it. Bits 2 to 7: number of rays without
   /// depth, at most 63.
   std::vector<std::uint8_t> cells_;
 
-  [[nodiscard]] std::int64_t index_of(const Eigen::Vector3d& p_world) const;
+  // Cells are counted from first_; index -1: outside the grid.
+  [[nodiscard]] Eigen::Vector3i cell_of(const Eigen::Vector3d& p_world) const;
+  [[nodiscard]] static std::int64_t index_of(const Eigen::Vector3i& cell);
+  [[nodiscard]] CellState state_of(std::int64_t index) const;
 };
 
 /// Returns the fraction of a frame's pixels whose points are in the middle of free space: something moves
@@ -45,6 +54,8 @@ double moved_fraction(const ExplorationGrid& grid, const Frame& frame,
                       const Eigen::Isometry3d& T_world_camera);
 
 /// Returns the grid around a camera, from the nearest 200 keyframes at most.
-ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes);
+/// @param T_grid_world  from the keyframes' world to the grid's
+ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes,
+                                const Eigen::Isometry3d& T_grid_world = Eigen::Isometry3d::Identity());
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
 // next_view_test.cpp: what is free, occupied and unknown, and where to look next, in rooms known exactly.
-#include "app/scan/next_view.hpp"
+#include "app/scan/live/next_view.hpp"
 
 #include <gtest/gtest.h>
 

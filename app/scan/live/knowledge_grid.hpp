@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "app/scan/anchors.hpp"
+#include "app/scan/live/anchors.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
@@ -24,6 +24,7 @@ enum class Knowledge : std::uint8_t {
 class KnowledgeGrid {
  public:
   static constexpr int kStep_px = 8;
+  static constexpr double kCell_m = 0.04;
 
   /// Adds a frame's measurements.
   /// @param anchor  index of the frame's anchor; the measurements move with it
@@ -35,6 +36,9 @@ class KnowledgeGrid {
   /// Returns the knowledge at every kStep_px-th pixel of the depth image, from pixel kStep_px / 2 on.
   [[nodiscard]] Image<Knowledge> knowledge_of(const Frame& frame,
                                               const Eigen::Isometry3d& T_world_camera) const;
+
+  /// Returns the knowledge at a point; kNew where nothing was measured.
+  [[nodiscard]] Knowledge at(const Eigen::Vector3d& p_world) const;
 
   /// Returns the fraction of the known cells that are known well; 0 if there are none.
   [[nodiscard]] double well_known_fraction() const;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "app/scan/exploration_grid.hpp"
+#include "app/scan/live/exploration_grid.hpp"
 #include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {

@@ -1,12 +1,12 @@
 // live_model_test.cpp: anchors, knowledge, picture and mesh of a running scan, against exact scenes.
-#include "app/scan/live_model.hpp"
+#include "app/scan/live/live_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "app/scan/anchors.hpp"
-#include "app/scan/knowledge_grid.hpp"
+#include "app/scan/live/anchors.hpp"
+#include "app/scan/live/knowledge_grid.hpp"
 #include "app/scan/scan_picture.hpp"
 #include "tests/support/exact_depth.hpp"
 

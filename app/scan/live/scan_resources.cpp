@@ -1,5 +1,5 @@
 // scan_resources.cpp: reads and extrapolates what is left.
-#include "app/scan/scan_resources.hpp"
+#include "app/scan/live/scan_resources.hpp"
 
 #include <unistd.h>
 

@@ -1,0 +1,29 @@
+// holes_so_far.hpp: holes that a running scan has left.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "app/scan/live/exploration_grid.hpp"
+#include "mapping/coverage/hole.hpp"
+
+namespace roomradar {
+
+/// A hole, and the number that it is shown with.
+struct NumberedHole {
+  int number = 0;  ///< from 1
+  Hole hole;
+};
+
+inline constexpr std::size_t kMostHolesShown = 9;
+
+/// Finds space above the floor that no ray has crossed and that is inside the scan, as find_frontier() does
+/// in the finished map, but in the grid's cells. A cell between two known ones is a gap between rays, not a
+/// hole, and less than 0.15 m2 is none. Returns the largest kMostHolesShown, largest first.
+std::vector<Hole> holes_so_far(const ExplorationGrid& grid);
+
+/// Numbers holes. One within 0.5 m of a hole that was shown before keeps its number; others get free numbers.
+std::vector<NumberedHole> numbered(const std::vector<Hole>& holes,
+                                   std::span<const NumberedHole> shown_before = {});
+
+}  // namespace roomradar

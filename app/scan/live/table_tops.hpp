@@ -1,0 +1,23 @@
+// table_tops.hpp: how much of the table tops a running scan knows.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "app/scan/live/anchors.hpp"
+#include "app/scan/live/exploration_grid.hpp"
+#include "app/scan/live/knowledge_grid.hpp"
+#include "app/scan/live/live_model.hpp"
+
+namespace roomradar {
+
+/// Returns the fraction of the level surfaces between 0.25 and 1.4 m above the floor that is known well. Gaps
+/// of up to 0.4 m in such a surface belong to it if no ray came there and nothing stands there. Returns
+/// nullopt below 0.1 m2 of such surfaces, or if no floor was seen.
+/// @param T_level_world  rotates the up direction to +z
+/// @param grid_level     the exploration grid, in the levelled world
+std::optional<double> table_tops_known(const std::vector<LiveModelPart>& parts,
+                                       const AnchorPoses& T_world_anchor,
+                                       const Eigen::Isometry3d& T_level_world, const KnowledgeGrid& knowledge,
+                                       const ExplorationGrid& grid_level);
+
+}  // namespace roomradar
