@@ -4,6 +4,8 @@
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/static_map.hpp"
+#include "mapping/texture/jpeg.hpp"
+#include "mapping/texture/surface_texture_file.hpp"
 #include "mapping/types/trajectory.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
@@ -16,6 +18,12 @@ std::string sealed(std::string_view bytes) {
   for (const char byte : file) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
   file.append(reinterpret_cast<const char*>(&hash), sizeof hash);
   return file;
+}
+
+/// Returns a picture of 8 x 8 pixels.
+std::string_view small_jpeg() {
+  static const std::vector<std::uint8_t> jpeg = roomradar::jpeg_of(roomradar::ColourImage(8, 8), 90);
+  return roomradar::test::as_text(jpeg.data(), jpeg.size());
 }
 
 }  // namespace
@@ -37,6 +45,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 'u':
         (void)read_unknown_surface(test::file_with(sealed(bytes), "unknown.bin"));
+        break;
+      case 'x':
+        (void)read_surface_texture(test::file_with(small_jpeg(), "texture.jpg"),
+                                   test::file_with(sealed(bytes), "texture.bin"));
+        break;
+      case 'j':
+        require_jpeg({data + 1, size - 1}, 8, 8, "texture.jpg");
+        (void)picture_of_jpeg({data + 1, size - 1}, 8, 8, "texture.jpg");
         break;
       case 't':
         (void)read_trajectory(test::file_with(bytes, "trajectory.txt"));

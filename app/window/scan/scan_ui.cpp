@@ -206,7 +206,8 @@ void ScanUi::draw_next_view(const Area& area) {
   const Eigen::Isometry3d T_camera_next = shown_.T_world_camera.inverse() * next.T_world_camera;
   // The direction to what the next view looks at; beside the camera's axis it is the way to turn.
   const Eigen::Vector3d towards = T_camera_next * Eigen::Vector3d(0.0, 0.0, 2.0);
-  const Eigen::Vector2f aside = towards.head<2>().cast<float>();
+  Eigen::Vector2f aside = towards.head<2>().cast<float>();
+  if (towards.z() <= 0.0) aside = {towards.x() < 0.0 ? -1.0F : 1.0F, 0.0F};  // behind: turn round
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float y = area.y + area.height - look::px(46.0F);
   const ImVec2 size = ImGui::CalcTextSize(next.way.c_str());
@@ -260,7 +261,7 @@ void ScanUi::draw_counts(const Area& area) {
   fact(text_of("%.0f", counts.frames_per_s), "frames/s");
   fact(text_of("%.1f m\u00B2", counts.seen_m2), "surface seen");
   fact(text_of("%.0f %%", 100.0 * counts.well_known), "of it known well");
-  if (counts.table_tops_known) fact(text_of("%.0f %%", 100.0 * *counts.table_tops_known), "of table tops");
+  if (counts.table_tops_known) fact(text_of("%.0f %%", 100.0 * *counts.table_tops_known), "table tops");
   fact(text_of("%zu", shown_.holes.size()), shown_.holes.size() == 1 ? "hole left" : "holes left");
   fact(text_of("%lld", static_cast<long long>(counts.loops)), "loops closed");
   fact(text_of("%.0f MB", static_cast<double>(counts.memory_bytes) / 1e6), "memory");
