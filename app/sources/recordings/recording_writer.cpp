@@ -12,6 +12,7 @@
 
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/kinect_units.hpp"
+#include "app/sources/formats/parse_numbers.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -25,6 +26,12 @@ namespace fs = std::filesystem;
 constexpr double kLongestGap_s = 30.0;  // in fakenect's format
 
 std::string fixed_6(double value) { return format_fixed(value, 6); }
+
+/// Returns a stamp with six digits after the point, or as many as it takes to read back the same number.
+std::string exact_stamp(double stamp_s) {
+  const std::string text = fixed_6(stamp_s);
+  return parse_number(text) == stamp_s ? text : format_exact(stamp_s);
+}
 
 /// Formats values with a space before each.
 std::string spaced(std::initializer_list<double> values, int digits) {
@@ -122,16 +129,16 @@ void RecordingWriter::write(const Frame& frame) {
 }
 
 void RecordingWriter::write_tum(const Frame& frame) {
-  const std::string stamp = fixed_6(frame.stamp_s);
-  const std::string depth_file = "depth/" + stamp + ".png";
+  const std::string stamp = exact_stamp(frame.stamp_s);
+  const std::string depth_file = "depth/" + fixed_6(frame.stamp_s) + ".png";
   write_depth_file(frame.depth_m, DepthEncoding::kTum, folder_ / depth_file);
   add_line(depth_list_, folder_ / "depth.txt", stamp + " " + depth_file, "# stamp_s file\n");
   if (!frame.colour.empty()) {
-    const std::string colour_stamp = fixed_6(frame.stamp_s + frame.colour_after_depth_s);
-    const std::string colour_file = "rgb/" + colour_stamp + ".png";
+    const double colour_s = frame.stamp_s + frame.colour_after_depth_s;
+    const std::string colour_file = "rgb/" + fixed_6(colour_s) + ".png";
     if (!colour_list_.is_open()) make_folder(folder_ / "rgb");
     write_colour_file(frame.colour, folder_ / colour_file);
-    add_line(colour_list_, folder_ / "rgb.txt", colour_stamp + " " + colour_file, "# stamp_s file\n");
+    add_line(colour_list_, folder_ / "rgb.txt", exact_stamp(colour_s) + " " + colour_file, "# stamp_s file\n");
   }
   if (frame.T_world_camera) {
     const Eigen::Vector3d t = frame.T_world_camera->translation();

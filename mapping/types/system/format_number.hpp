@@ -22,6 +22,13 @@ inline std::string format_fixed(double value, int digits) {
           std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, digits).ptr};
 }
 
+/// Returns the shortest text without exponent that reads back as the same number.
+inline std::string format_exact(double value) {
+  std::array<char, 360> text;  // the smallest double has 324 zeros after the point
+  return {text.data(),
+          std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr};
+}
+
 /// Formats with `digits` (1..20) significant digits, like "%.6g" in the C locale.
 inline std::string format_general(double value, int digits) {
   std::array<char, 40> text;
