@@ -21,6 +21,7 @@
 #include "app/commands/calibrate_command.hpp"
 #include "app/commands/doctor_command.hpp"
 #include "app/commands/fallthrough_command.hpp"
+#include "app/commands/farm_command.hpp"
 #include "app/commands/map_command.hpp"
 #include "app/commands/map_pair_commands.hpp"
 #include "app/commands/record_command.hpp"
@@ -134,6 +135,13 @@ void add_measuring_commands(CLI::App& app, std::function<int()>& work) {
       "how often objects pass through hidden surfaces, per surface policy:\n"
       "drops and pushes objects behind occluders and compares with simulated ground truth. With a SOURCE:\n"
       "drops a ball over each cell of a grid in its map, with the surfaces of one frame",
+      work)
+      ->group(kMeasure);
+  add_command<FarmOptions>(
+      app, "farm",
+      "run a list of commands as jobs:\n"
+      "each job has a folder of its own, which is there as a whole or not at all; what is there for the\n"
+      "same program, command and inputs is not done again. A job that fails is counted, the rest goes on",
       work)
       ->group(kMeasure);
   add_command<TradeOptions>(

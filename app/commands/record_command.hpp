@@ -1,6 +1,6 @@
 // record_command.hpp: roomradar record: writes a source's frames as a recording.
 #pragma once
-#include "app/cli/options/record_options.hpp"
+#include "app/cli/options/recording_options.hpp"
 
 namespace roomradar {
 

@@ -1,6 +1,6 @@
 // simulate_command.hpp: roomradar simulate: records a simulated Kinect with ground truth.
 #pragma once
-#include "app/cli/options/simulate_options.hpp"
+#include "app/cli/options/recording_options.hpp"
 
 namespace roomradar {
 

@@ -1,4 +1,4 @@
-// sha256.cpp: OpenSSL's SHA-256 over a file, block by block.
+// sha256.cpp: OpenSSL's SHA-256, over a file block by block.
 #include "mapping/storage/sha256.hpp"
 
 #include <openssl/evp.h>
@@ -6,34 +6,64 @@
 #include <array>
 #include <fstream>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 
+namespace {
+
+class Sha256 {
+ public:
+  explicit Sha256(std::string where) : where_(std::move(where)) {
+    require(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+  }
+  void add(const char* bytes, std::size_t count) {
+    require(EVP_DigestUpdate(context_.get(), bytes, count) == 1);
+  }
+  [[nodiscard]] std::string hex() {
+    constexpr const char* kDigits = "0123456789abcdef";
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned length = 0;
+    require(EVP_DigestFinal_ex(context_.get(), digest.data(), &length) == 1);
+    std::string hex;
+    for (unsigned i = 0; i < length; ++i) {
+      hex += kDigits[digest[i] >> 4U];
+      hex += kDigits[digest[i] & 15U];
+    }
+    return hex;
+  }
+
+ private:
+  std::string where_;
+  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
+
+  void require(bool is_good) const {
+    if (!is_good) throw Error(where_ + ": OpenSSL cannot compute its SHA-256");
+  }
+};
+
+}  // namespace
+
+std::string sha256_of(std::string_view bytes) {
+  Sha256 sum("a text");
+  sum.add(bytes.data(), bytes.size());
+  return sum.hex();
+}
+
 std::string sha256_of_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(path.string() + ": cannot be opened; may you read it?");
-  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
-  bool good = context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
+  Sha256 sum(path.string());
   std::vector<char> block(1U << 20U);
-  while (good && file) {
+  while (file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    good = EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(file.gcount())) == 1;
+    sum.add(block.data(), static_cast<std::size_t>(file.gcount()));
   }
   if (file.bad()) throw Error(path.string() + ": cannot be read to its end");
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned length = 0;
-  if (!good || EVP_DigestFinal_ex(context.get(), digest.data(), &length) != 1)
-    throw Error(path.string() + ": OpenSSL cannot compute its SHA-256");
-  std::string hex;
-  for (unsigned i = 0; i < length; ++i) {
-    constexpr const char* kDigits = "0123456789abcdef";
-    hex += kDigits[digest[i] >> 4U];
-    hex += kDigits[digest[i] & 15U];
-  }
-  return hex;
+  return sum.hex();
 }
 
 }  // namespace roomradar

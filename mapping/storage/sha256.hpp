@@ -1,11 +1,14 @@
-// sha256.hpp: SHA-256 checksum of a file.
+// sha256.hpp: SHA-256 checksums.
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace roomradar {
 
-/// Returns the SHA-256 as 64 lower-case hexadecimal digits. Throws Error if the file cannot be read.
+/// Returns the SHA-256 of bytes as 64 lower-case hexadecimal digits.
+std::string sha256_of(std::string_view bytes);
+/// Returns that of a file's content. Throws Error if the file cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);
 
 }  // namespace roomradar

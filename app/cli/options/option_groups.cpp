@@ -94,6 +94,14 @@ std::vector<CommandHelp> command_helps() {
          {"--map", "--reference", "--poses", "--frames", "--calibration", "--cell", "--picture"}}},
        "  roomradar fallthrough --scenarios 100 --html fallthrough.html\n"
        "  roomradar fallthrough RECORDING --map maps/kitchen --picture floor.png\n"},
+      {"farm",
+       {{"Options", {"--out", "--processes", "--job", "--emit", "--report"}}},
+       "  roomradar farm rooms.txt --out results\n"
+       "  roomradar farm rooms.txt --out results --emit slurm > submit.sh\n"
+       "where rooms.txt holds, for instance:\n"
+       "  morning: prescan recordings/morning --map {}/map\n"
+       "  evening: prescan recordings/evening --map {}/map\n"
+       "  changes: map diff {morning}/map {evening}/map --html {}/changes.html\n"},
       {"trade",
        {{"Everyday options", {"--quick", "--html", "--presets", "--report"}},
         {"What is measured",

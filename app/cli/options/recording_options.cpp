@@ -1,5 +1,5 @@
-// simulate_options.cpp: option names, help texts and checks of `roomradar simulate`.
-#include "app/cli/options/simulate_options.hpp"
+// recording_options.cpp: option names, help texts and checks of `roomradar record` and `roomradar simulate`.
+#include "app/cli/options/recording_options.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -7,6 +7,15 @@
 #include "app/cli/options/shared_options.hpp"
 
 namespace roomradar {
+
+void add_options(CLI::App& command, RecordOptions& options) {
+  add_source_argument(command, options.source);
+  command.add_option("DIR", options.folder, "folder to write; must be empty or not exist (required)")
+      ->required();
+  add_frames_option(command, options.frames);
+  add_calibration_option(command, options.calibration);
+  add_format_option(command, options.format);
+}
 
 void add_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("DIR", options.folder, "folder to write; must be empty or not exist (required)")

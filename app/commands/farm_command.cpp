@@ -1,0 +1,124 @@
+// farm_command.cpp: roomradar farm: runs the jobs that are not done, or prints a script that does.
+#include "app/commands/farm_command.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/cli/interrupt.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/report.hpp"
+#include "app/farm/farm.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+std::filesystem::path this_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
+
+std::string_view to_string(JobState state) {
+  switch (state) {
+    case JobState::kNotPlanned:
+      return "not planned";
+    case JobState::kWaiting:
+      return "waiting";
+    case JobState::kRunning:
+      return "running";
+    case JobState::kPresent:
+      return "present";
+    case JobState::kDone:
+      return "done";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kSkipped:
+      return "skipped";
+  }
+  return "?";
+}
+
+/// Returns the plan of the jobs that the options name.
+FarmPlan plan_of(const FarmOptions& options) {
+  Manifest manifest = read_manifest(options.manifest);
+  std::vector<std::size_t> wanted;
+  for (const std::string& name : options.jobs) wanted.push_back(index_of(manifest, name));
+  return plan_farm(std::move(manifest), options.out, wanted);
+}
+
+nlohmann::json rows_of(const FarmPlan& plan, const FarmState& state) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t i = 0; i < plan.jobs.size(); ++i) {
+    if (state.schedule.state(i) == JobState::kNotPlanned) continue;
+    nlohmann::json row = {{"name", plan.manifest.jobs[i].name},
+                          {"state", to_string(state.schedule.state(i))}};
+    if (const auto found = state.results.find(i); found != state.results.end()) {
+      const JobResult& result = found->second;
+      row.update({{"wall_s", result.wall_s}, {"cpu_s", result.cpu_s}, {"peak_rss_mb", result.peak_mb}});
+      if (!result.is_done) row["fault"] = result.fault;
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// Prints a line per state, and the first faults.
+void print_state(const FarmPlan& plan, const FarmState& state) {
+  constexpr int kMostFaults = 10;
+  int faults = 0;
+  for (const auto& [job, result] : state.results) {
+    if (result.is_done || ++faults > kMostFaults) continue;
+    const std::string& name = plan.manifest.jobs[job].name;
+    std::fprintf(stderr, "roomradar: %s: %s; see %s\n", name.c_str(), result.fault.c_str(),
+                 (plan.out / (name + ".log")).c_str());
+  }
+  if (faults > kMostFaults) std::fprintf(stderr, "roomradar: and %d more\n", faults - kMostFaults);
+  const Schedule& schedule = state.schedule;
+  std::printf(
+      "%s: %zu jobs done, %zu were done before, %zu failed, %zu skipped because they need a failed one\n",
+      plan.out.c_str(), schedule.count(JobState::kDone), schedule.count(JobState::kPresent),
+      schedule.count(JobState::kFailed), schedule.count(JobState::kSkipped));
+}
+
+}  // namespace
+
+int run(const FarmOptions& options) {
+  require_contents_outside_maps(options.out);
+  require_writable(options.report);
+  Report report;
+  report.command = "farm";
+  report.source = options.manifest;
+  const FarmPlan plan = report.times.timed("plan", [&] { return plan_of(options); });
+  if (options.emit) {
+    std::fputs(batch_script(plan, *options.emit, this_program()).c_str(), stdout);
+    return 0;
+  }
+  const int processes = options.processes > 0
+                            ? options.processes
+                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const Interrupt interrupt;
+  Interrupt::say("roomradar: the running jobs are ended; the same command goes on with them later\n");
+  const auto waiting = static_cast<std::int64_t>(Schedule(plan).count(JobState::kWaiting));
+  const FarmState state = report.times.timed("jobs", [&] {
+    Progress progress("jobs", waiting);
+    return run_farm(plan, processes, this_program(), Interrupt::was_pressed,
+                    [&](const FarmState& now, std::size_t job) {
+                      const std::size_t failed = now.schedule.count(JobState::kFailed);
+                      progress.step(plan.manifest.jobs[job].name +
+                                    (failed > 0 ? "; " + std::to_string(failed) + " failed" : ""));
+                    });
+  });
+  print_state(plan, state);
+  const bool is_stopped = Interrupt::was_pressed();
+  report.settings = {{"processes", processes}, {"out", options.out}};
+  report.results["jobs"] = rows_of(plan, state);
+  for (const JobState one : {JobState::kDone, JobState::kPresent, JobState::kFailed, JobState::kSkipped})
+    report.results["jobs_" + std::string(to_string(one))] = state.schedule.count(one);
+  write_report(report, options.report);
+  if (is_stopped) throw Error(options.out + ": stopped by Ctrl-C; the same command does the rest");
+  return state.schedule.count(JobState::kFailed) + state.schedule.count(JobState::kSkipped) > 0 ? 1 : 0;
+}
+
+}  // namespace roomradar

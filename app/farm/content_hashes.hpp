@@ -1,0 +1,39 @@
+// content_hashes.hpp: hashes of the contents of files and folders.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace roomradar {
+
+/// Hashes contents, and remembers each file's hash by its size and time of change, in memory and in a file.
+class ContentHashes {
+ public:
+  /// @param memory  file with what earlier runs computed; need not exist, and is not trusted beyond its form
+  explicit ContentHashes(std::filesystem::path memory);
+
+  /// Returns the SHA-256 of a file's content, or of the names and contents of all files of a folder, in
+  /// hexadecimal digits. Follows links. Throws Error if something cannot be read.
+  std::string of(const std::filesystem::path& path);
+  /// Returns the size of all files hashed so far, bytes.
+  [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
+
+  /// Writes the file, if something was added. A failure is not an error: the next run hashes once more.
+  void save() const noexcept;
+
+ private:
+  struct Known {
+    std::uintmax_t size = 0;
+    std::int64_t changed = 0;  ///< clock ticks of the file system
+    std::string sha256;
+  };
+  std::filesystem::path memory_;
+  std::map<std::string, Known> known_;  ///< by absolute path
+  std::uintmax_t bytes_ = 0;
+  bool has_news_ = false;
+
+  std::string of_file(const std::filesystem::path& path);
+};
+
+}  // namespace roomradar

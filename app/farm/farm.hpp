@@ -1,0 +1,30 @@
+// farm.hpp: runs the jobs of a plan on this machine's processors.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+
+#include "app/farm/job_process.hpp"
+#include "app/farm/schedule.hpp"
+
+namespace roomradar {
+
+/// How a farm stands, or how it ended.
+struct FarmState {
+  Schedule schedule;
+  std::map<std::size_t, JobResult> results;  ///< of the jobs that ended in this run, by index
+};
+
+/// Called after each job, with its index, on one thread at a time.
+using WatchFarm = std::function<void(const FarmState& state, std::size_t job)>;
+
+/// Runs the jobs that are not present, each in a process of its own. A job that fails is counted, and those
+/// that do not need it go on.
+/// @param processes     number of jobs at a time; at least 1
+/// @param program       file of the program that the jobs run
+/// @param is_cancelled  once it returns true, running jobs are killed and no other begins
+FarmState run_farm(const FarmPlan& plan, int processes, const std::filesystem::path& program,
+                   const IsCancelled& is_cancelled, const WatchFarm& watch = {});
+
+}  // namespace roomradar

@@ -1,0 +1,42 @@
+// farm_plan.hpp: what a manifest's jobs depend on, and which of them are done already.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/farm/manifest.hpp"
+
+namespace roomradar {
+
+/// A job of a plan.
+struct PlannedJob {
+  /// SHA-256 of all that the job's results depend on: this program's version, the words of the command, the
+  /// contents of its inputs, and the keys of the jobs that it needs. Empty: the job is not part of the plan.
+  std::string key;
+  double cost = 0.0;        ///< as stated, otherwise the size of its inputs in 10^6 bytes, and 1
+  bool is_present = false;  ///< its folder holds the results for this key
+};
+
+struct FarmPlan {
+  Manifest manifest;
+  std::filesystem::path out;     ///< absolute; a folder per job
+  std::vector<PlannedJob> jobs;  ///< in the manifest's order
+};
+
+/// Hashes the inputs and looks which jobs are done.
+/// @param out     folder of the results; is created
+/// @param wanted  jobs to plan, with those that they need; empty: all
+/// @throws Error if an input cannot be read or the folder cannot be created
+FarmPlan plan_farm(Manifest manifest, const std::filesystem::path& out,
+                   std::span<const std::size_t> wanted = {});
+
+/// Returns the index of a job. Throws Error if the manifest has no such job.
+std::size_t index_of(const Manifest& manifest, const std::string& name);
+
+/// Returns the words of a job as the program gets them in the job's folder: {} is replaced by ".", {NAME} by
+/// that job's folder, and the path of an input by its absolute path.
+std::vector<std::string> arguments_of(const FarmPlan& plan, std::size_t job);
+
+}  // namespace roomradar

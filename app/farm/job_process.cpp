@@ -1,0 +1,135 @@
+// job_process.cpp: fork, exec, and the reason why a process ended.
+#include "app/farm/job_process.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "app/farm/job_folder.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kCannotBegin = 126;
+
+/// Becomes the program. Runs between fork and exec, where only few functions may be called.
+[[noreturn]] void become(const char* program, char* const* arguments, const char* folder, int nothing,
+                         int log, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setpgid(0, 0);  // Ctrl-C reaches the farm, which then ends its jobs
+  const bool is_ready = getppid() == parent && chdir(folder) == 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
+                        dup2(log, STDOUT_FILENO) >= 0 && dup2(log, STDERR_FILENO) >= 0;
+  if (is_ready) execv(program, arguments);
+  _exit(kCannotBegin);
+}
+
+/// Starts the program. Throws Error if that fails.
+pid_t start(const fs::path& program, std::vector<std::string> words, const fs::path& folder,
+            const fs::path& log_file) {
+  words.insert(words.begin(), "roomradar");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int log = open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const pid_t parent = getpid();
+  const pid_t child = nothing >= 0 && log >= 0 ? fork() : -1;
+  if (child == 0) become(program.c_str(), arguments.data(), folder.c_str(), nothing, log, parent);
+  const std::string reason = std::strerror(errno);
+  if (nothing >= 0) close(nothing);
+  if (log >= 0) close(log);
+  if (child < 0) throw Error(log_file.string() + ": the job cannot be started: " + reason);
+  return child;
+}
+
+std::string last_line(const fs::path& log_file) {
+  std::string tail;
+  const int log = open(log_file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (log < 0) return tail;
+  constexpr off_t kTail_bytes = 400;
+  const off_t size = lseek(log, 0, SEEK_END);
+  lseek(log, size > kTail_bytes ? size - kTail_bytes : 0, SEEK_SET);
+  tail.resize(static_cast<std::size_t>(kTail_bytes));
+  const ssize_t count = read(log, tail.data(), tail.size());
+  close(log);
+  tail.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  tail.erase(tail.find_last_not_of(" \r\n") + 1);
+  return tail.substr(tail.find_last_of("\r\n") + 1);
+}
+
+/// Returns why a process did not end well, with what it said last; empty if it did.
+std::string fault_of(int status, const fs::path& log_file) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  if (WIFSIGNALED(status)) return std::string("was killed: ") + strsignal(WTERMSIG(status));
+  if (WEXITSTATUS(status) == kCannotBegin) return "the program could not be started";
+  const std::string said = last_line(log_file);
+  return "exit status " + std::to_string(WEXITSTATUS(status)) + (said.empty() ? "" : ": " + said);
+}
+
+/// Waits for the process; kills it if it is cancelled.
+std::string wait_for(pid_t child, const fs::path& log_file, const IsCancelled& is_cancelled,
+                     JobResult& result) {
+  const auto began = Clock::now();
+  bool is_killed = false;
+  int status = 0;
+  rusage use{};
+  for (pid_t ended = 0; ended == 0;) {
+    ended = wait4(child, &status, WNOHANG, &use);
+    if (ended < 0 && errno != EINTR) return std::strerror(errno);
+    if (ended < 0) ended = 0;
+    if (ended == 0 && !is_killed && is_cancelled()) {
+      kill(-child, SIGKILL);
+      kill(child, SIGKILL);
+      is_killed = true;
+    }
+    if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  }
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  result.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
+  result.cpu_s = seconds(use.ru_utime) + seconds(use.ru_stime);
+  result.peak_mb = 1024e-6 * static_cast<double>(use.ru_maxrss);
+  return is_killed ? "was cancelled" : fault_of(status, log_file);
+}
+
+}  // namespace
+
+JobResult run_job(const FarmPlan& plan, std::size_t job, const fs::path& program,
+                  const IsCancelled& is_cancelled) {
+  const Job& stated = plan.manifest.jobs[job];
+  JobResult result;
+  try {
+    const fs::path folder = plan.out / stated.name;
+    std::optional<RunningFolder> running = RunningFolder::create(folder);
+    if (!running) {
+      result.fault = "another process runs it";
+      return result;
+    }
+    const fs::path log_file = folder.string() + ".log";
+    const pid_t child = start(program, arguments_of(plan, job), running->path(), log_file);
+    result.fault = wait_for(child, log_file, is_cancelled, result);
+    if (result.fault.empty()) running->commit(plan.jobs[job].key, stated.words);
+    result.is_done = result.fault.empty();
+  } catch (const std::exception& error) {
+    result.fault = error.what();
+  }
+  return result;
+}
+
+}  // namespace roomradar

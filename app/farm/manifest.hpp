@@ -1,0 +1,51 @@
+// manifest.hpp: a list of jobs, each an ordinary command of roomradar.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace roomradar {
+
+/// One command of roomradar, whose results go to a folder of its own.
+struct Job {
+  std::string name;                ///< also the folder's name
+  double cost = 0.0;               ///< as stated, in any unit; 0: not stated
+  std::vector<std::string> words;  ///< command and arguments; placeholders are not replaced
+  std::vector<std::size_t> needs;  ///< indices of the jobs whose folders it reads; increasing
+  int line = 0;                    ///< in the manifest, from 1
+};
+
+struct Manifest {
+  std::filesystem::path path;  ///< absolute
+  std::vector<Job> jobs;
+};
+
+/// Reads a manifest. Each line is a job:
+///
+///     # two scans, and what changed between them
+///     morning: prescan recordings/morning --map {}/map
+///     evening (cost 2): prescan recordings/evening --map {}/map
+///     change: map diff {morning}/map {evening}/map --html {}/change.html
+///
+/// {} stands for the job's own folder and {NAME} for the folder of another job, which is done before. Words
+/// are separated by blanks; '...' and "..." keep blanks. A word that names an existing file or folder,
+/// relative to the manifest's folder, is an input. Empty lines and lines that begin with # are left out.
+///
+/// @throws Error with file, line and fault if the file cannot be read, a line is not such a job, a name
+///         occurs twice or is unknown, jobs need each other in a circle, or a job writes nothing to {}
+Manifest read_manifest(const std::filesystem::path& path);
+
+/// Parses the text of a manifest; see read_manifest().
+/// @param path  for messages, and as Manifest::path
+Manifest parse_manifest(const std::string& text, const std::filesystem::path& path);
+
+/// A part of a word: text, or a placeholder.
+struct WordPart {
+  bool is_folder = false;  ///< a placeholder: `text` is a job's name, empty for the job itself
+  std::string text;
+};
+/// Splits a word at its placeholders. {{ and }} stand for { and }.
+std::vector<WordPart> parts_of(const std::string& word);
+
+}  // namespace roomradar

@@ -1,0 +1,49 @@
+// schedule.hpp: which job is next.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "app/farm/farm_plan.hpp"
+
+namespace roomradar {
+
+enum class JobState {
+  kNotPlanned,
+  kWaiting,  ///< for a job that it needs, or for its turn
+  kRunning,
+  kPresent,  ///< was done before
+  kDone,
+  kFailed,
+  kSkipped,  ///< a job that it needs failed
+};
+
+/// Hands out the jobs of a plan: the most expensive first, and none before those that it needs are done.
+class Schedule {
+ public:
+  explicit Schedule(const FarmPlan& plan);
+
+  /// Returns the next job, which is running from then on; nullopt if none can begin now.
+  std::optional<std::size_t> next();
+  /// States how a running job ended. If it failed, the jobs that need it are skipped.
+  void finish(std::size_t job, bool is_done);
+
+  /// Returns true if no job is waiting or running.
+  [[nodiscard]] bool is_over() const { return left_ == 0; }
+  [[nodiscard]] JobState state(std::size_t job) const { return states_[job]; }
+  [[nodiscard]] std::size_t count(JobState state) const;
+
+ private:
+  std::vector<JobState> states_;
+  std::vector<double> costs_;
+  std::vector<std::size_t> open_needs_;  ///< jobs that must be done before, by job
+  std::vector<std::vector<std::size_t>> needed_by_;
+  std::priority_queue<std::pair<double, std::ptrdiff_t>> ready_;  ///< cost, minus the index
+  std::size_t left_ = 0;
+
+  void make_ready(std::size_t job);
+};
+
+}  // namespace roomradar
