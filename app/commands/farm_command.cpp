@@ -40,14 +40,6 @@ std::string_view to_string(JobState state) {
   return "?";
 }
 
-/// Returns the plan of the jobs that the options name.
-FarmPlan plan_of(const FarmOptions& options) {
-  Manifest manifest = read_manifest(options.manifest);
-  std::vector<std::size_t> wanted;
-  for (const std::string& name : options.jobs) wanted.push_back(index_of(manifest, name));
-  return plan_farm(std::move(manifest), options.out, wanted);
-}
-
 nlohmann::json rows_of(const FarmPlan& plan, const FarmState& state) {
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t i = 0; i < plan.jobs.size(); ++i) {
@@ -84,13 +76,39 @@ void print_state(const FarmPlan& plan, const FarmState& state) {
 
 }  // namespace
 
-int run(const FarmOptions& options) {
-  require_contents_outside_maps(options.out);
-  require_writable(options.report);
+FarmPlan plan_of(const FarmOptions& options) {
+  Manifest manifest = read_manifest(options.manifest);
+  std::vector<std::size_t> wanted;
+  for (const std::string& name : options.jobs) wanted.push_back(index_of(manifest, name));
+  return plan_farm(std::move(manifest), options.out, wanted);
+}
+
+int run_planned(const FarmOptions& options, const FarmPlan& plan, const RunJobs& run_jobs) {
   Report report;
   report.command = "farm";
   report.source = options.manifest;
-  const FarmPlan plan = report.times.timed("plan", [&] { return plan_of(options); });
+  const auto waiting = static_cast<std::int64_t>(Schedule(plan).count(JobState::kWaiting));
+  const FarmState state = report.times.timed("jobs", [&] {
+    Progress progress("jobs", waiting);
+    return run_jobs([&](const FarmState& now, std::size_t job) {
+      const std::size_t failed = now.schedule.count(JobState::kFailed);
+      progress.step(plan.manifest.jobs[job].name +
+                    (failed > 0 ? "; " + std::to_string(failed) + " failed" : ""));
+    });
+  });
+  print_state(plan, state);
+  report.settings = {{"out", options.out}};
+  report.results["jobs"] = rows_of(plan, state);
+  for (const JobState one : {JobState::kDone, JobState::kPresent, JobState::kFailed, JobState::kSkipped})
+    report.results["jobs_" + std::string(to_string(one))] = state.schedule.count(one);
+  write_report(report, options.report);
+  return state.schedule.count(JobState::kFailed) + state.schedule.count(JobState::kSkipped) > 0 ? 1 : 0;
+}
+
+int run(const FarmOptions& options) {
+  require_contents_outside_maps(options.out);
+  require_writable(options.report);
+  const FarmPlan plan = plan_of(options);
   if (options.emit) {
     std::fputs(batch_script(plan, *options.emit, this_program()).c_str(), stdout);
     return 0;
@@ -100,25 +118,12 @@ int run(const FarmOptions& options) {
                             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const Interrupt interrupt;
   Interrupt::say("roomradar: the running jobs are ended; the same command goes on with them later\n");
-  const auto waiting = static_cast<std::int64_t>(Schedule(plan).count(JobState::kWaiting));
-  const FarmState state = report.times.timed("jobs", [&] {
-    Progress progress("jobs", waiting);
-    return run_farm(plan, processes, this_program(), Interrupt::was_pressed,
-                    [&](const FarmState& now, std::size_t job) {
-                      const std::size_t failed = now.schedule.count(JobState::kFailed);
-                      progress.step(plan.manifest.jobs[job].name +
-                                    (failed > 0 ? "; " + std::to_string(failed) + " failed" : ""));
-                    });
+  const int status = run_planned(options, plan, [&](const WatchFarm& watch) {
+    return run_farm(plan, processes, this_program(), Interrupt::was_pressed, watch);
   });
-  print_state(plan, state);
-  const bool is_stopped = Interrupt::was_pressed();
-  report.settings = {{"processes", processes}, {"out", options.out}};
-  report.results["jobs"] = rows_of(plan, state);
-  for (const JobState one : {JobState::kDone, JobState::kPresent, JobState::kFailed, JobState::kSkipped})
-    report.results["jobs_" + std::string(to_string(one))] = state.schedule.count(one);
-  write_report(report, options.report);
-  if (is_stopped) throw Error(options.out + ": stopped by Ctrl-C; the same command does the rest");
-  return state.schedule.count(JobState::kFailed) + state.schedule.count(JobState::kSkipped) > 0 ? 1 : 0;
+  if (Interrupt::was_pressed())
+    throw Error(options.out + ": stopped by Ctrl-C; the same command does the rest");
+  return status;
 }
 
 }  // namespace roomradar

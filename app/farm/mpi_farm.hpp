@@ -1,0 +1,24 @@
+// mpi_farm.hpp: runs the jobs of a plan on all ranks of an MPI program.
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "app/farm/farm.hpp"
+
+namespace roomradar {
+
+/// Makes rank 0's plan known to all ranks of MPI_COMM_WORLD. Each rank reads the manifest itself, so all must
+/// see the same files under the same paths.
+/// @param plan  rank 0: the plan; null: there is none, and all ranks return nullopt. Other ranks: not read
+std::optional<FarmPlan> share_plan(const FarmPlan* plan);
+
+/// Runs the jobs of a plan, one at a time on each rank. Rank 0 hands them out and runs jobs, too. A rank that
+/// waits for a job leaves its processor to others. Call on all ranks, on the thread that initialised MPI.
+/// @param plan     from share_plan()
+/// @param program  file of the program that the jobs run
+/// @param watch    called on rank 0 only
+/// @return on rank 0 how it ended; on other ranks nothing of use
+FarmState run_farm_on_ranks(const FarmPlan& plan, const std::filesystem::path& program,
+                            const WatchFarm& watch = {});
+
+}  // namespace roomradar
