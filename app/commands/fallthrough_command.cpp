@@ -14,15 +14,19 @@
 #include "app/cli/deferred_errors.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
+#include "app/commands/farm_command.hpp"
 #include "app/commands/grid_command.hpp"
 #include "app/evaluation/fallthrough/mapped_room.hpp"
 #include "app/evaluation/fallthrough/page.hpp"
 #include "app/evaluation/fallthrough/replay.hpp"
+#include "app/evaluation/fallthrough/scenario_jobs.hpp"
+#include "app/evaluation/fallthrough/scenario_rows.hpp"
 #include "app/evaluation/fallthrough/totals.hpp"
 #include "app/evaluation/fallthrough/trial.hpp"
 #include "app/evaluation/fallthrough/trial_pictures.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
@@ -41,12 +45,20 @@ void require_folder_of_maps(const std::filesystem::path& folder) {
     throw Error(folder.string() + ": no map can be stored there: the folder is not writable");
 }
 
-/// Runs all scenarios under all policies, with `threads` scenarios prepared ahead. Ends at the first error,
+struct ScenarioNumbers {
+  std::int64_t begin = 0, end = 0;
+};
+ScenarioNumbers numbers_of(const FallthroughOptions& options) {
+  return options.part ? ScenarioNumbers{options.part->first, options.part->last + 1}
+                      : ScenarioNumbers{0, options.scenarios};
+}
+
+/// Runs the scenarios under all policies, with `threads` scenarios prepared ahead. Ends at the first error,
 /// with the rows so far.
 std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughOptions& options, int threads,
                                        DeferredErrors& faults) {
   std::deque<std::future<std::unique_ptr<PreparedScenario>>> ahead;
-  int next = 0;
+  std::int64_t next = numbers_of(options).begin;
   const auto prepare_next = [&] {
     const ScenarioTurn turn = turn_of(next++, rooms.size());
     const ScenarioRoom& room = rooms[turn.room]->scanned.simulated;
@@ -54,11 +66,12 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughOpti
       return std::make_unique<PreparedScenario>(room, seed, number);
     }));
   };
-  Progress progress("scenarios", options.scenarios);
+  const ScenarioNumbers numbers = numbers_of(options);
+  Progress progress("scenarios", numbers.end - numbers.begin);
   std::vector<ScenarioRow> rows;
   CyberRadar radar;
-  const auto run_scenario = [&](int number) {
-    while (next < options.scenarios && ahead.size() < static_cast<std::size_t>(threads)) prepare_next();
+  const auto run_scenario = [&](std::int64_t number) {
+    while (next < numbers.end && ahead.size() < static_cast<std::size_t>(threads)) prepare_next();
     const std::unique_ptr<PreparedScenario> prepared = ahead.front().get();
     ahead.pop_front();
     const std::size_t room_number = turn_of(number, rooms.size()).room;
@@ -75,7 +88,7 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughOpti
     progress.step(room.scanned.title);
   };
   faults.attempt([&] {
-    for (int number = 0; number < options.scenarios; ++number) run_scenario(number);
+    for (std::int64_t number = numbers.begin; number < numbers.end; ++number) run_scenario(number);
   });
   return rows;
 }
@@ -130,13 +143,72 @@ int replay(const FallthroughOptions& options, const RoomScan& scan) {
   return 0;
 }
 
+/// The rooms of a run, on the GPU.
+struct RoomsInUse {
+  GlContext context;
+  Rooms rooms;
+};
+std::unique_ptr<RoomsInUse> rooms_of(const FallthroughOptions& options, const RoomScan& scan, int threads) {
+  auto in_use = std::make_unique<RoomsInUse>();
+  in_use->rooms = map_rooms(in_use->context, choose_rooms(options.random_rooms), scan, threads);
+  return in_use;
+}
+
+/// Prints and writes the results. Results that cannot be written do not keep others from being written.
+void publish(const FallthroughOptions& options, const std::vector<ScenarioRow>& rows,
+             const RoomsInUse& in_use, Report& report, DeferredErrors& faults) {
+  const ScenarioNumbers numbers = numbers_of(options);
+  const int done = static_cast<int>(rows.size());
+  const auto totals = totals_of(rows);
+  const std::string about =
+      std::to_string(done) +
+      (done < numbers.end - numbers.begin ? " of " + std::to_string(numbers.end - numbers.begin) : "") +
+      " scenarios, seed " + std::to_string(options.seed) + ", " + std::to_string(in_use.rooms.size()) +
+      " rooms, " + in_use.context.renderer();
+  std::printf("%s\n%s", about.c_str(), table_of(totals, done).c_str());
+  report.renderer = in_use.context.renderer();
+  report.results["scenarios"] = done;
+  report.results["policies"] = to_json(totals);
+  report.results["failures"] = failures_of(rows);
+  if (!faults.first().empty()) report.results["fault"] = faults.first();
+  faults.attempt([&] {
+    if (!options.rows.empty()) write_rows(rows, options.rows);
+  });
+  faults.attempt([&] { write_csv(rows, options.csv); });
+  faults.attempt([&] {
+    if (!options.html.empty())
+      write_page(rows, about, picture_failures(in_use.rooms, rows, options.seed), options.html);
+  });
+  faults.attempt([&] { write_report(report, options.report); });
+  faults.throw_first();
+}
+
+/// Lets jobs run the scenarios, and publishes their results. Returns the exit status.
+int run_jobs(const FallthroughOptions& options, Report& report) {
+  make_folder(options.jobs);
+  FarmOptions farm;
+  farm.out = options.jobs;
+  farm.manifest = (std::filesystem::path(options.jobs) / "jobs.txt").string();
+  write_bytes(farm.manifest, scenario_manifest(options));
+  const int status = report.times.timed("jobs", [&] { return run(farm); });
+  const std::vector<ScenarioRow> rows = joined_rows(options);
+  if (rows.empty()) throw Error(options.jobs + ": no job has results; the messages above say why");
+  RoomScan scan;
+  scan.maps = maps_of_jobs(options.jobs).string();
+  const auto in_use = rooms_of(options, scan, 1);
+  DeferredErrors faults;
+  publish(options, rows, *in_use, report, faults);
+  return status;
+}
+
 }  // namespace
 
 int run(const FallthroughOptions& options) {
   if (!options.source.empty()) return run_grid(options);
   RoomScan scan;
   scan.maps = options.maps;
-  for (const std::string& path : {options.report, options.csv, options.html}) require_writable(path);
+  for (const std::string& path : {options.report, options.csv, options.html, options.rows})
+    require_writable(path);
   require_folder_of_maps(options.maps);
   if (options.scenario) return replay(options, scan);
   const int threads = options.threads > 0
@@ -148,34 +220,14 @@ int run(const FallthroughOptions& options) {
   report.settings = {
       {"scenarios", options.scenarios},    {"seed", options.seed}, {"random_rooms", options.random_rooms},
       {"resolution_m", scan.resolution_m}, {"maps", options.maps}, {"threads", threads}};
+  if (!options.jobs.empty()) return run_jobs(options, report);
 
-  GlContext context;
-  report.renderer = context.renderer();
-  const Rooms rooms = report.times.timed(
-      "prescan", [&] { return map_rooms(context, choose_rooms(options.random_rooms), scan, threads); });
+  const auto in_use = report.times.timed("prescan", [&] { return rooms_of(options, scan, threads); });
   DeferredErrors faults;  // earlier results are written all the same
   const std::vector<ScenarioRow> rows =
-      report.times.timed("scenarios", [&] { return run_scenarios(rooms, options, threads, faults); });
+      report.times.timed("scenarios", [&] { return run_scenarios(in_use->rooms, options, threads, faults); });
   if (rows.empty()) faults.throw_first();
-
-  const int done = static_cast<int>(rows.size());
-  const auto totals = totals_of(rows);
-  const std::string about = std::to_string(done) +
-                            (done < options.scenarios ? " of " + std::to_string(options.scenarios) : "") +
-                            " scenarios, seed " + std::to_string(options.seed) + ", " +
-                            std::to_string(rooms.size()) + " rooms, " + context.renderer();
-  std::printf("%s\n%s", about.c_str(), table_of(totals, done).c_str());
-  report.results["scenarios"] = done;
-  report.results["policies"] = to_json(totals);
-  report.results["failures"] = failures_of(rows);
-  if (!faults.first().empty()) report.results["fault"] = faults.first();
-  faults.attempt([&] { write_csv(rows, options.csv); });
-  faults.attempt([&] {
-    if (!options.html.empty())
-      write_page(rows, about, picture_failures(rooms, rows, options.seed), options.html);
-  });
-  faults.attempt([&] { write_report(report, options.report); });
-  faults.throw_first();
+  publish(options, rows, *in_use, report, faults);
   return 0;
 }
 

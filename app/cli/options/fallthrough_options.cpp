@@ -6,6 +6,7 @@
 
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/shared_options.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
@@ -58,6 +59,30 @@ void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) 
       .add_option("--html", options.html,
                   "write a page with tables, plots and pictures of failures (default: not written)")
       ->type_name("FILE");
+  command
+      .add_option_function<std::string>(
+          "--part",
+          [&options](const std::string& text) {
+            try {
+              options.part = parse_frame_range(text);
+            } catch (const Error& error) {
+              throw CLI::ValidationError(std::string("--part: ") + error.what());
+            }
+          },
+          "run only scenarios A to B, inclusive, counted from 0 (default: all)")
+      ->type_name("A:B");
+  command
+      .add_option("--rows", options.rows,
+                  "write the results of each scenario, as --jobs joins them (default: not written)")
+      ->type_name("FILE");
+  command
+      .add_option("--jobs", options.jobs,
+                  "split the run into jobs of `roomradar farm` in this folder, run those that are not done,\n"
+                  "and join their results (default: this process runs all scenarios)")
+      ->type_name("DIR");
+  command.add_option("--job-size", options.job_size, "scenarios per job of --jobs (default: 100)")
+      ->check(whole_within(1, 1'000'000))
+      ->type_name("N");
   CLI::Option* scenario = command
                               .add_option("--scenario", options.scenario,
                                           "replay only this scenario, as a video (default: run all)")
@@ -92,12 +117,20 @@ void complete_options(const CLI::App& command, FallthroughOptions& options) {
   else
     refuse_given(command,
                  {"--scenarios", "--seed", "--random-rooms", "--threads", "--maps", "--csv", "--html",
-                  "--scenario", "--video"},
+                  "--scenario", "--video", "--part", "--rows", "--jobs", "--job-size"},
                  ": used only for simulated rooms, not with a SOURCE");
   if (!options.source.empty() && options.map.empty()) throw CLI::RequiredError("--map");
   if (options.scenario)
-    refuse_given(command, {"--scenarios", "--threads", "--csv", "--html", "--report"},
+    refuse_given(command,
+                 {"--scenarios", "--threads", "--csv", "--html", "--report", "--part", "--rows", "--jobs",
+                  "--job-size"},
                  ": not available with --scenario");
+  if (options.part) refuse_given(command, {"--scenarios", "--jobs"}, ": not available with --part");
+  if (options.jobs.empty())
+    refuse_given(command, {"--job-size"}, ": used only with --jobs DIR, which is not given");
+  else
+    refuse_given(command, {"--maps", "--threads", "--rows"},
+                 ": each job has its own; not available with --jobs");
 }
 
 }  // namespace roomradar

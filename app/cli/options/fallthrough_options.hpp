@@ -41,6 +41,14 @@ struct FallthroughOptions {
   int random_rooms = 3;
   /// Number of threads; 0: one per processor.
   int threads = 0;
+  /// Range of the only scenarios to run; unset: the first `scenarios`.
+  std::optional<FrameRange> part;
+  /// JSON file for the results of each scenario; empty: not written.
+  std::string rows;
+  /// Folder of the jobs that do the work; empty: this process does it.
+  std::string jobs;
+  /// Number of scenarios per job.
+  int job_size = 100;
   /// Number of the single scenario to run; unset: all scenarios are run.
   std::optional<std::int64_t> scenario;
   /// Video file of the single scenario; used with `scenario`.

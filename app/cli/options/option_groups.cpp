@@ -90,6 +90,7 @@ std::vector<CommandHelp> command_helps() {
       {"fallthrough",
        {{"Everyday options", {"--scenarios", "--html", "--report"}},
         {"Scenarios", {"--seed", "--random-rooms", "--threads", "--maps", "--csv", "--scenario", "--video"}},
+        {"Jobs", {"--jobs", "--job-size", "--part", "--rows"}},
         {"A map instead of scenarios",
          {"--map", "--reference", "--poses", "--frames", "--calibration", "--cell", "--picture"}}},
        "  roomradar fallthrough --scenarios 100 --html fallthrough.html\n"

@@ -1,0 +1,22 @@
+// scenario_jobs.hpp: splits the scenarios of a run into jobs of `roomradar farm`, and joins their results.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/cli/options/fallthrough_options.hpp"
+#include "app/evaluation/fallthrough/totals.hpp"
+
+namespace roomradar {
+
+/// Returns the manifest: a job that scans the rooms, and one per options.job_size scenarios. More scenarios
+/// add jobs and leave the others as they are.
+std::string scenario_manifest(const FallthroughOptions& options);
+
+/// Returns the folder of the rooms' maps, of the manifest's first job.
+std::filesystem::path maps_of_jobs(const std::filesystem::path& folder);
+
+/// Returns the rows of all jobs that are done, in the scenarios' order. Throws Error if a file is damaged.
+std::vector<ScenarioRow> joined_rows(const FallthroughOptions& options);
+
+}  // namespace roomradar
