@@ -11,26 +11,15 @@
 #include "app/run/run_loop.hpp"
 #include "app/run/run_results.hpp"
 #include "app/run/run_summary.hpp"
-#include "mapping/coverage/coverage.hpp"
-#include "mapping/map/map_texture.hpp"
-#include "mapping/surface/surface_extraction.hpp"
+#include "mapping/map/changed_map.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
 
-/// Saves the octree as changed by the session, with its whole surface extracted again and its texture carried
-/// over.
+/// Saves the map as changed by the session.
 void save_changed(SavedMap& map, std::size_t changes, const std::string& folder) {
-  if (changes > 0) {
-    EarlierTextures earlier;
-    add_texture_of(map, Eigen::Isometry3d::Identity(), earlier);
-    map.mesh = extract_surface(map.octree, surface_config_of(map.info));
-    renew_texture(earlier, map);
-    map.coverage_png = survey_coverage(map.octree, map.mesh, map.trajectory).picture_png;
-  }
-  map.info.settings["adopted"] = std::to_string(changes);
-  save_map(folder, map);
+  save_changed_map(map, changes, folder);
   std::printf("%s: saved with %zu changes\n", folder.c_str(), changes);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "mapping/surface/surface_update.hpp"
 #include "mapping/types/system/config_check.hpp"
@@ -57,13 +58,13 @@ bool MapUpdater::is_due(const Frame& frame) {
   // The request's time runs even if nothing is in view: another object may stand there later.
   if (asked_until_s_ && *asked_until_s_ == kNow) asked_until_s_ = clock_.stamp_s + kAskedFor_s;
   if (asked_until_s_ && clock_.stamp_s > *asked_until_s_) asked_until_s_.reset();
-  if (!working_.valid()) return false;
+  if (!working_.valid()) return std::exchange(is_room_new_, false);
   --measured_.frames_left;
   if (measured_.frames_left > 0) return false;
   const bool may_be_late = !config_.wait;
   if (may_be_late && working_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   finish();
-  return true;
+  return std::exchange(is_room_new_, false);
 }
 
 void MapUpdater::finish() {
@@ -72,6 +73,7 @@ void MapUpdater::finish() {
   has_failed_ = true;  // reset below unless get() throws
   room_ = working_.get();
   has_failed_ = false;
+  is_room_new_ = true;
   for (const LastingChange& change : measured_.pending) {
     tracker_.forget(change);
     committed_.push_back({change.kind, clock_.stamp_s, clock_.frame, change.box_world()});

@@ -88,9 +88,9 @@ class MapUpdater {
 
   /// Returns the changes committed so far, in order of time.
   [[nodiscard]] const std::vector<CommittedChange>& committed_changes() const { return committed_; }
-  /// Waits for a running commit and applies it. The octree may be read afterwards. Rethrows an exception of
-  /// the worker thread. Each later call of finish() then throws Error, because the octree is only partly
-  /// updated.
+  /// Waits for a running commit and applies it. The octree may be read afterwards, and the next is_due()
+  /// returns true. Rethrows an exception of the worker thread. Each later call of finish() then throws Error,
+  /// because the octree is only partly updated.
   void finish();
 
  private:
@@ -123,7 +123,8 @@ class MapUpdater {
   Measurement measured_;
   std::future<ChangedRoom> working_;
   bool has_failed_ = false;
-  ChangedRoom room_;  ///< current room
+  bool is_room_new_ = false;  ///< the changed room has not been returned by is_due()
+  ChangedRoom room_;          ///< current room
 
   void look_for_changes(double stamp_s);
   void measure(const Frame& frame, const DepthImage& expected_depth_m,

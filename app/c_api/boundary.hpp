@@ -1,0 +1,52 @@
+// boundary.hpp: the line between C++ and C: turns exceptions into a status and a sentence. No other unit
+// catches exceptions.
+#pragma once
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include "app/c_api/roomradar_types.h"
+
+namespace roomradar::c_api {
+
+/// A call that is refused with a status of its own. Other exceptions become FAILED (Error), OUT_OF_MEMORY or
+/// INTERNAL.
+class Refusal : public std::runtime_error {
+ public:
+  Refusal(roomradar_status of, const std::string& sentence)
+      : std::runtime_error(sentence), status(of) {}
+  roomradar_status status;
+};
+
+/// Sentence of a handle's last failed call.
+struct HandleError {
+  std::mutex mutex;
+  std::string sentence;
+};
+
+/// Turns the exception that is being handled into a status. Stores "CALL: sentence" for the thread and, if
+/// `error` is not null, for the handle. If memory is short, the sentence may be missing.
+roomradar_status status_of_exception(const char* call, HandleError* error) noexcept;
+
+/// Returns work()'s status, or OK if it returns none. Exceptions become a status.
+template <typename Work>
+roomradar_status guarded(const char* call, HandleError* error, const Work& work) noexcept {
+  try {
+    if constexpr (std::is_void_v<decltype(work())>) {
+      work();
+      return ROOMRADAR_OK;
+    } else {
+      return work();
+    }
+  } catch (...) {
+    return status_of_exception(call, error);
+  }
+}
+
+/// Returns the sentence of this thread's last failed call.
+const char* last_error() noexcept;
+/// Returns a copy of a handle's sentence that belongs to this thread, valid until its next call.
+const char* sentence_of(HandleError& error) noexcept;
+
+}  // namespace roomradar::c_api

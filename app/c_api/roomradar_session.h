@@ -1,0 +1,147 @@
+/* roomradar_session.h: augmented reality in a saved room: frames in; camera pose, what moved and a composed
+ * picture out. The saved map is not modified. */
+#ifndef ROOMRADAR_SESSION_H
+#define ROOMRADAR_SESSION_H
+
+#include "roomradar_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Origin of the camera's pose. */
+typedef enum roomradar_poses {
+  ROOMRADAR_POSES_TRACKED = 0, /* found in the map, by depth and colour */
+  ROOMRADAR_POSES_GIVEN = 1,   /* roomradar_frame::T_world_camera, in the map's world (an AR framework's) */
+  ROOMRADAR_POSES_RECORDED = 2 /* the same, in the world of the recording that was scanned */
+} roomradar_poses;
+
+/* Surfaces that objects can touch. */
+typedef enum roomradar_surfaces {
+  ROOMRADAR_SURFACES_MAP = 0,   /* the saved room and what moved */
+  ROOMRADAR_SURFACES_HOLES = 1, /* the frame's depth alone, open where nothing was measured */
+  ROOMRADAR_SURFACES_SKIRT = 2,
+  ROOMRADAR_SURFACES_BORDER = 3
+} roomradar_surfaces;
+
+typedef struct roomradar_session_options {
+  size_t struct_size;
+  int32_t poses;            /* a roomradar_poses */
+  int32_t surfaces;         /* a roomradar_surfaces */
+  int32_t unknown_is_solid; /* 1: objects cannot enter unobserved space */
+  int32_t has_no_picture;   /* 1: no picture is made; the engine draws */
+  int32_t watches_changes;  /* 1: lasting changes of the room can be adopted. Opens the map a second time */
+  double adopt_after_s;     /* 0: changes are adopted on request only; else after this time without motion */
+  int32_t may_adopt_late;   /* 1: a frame never waits for a change that is being adopted */
+  /* Settings that trade accuracy for time, by name: "depth_stride=2 radar=sampled". Names and values are
+   * those of `roomradar run --help` and presets.json. Null: the defaults. */
+  const char* quality;
+} roomradar_session_options;
+
+/* Opens a session. `options` may be null. The map's handle may be closed afterwards. */
+ROOMRADAR_API roomradar_status roomradar_session_open(const roomradar_map* map,
+                                                      const roomradar_session_options* options,
+                                                      roomradar_session** session);
+ROOMRADAR_API roomradar_status roomradar_session_close(roomradar_session* session);
+/* Returns the sentence of the last failed call with this handle, "" if there is none. Valid until this
+ * thread's next call of a function that returns a sentence. */
+ROOMRADAR_API const char* roomradar_session_error(const roomradar_session* session);
+
+typedef struct roomradar_frame_result {
+  size_t struct_size;
+  int32_t is_located;            /* 0: no camera pose; objects did not move */
+  int32_t tracking;              /* a roomradar_tracking */
+  roomradar_pose T_world_camera; /* the depth camera's, if located */
+  int32_t picture_is_new;
+  int32_t contacts;                                  /* impacts of objects in this frame */
+  int32_t contacts_by_kind[ROOMRADAR_SURFACE_KINDS]; /* by roomradar_surface_kind */
+  int32_t departures;       /* objects that fell out of the map and were returned or removed */
+  int32_t notices;          /* sentences that wait in roomradar_session_notices() */
+  uint64_t moved_pixels;    /* of the depth image, reduced by depth_stride */
+  uint64_t moved_triangles; /* of the mesh of what moved */
+  uint64_t room_version;    /* from 1; grows when the room's mesh changes */
+  double frame_ms;          /* time of the whole frame */
+  double contact_ms;        /* time until all objects had moved */
+} roomradar_frame_result;
+
+/* Processes one frame: locates the camera, finds what moved, moves the objects, composes the picture. A frame
+ * whose images do not fit its cameras is ROOMRADAR_INVALID_ARGUMENT and changes nothing. `result` may be
+ * null. */
+ROOMRADAR_API roomradar_status roomradar_session_step(roomradar_session* session,
+                                                      const roomradar_frame* frame,
+                                                      roomradar_frame_result* result);
+
+/* Returns the picture with the objects.
+ * @param rgb       height x width x 3, sRGB
+ * @param capacity  of rgb, bytes
+ * @param needed    width * height * 3; 0 before the first frame
+ * @param width_px, height_px  may be null */
+ROOMRADAR_API roomradar_status roomradar_session_picture(roomradar_session* session, uint8_t* rgb,
+                                                         size_t capacity, size_t* needed, int32_t* width_px,
+                                                         int32_t* height_px);
+/* Returns camera and pose of the picture, for an engine that draws over it. FAILED if the last frame was not
+ * located or no picture is made. */
+ROOMRADAR_API roomradar_status roomradar_session_view(roomradar_session* session, roomradar_camera* camera,
+                                                      roomradar_pose* T_world_view);
+/* Returns the room's depth as expected in the last located frame, from its pose.
+ * @param depth_m   height x width, m; 0: no surface
+ * @param capacity  of depth_m, pixels
+ * @param needed    width * height; 0 before the first located frame
+ * @param camera    of the image; may be null */
+ROOMRADAR_API roomradar_status roomradar_session_expected_depth(roomradar_session* session, float* depth_m,
+                                                                size_t capacity, size_t* needed,
+                                                                roomradar_camera* camera);
+/* Returns which pixels of the last located frame show what moved since the scan: 255, else 0.
+ * @param capacity  of mask, pixels
+ * @param needed    width * height; 0 before the first located frame
+ * @param width_px, height_px  may be null */
+ROOMRADAR_API roomradar_status roomradar_session_moved_mask(roomradar_session* session, uint8_t* mask,
+                                                            size_t capacity, size_t* needed,
+                                                            int32_t* width_px, int32_t* height_px);
+/* Returns the mesh of what moved, in the world: the seen surface, or its assumed back if is_back is 1. Its
+ * version is the number of located frames. */
+ROOMRADAR_API roomradar_status roomradar_session_moved_mesh(roomradar_session* session, int32_t is_back,
+                                                            roomradar_mesh_buffers* mesh);
+/* Lists the blocks of the room's present surface. Blocks that have vanished stay, with 0 triangles. Fetch
+ * those whose version has grown; nothing has changed while roomradar_frame_result::room_version is the same.
+ */
+ROOMRADAR_API roomradar_status roomradar_session_blocks(roomradar_session* session, roomradar_block* blocks,
+                                                        size_t capacity, size_t* needed);
+ROOMRADAR_API roomradar_status roomradar_session_block_mesh(roomradar_session* session, uint64_t block_id,
+                                                            roomradar_mesh_buffers* mesh);
+/* Takes the sentences about objects since the last call, one a line, such as that an object is stuck.
+ * @param text    ends with 0
+ * @param needed  bytes, with the 0; the sentences stay if the capacity is too small */
+ROOMRADAR_API roomradar_status roomradar_session_notices(roomradar_session* session, char* text,
+                                                         size_t capacity, size_t* needed);
+
+/* From now on unobserved space is solid (1) or free (0). */
+ROOMRADAR_API roomradar_status roomradar_session_set_unknown(roomradar_session* session, int32_t is_solid);
+/* Changes the surfaces that objects can touch, from the next frame on. */
+ROOMRADAR_API roomradar_status roomradar_session_set_surfaces(roomradar_session* session, int32_t surfaces);
+/* Sets the quality; what the words do not name gets its default. */
+ROOMRADAR_API roomradar_status roomradar_session_set_quality(roomradar_session* session, const char* quality);
+
+/* A change of the room that was adopted. */
+typedef struct roomradar_change {
+  int32_t is_removal; /* 0: something came; 1: something went */
+  int64_t frame;      /* index of the first frame that used it */
+  double stamp_s;
+  double min_world_m[3], max_world_m[3]; /* bounds of what changed */
+} roomradar_change;
+/* Asks to adopt what stands still in view and is not in the map, and what is gone. Takes effect some frames
+ * later. Needs roomradar_session_options::watches_changes. */
+ROOMRADAR_API roomradar_status roomradar_session_adopt(roomradar_session* session);
+/* Lists the changes adopted so far. */
+ROOMRADAR_API roomradar_status roomradar_session_changes(roomradar_session* session,
+                                                         roomradar_change* changes, size_t capacity,
+                                                         size_t* needed);
+/* Saves the room with the adopted changes as a map, as `roomradar run --save-map` does. Waits for a change
+ * that is being adopted. A map in the folder is replaced, whole or not at all. Needs
+ * roomradar_session_options::watches_changes. */
+ROOMRADAR_API roomradar_status roomradar_session_save(roomradar_session* session, const char* folder);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
