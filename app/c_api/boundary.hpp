@@ -14,8 +14,7 @@ namespace roomradar::c_api {
 /// INTERNAL.
 class Refusal : public std::runtime_error {
  public:
-  Refusal(roomradar_status of, const std::string& sentence)
-      : std::runtime_error(sentence), status(of) {}
+  Refusal(roomradar_status of, const std::string& sentence) : std::runtime_error(sentence), status(of) {}
   roomradar_status status;
 };
 

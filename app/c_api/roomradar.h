@@ -38,6 +38,7 @@
 #include "roomradar_map.h"
 #include "roomradar_objects.h"
 #include "roomradar_radar.h"
+#include "roomradar_scene.h"
 #include "roomradar_session.h"
 #include "roomradar_source.h"
 #include "roomradar_types.h"

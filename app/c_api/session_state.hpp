@@ -1,19 +1,52 @@
-// session_state.hpp: the objects behind handles of sessions and locators.
+// session_state.hpp: the objects behind handles of sessions and locators, which draw on a thread of their
+// own.
 #pragma once
+#include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "app/c_api/handles.hpp"
 #include "app/c_api/roomradar_session.h"
-#include "app/c_api/session_thread.hpp"
 #include "app/session/session.hpp"
 #include "mapping/types/system/stage_times.hpp"
 #include "radar/exact/cyber_radar.hpp"
 
 namespace roomradar::c_api {
+
+/// Owns a thread that sleeps between calls of run(), for an OpenGL context that lives on it. The callers' own
+/// contexts (an engine's) are never touched. run() may be called from any thread, by one at a time.
+class SessionThread {
+ public:
+  SessionThread();
+  ~SessionThread();
+  SessionThread(const SessionThread&) = delete;
+  SessionThread& operator=(const SessionThread&) = delete;
+
+  /// Calls work() on the thread, waits for it, and rethrows its exception.
+  template <typename Work>
+  void run(const Work& work) {
+    run_and_wait([](const void* task) { (*static_cast<const Work*>(task))(); }, &work);
+  }
+
+ private:
+  using Call = void (*)(const void*);
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Call call_ = nullptr;  ///< null: nothing to do
+  const void* task_ = nullptr;
+  bool is_done_ = false, stops_ = false;
+  std::exception_ptr fault_;
+  std::thread thread_;  ///< declared last because it uses the members above
+
+  void run_and_wait(Call call, const void* task);
+  void serve();
+};
 
 struct SessionState : Handled {
   static constexpr const char* kKind = "session";

@@ -23,10 +23,18 @@ endif()
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 
+# The library for C, engines and other languages, and what programs need to link it.
+install(TARGETS roomradar_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT c_development)
+get_target_property(c_headers roomradar_c C_HEADERS)
+install(FILES ${c_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/roomradar-c COMPONENT c_development)
+configure_file(app/package/roomradar.pc.in ${PROJECT_BINARY_DIR}/roomradar.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/roomradar.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT c_development)
+
 # The libraries: find_package(roomradar COMPONENTS ...); see roomradar-config.cmake.in.
 install(TARGETS ${targets} EXPORT roomradar COMPONENT development)
 set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/roomradar)
-install(DIRECTORY mapping radar dynamic app DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY mapping radar dynamic app DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.hpp"
+  PATTERN "app/c_api" EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/generated/mapping/types/system/version.hpp
   DESTINATION ${header_dir}/mapping/types/system COMPONENT development)
 # Static libraries fit the OpenCV that they were built with: installed, they look for its libraries by name and version.
@@ -46,7 +54,7 @@ set(CPACK_PACKAGE_CONTACT "roomradar developers <roomradar@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "prescan a room with a Kinect, then run augmented reality in it")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_COMPONENTS_ALL program library c_development development)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
@@ -69,4 +77,15 @@ endforeach()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, libopenni2-dev, pkg-config")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, what moved, and frame sources.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libroomradar0)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
+  "Shared library of roomradar with a C interface, for engines and other languages: saved rooms, sessions, radar.")
+set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_NAME libroomradar-c-dev)
+set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_DEPENDS "libroomradar0 (= ${PROJECT_VERSION})")
+set(CPACK_COMPONENT_C_DEVELOPMENT_DESCRIPTION "Header files of roomradar's C interface, and its pkg-config file.")
 include(CPack)
