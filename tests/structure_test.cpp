@@ -34,6 +34,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"app/objects", "app/evaluation", "app/evaluation/pareto", "app/scan/live"},
     {"app/session"},
     {"app/session/script", "app/c_api"},
+    {"app/c_api/godot"},
     {"app/cli/options"},
     {"app/cli"},
     {"app/window/link", "app/scan", "app/start", "app/evaluation/fallthrough"},
