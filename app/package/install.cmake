@@ -27,6 +27,7 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPO
 install(TARGETS roomradar_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT c_development)
 get_target_property(c_headers roomradar_c C_HEADERS)
 install(FILES ${c_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/roomradar-c COMPONENT c_development)
+file(RELATIVE_PATH prefix_of_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(app/package/roomradar.pc.in ${PROJECT_BINARY_DIR}/roomradar.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT c_development)
 
