@@ -29,6 +29,14 @@ BodyMaterial material_of(const roomradar_material* material) {
   return made;
 }
 
+/// Returns a name that no object has.
+std::string new_name_of(const char* name, const SessionState& state) {
+  const std::string named = name_of(name);
+  if (find_object(state.session->objects(), named) != nullptr)
+    refuse("there is an object named " + named + " already");
+  return named;
+}
+
 void add(SessionState& state, const std::string& name, ObjectParts parts, const BodyMaterial& material) {
   state.run([&](Session& live) { live.add_object(name, std::move(parts), material); });
 }
@@ -62,7 +70,7 @@ roomradar_object_state state_of(const VirtualObject& object) {
 roomradar_status roomradar_session_add_file(roomradar_session* session, const char* name, const char* file,
                                             double size_m, const roomradar_material* material) {
   return with<SessionState>("roomradar_session_add_file", session, [&](SessionState& state) {
-    const std::string named = name_of(name);
+    const std::string named = new_name_of(name, state);
     const BodyMaterial of = material_of(material);
     ObjectSource source{.mesh = text_of(file, "file")};
     if (!(size_m >= 0.0 && size_m <= 100.0)) refuse("size_m: must be in 0..100 m");
@@ -76,7 +84,7 @@ roomradar_status roomradar_session_add_file(roomradar_session* session, const ch
 roomradar_status roomradar_session_add_mesh(roomradar_session* session, const char* name,
                                             const roomradar_mesh* mesh, const roomradar_material* material) {
   return with<SessionState>("roomradar_session_add_mesh", session, [&](SessionState& state) {
-    const std::string named = name_of(name);
+    const std::string named = new_name_of(name, state);
     const BodyMaterial of = material_of(material);
     add(state, named, object_parts(named, mesh_of(mesh)), of);
   });

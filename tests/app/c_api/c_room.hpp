@@ -23,7 +23,7 @@ inline void assert_ok(roomradar_status status) {
     throw std::runtime_error(std::string(roomradar_status_name(status)) + ": " + roomradar_last_error());
 }
 
-/// Returns a struct that is all zero but for its size.
+/// Returns a struct of zeros, with its size set.
 template <typename Struct>
 Struct sized() {
   Struct made{};

@@ -86,8 +86,8 @@ TEST(CWrongCall, NamesCallArgumentAndRule) {
   expect_refused(roomradar_session_add_file(session.handle, "pot", "/nowhere.glb", 0.0, nullptr),
                  ROOMRADAR_FAILED, "/nowhere.glb");
   expect_ok(roomradar_session_add_file(session.handle, "pot", "teapot", 0.0, nullptr));
-  expect_refused(roomradar_session_add_file(session.handle, "pot", "teapot", 0.0, nullptr), ROOMRADAR_FAILED,
-                 "already");
+  expect_refused(roomradar_session_add_file(session.handle, "pot", "teapot", 0.0, nullptr),
+                 ROOMRADAR_INVALID_ARGUMENT, "already");
   expect_refused(roomradar_session_drop(session.handle, "pan", nullptr, 0.3), ROOMRADAR_INVALID_ARGUMENT,
                  "no object named pan");
   expect_refused(roomradar_session_drop(session.handle, "pot", nullptr, kNan), ROOMRADAR_INVALID_ARGUMENT,
