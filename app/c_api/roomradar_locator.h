@@ -9,14 +9,6 @@
 extern "C" {
 #endif
 
-/* How a camera was found; a session's frames have it too. */
-typedef enum roomradar_tracking {
-  ROOMRADAR_TRACKED = 0,
-  ROOMRADAR_TOO_FEW_POINTS = 1, /* lost */
-  ROOMRADAR_DEGENERATE = 2,     /* a pose, partly predicted: not all directions are constrained */
-  ROOMRADAR_DIVERGED = 3        /* lost */
-} roomradar_tracking;
-
 typedef struct roomradar_location {
   size_t struct_size;
   int32_t tracking;              /* a roomradar_tracking */

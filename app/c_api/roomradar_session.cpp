@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "app/c_api/conversions.hpp"
-#include "app/c_api/roomradar_locator.h"
 #include "app/c_api/session_state.hpp"
 #include "app/quality/quality.hpp"
 #include "app/session/apply_quality.hpp"

@@ -129,6 +129,14 @@ typedef struct roomradar_block {
   uint64_t triangle_count; /* 0: all triangles of the block are gone */
 } roomradar_block;
 
+/* Result of a search for the camera. */
+typedef enum roomradar_tracking {
+  ROOMRADAR_TRACKED = 0,
+  ROOMRADAR_TOO_FEW_POINTS = 1, /* lost */
+  ROOMRADAR_DEGENERATE = 2,     /* a pose, partly predicted: not all directions are constrained */
+  ROOMRADAR_DIVERGED = 3        /* lost */
+} roomradar_tracking;
+
 /* Kinds of surfaces that can be touched. */
 typedef enum roomradar_surface_kind {
   ROOMRADAR_SURFACE_NOTHING = 0,
