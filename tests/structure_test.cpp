@@ -37,7 +37,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"app/c_api/godot"},
     {"app/cli/options"},
     {"app/cli"},
-    {"app/window/link", "app/scan", "app/start", "app/evaluation/fallthrough"},
+    {"app/window/link", "app/scan", "app/start", "app/evaluation/fallthrough", "app/python"},
     {"app/window/panes", "app/run", "app/evaluation/trade"},
     {"app/window"},
     {"app/window/scan", "app/window/start"},

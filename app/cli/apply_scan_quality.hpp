@@ -1,5 +1,6 @@
-// apply_scan_quality.hpp: applies quality settings to a prescan's configuration.
+// apply_scan_quality.hpp: the configuration of a prescan, from its options.
 #pragma once
+#include "app/cli/options/prescan_options.hpp"
 #include "app/quality/quality.hpp"
 #include "mapping/prescan.hpp"
 
@@ -8,5 +9,8 @@ namespace roomradar {
 /// Sets only the fields of `config` that depend on the quality. A default-constructed quality leaves a
 /// default-constructed config unchanged.
 void apply(const ScanQuality& quality, PrescanConfig& config);
+
+/// Returns the configuration of a prescan with these options.
+PrescanConfig prescan_config_of(const PrescanOptions& options);
 
 }  // namespace roomradar

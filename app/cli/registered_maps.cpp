@@ -27,12 +27,9 @@ Registration require_registered(const SavedMap& a, const SavedMap& b, const std:
 
 MapChanges changes_between(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                            const std::string& name_b, Report& report) {
-  // A map saved by `run --save-map` has the keyframes of the map it came from, and so its world.
-  const bool one_world =
-      !a.keyframe_database.keyframes.empty() &&
-      a.info.files.at(kMapKeyframesFile).sha256 == b.info.files.at(kMapKeyframesFile).sha256;
-  const Eigen::Isometry3d T_a_b =
-      one_world ? Eigen::Isometry3d::Identity() : require_registered(a, b, name_a, name_b, report).T_a_b;
+  const Eigen::Isometry3d T_a_b = share_world(a.info, b.info)
+                                      ? Eigen::Isometry3d::Identity()
+                                      : require_registered(a, b, name_a, name_b, report).T_a_b;
   return {T_a_b, report.times.timed("diff", [&] { return diff_maps(a.octree, b.octree, T_a_b); })};
 }
 

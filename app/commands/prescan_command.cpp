@@ -69,20 +69,6 @@ nlohmann::json settings_of(const PrescanOptions& options) {
   return settings;
 }
 
-PrescanConfig config_of(const PrescanOptions& options) {
-  PrescanConfig config;
-  apply(options.quality, config);
-  config.poses = options.poses;
-  config.up = options.up;
-  config.hold_out = options.hold_out;
-  config.bake_texture = options.texture;
-  config.max_memory_bytes = static_cast<std::size_t>(kMB * options.max_memory_mb);
-  // Recorded poses may disagree with the depth by more than the threshold that tells a ghost from a wall;
-  // ghost removal would then erase walls.
-  config.remove_ghosts = options.poses == PoseOrigin::kTracked;
-  return config;
-}
-
 /// Reports that the map already contains the recording to resume; returns the exit status.
 /// @param channel  to the window; null: no window
 int report_held_already(const PrescanOptions& options, ScanChannel* channel, Report& report) {
@@ -195,7 +181,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   report.command = "prescan";
   report.source = options.source;
   report.settings = settings_of(options);
-  PrescanConfig config = config_of(options);
+  PrescanConfig config = prescan_config_of(options);
   ScanStart start = start_scan(options);
   if (start.is_done) return report_held_already(options, channel, report);
   const Interrupt interrupt;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "mapping/map/map_files.hpp"
 #include "mapping/types/pose_origin.hpp"
 
 namespace roomradar {
@@ -31,6 +32,12 @@ bool knows_recorded_world(const MapInfo& info) {
   const auto poses = info.settings.find(kPosesSetting);
   return (poses != info.settings.end() && poses->second == to_string(PoseOrigin::kRecorded)) ||
          !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
+}
+
+bool share_world(const MapInfo& a, const MapInfo& b) {
+  const auto of_a = a.files.find(kMapKeyframesFile), of_b = b.files.find(kMapKeyframesFile);
+  return a.keyframes > 0 && of_a != a.files.end() && of_b != b.files.end() &&
+         of_a->second.sha256 == of_b->second.sha256;
 }
 
 SurfaceConfig surface_config_of(const MapInfo& info) {

@@ -49,6 +49,10 @@ struct MapInfo {
 /// recording had poses.
 bool knows_recorded_world(const MapInfo& info);
 
+/// Returns true if both maps are known to have one world: a map saved by a run in another map has the
+/// keyframes of that map.
+bool share_world(const MapInfo& a, const MapInfo& b);
+
 /// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if
 /// info.settings has one, else the default. Throws Error if the stored value is invalid.
 SurfaceConfig surface_config_of(const MapInfo& info);

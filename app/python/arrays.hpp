@@ -1,0 +1,77 @@
+// arrays.hpp: NumPy arrays as checked arguments, and images and meshes as arrays that share memory.
+#pragma once
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/types/image.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar::python {
+
+namespace py = pybind11;
+
+/// Required shape of an array. A negative length allows any length.
+struct ArrayShape {
+  std::vector<py::ssize_t> lengths;
+  const char* text;  ///< for messages, such as "(H, W)"
+};
+
+/// Returns an argument as an array that is C-contiguous and has the element type and shape. Copies nothing.
+/// Throws TypeError or ValueError, with a sentence that names the argument and says how to convert it.
+template <typename Element>
+py::array required_array(py::handle value, const char* name, const ArrayShape& shape);
+/// Throws ValueError, as required_array() does, unless the array can be written to.
+template <typename Element>
+py::array required_output(py::handle value, const char* name, const ArrayShape& shape);
+
+/// Returns a float64 array (4, 4) as a pose. Any strides are read. Throws ValueError unless it is a finite
+/// rigid transform, to 1e-6.
+Eigen::Isometry3d pose_of(py::handle value, const char* name);
+/// Returns pose_of(), or nullopt for None.
+std::optional<Eigen::Isometry3d> optional_pose_of(py::handle value, const char* name);
+/// Returns a float64 array (3,), or a sequence of three numbers, as a vector. Throws ValueError if a number
+/// is not finite.
+Eigen::Vector3d vector_of(py::handle value, const char* name);
+std::optional<Eigen::Vector3d> optional_vector_of(py::handle value, const char* name);
+/// Returns a float64 array (3, 3) as a rotation, or nullopt for None. Throws ValueError as pose_of() does.
+std::optional<Eigen::Matrix3d> optional_rotation_of(py::handle value, const char* name);
+/// Throws ValueError unless the number is finite.
+double finite(double value, const char* name);
+
+/// Returns a depth image, copied from a float32 array (H, W). Throws ValueError if a depth is negative or not
+/// finite.
+DepthImage depth_of(py::handle value, const char* name);
+/// Returns a colour image, copied from a uint8 array (H, W, 3).
+ColourImage colour_of(py::handle value, const char* name);
+/// Returns a mask, copied from a uint8 array (H, W).
+MaskImage mask_of(py::handle value, const char* name);
+
+/// Return read-only arrays that share memory with the image or vector. The array keeps `owner` alive.
+py::array view_of(const DepthImage& depth_m, py::handle owner);
+py::array view_of(const ColourImage& colour, py::handle owner);
+py::array view_of(const MaskImage& mask, py::handle owner);
+py::array view_of(const Image<std::uint16_t>& image, py::handle owner);
+py::array view_of(const std::vector<Eigen::Vector3f>& vectors, py::handle owner);
+py::array view_of(const std::vector<Rgb>& colours, py::handle owner);
+py::array view_of(const std::vector<Triangle>& triangles, py::handle owner);
+
+/// Return new arrays: (4, 4), (3,) and (3, 3).
+py::array_t<double> array_of(const Eigen::Isometry3d& T);
+py::array_t<double> array_of(const Eigen::Vector3d& vector);
+py::array_t<double> array_of(const Eigen::Matrix3d& matrix);
+/// Returns the lower and upper corner of a box, (2, 3).
+py::array_t<double> array_of(const Eigen::AlignedBox3d& box);
+
+/// Returns None or a new array.
+template <typename Value>
+py::object array_or_none(const std::optional<Value>& value) {
+  return value ? py::object(array_of(*value)) : py::none();
+}
+
+}  // namespace roomradar::python

@@ -1,0 +1,9 @@
+// frames.hpp: cameras, noise, timing and frames in Python.
+#pragma once
+#include <pybind11/pybind11.h>
+
+namespace roomradar::python {
+
+void bind_frames(pybind11::module_& module);
+
+}  // namespace roomradar::python

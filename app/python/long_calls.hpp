@@ -1,0 +1,90 @@
+// long_calls.hpp: long calls without the interpreter's lock: exclusive use, progress, Ctrl-C, and a thread
+// for OpenGL.
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar::python {
+
+namespace py = pybind11;
+
+/// Marks an object as used by one call at a time.
+class UseFlag {
+ public:
+  /// Holds the flag. Throws Error naming the object if another thread holds the flag.
+  class Lock {
+   public:
+    Lock(UseFlag& flag, const char* name) : flag_(flag) {
+      if (flag_.is_used_.exchange(true))
+        throw Error(std::string(name) + " is in use by another thread; wait for that call, or use two");
+    }
+    ~Lock() { flag_.is_used_ = false; }
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
+
+   private:
+    UseFlag& flag_;
+  };
+
+ private:
+  std::atomic<bool> is_used_ = false;
+};
+
+/// Calls work() without the interpreter's lock. `work` must not use Python objects.
+template <typename Work>
+decltype(auto) without_gil(Work&& work) {
+  const py::gil_scoped_release release;
+  return std::forward<Work>(work)();
+}
+
+/// Throws the exception of a pending signal, such as KeyboardInterrupt. Call with the interpreter's lock.
+void throw_if_interrupted();
+
+/// Calls progress(arguments...) unless it is None, and throws its exceptions and those of pending signals.
+/// Call without the interpreter's lock. Returns false if the callback returned False.
+template <typename... Arguments>
+bool report_progress(const py::object& progress, const Arguments&... arguments) {
+  const py::gil_scoped_acquire acquire;
+  throw_if_interrupted();
+  return progress.is_none() || !progress(arguments...).is(py::bool_(false));
+}
+
+/// Throws TypeError unless the value is None or can be called.
+void require_callback(const py::object& value, const char* name);
+
+/// Owns a thread that makes all calls of one OpenGL context, for callers on any thread. Callers on several
+/// threads wait for each other. Work must not use Python objects.
+class GlThread {
+ public:
+  GlThread();
+  ~GlThread();
+  GlThread(const GlThread&) = delete;
+  GlThread& operator=(const GlThread&) = delete;
+
+  /// Calls work() on the thread and waits for it. Rethrows its exception. Call without the interpreter's
+  /// lock, and not from inside `work`.
+  void run(const std::function<void()>& work);
+
+ private:
+  std::mutex callers_;  ///< held by the caller whose work is done
+  std::mutex mutex_;    ///< guards the members below
+  std::condition_variable changed_;
+  const std::function<void()>* work_ = nullptr;
+  std::exception_ptr fault_;
+  bool is_stopping_ = false;
+  std::thread thread_;  ///< declared last because it uses the members above
+
+  void serve();
+};
+
+}  // namespace roomradar::python

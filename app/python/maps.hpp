@@ -1,0 +1,27 @@
+// maps.hpp: saved maps in Python.
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+
+#include "app/python/octree.hpp"
+#include "mapping/map/map_folder.hpp"
+
+namespace roomradar::python {
+
+/// A map in memory. It does not change.
+struct Map {
+  SavedMap saved;
+  std::string folder;  ///< empty: neither loaded nor saved
+
+  Map(SavedMap map, std::string its_folder) : saved(std::move(map)), folder(std::move(its_folder)) {}
+};
+
+/// Returns the map's octree, which keeps the map alive. Reads it from disk at its first use.
+std::shared_ptr<Octree> octree_of(const std::shared_ptr<Map>& map);
+
+/// Call after bind_octree() and bind_meshes().
+void bind_maps(pybind11::module_& module);
+
+}  // namespace roomradar::python

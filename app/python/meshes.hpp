@@ -1,0 +1,9 @@
+// meshes.hpp: triangle meshes in Python.
+#pragma once
+#include <pybind11/pybind11.h>
+
+namespace roomradar::python {
+
+void bind_meshes(pybind11::module_& module);
+
+}  // namespace roomradar::python

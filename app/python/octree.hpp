@@ -1,0 +1,52 @@
+// octree.hpp: the octree of occupancy and signed distance in Python: fusion and queries.
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <optional>
+#include <shared_mutex>
+#include <utility>
+
+#include "mapping/octree/static_map.hpp"
+
+namespace roomradar::python {
+
+/// An octree that is fused into by one call at a time, or one of a saved map, which does not change.
+class Octree {
+ public:
+  explicit Octree(StaticMap map) : Octree(std::make_shared<StaticMap>(std::move(map))) {}
+  explicit Octree(std::shared_ptr<const StaticMap> saved) : map_(std::move(saved)) {}
+
+  /// Calls work(const StaticMap&) without the interpreter's lock, while nothing is fused.
+  template <typename Work>
+  auto read(const Work& work) const {
+    const pybind11::gil_scoped_release release;
+    const std::shared_lock lock(mutex_);
+    return work(*map_);
+  }
+  /// Calls work(StaticMap&) without the interpreter's lock. Throws Error for the octree of a saved map.
+  template <typename Work>
+  auto change(const Work& work) {
+    StaticMap& map = changeable();
+    const pybind11::gil_scoped_release release;
+    const std::unique_lock lock(mutex_);
+    return work(map);
+  }
+
+ private:
+  std::shared_ptr<const StaticMap> map_;
+  StaticMap* changing_ = nullptr;  ///< map_, unless it is a saved map's
+  mutable std::shared_mutex mutex_;
+
+  explicit Octree(std::shared_ptr<StaticMap> own) : map_(own), changing_(own.get()) {}
+
+  [[nodiscard]] StaticMap& changeable() const;
+};
+
+/// Returns the occupancy at points (N, 3) as uint8 (N,): the values of Occupancy.
+pybind11::object occupancy_of(const Octree& octree, const pybind11::object& points_world);
+
+/// Call after bind_meshes() and bind_frames().
+void bind_octree(pybind11::module_& module);
+
+}  // namespace roomradar::python

@@ -1,0 +1,10 @@
+// scan.hpp: prescanning a room in Python.
+#pragma once
+#include <pybind11/pybind11.h>
+
+namespace roomradar::python {
+
+/// Call after bind_sources() and bind_maps().
+void bind_scan(pybind11::module_& module);
+
+}  // namespace roomradar::python

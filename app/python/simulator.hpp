@@ -1,0 +1,10 @@
+// simulator.hpp: the simulated Kinect with its ground truth in Python.
+#pragma once
+#include <pybind11/pybind11.h>
+
+namespace roomradar::python {
+
+/// Call after bind_sources() and bind_meshes().
+void bind_simulator(pybind11::module_& module);
+
+}  // namespace roomradar::python

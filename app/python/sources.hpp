@@ -1,0 +1,48 @@
+// sources.hpp: frame sources in Python: iterators of frames.
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "app/python/long_calls.hpp"
+#include "mapping/types/frame_source.hpp"
+
+namespace roomradar::python {
+
+/// A frame source and the counts of its frames. Used by one call at a time.
+class Source {
+ public:
+  explicit Source(std::unique_ptr<FrameSource> source);
+  virtual ~Source() = default;
+
+  /// Returns the next readable frame; null at the end. Call with the interpreter's lock, which is released
+  /// meanwhile. Waits for a live device until Ctrl-C.
+  std::shared_ptr<Frame> next();
+  /// Goes back to the first frame if frames were read. A live device continues. Returns true at the first
+  /// frame.
+  bool restart();
+  bool seek(std::int64_t index);
+  /// Closes files and devices. Later calls throw Error.
+  void close();
+
+  /// Returns the open source. Throws Error after close().
+  [[nodiscard]] FrameSource& opened() const;
+  [[nodiscard]] UseFlag& use() { return use_; }
+  /// Call after the source was read by other code.
+  void was_read() { was_read_ = true; }
+  [[nodiscard]] std::int64_t skipped() const { return skipped_; }
+  [[nodiscard]] const std::string& last_fault() const { return last_fault_; }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  UseFlag use_;
+  bool was_read_ = false;
+  std::int64_t skipped_ = 0;
+  std::string last_fault_;
+};
+
+void bind_sources(pybind11::module_& module);
+
+}  // namespace roomradar::python
