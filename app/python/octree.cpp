@@ -121,17 +121,17 @@ void write(const Octree& octree, const std::filesystem::path& path) {
   });
 }
 
-std::unique_ptr<Octree> read(const std::filesystem::path& path) {
+std::shared_ptr<Octree> read(const std::filesystem::path& path) {
   const pybind11::gil_scoped_release release;
-  return std::make_unique<Octree>(path.extension() == ".ot" ? StaticMap::read_ot(path)
+  return std::make_shared<Octree>(path.extension() == ".ot" ? StaticMap::read_ot(path)
                                                             : StaticMap::read(path));
 }
 
-std::unique_ptr<Octree> make_octree(double resolution_m, double max_range_m, int threads) {
+std::shared_ptr<Octree> make_octree(double resolution_m, double max_range_m, int threads) {
   FusionConfig config;
   config.max_range_m = static_cast<float>(max_range_m);
   config.threads = threads;
-  return std::make_unique<Octree>(StaticMap(resolution_m, config));
+  return std::make_shared<Octree>(StaticMap(resolution_m, config));
 }
 
 }  // namespace

@@ -1,0 +1,202 @@
+"""Maps and scans: those of the command line, byte for byte."""
+import json
+import unittest
+
+import numpy as np
+
+import roomradar as rr
+import support
+
+
+def files_of(folder):
+    return {file.name: file.read_bytes() for file in folder.iterdir()}
+
+
+class Scans(unittest.TestCase):
+    def compare(self, source, by_command, **settings):
+        folder = support.temporary_folder()
+        stages = {}
+
+        def count(stage, note):
+            stages[stage] = stages.get(stage, 0) + 1
+
+        scan = rr.prescan(source, progress=count, **settings)
+        scan.map.save(folder / "python")
+        support.command("prescan", *by_command, "--map", folder / "command")
+        python, command = files_of(folder / "python"), files_of(folder / "command")
+        self.assertEqual(sorted(python), sorted(command))
+        for name in command:
+            self.assertEqual(python[name], command[name], name)
+        return scan, stages
+
+    def test_a_scan_is_that_of_the_command(self):
+        spec = "sim:table?frames=40&width=160&seed=3"
+        scan, stages = self.compare(spec, [spec, "--resolution", "0.02"], resolution_m=0.02)
+        self.assertEqual(scan.counts["frames_read"], 40)
+        self.assertGreaterEqual(stages["track"], 40)
+        self.assertEqual(stages["surface"], 1)
+        self.assertTrue(all(hole.size_m > 0 for hole in scan.holes))
+
+    def test_a_scan_with_recorded_poses_is_that_of_the_command(self):
+        self.compare(rr.open_source(support.SCAN, cache=True),
+                     [support.SCAN, "--resolution", "0.03", "--poses", "recorded", "--texture", "off", "--deviation",
+                      "0.004"],
+                     resolution_m=0.03, poses="recorded", texture=False, deviation_m=0.004)
+
+    @unittest.skipUnless(support.KITCHEN.exists(), f"{support.KITCHEN} is absent")
+    def test_a_scan_of_kitchen_is_that_of_the_command(self):
+        self.compare(rr.open_source(support.KITCHEN, frames=(0, 59)), [support.KITCHEN, "--frames", "0:59"])
+
+    def test_frames_in_memory_are_scanned(self):
+        frames = list(rr.open_source("sim:table?frames=20&width=160&seed=3"))
+        scan = rr.prescan(rr.Source.of_frames(frames), resolution_m=0.03, texture=False)
+        self.assertEqual(scan.counts["frames_tracked"], 20)
+        self.assertEqual(scan.map.info["source"], "frames")
+        self.assertGreater(len(scan.map.mesh.triangles), 100)
+        self.assertEqual(scan.map.folder, "")
+
+    def test_a_map_is_extended(self):
+        room = support.table_map()
+        scan = rr.prescan("sim:table?frames=30&width=160&seed=5", poses="recorded", extend=room, texture=False)
+        self.assertEqual(scan.map.resolution_m, room.resolution_m)
+        self.assertGreater(scan.map.info["frames_fused"], room.info["frames_fused"])
+
+    def test_wrong_settings_are_named(self):
+        for words, settings in (("resolution_m", {"resolution_m": -1.0}), ("resolution_m", {"resolution_m": float("nan")}),
+                                ("poses", {"poses": "guessed"}), ("up", {"up": (0, 0, 0)}),
+                                ("hold_out", {"hold_out": -1}), ("max_memory_mb", {"max_memory_mb": -1.0}),
+                                ("progress", {"progress": 3}), ("fuse_every", {"fuse_every": 0})):
+            with self.assertRaisesRegex((rr.Error, ValueError, TypeError), words):
+                rr.prescan("sim:table?frames=2&width=160", **settings)
+
+
+class Maps(unittest.TestCase):
+    def test_info_is_that_of_the_command(self):
+        text = json.loads(support.command("map", "info", support.table_folder(), "--json"))
+        surfaces = text.pop("surfaces")
+        self.assertEqual(rr.map_info(support.table_folder()), text)
+        room = support.table_map()
+        self.assertEqual(room.info, text)
+        self.assertEqual(sorted(s.height_m for s in room.level_surfaces()), sorted(s["height_m"] for s in surfaces))
+        self.assertEqual(room.resolution_m, 0.03)
+
+    def test_a_sound_map_has_no_faults_and_a_damaged_one_has(self):
+        self.assertEqual(rr.verify_map(support.table_folder()), [])
+        folder = support.temporary_folder() / "damaged"
+        support.table_map().save(folder)
+        mesh = folder / "mesh.ply"
+        mesh.write_bytes(mesh.read_bytes()[:-1])
+        self.assertEqual(len(rr.verify_map(folder)), 1)
+        with self.assertRaisesRegex(rr.Error, "mesh.ply"):
+            rr.open_map(folder)
+        with self.assertRaisesRegex(rr.Error, "nowhere"):
+            rr.open_map("nowhere")
+
+    def test_a_saved_map_is_the_same(self):
+        folder = support.temporary_folder() / "again"
+        support.table_map().save(folder)
+        self.assertEqual(files_of(folder), files_of(support.table_folder()))
+        self.assertEqual(rr.diff_maps(support.table_map(), rr.open_map(folder)), [])
+
+    def test_exports_are_those_of_the_command(self):
+        folder = support.temporary_folder()
+        for extension in ("ply", "glb", "ot", "html"):
+            rr.export_map(support.table_folder(), folder / f"python.{extension}")
+            support.command("map", "export", support.table_folder(), folder / f"command.{extension}")
+            self.assertEqual((folder / f"python.{extension}").read_bytes(),
+                             (folder / f"command.{extension}").read_bytes(), extension)
+        with self.assertRaisesRegex(rr.Error, "xyz"):
+            rr.export_map(support.table_folder(), folder / "mesh.xyz")
+
+    def test_occupancy_agrees_with_the_leaves(self):
+        room = support.table_map()
+        leaves = room.octree.leaves()
+        centres = (leaves["lowest_voxel"] + leaves["edge_voxels"][:, None] / 2) * room.resolution_m
+        occupied = leaves["log_odds"] > 0
+        np.testing.assert_array_equal(room.occupancy(centres), np.where(occupied, 2, 1))
+        self.assertEqual(room.occupancy(np.array([[100.0, 0, 0], [np.nan, 0, 0]])).tolist(), [0, 0])
+        counts = room.octree.counts()
+        self.assertEqual(counts["occupied_leaves"] + counts["free_leaves"], len(centres))
+
+    def test_samples_lie_near_the_surface(self):
+        samples = support.table_map().octree.samples()
+        self.assertEqual(samples["voxel"].shape, (len(samples["distance_m"]), 3))
+        self.assertLess(np.abs(samples["distance_m"]).max(), 0.2)
+        self.assertEqual(samples["has_colour"].dtype, np.bool_)
+
+    def test_keyframes_and_trajectory_are_arrays(self):
+        room = support.table_map()
+        stamps, poses = room.trajectory
+        self.assertEqual((stamps.shape, poses.shape), ((60,), (60, 4, 4)))
+        keyframe = room.keyframes[0]
+        self.assertEqual(keyframe.preview_depth_mm.dtype, np.uint16)
+        self.assertEqual(keyframe.preview_depth_mm.shape,
+                         (keyframe.preview_camera.height_px, keyframe.preview_camera.width_px))
+        self.assertGreater(keyframe.features, 0)
+        self.assertTrue(room.coverage_png.startswith(b"\x89PNG"))
+        self.assertGreater(len(room.unknown_surface().triangles), 0)
+
+    def test_maps_of_one_room_are_merged_and_compared(self):
+        folder = support.temporary_folder()
+        other = "sim:table?frames=60&width=160&seed=6&crate=1"
+        support.command("prescan", other, "--map", folder / "other", "--resolution", "0.03", "--poses", "recorded")
+        a, b = support.table_map(), rr.open_map(folder / "other")
+        T_a_b = rr.register_maps(a, b)
+        np.testing.assert_allclose(T_a_b, np.eye(4), atol=0.03)
+        rr.merge_maps(a, b).save(folder / "python")
+        support.command("map", "merge", support.table_folder(), folder / "other", "--map", folder / "command")
+        self.assertEqual(files_of(folder / "python"), files_of(folder / "command"))
+        support.command("map", "diff", support.table_folder(), folder / "other", "--report", folder / "diff.json")
+        rows = json.loads((folder / "diff.json").read_text())["results" if False else "changes"]
+        changes = rr.diff_maps(a, b)
+        self.assertEqual([change.kind for change in changes], [row["kind"] for row in rows])
+        self.assertEqual([change.volume_m3 for change in changes], [row["volume_m3"] for row in rows])
+        with self.assertRaisesRegex(rr.Error, "the maps are the same"):
+            rr.merge_maps(a, a)
+
+
+class Fusion(unittest.TestCase):
+    def test_frames_are_fused_into_an_octree_of_ones_own(self):
+        octree = rr.StaticMap(0.03)
+        source = rr.open_source("sim:table?frames=10&width=160&noise=0")
+        for frame in source:
+            self.assertEqual(octree.fuse(frame), "fused")
+        mesh = octree.surface(deviation_m=0.002)
+        self.assertGreater(len(mesh.triangles), 500)
+        depth = frame.depth_m[60, 80]
+        x, y = (np.array([80, 60]) - [frame.depth_camera.cx_px, frame.depth_camera.cy_px]) / [
+            frame.depth_camera.fx_px, frame.depth_camera.fy_px]
+        ray = np.array([x, y, 1.0, 0.0])
+        eye = frame.T_world_camera[:3, 3]
+        towards = (frame.T_world_camera @ ray)[:3]
+        points = np.ascontiguousarray([eye + 0.5 * depth * towards, eye + depth * towards])
+        self.assertEqual(octree.occupancy(points).tolist(), [int(rr.Occupancy.FREE), int(rr.Occupancy.OCCUPIED)])
+
+    def test_the_octree_is_that_of_a_prescan_with_recorded_poses(self):
+        octree = rr.StaticMap(0.03)
+        for frame in rr.open_source(support.SCAN):
+            octree.fuse(frame)
+        folder = support.temporary_folder()
+        octree.write(folder / "octree.bin")
+        self.assertEqual((folder / "octree.bin").read_bytes(), (support.table_folder() / "octree.bin").read_bytes())
+        again = rr.StaticMap.read(folder / "octree.bin")
+        np.testing.assert_array_equal(again.leaves()["log_odds"], octree.leaves()["log_odds"])
+
+    def test_what_cannot_be_fused_is_said(self):
+        octree = rr.StaticMap(0.03)
+        nothing = rr.Frame(np.zeros((120, 160), np.float32), support.camera())
+        self.assertNotEqual(octree.fuse(nothing, np.eye(4)), "fused")
+        with self.assertRaisesRegex(ValueError, "T_world_camera: is missing"):
+            octree.fuse(nothing)
+        with self.assertRaisesRegex(rr.Error, "does not change"):
+            support.table_map().octree.fuse(nothing, np.eye(4))
+        with self.assertRaises(rr.Error):
+            rr.StaticMap(0.0)
+        with self.assertRaisesRegex(ValueError, "points_world: has the shape \\(3,\\)"):
+            octree.occupancy(np.zeros(3))
+        with self.assertRaisesRegex(rr.Error, "the extension must be"):
+            octree.write("octree.xyz")
+
+
+if __name__ == "__main__":
+    unittest.main()
