@@ -27,3 +27,8 @@ settings roomradar.Error. Long calls release the interpreter's lock.
 """
 from ._roomradar import *  # noqa: F401,F403
 from ._roomradar import __version__  # noqa: F401
+
+for _item in list(globals().values()):
+    if isinstance(_item, type):
+        _item.__module__ = __name__  # the name by which it is imported
+del _item

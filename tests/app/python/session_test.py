@@ -215,7 +215,7 @@ class Threads(unittest.TestCase):
 class Location(unittest.TestCase):
     def test_the_camera_is_found_and_followed(self):
         locator = rr.Locator(support.table_map())
-        for frame in rr.open_source("sim:table?frames=10&width=160&path=view&seed=2"):
+        for frame in rr.open_source(support.SCAN, frames=(20, 29)):
             found = locator.locate(frame)
             self.assertTrue(found, found.status)
             self.assertLess(np.linalg.norm(found.T_world_camera[:3, 3] - frame.T_world_camera[:3, 3]), 0.03)
