@@ -81,6 +81,19 @@ std::vector<Eigen::AlignedBox3d> component_boxes(const Mesh& mesh, std::size_t m
   return boxes;
 }
 
+std::vector<std::uint32_t> runs_of(const MaskImage& mask) {
+  std::vector<std::uint32_t> runs;
+  const auto begin = mask.pixels.begin(), end = mask.pixels.end();
+  const auto is_set = [](std::uint8_t pixel) { return pixel != 0; };
+  for (auto first = std::find_if(begin, end, is_set); first != end;) {
+    const auto last = std::find_if_not(first, end, is_set);
+    runs.push_back(static_cast<std::uint32_t>(first - begin));
+    runs.push_back(static_cast<std::uint32_t>(last - first));
+    first = std::find_if(last, end, is_set);
+  }
+  return runs;
+}
+
 FrameStream::FrameStream(const std::filesystem::path& path, const std::string& source, const std::string& map)
     : lines_(path) {
   lines_.offer(text_of({{"type", "start"},
@@ -105,6 +118,13 @@ void FrameStream::write(std::int64_t run_frame, double time_s, const Frame& fram
     for (const Eigen::AlignedBox3d& box :
          component_boxes(session.scene().dynamic_world().seen_world, kLeastTriangles))
       moved.push_back({{"least_m", to_json(box.min())}, {"greatest_m", to_json(box.max())}});
+  nlohmann::json mask;
+  if (is_located && session.config().scene.surfaces == SurfacePolicy::kMap) {
+    const MaskImage& dynamic_mask = session.scene().foreground().dynamic_mask;
+    mask = {{"width_px", dynamic_mask.width},
+            {"height_px", dynamic_mask.height},
+            {"runs", runs_of(dynamic_mask)}};
+  }
   nlohmann::json notices = nlohmann::json::array();
   for (const ObjectNotice& notice : result.notices) notices.push_back(notice.name + notice.text);
   nlohmann::json line = {{"type", "frame"},
@@ -116,6 +136,7 @@ void FrameStream::write(std::int64_t run_frame, double time_s, const Frame& fram
                          {"camera", is_located ? pose(result.T_world_camera) : nlohmann::json(nullptr)},
                          {"objects", objects},
                          {"moved", moved},
+                         {"moved_mask", mask},
                          {"notices", notices},
                          {"stages_ms", stages},
                          {"lines_dropped", lines_.dropped()}};

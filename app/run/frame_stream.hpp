@@ -12,6 +12,7 @@
 
 #include "app/run/line_stream.hpp"
 #include "app/session/session.hpp"
+#include "mapping/types/image.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
@@ -22,6 +23,9 @@ inline constexpr int kFrameStreamVersion = 1;
 /// Returns the bounding boxes, in the world, of the mesh's connected components (by shared vertices), the
 /// largest first by triangles. Components with fewer triangles than `min_triangles` have none.
 std::vector<Eigen::AlignedBox3d> component_boxes(const Mesh& mesh, std::size_t min_triangles);
+
+/// Returns the runs of non-zero pixels, row by row from the top left, as pairs of first index and length.
+std::vector<std::uint32_t> runs_of(const MaskImage& mask);
 
 /// Writes the stream. A slow reader never delays the run, see LineStream.
 class FrameStream {

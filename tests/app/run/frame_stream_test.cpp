@@ -32,6 +32,16 @@ TEST(ComponentBoxes, BoxesAreInTheWorldLargestFirstWithoutSpecks) {
   EXPECT_EQ(boxes[1].max(), Eigen::Vector3d(112, 201, 300));
 }
 
+TEST(RunsOf, RunsGoOnAcrossRowsAndCoverAllSetPixels) {
+  MaskImage mask(4, 3);
+  EXPECT_TRUE(runs_of(mask).empty());
+  EXPECT_TRUE(runs_of({}).empty());
+  for (const std::size_t pixel : {0U, 3U, 4U, 5U, 11U}) mask.pixels[pixel] = 255;
+  EXPECT_EQ(runs_of(mask), (std::vector<std::uint32_t>{0, 1, 3, 3, 11, 1}));
+  mask.resize(4, 3, 255);
+  EXPECT_EQ(runs_of(mask), (std::vector<std::uint32_t>{0, 12}));
+}
+
 }  // namespace
 }  // namespace frame_stream_test
 }  // namespace roomradar::test
