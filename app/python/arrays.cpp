@@ -247,4 +247,11 @@ py::array_t<double> array_of(const Eigen::AlignedBox3d& box) {
   return array;
 }
 
+py::str text_of(const std::string& text) {
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 }  // namespace roomradar::python

@@ -1,4 +1,4 @@
-// arrays.hpp: NumPy arrays as checked arguments, and images and meshes as arrays that share memory.
+// arrays.hpp: NumPy arrays as checked arguments, images and meshes as arrays that share memory, and texts.
 #pragma once
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -67,6 +67,10 @@ py::array_t<double> array_of(const Eigen::Vector3d& vector);
 py::array_t<double> array_of(const Eigen::Matrix3d& matrix);
 /// Returns the lower and upper corner of a box, (2, 3).
 py::array_t<double> array_of(const Eigen::AlignedBox3d& box);
+
+/// Returns a text of C++, which may hold the bytes of any path, as Python has paths: bytes that are not UTF-8
+/// become surrogates.
+py::str text_of(const std::string& text);
 
 /// Returns None or a new array.
 template <typename Value>

@@ -28,7 +28,9 @@ std::shared_ptr<Octree> octree_of(const MapPointer& map) {
 
 namespace {
 
-py::object dict_of(const MapInfo& info) { return py::module_::import("json").attr("loads")(to_json(info)); }
+py::object dict_of(const MapInfo& info) {
+  return py::module_::import("json").attr("loads")(text_of(to_json(info)));
+}
 
 MapPointer open_map(const std::filesystem::path& folder) {
   return without_gil([&] { return std::make_shared<Map>(load_map(folder), folder.string()); });
@@ -158,7 +160,8 @@ void bind_maps(py::module_& module) {
   py::class_<Map, MapPointer>(module, "Map",
                               "A prescanned room: octree, mesh, keyframes, trajectory. Does not change.")
       .def_property_readonly(
-          "folder", [](const Map& map) { return map.folder; }, "Folder that it was loaded from; empty: none.")
+          "folder", [](const Map& map) { return text_of(map.folder); },
+          "Folder that it was loaded from; empty: none.")
       .def_property_readonly(
           "info", [](const Map& map) { return dict_of(map.saved.info); }, "Content of map.json as a dict.")
       .def_property_readonly(
@@ -196,8 +199,8 @@ void bind_maps(py::module_& module) {
                              })
       .def("save", &save, py::arg("folder"), "Saves the map atomically. The folder is new or holds a map.")
       .def("__repr__", [](const Map& map) {
-        return "<roomradar.Map " + (map.folder.empty() ? "in memory" : map.folder) + ": " +
-               std::to_string(map.saved.mesh.triangles.size()) + " triangles>";
+        return text_of("<roomradar.Map " + (map.folder.empty() ? "in memory" : map.folder) + ": " +
+                       std::to_string(map.saved.mesh.triangles.size()) + " triangles>");
       });
 
   module.def("open_map", &open_map, py::arg("folder"), "Reads a map, and verifies its files.");
@@ -206,7 +209,12 @@ void bind_maps(py::module_& module) {
       py::arg("folder"), "Reads only map.json, as a dict.");
   module.def(
       "verify_map",
-      [](const std::filesystem::path& folder) { return without_gil([&] { return verify_map(folder); }); },
+      [](const std::filesystem::path& folder) {
+        py::list faults;
+        for (const std::string& fault : without_gil([&] { return verify_map(folder); }))
+          faults.append(text_of(fault));
+        return faults;
+      },
       py::arg("folder"), "Returns a sentence per fault of a map's files; empty: the map is sound.");
   module.def("export_map", &export_to, py::arg("folder"), py::arg("path"),
              "Writes a map as .glb .obj .ply .stl (mesh), .ot .bt (octree) or .html (page).");

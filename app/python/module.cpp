@@ -1,6 +1,11 @@
 // module.cpp: exceptions, and all subjects in order.
 #include "app/python/module.hpp"
 
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "app/python/arrays.hpp"
 #include "app/python/frames.hpp"
 #include "app/python/locator.hpp"
 #include "app/python/maps.hpp"
@@ -18,13 +23,42 @@
 
 namespace roomradar::python {
 
-namespace py = pybind11;
+namespace {
+
+/// Exception types, which live as long as the process.
+PyObject* error_type = nullptr;
+PyObject* place_refused_type = nullptr;
+
+void set_error(PyObject* type, const std::string& sentence) {
+  PyErr_SetObject(type, text_of(sentence).ptr());
+}
+
+void bind_errors(py::module_& module) {
+  error_type = PyErr_NewExceptionWithDoc(
+      "roomradar.Error",
+      "A failure that a user can repair. The sentence says what failed, where, and what to do.",
+      PyExc_RuntimeError, nullptr);
+  place_refused_type = PyErr_NewExceptionWithDoc(
+      "roomradar.PlaceRefused", "An object cannot be placed where it was to be; its pose is unchanged.",
+      error_type, nullptr);
+  module.attr("Error") = py::handle(error_type);
+  module.attr("PlaceRefused") = py::handle(place_refused_type);
+  py::register_exception_translator([](std::exception_ptr fault) {
+    try {
+      std::rethrow_exception(std::move(fault));
+    } catch (const PlaceRefused& refused) {
+      set_error(place_refused_type, refused.what());
+    } catch (const Error& error) {
+      set_error(error_type, error.what());
+    }
+  });
+}
+
+}  // namespace
 
 void bind_module(py::module_& module) {
   module.attr("__version__") = kVersion;
-  const auto& error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
-  error.doc() = "A failure that a user can repair. The sentence says what failed, where, and what to do.";
-  py::register_exception<PlaceRefused>(module, "PlaceRefused", error);
+  bind_errors(module);
   bind_frames(module);
   bind_sources(module);
   bind_meshes(module);

@@ -27,7 +27,7 @@ py::dict foreground_of(const FrameResult& result) {
 
 py::list sentences_of(const FrameResult& result) {
   py::list sentences;
-  for (const ObjectNotice& notice : result.notices) sentences.append(notice.name + notice.text);
+  for (const ObjectNotice& notice : result.notices) sentences.append(text_of(notice.name + notice.text));
   return sentences;
 }
 

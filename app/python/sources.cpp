@@ -152,12 +152,14 @@ void bind_sources(py::module_& module) {
       .def("seek", &Source::seek, py::arg("index"),
            "Makes frame `index`, from 0, the next one. Returns False if the source reads in order only.")
       .def("close", &Source::close, "Closes files and devices.")
-      .def_property_readonly("name", [](const Source& source) { return source.opened().name(); })
+      .def_property_readonly("name", [](const Source& source) { return text_of(source.opened().name()); })
       .def_property_readonly(
           "frame_count", [](const Source& source) { return source.opened().frame_count(); },
           "Number of frames, unreadable ones included; None if unknown.")
       .def_property_readonly("skipped", &Source::skipped, "Number of unreadable frames so far.")
-      .def_property_readonly("last_fault", &Source::last_fault, "Why the last skipped frame was unreadable.")
+      .def_property_readonly(
+          "last_fault", [](const Source& source) { return text_of(source.last_fault()); },
+          "Why the last skipped frame was unreadable.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](Source& source, const py::args&) { source.close(); });
 
