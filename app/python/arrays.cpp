@@ -247,6 +247,11 @@ py::array_t<double> array_of(const Eigen::AlignedBox3d& box) {
   return array;
 }
 
+const std::string& required_text(const std::string& text, const char* name) {
+  if (text.find('\0') != std::string::npos) throw py::value_error(std::string(name) + ": holds a zero byte");
+  return text;
+}
+
 py::str text_of(const std::string& text) {
   PyObject* const decoded =
       PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape");

@@ -72,6 +72,9 @@ py::array_t<double> array_of(const Eigen::AlignedBox3d& box);
 /// become surrogates.
 py::str text_of(const std::string& text);
 
+/// Returns the text. Throws ValueError if it holds a zero byte, at which messages would end.
+const std::string& required_text(const std::string& text, const char* name);
+
 /// Returns None or a new array.
 template <typename Value>
 py::object array_or_none(const std::optional<Value>& value) {

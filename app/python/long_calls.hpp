@@ -47,6 +47,21 @@ decltype(auto) without_gil(Work&& work) {
   return std::forward<Work>(work)();
 }
 
+/// Return a member function as a function of an object. Python may call a method with None in place of its
+/// object; pybind11 passes a null pointer to members, but rejects None for references.
+template <typename Class, typename Result, typename... Arguments>
+auto method(Result (Class::*member)(Arguments...)) {
+  return [member](Class& self, Arguments... arguments) -> Result {
+    return (self.*member)(std::forward<Arguments>(arguments)...);
+  };
+}
+template <typename Class, typename Result, typename... Arguments>
+auto method(Result (Class::*member)(Arguments...) const) {
+  return [member](const Class& self, Arguments... arguments) -> Result {
+    return (self.*member)(std::forward<Arguments>(arguments)...);
+  };
+}
+
 /// Throws the exception of a pending signal, such as KeyboardInterrupt. Call with the interpreter's lock.
 void throw_if_interrupted();
 

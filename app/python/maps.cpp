@@ -20,10 +20,10 @@ namespace roomradar::python {
 
 using MapPointer = std::shared_ptr<Map>;
 
-std::shared_ptr<Octree> octree_of(const MapPointer& map) {
+std::shared_ptr<Octree> octree_of(Map& map) {
   const StaticMap& octree =
-      without_gil([&]() -> const StaticMap& { return *std::as_const(map->saved).octree; });
-  return std::make_shared<Octree>(std::shared_ptr<const StaticMap>(map, &octree));
+      without_gil([&]() -> const StaticMap& { return *std::as_const(map.saved).octree; });
+  return std::make_shared<Octree>(std::shared_ptr<const StaticMap>(map.shared_from_this(), &octree));
 }
 
 namespace {
@@ -54,10 +54,10 @@ py::object trajectory_of(const Map& map) {
 }
 
 /// Returns the keyframes, each of which keeps the map alive.
-std::vector<std::shared_ptr<const MapKeyframe>> keyframes_of(const MapPointer& map) {
+std::vector<std::shared_ptr<const MapKeyframe>> keyframes_of(Map& map) {
   std::vector<std::shared_ptr<const MapKeyframe>> keyframes;
-  for (const MapKeyframe& keyframe : map->saved.keyframe_database.keyframes)
-    keyframes.emplace_back(map, &keyframe);
+  for (const MapKeyframe& keyframe : map.saved.keyframe_database.keyframes)
+    keyframes.emplace_back(map.shared_from_this(), &keyframe);
   return keyframes;
 }
 
@@ -86,15 +86,15 @@ Registration registered(const Map& a, const Map& b) {
   return found;
 }
 
-MapPointer merge(const MapPointer& a, const MapPointer& b) {
-  const bool same = a == b || (!octree_checksum(a->saved.info).empty() &&
-                               octree_checksum(a->saved.info) == octree_checksum(b->saved.info));
+MapPointer merge(const Map& a, const Map& b) {
+  const bool same = &a == &b || (!octree_checksum(a.saved.info).empty() &&
+                                 octree_checksum(a.saved.info) == octree_checksum(b.saved.info));
   if (same) throw Error("the maps are the same; merged with itself, one would count every observation twice");
-  if (a->folder.empty()) throw Error("map a is not in a folder; save it first, and open it again");
+  if (a.folder.empty()) throw Error("map a is not in a folder; save it first, and open it again");
   return without_gil([&] {
-    const Registration found = registered(*a, *b);
+    const Registration found = registered(a, b);
     // The merged map takes over a's data, so it is read again.
-    return std::make_shared<Map>(merge_maps(load_map(a->folder), b->saved, found.T_a_b), "");
+    return std::make_shared<Map>(merge_maps(load_map(a.folder), b.saved, found.T_a_b), "");
   });
 }
 
@@ -165,17 +165,17 @@ void bind_maps(py::module_& module) {
       .def_property_readonly(
           "info", [](const Map& map) { return dict_of(map.saved.info); }, "Content of map.json as a dict.")
       .def_property_readonly(
-          "mesh", [](const MapPointer& map) { return std::shared_ptr<Mesh>(map, &map->saved.mesh); },
+          "mesh", [](Map& map) { return std::shared_ptr<Mesh>(map.shared_from_this(), &map.saved.mesh); },
           "The surface in the world. Shares the map's memory.")
       .def_property_readonly("octree", &octree_of, "The octree, read from disk at its first use.")
       .def_property_readonly(
           "resolution_m",
-          [](const MapPointer& map) {
+          [](Map& map) {
             return octree_of(map)->read([](const StaticMap& octree) { return octree.resolution_m(); });
           })
       .def(
           "occupancy",
-          [](const MapPointer& map, const py::object& points_world) {
+          [](Map& map, const py::object& points_world) {
             return occupancy_of(*octree_of(map), points_world);
           },
           py::arg("points_world"),

@@ -11,7 +11,7 @@
 namespace roomradar::python {
 
 /// A map in memory. It does not change.
-struct Map {
+struct Map : std::enable_shared_from_this<Map> {
   SavedMap saved;
   std::string folder;  ///< empty: neither loaded nor saved
 
@@ -19,7 +19,7 @@ struct Map {
 };
 
 /// Returns the map's octree, which keeps the map alive. Reads it from disk at its first use.
-std::shared_ptr<Octree> octree_of(const std::shared_ptr<Map>& map);
+std::shared_ptr<Octree> octree_of(Map& map);
 
 /// Call after bind_octree() and bind_meshes().
 void bind_maps(pybind11::module_& module);

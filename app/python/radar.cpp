@@ -57,7 +57,7 @@ std::unique_ptr<Radar> make_radar(const std::string& mode, int resolution_px) {
   if (mode == to_string(RadarMode::kSampled))
     config.mode = RadarMode::kSampled;
   else if (mode != to_string(RadarMode::kExact))
-    throw py::value_error("mode: is \"" + mode + "\"; must be exact or sampled");
+    throw py::value_error("mode: is \"" + required_text(mode, "mode") + "\"; must be exact or sampled");
   require_valid(config);
   return std::make_unique<Radar>(config);
 }
@@ -247,9 +247,9 @@ void bind_radar(py::module_& module) {
   py::class_<TriangleTree, std::shared_ptr<TriangleTree>>(
       module, "TriangleTree", "A rigid mesh with a bounding volume hierarchy, for radar queries.")
       .def(py::init(&make_tree), py::arg("mesh"))
-      .def_property_readonly("triangle_count", &TriangleTree::triangle_count)
-      .def_property_readonly("dropped_triangles", &TriangleTree::dropped_triangles)
-      .def_property_readonly("is_closed", &TriangleTree::is_closed,
+      .def_property_readonly("triangle_count", method(&TriangleTree::triangle_count))
+      .def_property_readonly("dropped_triangles", method(&TriangleTree::dropped_triangles))
+      .def_property_readonly("is_closed", method(&TriangleTree::is_closed),
                              "True if the mesh encloses a volume, whose inside then counts as solid.");
 
   py::class_<Scene, std::shared_ptr<Scene>>(module, "RadarScene", "The surfaces of radar queries.")
@@ -278,7 +278,7 @@ void bind_radar(py::module_& module) {
             scene.set_pose(index, pose_of(T_world_mesh, "T_world_mesh"));
           },
           py::arg("index"), py::arg("T_world_mesh"))
-      .def("__len__", &Scene::size);
+      .def("__len__", method(&Scene::size));
 
   py::class_<Radar>(
       module, "CyberRadar",

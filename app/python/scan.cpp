@@ -110,13 +110,13 @@ Scan scan(FrameSource& source, PrescanConfig config, const Map* extend, const py
 PoseOrigin origin_of(const std::string& poses) {
   for (const PoseOrigin origin : {PoseOrigin::kTracked, PoseOrigin::kRecorded})
     if (to_string(origin) == poses) return origin;
-  throw py::value_error("poses: is \"" + poses + "\"; must be tracked or recorded");
+  throw py::value_error("poses: is \"" + required_text(poses, "poses") + "\"; must be tracked or recorded");
 }
 
 std::optional<GivenUp> up_of(const py::object& up) {
   if (up.is_none()) return std::nullopt;
   if (py::isinstance<py::str>(up)) {
-    if (up.cast<std::string>() != "camera") throw py::value_error("up: must be a vector, \"camera\" or None");
+    if (!up.equal(py::str("camera"))) throw py::value_error("up: must be a vector, \"camera\" or None");
     return GivenUp{};
   }
   const Eigen::Vector3d up_world = vector_of(up, "up");

@@ -28,15 +28,15 @@ namespace {
 using RunnerPointer = std::shared_ptr<SessionRunner>;
 
 template <typename Work>
-auto on(const RunnerPointer& runner, const Work& work) {
-  return without_gil([&] { return runner->run(work); });
+auto on(SessionRunner& runner, const Work& work) {
+  return without_gil([&] { return runner.run(work); });
 }
 
 /// Returns an array that shares memory with an image of the session, and keeps the session alive; None if the
 /// image is empty.
 template <typename Choose>
-py::object view_of_image(const RunnerPointer& runner, const Choose& choose) {
-  auto kept = std::make_unique<RunnerPointer>(runner);
+py::object view_of_image(SessionRunner& runner, const Choose& choose) {
+  auto kept = std::make_unique<RunnerPointer>(runner.shared_from_this());
   const py::capsule owner(kept.get(), [](void* held) {
     const std::unique_ptr<RunnerPointer> released(static_cast<RunnerPointer*>(held));
     --(*released)->views;
@@ -47,7 +47,7 @@ py::object view_of_image(const RunnerPointer& runner, const Choose& choose) {
 }
 
 /// Copies the picture into an array of the caller.
-void read_picture(const RunnerPointer& runner, const py::object& out) {
+void read_picture(SessionRunner& runner, const py::object& out) {
   const auto [height, width] = on(
       runner, [](Session& session) { return std::pair(session.picture().height, session.picture().width); });
   const std::string shape = "(" + std::to_string(height) + ", " + std::to_string(width) + ", 3)";
@@ -65,12 +65,13 @@ SurfacePolicy policy_of(const std::string& name) {
   for (const SurfacePolicy policy :
        {SurfacePolicy::kHoles, SurfacePolicy::kSkirt, SurfacePolicy::kBorder, SurfacePolicy::kMap})
     if (to_string(policy) == name) return policy;
-  throw py::value_error("surfaces: is \"" + name + "\"; must be map, border, skirt or holes");
+  throw py::value_error("surfaces: is \"" + required_text(name, "surfaces") +
+                        "\"; must be map, border, skirt or holes");
 }
 
 bool is_solid(const std::string& unknown) {
   if (unknown != "solid" && unknown != "free")
-    throw py::value_error("unknown: is \"" + unknown + "\"; must be solid or free");
+    throw py::value_error("unknown: is \"" + required_text(unknown, "unknown") + "\"; must be solid or free");
   return unknown == "solid";
 }
 
@@ -79,7 +80,7 @@ RunnerPointer make_session(std::shared_ptr<Map> map, const std::string& poses, c
                            const QualityValues& quality) {
   SessionSettings settings;
   if (poses != "tracked" && poses != "recorded")
-    throw py::value_error("poses: is \"" + poses + "\"; must be tracked or recorded");
+    throw py::value_error("poses: is \"" + required_text(poses, "poses") + "\"; must be tracked or recorded");
   if (poses == "recorded") {
     settings.poses = PoseOrigin::kRecorded;
     if (!knows_recorded_world(map->saved.info))
@@ -101,37 +102,38 @@ BodyMaterial material_of(std::optional<double> mass_kg, std::optional<double> de
   return material;
 }
 
-void add(const RunnerPointer& runner, const std::string& name,
+void add(SessionRunner& runner, const std::string& name,
          const std::variant<std::filesystem::path, std::shared_ptr<Mesh>>& model,
          std::optional<double> size_m, const std::optional<std::string>& up, std::optional<double> mass_kg,
          std::optional<double> density_kg_m3, std::optional<double> friction,
          std::optional<double> restitution) {
+  static_cast<void>(required_text(name, "name"));
   const BodyMaterial material = material_of(mass_kg, density_kg_m3, friction, restitution);
   if (const auto* mesh = std::get_if<std::shared_ptr<Mesh>>(&model)) {
     if (*mesh == nullptr) throw py::type_error("model: must be a Mesh or the name of a model");
     if (size_m || up) throw py::value_error("size_m and up: are for files; a Mesh is taken as it is");
     without_gil([&] {
       ObjectParts parts = object_parts(name, **mesh);
-      runner->run([&](Session& session) { session.add_object(name, std::move(parts), material); });
+      runner.run([&](Session& session) { session.add_object(name, std::move(parts), material); });
     });
     return;
   }
   ObjectSource source{.mesh = std::get<std::filesystem::path>(model).string(), .size_m = size_m};
   if (size_m && !(*size_m > 0.0 && std::isfinite(*size_m))) throw py::value_error("size_m: must be > 0");
   if (up) {
-    source.up = up_axis_of(*up);
+    source.up = up_axis_of(required_text(*up, "up"));
     if (!source.up) throw py::value_error("up: is \"" + *up + "\"; must be " + std::string(kUpAxisWords));
   }
   without_gil([&] {
     ObjectParts parts = object_parts(name, object_model(source));
-    runner->run([&](Session& session) {
+    runner.run([&](Session& session) {
       require_sensible_size(parts.source, source, {session.room_extent_m(), "size_m="});
       session.add_object(name, std::move(parts), material);
     });
   });
 }
 
-void place(const RunnerPointer& runner, const std::string& name, const py::object& position_world,
+void place(SessionRunner& runner, const std::string& name, const py::object& position_world,
            const py::object& R_world_object, const py::object& velocity_world_mps,
            const py::object& angular_velocity_world_rad_s) {
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
@@ -142,7 +144,7 @@ void place(const RunnerPointer& runner, const std::string& name, const py::objec
   on(runner, [&](Session& session) { session.place(name, state); });
 }
 
-void drop(const RunnerPointer& runner, const std::string& name, const py::object& position_world,
+void drop(SessionRunner& runner, const std::string& name, const py::object& position_world,
           const py::object& near_world, double height_m, const py::object& R_world_object) {
   const DropRequest request{name, optional_vector_of(position_world, "position_world"),
                             optional_vector_of(near_world, "near_world"), finite(height_m, "height_m"),
@@ -150,7 +152,7 @@ void drop(const RunnerPointer& runner, const std::string& name, const py::object
   on(runner, [&](Session& session) { session.drop(request); });
 }
 
-void set_material(const RunnerPointer& runner, const std::string& name, std::optional<double> mass_kg,
+void set_material(SessionRunner& runner, const std::string& name, std::optional<double> mass_kg,
                   std::optional<double> density_kg_m3, std::optional<double> friction,
                   std::optional<double> restitution) {
   const BodyMaterial material = material_of(mass_kg, density_kg_m3, friction, restitution);
@@ -160,13 +162,13 @@ void set_material(const RunnerPointer& runner, const std::string& name, std::opt
 /// Binds a call of the session with a name and a vector.
 template <void (Session::*call)(const std::string&, const Eigen::Vector3d&)>
 auto named_vector(const char* argument) {
-  return [argument](const RunnerPointer& runner, const std::string& name, const py::object& value) {
+  return [argument](SessionRunner& runner, const std::string& name, const py::object& value) {
     const Eigen::Vector3d vector = vector_of(value, argument);
     on(runner, [&](Session& session) { (session.*call)(name, vector); });
   };
 }
 
-std::vector<ObjectSnapshot> objects_of(const RunnerPointer& runner) {
+std::vector<ObjectSnapshot> objects_of(SessionRunner& runner) {
   return on(runner, [](Session& session) {
     std::vector<ObjectSnapshot> objects;
     for (const auto& object : session.objects()) objects.push_back(snapshot_of(*object));
@@ -174,21 +176,20 @@ std::vector<ObjectSnapshot> objects_of(const RunnerPointer& runner) {
   });
 }
 
-Contact query_scene(const RunnerPointer& runner, const std::shared_ptr<TriangleTree>& object,
-                    const py::object& T_world_object, const py::object& direction_world, double distance_m,
-                    double margin_m) {
+Contact query_scene(SessionRunner& runner, const TriangleTree& object, const py::object& T_world_object,
+                    const py::object& direction_world, double distance_m, double margin_m) {
   const RadarQuery of{{nullptr, pose_of(T_world_object, "T_world_object")},
                       vector_of(direction_world, "direction_world"),
                       distance_m,
                       margin_m};
-  const Contact contact = without_gil([&] { return runner->query(*object, of); });
+  const Contact contact = without_gil([&] { return runner.query(object, of); });
   if (contact.status == ContactStatus::kInvalidInput)
     throw py::value_error(
         "the radar rejects the query: direction_world must not be zero, distance_m must be > 0");
   return contact;
 }
 
-void set_unknown(const RunnerPointer& runner, const std::string& unknown) {
+void set_unknown(SessionRunner& runner, const std::string& unknown) {
   const bool solid = is_solid(unknown);
   on(runner, [&](Session& session) {
     StageTimes unreported;
@@ -217,7 +218,7 @@ void bind_object_calls(py::class_<SessionRunner, RunnerPointer>& bound) {
            "if that is not enough. R_world_object (3, 3); None: keeps its orientation.")
       .def(
           "throw",
-          [](const RunnerPointer& runner, const std::string& name, const py::object& position_world,
+          [](SessionRunner& runner, const std::string& name, const py::object& position_world,
              const py::object& velocity_world_mps, const py::object& R_world_object,
              const py::object& angular_velocity_world_rad_s) {
             place(runner, name, position_world, R_world_object, velocity_world_mps,
@@ -245,7 +246,7 @@ void bind_object_calls(py::class_<SessionRunner, RunnerPointer>& bound) {
            py::arg("restitution") = py::none(), "Changes the values that are given.")
       .def(
           "remove",
-          [](const RunnerPointer& runner, const std::string& name) {
+          [](SessionRunner& runner, const std::string& name) {
             on(runner, [&](Session& session) { session.remove(name); });
           },
           py::arg("name"), "Takes the object out of the room; its name stays in use.")
@@ -272,8 +273,8 @@ void bind_session(py::module_& module) {
            "--help`")
       .def(
           "step",
-          [](const RunnerPointer& runner, const Frame& frame) {
-            return without_gil([&] { return runner->step(frame); });
+          [](SessionRunner& runner, const Frame& frame) {
+            return without_gil([&] { return runner.step(frame); });
           },
           py::arg("frame"),
           "Processes one frame: locates the camera, finds what moved, moves the objects, composes the "
@@ -281,7 +282,7 @@ void bind_session(py::module_& module) {
           "Overwrites the arrays of picture, moved_mask and expected_depth_m.")
       .def_property_readonly(
           "picture",
-          [](const RunnerPointer& runner) {
+          [](SessionRunner& runner) {
             return view_of_image(runner, [](Session& s) -> const ColourImage& { return s.picture(); });
           },
           "The composed picture, (H, W, 3) uint8, or None. A view that the next step() overwrites; copy it "
@@ -289,7 +290,7 @@ void bind_session(py::module_& module) {
       .def("read_picture", &read_picture, py::arg("out"), "Copies the picture into an array (H, W, 3) uint8.")
       .def_property_readonly(
           "moved_mask",
-          [](const RunnerPointer& runner) {
+          [](SessionRunner& runner) {
             return view_of_image(
                 runner, [](Session& s) -> const MaskImage& { return s.scene().foreground().dynamic_mask; });
           },
@@ -297,14 +298,14 @@ void bind_session(py::module_& module) {
           "picture.")
       .def_property_readonly(
           "expected_depth_m",
-          [](const RunnerPointer& runner) {
+          [](SessionRunner& runner) {
             return view_of_image(
                 runner, [](Session& s) -> const DepthImage& { return s.scene().expected().depth_m; });
           },
           "(H, W) float32, m: the map's surface from the camera's pose, or None. A view, as picture.")
       .def(
           "moved_mesh",
-          [](const RunnerPointer& runner) {
+          [](SessionRunner& runner) {
             return on(runner, [](Session& s) {
               return std::make_shared<Mesh>(s.scene().dynamic_world().seen_world);
             });
@@ -316,38 +317,36 @@ void bind_session(py::module_& module) {
            "session's objects.")
       .def(
           "set_quality",
-          [](const RunnerPointer& runner, const QualityValues& quality) {
-            without_gil([&] { runner->set_quality(quality); });
+          [](SessionRunner& runner, const QualityValues& quality) {
+            without_gil([&] { runner.set_quality(quality); });
           },
           py::arg("quality"), "Changes the given fields from the next frame on.")
       .def("set_unknown", &set_unknown, py::arg("unknown"), "solid or free, see Session().")
       .def(
           "set_surfaces",
-          [](const RunnerPointer& runner, const std::string& surfaces) {
+          [](SessionRunner& runner, const std::string& surfaces) {
             const SurfacePolicy policy = policy_of(surfaces);
             on(runner, [&](Session& s) { s.set_surfaces(policy); });
           },
           py::arg("surfaces"), "map, border, skirt or holes, see Session().")
       .def(
           "fingerprint",
-          [](const RunnerPointer& runner) {
-            const FrameFingerprint of = without_gil([&] { return runner->fingerprint(); });
+          [](SessionRunner& runner) {
+            const FrameFingerprint of = without_gil([&] { return runner.fingerprint(); });
             return py::make_tuple(of.objects, of.picture);
           },
           "Returns hashes of the objects' poses and of the picture, as in results of `run --record-session`.")
       .def_property_readonly(
-          "stage_ms",
-          [](const RunnerPointer& runner) { return without_gil([&] { return runner->newest_ms(); }); },
+          "stage_ms", [](SessionRunner& runner) { return without_gil([&] { return runner.newest_ms(); }); },
           "Wall-clock time of each stage of the last frame, ms.")
       .def_property_readonly(
           "renderer",
-          [](const RunnerPointer& runner) { return on(runner, [](Session& s) { return s.renderer(); }); })
+          [](SessionRunner& runner) { return on(runner, [](Session& s) { return s.renderer(); }); })
       .def(
-          "close", [](const RunnerPointer& runner) { without_gil([&] { runner->close(); }); },
+          "close", [](SessionRunner& runner) { without_gil([&] { runner.close(); }); },
           "Frees the session. Raises Error while arrays of its images are in use.")
       .def("__enter__", [](const py::object& self) { return self; })
-      .def("__exit__",
-           [](const RunnerPointer& runner, const py::args&) { without_gil([&] { runner->leave(); }); });
+      .def("__exit__", [](SessionRunner& runner, const py::args&) { without_gil([&] { runner.leave(); }); });
 }
 
 }  // namespace roomradar::python

@@ -35,7 +35,7 @@ struct SessionSettings {
 
 /// A session on a thread of its own. Call all members without the interpreter's lock; callers on several
 /// threads wait for each other. Members throw Error once the session is closed.
-class SessionRunner {
+class SessionRunner : public std::enable_shared_from_this<SessionRunner> {
  public:
   SessionRunner(std::shared_ptr<Map> map, const SessionSettings& settings);
   ~SessionRunner();

@@ -22,7 +22,7 @@ namespace {
 class Simulator final : public Source {
  public:
   explicit Simulator(const std::string& spec)
-      : Simulator(std::make_unique<SimulatedSource>(parse_sim_spec(spec))) {}
+      : Simulator(std::make_unique<SimulatedSource>(parse_sim_spec(required_text(spec, "spec")))) {}
 
   std::shared_ptr<SimTruth> truth() {
     const UseFlag::Lock lock(use(), "the source");
@@ -57,14 +57,15 @@ RecordingFormat format_of(const std::string& name) {
   for (const RecordingFormat format : {RecordingFormat::kTum, RecordingFormat::kSevenScenes,
                                        RecordingFormat::kFakenect, RecordingFormat::kRosBag})
     if (to_string(format) == name) return format;
-  throw py::value_error("format: is \"" + name + "\"; must be tum, 7scenes, fakenect or rosbag");
+  throw py::value_error("format: is \"" + required_text(name, "format") +
+                        "\"; must be tum, 7scenes, fakenect or rosbag");
 }
 
 void simulate_into(const std::filesystem::path& folder, const std::string& spec, const std::string& format,
                    const py::object& progress) {
   require_callback(progress, "progress");
   const RecordingFormat its_format = format_of(format);
-  const SimOptions options = parse_sim_spec(spec);
+  const SimOptions options = parse_sim_spec(required_text(spec, "spec"));
   require_contents_outside_maps(folder);
   without_gil([&] {
     simulate(folder, options, its_format,
@@ -104,11 +105,12 @@ void bind_simulator(py::module_& module) {
            }),
            py::arg("spec"),
            "spec: \"sim:ROOM?key=value&...\", as on the command line; see `roomradar help sources`.")
-      .def_property_readonly("truth", &Simulator::truth, "SimTruth of the frame that was read last.")
-      .def("look", &Simulator::look, py::arg("index"), py::arg("T_world_camera"),
+      .def_property_readonly("truth", method(&Simulator::truth), "SimTruth of the frame that was read last.")
+      .def("look", method(&Simulator::look), py::arg("index"), py::arg("T_world_camera"),
            "Returns a frame from another pose at the time of frame `index`. The order of frames is "
            "unaffected.")
-      .def("room_mesh", &Simulator::mesh, "Returns the exact surface of the room, without moving objects.");
+      .def("room_mesh", method(&Simulator::mesh),
+           "Returns the exact surface of the room, without moving objects.");
 
   module.def("simulate", &simulate_into, py::arg("folder"), py::arg("spec"), py::kw_only(),
              py::arg("format") = "tum", py::arg("progress") = py::none(),

@@ -146,17 +146,17 @@ void bind_sources(py::module_& module) {
            })
       .def("__next__", &next_or_stop)
       .def("__len__", &length)
-      .def("next_frame", &Source::next, "Returns the next readable frame; None at the end.")
-      .def("rewind", &Source::restart,
+      .def("next_frame", method(&Source::next), "Returns the next readable frame; None at the end.")
+      .def("rewind", method(&Source::restart),
            "Goes back to the first frame. Returns False for a live device, which continues.")
-      .def("seek", &Source::seek, py::arg("index"),
+      .def("seek", method(&Source::seek), py::arg("index"),
            "Makes frame `index`, from 0, the next one. Returns False if the source reads in order only.")
-      .def("close", &Source::close, "Closes files and devices.")
+      .def("close", method(&Source::close), "Closes files and devices.")
       .def_property_readonly("name", [](const Source& source) { return text_of(source.opened().name()); })
       .def_property_readonly(
           "frame_count", [](const Source& source) { return source.opened().frame_count(); },
           "Number of frames, unreadable ones included; None if unknown.")
-      .def_property_readonly("skipped", &Source::skipped, "Number of unreadable frames so far.")
+      .def_property_readonly("skipped", method(&Source::skipped), "Number of unreadable frames so far.")
       .def_property_readonly(
           "last_fault", [](const Source& source) { return text_of(source.last_fault()); },
           "Why the last skipped frame was unreadable.")

@@ -148,6 +148,20 @@ class Fuzz(unittest.TestCase):
                 raise AssertionError(f"{function}{arguments}{keywords}") from fault
         print(f"{made} calls, {raised} raised")
 
+    def test_members_of_nothing_raise(self):
+        pool, random = Pool(), np.random.default_rng(2)
+        for name in dir(rr):
+            for member in vars(getattr(rr, name)).values() if isinstance(getattr(rr, name), type) else ():
+                function = getattr(member, "fget", None) or member
+                if not callable(function) or isinstance(function, (staticmethod, type)) or name == "_item":
+                    continue
+                for this in (None, object(), pool.frame, pool.closed_session, pool.closed_source):
+                    for more in ((), (None,), (pool.wrong(random), pool.wrong(random))):
+                        try:
+                            function(this, *more)
+                        except EXPECTED + (AttributeError, RuntimeError):
+                            pass
+
     def test_closed_handles_raise(self):
         pool = Pool()
         source, simulator, session = pool.closed_source, pool.closed_simulator, pool.closed_session
