@@ -50,17 +50,34 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/roomradar-config-version.
 install(FILES ${PROJECT_BINARY_DIR}/roomradar-config.cmake ${PROJECT_BINARY_DIR}/roomradar-config-version.cmake
   DESTINATION ${config_dir} COMPONENT development)
 
+# The Python module. ROOMRADAR_PYTHON_DIR: where Debian's Python looks for modules, or the root of a wheel.
+set(components program library c_development development)
+if(ROOMRADAR_HAS_PYTHON)
+  list(APPEND components python)
+  set(ROOMRADAR_PYTHON_DIR lib/python3/dist-packages CACHE STRING "folder of Python modules, relative to the prefix")
+  install(TARGETS _roomradar DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
+  install(FILES app/python/roomradar/__init__.py app/python/roomradar/__init__.pyi app/python/roomradar/py.typed
+    DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
+  if(NOT SKBUILD)
+    install(DIRECTORY app/python/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar COMPONENT python
+      FILES_MATCHING PATTERN "*.py")
+    install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar RENAME copyright COMPONENT python)
+  endif()
+endif()
+
+# Jobs on several machines.
+if(ROOMRADAR_HAS_MPI)
+  list(APPEND components mpi)
+  install(TARGETS roomradar-mpi COMPONENT mpi)
+endif()
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME roomradar)
 set(CPACK_PACKAGE_CONTACT "roomradar developers <roomradar@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "prescan a room with a Kinect, then run augmented reality in it")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL program library c_development development)
-if(ROOMRADAR_HAS_MPI)
-  install(TARGETS roomradar-mpi COMPONENT mpi)
-  list(APPEND CPACK_COMPONENTS_ALL mpi)
-endif()
+set(CPACK_COMPONENTS_ALL ${components})
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
@@ -98,4 +115,15 @@ set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_NAME libroomradar-c-dev)
 set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_DEPENDS "libroomradar0 (= ${PROJECT_VERSION})")
 set(CPACK_COMPONENT_C_DEVELOPMENT_DESCRIPTION "Header files of roomradar's C interface, and its pkg-config file.")
+if(ROOMRADAR_HAS_PYTHON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-roomradar)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  math(EXPR next_python "${Python_VERSION_MINOR} + 1" OUTPUT_FORMAT DECIMAL)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_python}), python3-numpy, libegl-mesa0, libgl1-mesa-dri")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-open3d, roomradar")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+    "Python module of roomradar: frame sources, scans, maps, augmented reality sessions, Cyber Radar and a simulator, with NumPy arrays.")
+endif()
 include(CPack)
