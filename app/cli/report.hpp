@@ -1,6 +1,6 @@
 // report.hpp: the JSON file that --report writes, with settings, times per stage, memory and results.
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>

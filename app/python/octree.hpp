@@ -3,7 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
-#include <optional>
+#include <mutex>
 #include <shared_mutex>
 #include <utility>
 

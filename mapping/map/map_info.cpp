@@ -2,11 +2,14 @@
 #include "mapping/map/map_info.hpp"
 
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <string_view>
 
 #include "mapping/map/map_files.hpp"
 #include "mapping/types/pose_origin.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
