@@ -158,14 +158,6 @@ class Sources(unittest.TestCase):
         with self.assertRaises(rr.Error):
             rr.open_source("sim:castle")
 
-    @unittest.skipUnless(support.KITCHEN.exists(), f"{support.KITCHEN} is absent")
-    def test_a_recording_is_read_with_its_poses(self):
-        source = rr.open_source(support.KITCHEN, frames=(0, 2))
-        frames = list(source)
-        self.assertEqual(len(frames), 3)
-        self.assertEqual((frames[0].depth_m.shape, frames[0].colour.shape), ((480, 640), (480, 640, 3)))
-        self.assertIsNotNone(frames[2].T_world_camera)
-
 
 class Simulated(unittest.TestCase):
     def test_the_truth_is_that_of_the_last_frame(self):

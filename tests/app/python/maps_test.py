@@ -8,44 +8,20 @@ import roomradar as rr
 import support
 
 
-def files_of(folder):
-    return {file.name: file.read_bytes() for file in folder.iterdir()}
-
-
 class Scans(unittest.TestCase):
-    def compare(self, source, by_command, **settings):
-        folder = support.temporary_folder()
-        stages = {}
-
-        def count(stage, note):
-            stages[stage] = stages.get(stage, 0) + 1
-
-        scan = rr.prescan(source, progress=count, **settings)
-        scan.map.save(folder / "python")
-        support.command("prescan", *by_command, "--map", folder / "command")
-        python, command = files_of(folder / "python"), files_of(folder / "command")
-        self.assertEqual(sorted(python), sorted(command))
-        for name in command:
-            self.assertEqual(python[name], command[name], name)
-        return scan, stages
-
     def test_a_scan_is_that_of_the_command(self):
         spec = "sim:table?frames=40&width=160&seed=3"
-        scan, stages = self.compare(spec, [spec, "--resolution", "0.02"], resolution_m=0.02)
+        scan, stages = support.compare_scan(self, spec, [spec, "--resolution", "0.02"], resolution_m=0.02)
         self.assertEqual(scan.counts["frames_read"], 40)
         self.assertGreaterEqual(stages["track"], 40)
         self.assertEqual(stages["surface"], 1)
         self.assertTrue(all(hole.size_m > 0 for hole in scan.holes))
 
     def test_a_scan_with_recorded_poses_is_that_of_the_command(self):
-        self.compare(rr.open_source(support.SCAN, cache=True),
-                     [support.SCAN, "--resolution", "0.03", "--poses", "recorded", "--texture", "off", "--deviation",
-                      "0.004"],
-                     resolution_m=0.03, poses="recorded", texture=False, deviation_m=0.004)
-
-    @unittest.skipUnless(support.KITCHEN.exists(), f"{support.KITCHEN} is absent")
-    def test_a_scan_of_kitchen_is_that_of_the_command(self):
-        self.compare(rr.open_source(support.KITCHEN, frames=(0, 59)), [support.KITCHEN, "--frames", "0:59"])
+        support.compare_scan(self, rr.open_source(support.SCAN, cache=True),
+                             [support.SCAN, "--resolution", "0.03", "--poses", "recorded", "--texture", "off",
+                              "--deviation", "0.004"],
+                             resolution_m=0.03, poses="recorded", texture=False, deviation_m=0.004)
 
     def test_frames_in_memory_are_scanned(self):
         frames = list(rr.open_source("sim:table?frames=20&width=160&seed=3"))
@@ -89,7 +65,7 @@ class Maps(unittest.TestCase):
     def test_a_saved_map_is_the_same(self):
         folder = support.temporary_folder() / "again"
         support.table_map().save(folder)
-        saved, first = files_of(folder), files_of(support.table_folder())
+        saved, first = support.files_of(folder), support.files_of(support.table_folder())
         for name in first.keys() - {"map.json", "mesh.ply", "trajectory.txt"}:  # texts are rounded again
             self.assertEqual(saved[name], first[name], name)
         self.assertEqual(rr.diff_maps(support.table_map(), rr.open_map(folder)), [])
@@ -141,7 +117,7 @@ class Maps(unittest.TestCase):
         np.testing.assert_allclose(rr.register_maps(a, b), np.eye(4), atol=0.02)
         rr.merge_maps(a, b).save(folder / "python")
         support.command("map", "merge", folder / "a", folder / "b", "--map", folder / "command")
-        self.assertEqual(files_of(folder / "python"), files_of(folder / "command"))
+        self.assertEqual(support.files_of(folder / "python"), support.files_of(folder / "command"))
 
         support.command("map", "diff", folder / "a", folder / "b", "--report", folder / "diff.json")
         rows = json.loads((folder / "diff.json").read_text())["changes"]
@@ -156,7 +132,7 @@ class Maps(unittest.TestCase):
         extended.map.save(folder / "extended")
         support.command("prescan", room + "&crate=1", "--poses", "recorded", "--texture", "off", "--map", folder / "a",
                         "--resume")
-        self.assertEqual(files_of(folder / "extended"), files_of(folder / "a"))
+        self.assertEqual(support.files_of(folder / "extended"), support.files_of(folder / "a"))
         with self.assertRaisesRegex(rr.Error, "the maps are the same"):
             rr.merge_maps(b, b)
         with self.assertRaisesRegex(rr.Error, "extend: the map is not in a folder"):

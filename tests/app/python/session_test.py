@@ -10,11 +10,6 @@ import support
 from support import address
 
 
-def fingerprints(folder):
-    lines = (folder / "results.txt").read_text().splitlines()
-    return [tuple(int(word, 16) for word in line.split()[1:]) for line in lines if not line.startswith("#")]
-
-
 def frames(count=10):
     return rr.open_source(support.VIEW, frames=(0, count - 1))
 
@@ -24,42 +19,20 @@ def session(**settings):
 
 
 class Fingerprints(unittest.TestCase):
-    def compare(self, source, room, by_command, **settings):
-        """Compares each frame with a recorded run. Returns the session after its last frame."""
-        folder = support.temporary_folder()
-        support.command("run", source, "--map", room, "--record-session", folder / "run", "--pictures",
-                        folder / "pictures", *by_command)
-        recorded = fingerprints(folder / "run")
-        played = rr.Session(rr.open_map(room), **settings.pop("session", {}))
-        played.add("object", "teapot")
-        played.drop("object")
-        own = []
-        for frame in rr.open_source(source, **settings):
-            played.step(frame)
-            own.append(played.fingerprint())
-        self.assertEqual(own, recorded)
-        self.assertNotEqual(own[-1][1], 0)
-        return played
-
     def test_they_are_those_of_the_command(self):
-        played = self.compare(support.VIEW, support.table_folder(), ["--poses", "recorded"], session={"poses": "recorded"})
+        played = support.compare_session(self, support.VIEW, support.table_folder(), ["--poses", "recorded"],
+                                         session={"poses": "recorded"})
         pot, = played.objects
         self.assertEqual((pot.name, pot.state, pot.rests_on), ("object", "at rest", rr.SurfaceKind.STATIC))
         self.assertGreaterEqual(len(pot.contacts), 3)
         self.assertTrue(all(touch.normal_world[2] > 0.9 and touch.gap_m <= 0.0015 for touch in pot.contacts))
 
     def test_they_are_those_of_the_command_with_other_quality(self):
-        self.compare(support.VIEW, support.table_folder(),
-                     ["--poses", "recorded", "--depth-stride", "2", "--radar", "sampled", "--shadows", "off",
-                      "--unknown", "free"],
-                     session={"poses": "recorded", "unknown": "free",
-                              "quality": {"depth_stride": 2, "radar": "sampled", "shadows": False}})
-
-    @unittest.skipUnless(support.KITCHEN.exists(), f"{support.KITCHEN} is absent")
-    def test_they_are_those_of_the_command_in_kitchen(self):
-        room = support.temporary_folder() / "kitchen"
-        support.command("prescan", support.KITCHEN, "--frames", "0:39", "--map", room, "--resolution", "0.02")
-        self.compare(support.KITCHEN, room, ["--frames", "0:39"], frames=(0, 39))
+        support.compare_session(
+            self, support.VIEW, support.table_folder(),
+            ["--poses", "recorded", "--depth-stride", "2", "--radar", "sampled", "--shadows", "off", "--unknown", "free"],
+            session={"poses": "recorded", "unknown": "free",
+                     "quality": {"depth_stride": 2, "radar": "sampled", "shadows": False}})
 
 
 class Views(unittest.TestCase):

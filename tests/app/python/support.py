@@ -46,6 +46,51 @@ def table_map():
     return rr.open_map(table_folder())
 
 
+def files_of(folder):
+    return {file.name: file.read_bytes() for file in folder.iterdir()}
+
+
+def compare_scan(test, source, by_command, **settings):
+    """Scans with the module and with the command, and compares the maps byte for byte. Returns the scan and its stages."""
+    folder = temporary_folder()
+    stages = {}
+
+    def count(stage, note):
+        stages[stage] = stages.get(stage, 0) + 1
+
+    scan = rr.prescan(source, progress=count, **settings)
+    scan.map.save(folder / "python")
+    command("prescan", *by_command, "--map", folder / "command")
+    own, expected = files_of(folder / "python"), files_of(folder / "command")
+    test.assertEqual(sorted(own), sorted(expected))
+    for name in expected:
+        test.assertEqual(own[name], expected[name], name)
+    return scan, stages
+
+
+def fingerprints(folder):
+    lines = (folder / "results.txt").read_text().splitlines()
+    return [tuple(int(word, 16) for word in line.split()[1:]) for line in lines if not line.startswith("#")]
+
+
+def compare_session(test, source, room, by_command, **settings):
+    """Compares each frame with a recorded run. Returns the session after its last frame."""
+    folder = temporary_folder()
+    command("run", source, "--map", room, "--record-session", folder / "run", "--pictures", folder / "pictures",
+            *by_command)
+    recorded = fingerprints(folder / "run")
+    played = rr.Session(rr.open_map(room), **settings.pop("session", {}))
+    played.add("object", "teapot")
+    played.drop("object")
+    own = []
+    for frame in rr.open_source(source, **settings):
+        played.step(frame)
+        own.append(played.fingerprint())
+    test.assertEqual(own, recorded)
+    test.assertNotEqual(own[-1][1], 0)
+    return played
+
+
 def box_mesh(size_m=0.2, origin=(0.0, 0.0, 0.0)):
     """A closed box around its origin."""
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float32) * size_m / 2
