@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Takes a map's mesh to Open3D and back: there depth images are compared with it and it is simplified, here a ball falls on it.
+"""Takes a map's mesh to Open3D, where it is compared with a depth image and simplified, and back, where a ball falls on it.
 
 usage: open3d_mesh.py MAP PICTURE.png
 """
