@@ -25,12 +25,16 @@ install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 
 # The library for C, engines and other languages, and what programs need to link it.
-install(TARGETS roomradar_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT c_development)
-get_target_property(c_headers roomradar_c C_HEADERS)
-install(FILES ${c_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/roomradar-c COMPONENT c_development)
-file(RELATIVE_PATH prefix_of_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-configure_file(app/package/roomradar.pc.in ${PROJECT_BINARY_DIR}/roomradar.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/roomradar.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT c_development)
+set(components program development)
+if(ROOMRADAR_WITH_C_API)
+  list(APPEND components library c_development)
+  install(TARGETS roomradar_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT c_development)
+  get_target_property(c_headers roomradar_c C_HEADERS)
+  install(FILES ${c_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/roomradar-c COMPONENT c_development)
+  file(RELATIVE_PATH prefix_of_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  configure_file(app/package/roomradar.pc.in ${PROJECT_BINARY_DIR}/roomradar.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/roomradar.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT c_development)
+endif()
 
 # The libraries: find_package(roomradar COMPONENTS ...); see roomradar-config.cmake.in.
 install(TARGETS ${targets} EXPORT roomradar COMPONENT development)
@@ -51,7 +55,6 @@ install(FILES ${PROJECT_BINARY_DIR}/roomradar-config.cmake ${PROJECT_BINARY_DIR}
   DESTINATION ${config_dir} COMPONENT development)
 
 # The Python module. ROOMRADAR_PYTHON_DIR: where Debian's Python looks for modules, or the root of a wheel.
-set(components program library c_development development)
 if(ROOMRADAR_HAS_PYTHON)
   list(APPEND components python)
   set(ROOMRADAR_PYTHON_DIR lib/python3/dist-packages CACHE STRING "folder of Python modules, relative to the prefix")
