@@ -1,14 +1,10 @@
 // session_state.hpp: the objects behind handles of sessions and locators, which draw on a thread of their
 // own.
 #pragma once
-#include <condition_variable>
 #include <cstdint>
-#include <exception>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "app/c_api/handles.hpp"
@@ -16,37 +12,9 @@
 #include "app/session/session.hpp"
 #include "mapping/types/system/stage_times.hpp"
 #include "radar/exact/cyber_radar.hpp"
+#include "radar/gl/gl_thread.hpp"
 
 namespace roomradar::c_api {
-
-/// Owns a thread that sleeps between calls of run(), for an OpenGL context that lives on it. The callers' own
-/// contexts (an engine's) are never touched. run() may be called from any thread, by one at a time.
-class SessionThread {
- public:
-  SessionThread();
-  ~SessionThread();
-  SessionThread(const SessionThread&) = delete;
-  SessionThread& operator=(const SessionThread&) = delete;
-
-  /// Calls work() on the thread, waits for it, and rethrows its exception.
-  template <typename Work>
-  void run(const Work& work) {
-    run_and_wait([](const void* task) { (*static_cast<const Work*>(task))(); }, &work);
-  }
-
- private:
-  using Call = void (*)(const void*);
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  Call call_ = nullptr;  ///< null: nothing to do
-  const void* task_ = nullptr;
-  bool is_done_ = false, stops_ = false;
-  std::exception_ptr fault_;
-  std::thread thread_;  ///< declared last because it uses the members above
-
-  void run_and_wait(Call call, const void* task);
-  void serve();
-};
 
 struct SessionState : Handled {
   static constexpr const char* kKind = "session";
@@ -63,7 +31,7 @@ struct SessionState : Handled {
   RoomBlocks blocks;
   CyberRadar radar;  ///< exact; of queries from outside
   std::unique_ptr<Session> session;
-  SessionThread thread;  ///< on which the session lives; declared last, so that it ends first
+  GlThread thread;  ///< on which the session lives; declared last, so that it ends first
 
   ~SessionState();
   [[nodiscard]] const SavedMap& map() const { return own_map ? *own_map : shared_map->map; }
@@ -92,7 +60,7 @@ struct LocatorState : Handled {
   std::unique_ptr<Rendered> rendered;
   Locator locator;
   Frame frame;  ///< buffer
-  SessionThread thread;
+  GlThread thread;
 
   ~LocatorState();
 };

@@ -82,7 +82,8 @@ std::string parallel_script(const FarmPlan& plan, const std::filesystem::path& p
   std::string script = "#!/usr/bin/env bash\n# Jobs of roomradar: bash THIS [OPTION OF parallel]...\n" +
                        program_line(program) + "failed=0\n";
   for (const auto& jobs : levels_of(plan)) {
-    script += "parallel --halt never \"$@\" \"$roomradar\" " + farm_command(plan) + " <<'END' || failed=1\n";
+    script += "parallel --quote --halt never \"$@\" \"$roomradar\" " + farm_command(plan) +
+              " <<'END' || failed=1\n";
     for (const std::size_t job : jobs) script += plan.manifest.jobs[job].name + "\n";
     script += "END\n";
   }

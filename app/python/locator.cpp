@@ -11,6 +11,7 @@
 #include "app/session/frame_scene.hpp"
 #include "mapping/localization/locator.hpp"
 #include "mapping/types/validity.hpp"
+#include "radar/gl/gl_thread.hpp"
 
 namespace roomradar::python {
 namespace {

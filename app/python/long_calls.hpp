@@ -1,15 +1,9 @@
-// long_calls.hpp: long calls without the interpreter's lock: exclusive use, progress, Ctrl-C, and a thread
-// for OpenGL.
+// long_calls.hpp: long calls without the interpreter's lock: exclusive use, progress, Ctrl-C.
 #pragma once
 #include <pybind11/pybind11.h>
 
 #include <atomic>
-#include <condition_variable>
-#include <exception>
-#include <functional>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "mapping/types/system/error.hpp"
@@ -76,30 +70,5 @@ bool report_progress(const py::object& progress, const Arguments&... arguments) 
 
 /// Throws TypeError unless the value is None or can be called.
 void require_callback(const py::object& value, const char* name);
-
-/// Owns a thread that makes all calls of one OpenGL context, for callers on any thread. Callers on several
-/// threads wait for each other. Work must not use Python objects.
-class GlThread {
- public:
-  GlThread();
-  ~GlThread();
-  GlThread(const GlThread&) = delete;
-  GlThread& operator=(const GlThread&) = delete;
-
-  /// Calls work() on the thread and waits for it. Rethrows its exception. Call without the interpreter's
-  /// lock, and not from inside `work`.
-  void run(const std::function<void()>& work);
-
- private:
-  std::mutex callers_;  ///< held by the caller whose work is done
-  std::mutex mutex_;    ///< guards the members below
-  std::condition_variable changed_;
-  const std::function<void()>* work_ = nullptr;
-  std::exception_ptr fault_;
-  bool is_stopping_ = false;
-  std::thread thread_;  ///< declared last because it uses the members above
-
-  void serve();
-};
 
 }  // namespace roomradar::python

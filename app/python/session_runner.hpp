@@ -14,6 +14,7 @@
 #include "app/python/maps.hpp"
 #include "app/session/session.hpp"
 #include "app/session/session_fingerprint.hpp"
+#include "radar/gl/gl_thread.hpp"
 
 namespace roomradar::python {
 

@@ -99,7 +99,8 @@ std::vector<ScenarioRow> read_rows(const std::filesystem::path& path) {
   const std::string text = read_bytes(path, "results of scenarios", kLargestFile_bytes);
   try {
     const Json json = Json::parse(text);
-    if (json.at("format") != kFormat || json.at("version") != kFileVersion) throw Error("it is of another form");
+    if (json.at("format") != kFormat || json.at("version") != kFileVersion)
+      throw Error("it is of another form");
     std::vector<ScenarioRow> rows;
     for (const Json& row : json.at("scenarios")) rows.push_back(row_from(row));
     return rows;

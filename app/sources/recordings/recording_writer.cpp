@@ -138,7 +138,8 @@ void RecordingWriter::write_tum(const Frame& frame) {
     const std::string colour_file = "rgb/" + fixed_6(colour_s) + ".png";
     if (!colour_list_.is_open()) make_folder(folder_ / "rgb");
     write_colour_file(frame.colour, folder_ / colour_file);
-    add_line(colour_list_, folder_ / "rgb.txt", exact_stamp(colour_s) + " " + colour_file, "# stamp_s file\n");
+    add_line(colour_list_, folder_ / "rgb.txt", exact_stamp(colour_s) + " " + colour_file,
+             "# stamp_s file\n");
   }
   if (frame.T_world_camera) {
     const Eigen::Vector3d t = frame.T_world_camera->translation();
