@@ -65,6 +65,16 @@ roomradar_object_state state_of(const VirtualObject& object) {
   return state;
 }
 
+/// Calls work(SessionState&) if the session has an object of that name.
+template <typename Work>
+roomradar_status with_object(const char* call, roomradar_session* session, const char* name,
+                             const Work& work) {
+  return with<SessionState>(call, session, [&](SessionState& state) {
+    static_cast<void>(state.object(name));
+    work(state);
+  });
+}
+
 }  // namespace
 
 roomradar_status roomradar_session_add_file(roomradar_session* session, const char* name, const char* file,
@@ -92,8 +102,7 @@ roomradar_status roomradar_session_add_mesh(roomradar_session* session, const ch
 
 roomradar_status roomradar_session_set_material(roomradar_session* session, const char* name,
                                                 const roomradar_material* material) {
-  return with<SessionState>("roomradar_session_set_material", session, [&](SessionState& state) {
-    static_cast<void>(state.object(name));
+  return with_object("roomradar_session_set_material", session, name, [&](SessionState& state) {
     require_given(material, "material");
     const BodyMaterial change = material_of(material);
     state.run([&](Session& live) { live.set_material(name, change); });
@@ -102,8 +111,7 @@ roomradar_status roomradar_session_set_material(roomradar_session* session, cons
 
 roomradar_status roomradar_session_place(roomradar_session* session, const char* name,
                                          const roomradar_pose* T_world_object) {
-  return with<SessionState>("roomradar_session_place", session, [&](SessionState& state) {
-    static_cast<void>(state.object(name));
+  return with_object("roomradar_session_place", session, name, [&](SessionState& state) {
     const ObjectState placed = state_of(T_world_object);
     state.run([&](Session& live) { live.place(name, placed); });
   });
@@ -113,8 +121,7 @@ roomradar_status roomradar_session_throw(roomradar_session* session, const char*
                                          const roomradar_pose* T_world_object,
                                          const double velocity_world_mps[3],
                                          const double angular_velocity_world_rad_s[3]) {
-  return with<SessionState>("roomradar_session_throw", session, [&](SessionState& state) {
-    static_cast<void>(state.object(name));
+  return with_object("roomradar_session_throw", session, name, [&](SessionState& state) {
     ObjectState thrown = state_of(T_world_object);
     thrown.velocity_world_mps = vector_of(velocity_world_mps, "velocity_world_mps");
     if (angular_velocity_world_rad_s != nullptr)
@@ -126,8 +133,7 @@ roomradar_status roomradar_session_throw(roomradar_session* session, const char*
 
 roomradar_status roomradar_session_drop(roomradar_session* session, const char* name,
                                         const double point_world_m[3], double height_m) {
-  return with<SessionState>("roomradar_session_drop", session, [&](SessionState& state) {
-    static_cast<void>(state.object(name));
+  return with_object("roomradar_session_drop", session, name, [&](SessionState& state) {
     if (!(height_m >= 0.0 && height_m <= 100.0)) refuse("height_m: must be in 0..100 m");
     DropRequest drop{.name = name, .height_m = height_m};
     if (point_world_m != nullptr) drop.position_world = vector_of(point_world_m, "point_world_m");
@@ -137,8 +143,7 @@ roomradar_status roomradar_session_drop(roomradar_session* session, const char* 
 
 roomradar_status roomradar_session_carry(roomradar_session* session, const char* name,
                                          const double position_world_m[3]) {
-  return with<SessionState>("roomradar_session_carry", session, [&](SessionState& state) {
-    static_cast<void>(state.object(name));
+  return with_object("roomradar_session_carry", session, name, [&](SessionState& state) {
     const Eigen::Vector3d to = vector_of(position_world_m, "position_world_m");
     state.run([&](Session& live) { live.carry(name, to); });
   });
@@ -146,8 +151,7 @@ roomradar_status roomradar_session_carry(roomradar_session* session, const char*
 
 roomradar_status roomradar_session_release(roomradar_session* session, const char* name,
                                            const double velocity_world_mps[3]) {
-  return with<SessionState>("roomradar_session_release", session, [&](SessionState& state) {
-    static_cast<void>(state.object(name));
+  return with_object("roomradar_session_release", session, name, [&](SessionState& state) {
     const Eigen::Vector3d velocity = vector_of(velocity_world_mps, "velocity_world_mps");
     state.run([&](Session& live) { live.release(name, velocity); });
   });
@@ -155,18 +159,15 @@ roomradar_status roomradar_session_release(roomradar_session* session, const cha
 
 roomradar_status roomradar_session_turn(roomradar_session* session, const char* name,
                                         const double turn_world_deg[3]) {
-  return with<SessionState>("roomradar_session_turn", session, [&](SessionState& state) {
-    static_cast<void>(state.object(name));
+  return with_object("roomradar_session_turn", session, name, [&](SessionState& state) {
     const Eigen::Vector3d turn = vector_of(turn_world_deg, "turn_world_deg");
     state.run([&](Session& live) { live.turn(name, turn); });
   });
 }
 
 roomradar_status roomradar_session_remove(roomradar_session* session, const char* name) {
-  return with<SessionState>("roomradar_session_remove", session, [&](SessionState& state) {
-    static_cast<void>(state.object(name));
-    state.run([&](Session& live) { live.remove(name); });
-  });
+  return with_object("roomradar_session_remove", session, name,
+                     [&](SessionState& state) { state.run([&](Session& live) { live.remove(name); }); });
 }
 
 roomradar_status roomradar_session_objects(roomradar_session* session, roomradar_object_state* states,

@@ -1,6 +1,9 @@
 // apply_scan_quality.cpp: maps the fields of options and scan quality to the prescan's config.
 #include "app/cli/apply_scan_quality.hpp"
 
+#include "mapping/map/map_info.hpp"
+#include "mapping/types/system/format_number.hpp"
+
 namespace roomradar {
 
 void apply(const ScanQuality& quality, PrescanConfig& config) {
@@ -8,6 +11,13 @@ void apply(const ScanQuality& quality, PrescanConfig& config) {
   config.surface.max_deviation_m = static_cast<float>(quality.deviation_m);
   config.odometry.view.finest_width_px = quality.tracking_px;
   config.fuse_every = quality.fuse_every;
+}
+
+void keep_settings_of(SavedMap& map, bool is_deviation_asked_for, PrescanConfig& config) {
+  config.resolution_m = map.octree->resolution_m();
+  if (!is_deviation_asked_for && map.info.settings.contains(kDeviationSetting))
+    config.surface.max_deviation_m = surface_config_of(map.info).max_deviation_m;
+  map.info.settings[kDeviationSetting] = format_number(config.surface.max_deviation_m);
 }
 
 PrescanConfig prescan_config_of(const PrescanOptions& options) {

@@ -10,6 +10,10 @@ namespace roomradar {
 /// default-constructed config unchanged.
 void apply(const ScanQuality& quality, PrescanConfig& config);
 
+/// Gives a prescan that extends a map the map's resolution and its mesh's deviation. A deviation that was
+/// asked for takes precedence, and the map keeps it.
+void keep_settings_of(SavedMap& map, bool is_deviation_asked_for, PrescanConfig& config);
+
 /// Returns the configuration of a prescan with these options.
 PrescanConfig prescan_config_of(const PrescanOptions& options);
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,7 +27,6 @@
 #include "mapping/prescan.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
@@ -86,15 +84,11 @@ int report_held_already(const PrescanOptions& options, ScanChannel* channel, Rep
 /// differ from the requested ones. A deviation given as an option takes precedence, and the map keeps it.
 void keep_settings_of_map(const PrescanOptions& options, SavedMap& map, PrescanConfig& config,
                           Report& report) {
-  config.resolution_m = map.octree->resolution_m();
-  std::map<std::string, std::string>& kept = map.info.settings;
   const bool is_asked_for = std::any_of(options.fixed.begin(), options.fixed.end(),
                                         [](const auto& field) { return field.first == "deviation_m"; });
-  if (!is_asked_for && kept.contains(kDeviationSetting))
-    config.surface.max_deviation_m = surface_config_of(map.info).max_deviation_m;
-  kept[kDeviationSetting] = format_number(config.surface.max_deviation_m);
+  keep_settings_of(map, is_asked_for, config);
   report.settings["resolution_m"] = config.resolution_m;
-  report.settings["deviation_m"] = nlohmann::json::parse(kept[kDeviationSetting]);
+  report.settings["deviation_m"] = nlohmann::json::parse(map.info.settings[kDeviationSetting]);
   if (config.resolution_m != options.quality.resolution_m ||
       config.surface.max_deviation_m != static_cast<float>(options.quality.deviation_m))
     std::fprintf(stderr, "%s: is extended, and keeps its cells of %g m and its --deviation of %g m\n",

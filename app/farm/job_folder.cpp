@@ -27,17 +27,6 @@ constexpr std::uintmax_t kLargestJobFile_bytes = 1U << 24U;
 
 fs::path with_ending(const fs::path& folder, const char* ending) { return folder.string() + ending; }
 
-/// Renames `from` to `to`, in place of an older folder there. Never leaves a part of either at `to`.
-void replace_folder(const fs::path& from, const fs::path& to) {
-  std::error_code fault;
-  const fs::path old = with_ending(to, ".old");
-  fs::remove_all(old, fault);
-  fs::rename(to, old, fault);  // fails if there is none
-  fs::rename(from, to, fault);
-  if (fault) throw Error(to.string() + ": cannot be written: " + fault.message());
-  fs::remove_all(old, fault);
-}
-
 }  // namespace
 
 bool is_done(const fs::path& folder, const std::string& key) {
@@ -77,7 +66,7 @@ RunningFolder::RunningFolder(RunningFolder&& other) noexcept
 RunningFolder::~RunningFolder() {
   if (lock_ < 0) return;
   try {
-    replace_folder(running_, with_ending(folder_, ".failed"));
+    put_in_place(running_, with_ending(folder_, ".failed"));
   } catch (const std::exception&) {  // it is emptied when the job is run once more
   }
   close(lock_);
@@ -93,7 +82,7 @@ void RunningFolder::commit(const std::string& key, const std::vector<std::string
   write_bytes(running_ / kJobFile, job.dump(2) + "\n");
   sync_to_disk(running_ / kJobFile);
   sync_to_disk(running_);
-  replace_folder(running_, folder_);
+  put_in_place(running_, folder_);
   fs::remove_all(with_ending(folder_, ".failed"), ignored);
   close(std::exchange(lock_, -1));
 }

@@ -21,7 +21,6 @@
 #include "app/sources/recordings/spooled_source.hpp"
 #include "mapping/coverage/hole.hpp"
 #include "mapping/prescan.hpp"
-#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar::python {
 namespace {
@@ -81,10 +80,7 @@ class ScanProgress {
 SavedMap map_to_extend(const Map& map, PrescanConfig& config) {
   if (map.folder.empty()) throw Error("extend: the map is not in a folder; save it first, and open it again");
   SavedMap extended = load_map(map.folder);
-  config.resolution_m = extended.octree->resolution_m();
-  if (extended.info.settings.contains(kDeviationSetting))
-    config.surface.max_deviation_m = surface_config_of(extended.info).max_deviation_m;
-  extended.info.settings[kDeviationSetting] = format_number(config.surface.max_deviation_m);
+  keep_settings_of(extended, /*is_deviation_asked_for=*/false, config);
   return extended;
 }
 
@@ -92,17 +88,13 @@ Scan scan(FrameSource& source, PrescanConfig config, const Map* extend, const py
   std::unique_ptr<FrameSource> spooled;
   std::atomic<bool> is_ended = false;
   const bool is_live = !source.rewind();
-  auto ended = std::make_unique<EndedByFlag>(source, is_ended);
-  FrameSource* frames = &source;
-  if (is_live) {
-    spooled = make_rewindable(std::move(ended));
-    frames = spooled.get();
-  }
+  if (is_live) spooled = make_rewindable(std::make_unique<EndedByFlag>(source, is_ended));
+  FrameSource& frames = is_live ? *spooled : source;
   PrescanInput input;
   if (extend != nullptr) input.map = map_to_extend(*extend, config);
   StageTimes times;
   PrescanResult result =
-      prescan(*frames, config, times, ScanProgress(progress, is_live, is_ended), std::move(input));
+      prescan(frames, config, times, ScanProgress(progress, is_live, is_ended), std::move(input));
   return {std::make_shared<Map>(std::move(result.map), ""), std::move(result.holes), std::move(result.lost),
           std::move(result.counts)};
 }

@@ -76,6 +76,32 @@ void sync_to_disk(const fs::path& path) {
   if (result != 0) fail(path, "does not reach the disk", reason);
 }
 
+void put_in_place(const fs::path& ready, const fs::path& target) {
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(target))) {
+    if (::renameat2(AT_FDCWD, ready.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) != 0 &&
+        ((errno != EINVAL && errno != ENOSYS) || ::rename(ready.c_str(), target.c_str()) != 0))
+      fail(target, "cannot be put in place", errno);
+  } else if (::renameat2(AT_FDCWD, ready.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0) {
+    if (errno != EINVAL && errno != ENOSYS) fail(target, "cannot be put in place", errno);
+    // This file system cannot exchange names: for a moment the target's name is missing, but a complete
+    // folder always exists.
+    const fs::path aside = beside(target, kBefore);
+    if (::rename(target.c_str(), aside.c_str()) != 0) fail(target, "cannot be moved aside", errno);
+    if (::rename(ready.c_str(), target.c_str()) != 0) {
+      const int reason = errno;
+      static_cast<void>(::rename(aside.c_str(), target.c_str()));
+      fail(target, "cannot be put in place", reason);
+    }
+    fs::remove_all(aside, ignored);
+  }
+  fs::remove_all(ready, ignored);  // the old target, if names were exchanged
+  try {
+    sync_to_disk(parent_of(target));
+  } catch (const Error&) {  // already in place: a power failure now could lose the new name, not the map
+  }
+}
+
 AtomicFolder::AtomicFolder(const fs::path& target) : target_(target), partial_(beside(target, kPartial)) {
   make_folder(parent_of(target));
   clear_abandoned(target);
@@ -92,28 +118,7 @@ AtomicFolder::~AtomicFolder() {
 void AtomicFolder::commit() {
   for (const fs::directory_entry& entry : fs::directory_iterator(partial_)) sync_to_disk(entry.path());
   sync_to_disk(partial_);
-  if (!fs::exists(fs::symlink_status(target_))) {
-    if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) != 0 &&
-        ((errno != EINVAL && errno != ENOSYS) || ::rename(partial_.c_str(), target_.c_str()) != 0))
-      fail(target_, "cannot be put in place", errno);
-  } else if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
-    if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be put in place", errno);
-    // This file system cannot exchange names: for a moment the target's name is missing, but a complete
-    // folder always exists.
-    const fs::path aside = beside(target_, kBefore);
-    if (::rename(target_.c_str(), aside.c_str()) != 0) fail(target_, "cannot be moved aside", errno);
-    if (::rename(partial_.c_str(), target_.c_str()) != 0) {
-      const int reason = errno;
-      static_cast<void>(::rename(aside.c_str(), target_.c_str()));
-      fail(target_, "cannot be put in place", reason);
-    }
-    std::error_code ignored;
-    fs::remove_all(aside, ignored);
-  }
-  try {
-    sync_to_disk(parent_of(target_));
-  } catch (const Error&) {  // already in place: a power failure now could lose the new name, not the map
-  }
+  put_in_place(partial_, target_);
 }
 
 fs::path interrupted_replacement_of(const fs::path& target) {

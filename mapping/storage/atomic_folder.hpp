@@ -9,6 +9,10 @@ namespace roomradar {
 /// Waits until a file's content, or a folder's list of names, is on disk. Throws Error on failure.
 void sync_to_disk(const std::filesystem::path& path);
 
+/// Renames the folder `ready` to `target` atomically, and removes the old `target`. Does not sync the files
+/// in `ready`. Throws Error, with both unchanged, if the file system fails.
+void put_in_place(const std::filesystem::path& ready, const std::filesystem::path& target);
+
 /// New folder beside `target`, named target.partial-PID. The destructor removes the folder unless commit()
 /// succeeded.
 class AtomicFolder {

@@ -16,10 +16,10 @@
 
 #include "app/scan/live/next_view.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
-#include "mapping/alignment/view_pyramid.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/voxel_key.hpp"
 #include "tests/bench/bench_program.hpp"
+#include "tests/support/stored_view.hpp"
 
 namespace roomradar {
 namespace {
@@ -47,12 +47,7 @@ struct Seen {
                 .floor();
         cells.insert(voxel_key(cell.cast<int>().eval()));
       }
-    ViewPyramid pyramid;
-    make_pyramid(frame, ViewConfig{}, pyramid);
-    const Intrinsics& camera = pyramid.levels.front().camera;
-    const Image<std::uint8_t> measured(camera.width_px, camera.height_px, 1);
-    keyframes.push_back(
-        {frame.index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)), 0, 0.0});
+    keyframes.push_back({frame.index, T_world_camera, test::stored_view(frame), 0, 0.0});
   }
 };
 

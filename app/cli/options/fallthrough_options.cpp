@@ -6,7 +6,6 @@
 
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/shared_options.hpp"
-#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
@@ -59,18 +58,8 @@ void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) 
       .add_option("--html", options.html,
                   "write a page with tables, plots and pictures of failures (default: not written)")
       ->type_name("FILE");
-  command
-      .add_option_function<std::string>(
-          "--part",
-          [&options](const std::string& text) {
-            try {
-              options.part = parse_frame_range(text);
-            } catch (const Error& error) {
-              throw CLI::ValidationError(std::string("--part: ") + error.what());
-            }
-          },
-          "run only scenarios A to B, inclusive, counted from 0 (default: all)")
-      ->type_name("A:B");
+  add_range_option(command, "--part", options.part,
+                   "run only scenarios A to B, inclusive, counted from 0 (default: all)");
   command
       .add_option("--rows", options.rows,
                   "write the results of each scenario, as --jobs joins them (default: not written)")

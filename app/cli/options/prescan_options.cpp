@@ -39,10 +39,7 @@ void add_options(CLI::App& command, PrescanOptions& options) {
                    "(default: off)");
   add_choice<LostSignal>(
       command, "--lost-signal", options.lost_signal,
-      {{"none", LostSignal::kNone},
-       {"flash", LostSignal::kFlash},
-       {"bell", LostSignal::kBell},
-       {"both", LostSignal::kBoth}},
+      {{"none", {false, false}}, {"flash", {true, false}}, {"bell", {false, true}}, {"both", {true, true}}},
       "what the window does when the camera is lost: the picture's frame flashes, the terminal's\n"
       "bell rings, or both (default: flash)");
   add_poses_option(command, options.poses,
@@ -100,8 +97,7 @@ void complete_options(const CLI::App& command, PrescanOptions& options) {
     throw CLI::ValidationError("--presets: used only with --preset NAME, which is not given");
   if (command.count("--lost-signal") > 0 && !options.window)
     throw CLI::ValidationError("--lost-signal: a signal of --window, which is not given");
-  const bool rings = options.lost_signal == LostSignal::kBell || options.lost_signal == LostSignal::kBoth;
-  if (rings && isatty(STDERR_FILENO) == 0)
+  if (options.lost_signal.rings && isatty(STDERR_FILENO) == 0)
     throw CLI::ValidationError(
         "--lost-signal: the bell is that of the terminal, but stderr is not one; use flash");
   complete_quality(options.quality, options.preset, options.presets, options.fixed);

@@ -17,11 +17,9 @@ class App;
 namespace roomradar {
 
 /// How the scan window draws attention to a lost camera.
-enum class LostSignal {
-  kNone,
-  kFlash,  ///< the picture's frame flashes red
-  kBell,   ///< the terminal's bell rings once
-  kBoth,
+struct LostSignal {
+  bool flashes = true;  ///< the picture's frame flashes red
+  bool rings = false;   ///< the terminal's bell rings once
 };
 
 struct PrescanOptions {
@@ -58,7 +56,7 @@ struct PrescanOptions {
   /// True: opens a window that shows the scan.
   bool window = false;
   /// Signal of the window when tracking is lost.
-  LostSignal lost_signal = LostSignal::kFlash;
+  LostSignal lost_signal;
   /// Place that the window asks to be scanned first, in the world of the map that is extended. No option sets
   /// it.
   std::optional<PlaceToScan> look_at;

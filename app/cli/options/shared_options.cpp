@@ -21,19 +21,25 @@ void add_poses_option(CLI::App& command, PoseOrigin& poses, const std::string& h
              {{"tracked", PoseOrigin::kTracked}, {"recorded", PoseOrigin::kRecorded}}, help);
 }
 
-void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames) {
+void add_range_option(CLI::App& command, const std::string& name, std::optional<FrameRange>& range,
+                      const std::string& help) {
   command
       .add_option_function<std::string>(
-          "--frames",
-          [&frames](const std::string& text) {
+          name,
+          [&range](const std::string& text) {
             try {
-              frames = parse_frame_range(text);
+              range = parse_frame_range(text);
             } catch (const Error& error) {
               throw CLI::ValidationError(error.what());
             }
           },
-          "use only frames A to B, inclusive, counted from 0 (default: all)")
+          help)
       ->type_name("A:B");
+}
+
+void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames) {
+  add_range_option(command, "--frames", frames,
+                   "use only frames A to B, inclusive, counted from 0 (default: all)");
 }
 
 void add_calibration_option(CLI::App& command, std::string& calibration) {

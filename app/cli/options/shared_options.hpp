@@ -22,6 +22,9 @@ void add_source_argument(CLI::App& command, std::string& source, const std::stri
 /// Adds --poses. The default value is appended to `help`.
 void add_poses_option(CLI::App& command, PoseOrigin& poses, const std::string& help);
 
+/// Adds an option for a range A:B of numbers, both inclusive.
+void add_range_option(CLI::App& command, const std::string& name, std::optional<FrameRange>& range,
+                      const std::string& help);
 void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames);
 void add_calibration_option(CLI::App& command, std::string& calibration);
 void add_format_option(CLI::App& command, RecordingFormat& format);

@@ -76,7 +76,7 @@ Eigen::Isometry3d pose_from(const Json& rows, const std::string& where) {
   if (!rotation || !matrix.allFinite() || !matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1)))
     throw Error(where + ": must be a rigid transform: a rotation, a shift in metres, and 0 0 0 1 below");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  // What was written as a rotation is read as it was, so that a recording's copy gives the same map.
+  // A rotation is read to the bit as it stands, so that a recording's copy gives the same map.
   const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
   pose.linear() = (R - *rotation).cwiseAbs().maxCoeff() < 1e-14 ? R : *rotation;
   pose.translation() = matrix.topRightCorner<3, 1>();

@@ -67,8 +67,8 @@ void ScanUi::take_news() {
 
 /// Rings the bell if the camera was lost since the last news.
 void ScanUi::signal_loss(std::optional<ScanFault> fault_before) const {
-  const bool rings = lost_signal_ == LostSignal::kBell || lost_signal_ == LostSignal::kBoth;
-  if (rings && shown_.fault == ScanFault::kLost && fault_before != ScanFault::kLost) std::fputs("\a", stderr);
+  if (lost_signal_.rings && shown_.fault == ScanFault::kLost && fault_before != ScanFault::kLost)
+    std::fputs("\a", stderr);
 }
 
 /// Shows the map's surface in place of the live model.
@@ -187,8 +187,7 @@ void ScanUi::draw_picture(const Area& area) {
 void ScanUi::draw_advice(const Area& area) {
   std::optional<ScanFault> fault = shown_.fault;
   const bool is_bright = std::fmod(ImGui::GetTime(), 0.8) < 0.4;
-  const bool flashes = lost_signal_ == LostSignal::kFlash || lost_signal_ == LostSignal::kBoth;
-  if (fault == ScanFault::kLost && flashes && is_bright && !channel_.is_paused())
+  if (fault == ScanFault::kLost && lost_signal_.flashes && is_bright && !channel_.is_paused())
     ImGui::GetWindowDrawList()->AddRect({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                         look::kBad, 0.0F, 0, look::px(8.0F));
   if (newest_s_ >= 0.0 && ImGui::GetTime() - newest_s_ > kSilent_s) fault = ScanFault::kSilent;

@@ -16,7 +16,7 @@ namespace roomradar {
 /// Draws the scan window and handles its keys. All calls must come from the window's thread.
 class ScanUi final : public WindowContent {
  public:
-  ScanUi(ScanChannel& channel, const look::Fonts& fonts, LostSignal lost_signal = LostSignal::kFlash);
+  ScanUi(ScanChannel& channel, const look::Fonts& fonts, LostSignal lost_signal);
 
   void take_news() override;
   void press(const Key& key) override;

@@ -7,6 +7,7 @@
 #include "mapping/odometry/keyframe_job.hpp"
 #include "mapping/types/trajectory.hpp"
 #include "tests/support/noisy_room.hpp"
+#include "tests/support/stored_view.hpp"
 
 namespace roomradar::keyframe_graph_test {
 namespace {
@@ -15,12 +16,7 @@ using test::frame_at, test::on_path;
 
 /// Makes a keyframe of a frame, with the estimated pose T_world_camera.
 Keyframe keyframe_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double path_length_m) {
-  ViewPyramid pyramid;
-  make_pyramid(frame, {}, pyramid);
-  const Image<std::uint8_t> measured(pyramid.levels[0].camera.width_px, pyramid.levels[0].camera.height_px,
-                                     1);
-  return {frame.index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)),
-          0,           path_length_m,  {}};
+  return {frame.index, T_world_camera, test::stored_view(frame), 0, path_length_m, {}};
 }
 
 /// A camera goes away and returns to the pose of its first keyframe. Drift displaces the last keyframe by

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/noisy_room.hpp"
+#include "tests/support/stored_view.hpp"
 
 namespace roomradar::keyframe_pairs_test {
 namespace {
@@ -11,12 +12,7 @@ namespace {
 using test::frame_at, test::on_path;
 
 Keyframe keyframe_at(const Eigen::Isometry3d& T_world_camera, int index) {
-  ViewPyramid pyramid;
-  make_pyramid(frame_at(T_world_camera, index), {}, pyramid);
-  const Image<std::uint8_t> measured(pyramid.levels[0].camera.width_px, pyramid.levels[0].camera.height_px,
-                                     1);
-  return {index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)),
-          0,     0.1 * index,    {}};
+  return {index, T_world_camera, test::stored_view(frame_at(T_world_camera, index)), 0, 0.1 * index, {}};
 }
 
 std::vector<Keyframe> keyframes_on_path(int count) {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "mapping/alignment/view_pyramid.hpp"
 #include "mapping/coverage/holes.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/stored_view.hpp"
 
 namespace roomradar::holes_so_far_test {
 namespace {
@@ -35,13 +35,9 @@ void look_round(const Vector3d& eye_world, std::vector<Keyframe>& keyframes) {
       const double a = azimuth * std::numbers::pi / 6.0;
       const Isometry3d T_world_camera =
           test::looking_at(eye_world, eye_world + Vector3d(std::cos(a), std::sin(a), rise));
-      ViewPyramid pyramid;
-      make_pyramid(test::exact_frame(room_with_screen(), kCamera, T_world_camera), ViewConfig{}, pyramid);
-      const Intrinsics& camera = pyramid.levels.front().camera;
-      const Image<std::uint8_t> measured(camera.width_px, camera.height_px, 1);
       Keyframe made;
       made.T_world_camera = T_world_camera;
-      made.view = std::make_shared<const StoredView>(store(pyramid, measured));
+      made.view = test::stored_view(test::exact_frame(room_with_screen(), kCamera, T_world_camera));
       keyframes.push_back(made);
     }
 }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "mapping/alignment/view_pyramid.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/stored_view.hpp"
 
 namespace roomradar::next_view_test {
 namespace {
@@ -27,13 +27,9 @@ test::Scene closed_room() {
 }
 
 Keyframe keyframe(const test::Scene& scene, const Isometry3d& T_world_camera) {
-  ViewPyramid pyramid;
-  make_pyramid(test::exact_frame(scene, kCamera, T_world_camera), ViewConfig{}, pyramid);
-  const Intrinsics& camera = pyramid.levels.front().camera;
-  const Image<std::uint8_t> measured(camera.width_px, camera.height_px, 1);
   Keyframe made;
   made.T_world_camera = T_world_camera;
-  made.view = std::make_shared<const StoredView>(store(pyramid, measured));
+  made.view = test::stored_view(test::exact_frame(scene, kCamera, T_world_camera));
   return made;
 }
 

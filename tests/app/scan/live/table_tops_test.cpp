@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "mapping/alignment/view_pyramid.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/stored_view.hpp"
 
 namespace roomradar::table_tops_test {
 namespace {
@@ -47,13 +47,9 @@ struct Scan {
         model.finish();
       }
     }
-    ViewPyramid pyramid;
-    make_pyramid(*frame, ViewConfig{}, pyramid);
-    const Intrinsics& camera = pyramid.levels.front().camera;
-    const Image<std::uint8_t> measured(camera.width_px, camera.height_px, 1);
     Keyframe made;
     made.T_world_camera = T_world_camera;
-    made.view = std::make_shared<const StoredView>(store(pyramid, measured));
+    made.view = test::stored_view(*frame);
     keyframes.push_back(made);
   }
   std::optional<double> known(const Isometry3d& T_level_world = Isometry3d::Identity()) {
