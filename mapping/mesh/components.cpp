@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace roomradar {
@@ -46,10 +47,13 @@ Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles) {
   return out;
 }
 
-Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2) {
+Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2,
+                           const std::function<bool(std::uint32_t)>& is_cut) {
   DisjointSets<std::uint32_t> pieces = components_of(mesh);
   std::vector<float> piece_area_m2(mesh.vertices.size(), 0.0F);
   for (const Triangle& t : mesh.triangles) piece_area_m2[pieces.find(t[0])] += area_m2(mesh, t);
+  for (std::uint32_t v = 0; is_cut && v < mesh.vertices.size(); ++v)
+    if (is_cut(v)) piece_area_m2[pieces.find(v)] = std::numeric_limits<float>::infinity();
   std::vector<Triangle> kept;
   for (const Triangle& t : mesh.triangles)
     if (piece_area_m2[pieces.find(t[0])] >= min_component_area_m2) kept.push_back(t);

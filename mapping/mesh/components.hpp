@@ -1,6 +1,7 @@
 // components.hpp: connected components of a mesh, and removal of small ones.
 #pragma once
 #include <cstdint>
+#include <functional>
 
 #include "mapping/types/disjoint_sets.hpp"
 #include "mapping/types/mesh.hpp"
@@ -16,6 +17,9 @@ Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles);
 
 /// Drops connected components (by shared vertices) with an area below min_component_area_m2, and unused
 /// vertices.
-Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2);
+/// @param is_cut  called with the index of a vertex; true: its component may be larger than the mesh shows,
+///                and is kept. Empty: no component is cut
+Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2,
+                           const std::function<bool(std::uint32_t)>& is_cut = {});
 
 }  // namespace roomradar

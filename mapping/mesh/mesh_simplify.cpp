@@ -8,6 +8,7 @@
 #include <future>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "mapping/mesh/components.hpp"
@@ -77,12 +78,17 @@ SimplifiedMesh simplified_block(const Mesh& mesh, std::vector<float> tolerance_m
 // triangles and the vertices that no other block uses.
 class BlockSimplifier {
  public:
-  BlockSimplifier(Mesh& mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles)
+  BlockSimplifier(Mesh& mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles,
+                  std::vector<bool> fixed)
       : mesh_(mesh),
         max_deviation_m_(max_deviation_m),
         spacing_m_(spacing_m),
         blocks_(sort_into_blocks(mesh, block_triangles)),
-        on_seam_(seam_vertices(mesh, blocks_)) {}
+        fixed_(std::move(fixed)) {
+    const std::vector<bool> on_seam = seam_vertices(mesh, blocks_);
+    fixed_.resize(mesh.vertices.size(), false);
+    for (std::size_t v = 0; v < fixed_.size(); ++v) fixed_[v] = fixed_[v] || on_seam[v];
+  }
 
   /// Returns the greatest deviation (m) among the blocks processed by this call.
   float work() {
@@ -98,12 +104,12 @@ class BlockSimplifier {
     const BlockMesh full = block_mesh(mesh_, block);
     std::vector<float> tolerance_m;
     for (const std::uint32_t v : full.name)
-      tolerance_m.push_back(on_seam_[v] ? 0.0F : kOfBound * max_deviation_m_);
+      tolerance_m.push_back(fixed_[v] ? 0.0F : kOfBound * max_deviation_m_);
     const SimplifiedMesh result = simplified_block(full.mesh, tolerance_m, max_deviation_m_, spacing_m_);
     const Mesh& simple = result.mesh;
     for (std::size_t v = 0; v < full.name.size(); ++v) {
       const std::uint32_t name = full.name[v];
-      if (on_seam_[name]) continue;
+      if (fixed_[name]) continue;
       mesh_.vertices[name] = simple.vertices[v];
       if (!mesh_.normals.empty()) mesh_.normals[name] = simple.normals[v];
       if (!mesh_.colours.empty()) mesh_.colours[name] = simple.colours[v];
@@ -118,7 +124,7 @@ class BlockSimplifier {
   float max_deviation_m_;
   float spacing_m_;
   std::vector<std::span<Triangle>> blocks_;
-  std::vector<bool> on_seam_;
+  std::vector<bool> fixed_;  // on the seam of two blocks, or fixed by the caller
   std::atomic<std::size_t> next_ = 0;
 };
 
@@ -136,8 +142,9 @@ std::vector<std::uint32_t> vertices_by_use(const Mesh& mesh) {
 
 }  // namespace
 
-SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles) {
-  BlockSimplifier blocks(mesh, max_deviation_m, spacing_m, block_triangles);
+SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles,
+                          std::vector<bool> fixed) {
+  BlockSimplifier blocks(mesh, max_deviation_m, spacing_m, block_triangles, std::move(fixed));
   float deviation_m = 0.0F;
   if (blocks.has_many()) {
     auto second = std::async(std::launch::async, [&] { return blocks.work(); });

@@ -36,7 +36,8 @@ inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size 
 /// triangles less than 0.1 mm high are rejected. Source: Garland and Heckbert, Surface Simplification Using
 /// Quadric Error Metrics, SIGGRAPH 1997; bound: Klein, Liebich, Strasser, Mesh reduction with error control,
 /// IEEE Visualization 1996.
+/// @param fixed  by vertex: true if it must stay as it is; empty: none
 SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m,
-                          std::size_t block_triangles = kBlockTriangles);
+                          std::size_t block_triangles = kBlockTriangles, std::vector<bool> fixed = {});
 
 }  // namespace roomradar

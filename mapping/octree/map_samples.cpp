@@ -211,16 +211,17 @@ void require_cube(const VoxelIndex& lowest, int edge_voxels) {
       " is no leaf of an octree: it must lie within +-32768, on a multiple of its edge, a power of two");
 }
 
-// Adds another map's nodes to a tree.
+// Adds another map's nodes in a range of keys to a tree. No leaf block may be partly in the range.
 class AddMap {
  public:
-  AddMap(BlockOctree& tree, const FusionConfig& config, const BlockOctree& other)
-      : tree_(tree), config_(config), other_(other) {}
+  AddMap(BlockOctree& tree, const FusionConfig& config, const BlockOctree& other, const KeyRange& range)
+      : tree_(tree), config_(config), other_(other), range_(range) {}
 
   /// Returns the new state of the tree's `node` after the other map's node at the same place was added.
   Slot add(Slot node, Slot others, const Sides& others_sides, const NodePlace& place) {
-    if (others.is_unknown()) return node;
-    if (others.is_cube()) return add_log_odds(node, others.log_odds(), place.depth);
+    if (others.is_unknown() || !range_.meets(place)) return node;
+    const bool is_whole = range_.holds(place.key) && range_.holds(place.key + (place.edge_voxels() - 1));
+    if (others.is_cube() && is_whole) return add_log_odds(node, others.log_odds(), place.depth);
     if (others.is_leaf_block()) {
       const LeafBlock& block = other_.leaves(others);
       if (place.depth == kLeafDepth - 1) return add_cells(node, block, place);
@@ -231,7 +232,7 @@ class AddMap {
     InnerBlock made;
     if (!node.is_block()) made = opened(node);
     InnerBlock& block = node.is_block() ? tree_.inner(node) : made;
-    const InnerBlock& from = other_.inner(others);
+    const InnerBlock from = others.is_cube() ? opened(others) : other_.inner(others);
     for (unsigned i = 0; i < 8; ++i)
       block.slots[i] =
           add(block.slots[i], from.slots[i], sides_of_child(other_, from, others_sides, i), place.child(i));
@@ -281,6 +282,7 @@ class AddMap {
   BlockOctree& tree_;
   const FusionConfig& config_;
   const BlockOctree& other_;
+  KeyRange range_;
 };
 
 }  // namespace
@@ -325,10 +327,17 @@ void revise_samples(BlockOctree& tree, const FusionConfig& config, const KeyRang
   tree.root = revise(tree, tree.root, {}, static_cast<LogOdds>(free), range, decide);
 }
 
-void add_evidence(BlockOctree& tree, const FusionConfig& config, const BlockOctree& other) {
+void add_evidence(BlockOctree& tree, const FusionConfig& config, const BlockOctree& other,
+                  const KeyRange& range) {
   if (tree.resolution_m() != other.resolution_m())
     throw Error("maps with different resolutions cannot be added cell by cell");
-  tree.root = AddMap(tree, config, other).add(tree.root, other.root, {}, {});
+  constexpr int kBlock = 1 << (kLeafDepth - kCoarseDepth);
+  const auto is_at_block = [](const Eigen::Array3i& key) {
+    return key.unaryExpr([](int k) { return k & (kBlock - 1); }).isZero();
+  };
+  if (!is_at_block(range.first) || !is_at_block(range.last + 1))
+    throw Error("a part of a map must begin and end at multiples of " + std::to_string(kBlock) + " voxels");
+  tree.root = AddMap(tree, config, other, range).add(tree.root, other.root, {}, {});
 }
 
 void add_evidence(BlockOctree& tree, const FusionConfig& config, const MapLeaf& leaf) {

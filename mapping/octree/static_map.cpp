@@ -116,6 +116,12 @@ void StaticMap::add_evidence(const StaticMap& other) {
   roomradar::add_evidence(octree_->tree, octree_->config, other.octree_->tree);
 }
 
+void StaticMap::add_evidence(const StaticMap& other, const VoxelIndex& lowest_voxel, int edge_voxels) {
+  const Eigen::Array3i first = lowest_voxel.array() + kKeyOrigin;
+  roomradar::add_evidence(octree_->tree, octree_->config, other.octree_->tree,
+                          {first, first + (edge_voxels - 1)});
+}
+
 void StaticMap::revise_samples(const std::function<SampleAction(const SurfaceSample&)>& decide) {
   roomradar::revise_samples(octree_->tree, octree_->config, {}, decide);
 }

@@ -115,6 +115,9 @@ class StaticMap {
   /// Adds all log-odds and samples of another map of the same resolution, in the same world frame. Coarse
   /// cells stay coarse where this map has no fine samples. Throws Error if the resolutions differ.
   void add_evidence(const StaticMap& other);
+  /// Adds only what is in a cube of voxels. Added to an empty map, this copies a part of the other map.
+  /// Throws Error if the resolutions differ, or if the cube's lowest voxel or edge is no multiple of 4.
+  void add_evidence(const StaticMap& other, const VoxelIndex& lowest_voxel, int edge_voxels);
 
   /// Calls `decide` in Morton order for each voxel that has a signed distance or is occupied, and applies the
   /// returned action. The weight is 0 without a signed distance. Pruned nodes have no samples and are not

@@ -18,6 +18,14 @@ constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
 // measured crossing get distinct vertices along the surface.
 constexpr float kOfGuess = 0.05F;
 
+// Vertices and origin are at multiples of this. Hence a vertex is the same in two meshes of different origin,
+// and no bit is lost within 128 m of the origin.
+constexpr double kVertexStep_m = 1.0 / (1 << 17);
+
+Eigen::Vector3d on_vertex_grid(const Eigen::Vector3d& p_world) {
+  return (p_world.array() / kVertexStep_m).round().matrix() * kVertexStep_m;
+}
+
 // The eight samples of a dual cell. A mirrored corner of the voxels' grid has the sample of its coarse cell.
 struct CellCorners {
   std::array<const TsdfSample*, 8> samples;
@@ -89,7 +97,8 @@ class Net {
     for (Grid& grid : grids_) grid.cells.resize(grid.bricks.bricks().size());
     for (const Grid& grid : grids_)
       if (!grid.cells.empty()) {
-        mesh_.origin = grid.edge * grid.bricks.bricks().front().first.cast<double>() * resolution_m;
+        mesh_.origin = on_vertex_grid(grid.edge * grid.bricks.bricks().front().first.cast<double>() *
+                                      resolution_m);
         break;
       }
     for_each_brick([this](Grid& grid, std::size_t b) { find_signs(grid, b); });
@@ -248,7 +257,7 @@ class Net {
         // Samples are at the centres of cells, hence + 0.5.
         const Eigen::Vector3d voxels = grid.edge * (lowest.cast<double>() + vertex.position.cast<double>() +
                                                     Eigen::Vector3d::Constant(0.5));
-        mesh_.vertices.emplace_back((voxels * resolution_m_ - mesh_.origin).cast<float>());
+        mesh_.vertices.emplace_back((on_vertex_grid(voxels * resolution_m_) - mesh_.origin).cast<float>());
         mesh_.normals.push_back(normal_at(near, vertex.position));
         mesh_.colours.push_back(vertex.colour);
       }

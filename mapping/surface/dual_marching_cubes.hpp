@@ -10,8 +10,9 @@ namespace roomradar {
 /// cell's edges. Each crossed edge whose four cells have vertices gets a quad (two triangles). A cell with an
 /// unknown corner has no vertex, so unobserved areas stay open. Extrapolated samples count as known corners.
 /// An edge with an extrapolated end gets no quad. A crossing on such an edge has little weight in a vertex.
-/// Vertices are in the world (mesh.origin + vertex). Triangles and normals (gradient of the trilinear
-/// distance) face the free side. Colours come from the samples, or are grey if the samples have none.
+/// Vertices are in the world (mesh.origin + vertex), at multiples of 2^-17 m (8 um). Triangles and normals
+/// (gradient of the trilinear distance) face the free side. Colours come from the samples, or are grey if the
+/// samples have none.
 ///
 /// Edges of the mesh are manifold. Each has two triangles, or one where the samples end. The crossings on a
 /// cell's faces determine the cell's sheets. An ambiguous face (equal signs on each diagonal) separates its

@@ -36,13 +36,6 @@ void require_valid(const SurfaceConfig& config) {
   require("max_deviation_m", config.max_deviation_m);
 }
 
-Mesh full_surface(const StaticMap& map, const SurfaceConfig& config, const Eigen::AlignedBox3d& box_world) {
-  TsdfLevels levels(map, config.min_weight, box_world);
-  if (config.smoothing > 0.0F) smooth(levels, config.smoothing, kSweeps);
-  extrapolate_neighbours(levels);
-  return dual_marching_cubes(levels, map.resolution_m());
-}
-
 Eigen::AlignedBox3d whole_box(const StaticMap& map) {
   const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(map.reach_m());
   return {-reach_m, reach_m};
@@ -61,9 +54,20 @@ std::vector<Triangle> triangles_in(const Mesh& mesh, const Eigen::AlignedBox3d& 
 
 }  // namespace
 
-Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceStats* facts) {
+Mesh extract_full_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
+                          const SurfaceConfig& config) {
   require_valid(config);
-  Mesh full = full_surface(map, config, whole_box(map));
+  constexpr int kNodes_voxels = 8, kExtrapolation_voxels = 2, kCell_voxels = 2;
+  static_assert(kSurfaceReach_voxels >= kSweeps * kReachPerSweep_voxels + kNodes_voxels +
+                                            kExtrapolation_voxels + 2 * kCell_voxels);
+  TsdfLevels levels(map, config.min_weight, box_world);
+  if (config.smoothing > 0.0F) smooth(levels, config.smoothing, kSweeps);
+  extrapolate_neighbours(levels);
+  return dual_marching_cubes(levels, map.resolution_m());
+}
+
+Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceStats* facts) {
+  Mesh full = extract_full_surface(map, whole_box(map), config);
   SimplifiedMesh result{drop_small_components(full, config.min_component_area_m2), 0.0F};
   full = {};
   const std::size_t full_triangles = result.mesh.triangles.size();
@@ -84,7 +88,7 @@ Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
     const Eigen::Vector3d by = Eigen::Vector3d::Constant(voxels * voxel_m);
     return Eigen::AlignedBox3d(box_world.min() - by, box_world.max() + by);
   };
-  const Mesh full = full_surface(map, config, grown(kMargin_voxels));
+  const Mesh full = extract_full_surface(map, grown(kMargin_voxels), config);
   Mesh mesh = drop_small_components(full, config.min_component_area_m2);
   mesh = compacted(mesh, triangles_in(mesh, grown(kOverlap_voxels)));
   if (config.max_deviation_m <= 0.0F) return mesh;

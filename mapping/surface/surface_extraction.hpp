@@ -43,4 +43,13 @@ Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, Sur
 Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
                      const SurfaceConfig& config = {});
 
+/// Extracts the surface as measured: not simplified, with small components.
+/// @param box_world  samples of cells outside are ignored
+Mesh extract_full_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
+                          const SurfaceConfig& config = {});
+
+/// Number of voxels beyond which a sample has no influence on a vertex: that of smoothing in all sweeps, of
+/// the mirrored samples where fine and coarse cells meet, and of extrapolation.
+inline constexpr int kSurfaceReach_voxels = 64;
+
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// tsdf_smoothing.cpp: Gauss-Seidel sweeps over bricks of samples.
+// tsdf_smoothing.cpp: red-black Gauss-Seidel sweeps over bricks of samples.
 #include "mapping/surface/tsdf_smoothing.hpp"
 
 #include <array>
@@ -43,8 +43,20 @@ class Sweeps {
   }
 
   void sweep(float strength) {
+    for (const std::size_t parity : {0U, 1U}) half_sweep(strength, parity);
+  }
+
+ private:
+  std::vector<Brick>& all_;
+  std::vector<NeighbourBricks> neighbours_;
+  std::vector<std::array<float, kBrickSize>> measured_m_;
+
+  // Smooths the cells whose coordinates have a sum of this parity (0 or 1). Their axis neighbours have the
+  // other parity, so the order of cells and bricks does not matter.
+  void half_sweep(float strength, std::size_t parity) {
     for (std::size_t b = 0; b < all_.size(); ++b)
       for (std::size_t i = 0; i < kBrickSize; ++i) {
+        if (((i ^ i / kBrickEdge ^ i / (kBrickEdge * kBrickEdge)) & 1U) != parity) continue;
         TsdfSample& sample = all_[b].samples[i];
         if (!sample.known() || sample.mirrored || sample.weight > kFirm * strength) continue;
         float sum = sample.weight * measured_m_[b][i];
@@ -62,11 +74,6 @@ class Sweeps {
         sample.distance_m = sum / weight;
       }
   }
-
- private:
-  std::vector<Brick>& all_;
-  std::vector<NeighbourBricks> neighbours_;
-  std::vector<std::array<float, kBrickSize>> measured_m_;
 
   // The sample one step from i along an axis, in brick b or the next; null if unknown.
   [[nodiscard]] const TsdfSample* neighbour(std::size_t beyond, std::size_t b, std::size_t i, int step,

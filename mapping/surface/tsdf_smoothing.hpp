@@ -10,10 +10,14 @@ namespace roomradar {
 /// where w_i is the sample's weight and s is `strength` (> 0, in units of one measurement from 1 m). Axes
 /// with an unknown neighbour are left out. Flat surfaces thus do not move at any strength. The smoothing
 /// radius is sqrt(s / w) voxels. A wall scanned from 1 m keeps its detail. A wall measured once from 4 m is
-/// averaged over several voxels. Source: weighted diffusion, the Gauss-Seidel steps of a screened Poisson
-/// equation.
+/// averaged over several voxels. Source: weighted diffusion, the red-black Gauss-Seidel steps of a screened
+/// Poisson equation.
+///
+/// A sweep updates first the cells whose coordinates have an even sum, then the others. So a sample depends
+/// only on samples at most kReachPerSweep_voxels away.
 /// The grid of the coarse cells is smoothed with a quarter of the strength, and together with the voxels
 /// where the grids meet.
+inline constexpr int kReachPerSweep_voxels = 8;
 void smooth(TsdfLevels& levels, float strength, int sweeps);
 
 }  // namespace roomradar
