@@ -18,16 +18,6 @@
 namespace roomradar {
 namespace {
 
-/// Trusted poses, in the map's world.
-std::vector<TimedPose> trusted_poses(const FusionPass& pass) {
-  std::vector<TimedPose> poses;
-  for (const TrackedFrame& tracked : pass.found.frames) {
-    if (tracked.trusted)
-      poses.push_back({tracked.frame_index, tracked.stamp_s, pass.T_world_found * tracked.T_world_camera});
-  }
-  return poses;
-}
-
 /// Spans of frames without a trusted pose. Unreadable frames in a span are included.
 std::vector<FrameSpan> lost_frames(const std::vector<TrackedFrame>& frames) {
   std::vector<FrameSpan> lost;

@@ -157,4 +157,13 @@ FusionPass read_fusing_pass(const Checkpoint& checkpoint) {
   return pass;
 }
 
+std::vector<TimedPose> trusted_poses(const FusionPass& pass) {
+  std::vector<TimedPose> poses;
+  for (const TrackedFrame& tracked : pass.found.frames) {
+    if (tracked.trusted)
+      poses.push_back({tracked.frame_index, tracked.stamp_s, pass.T_world_found * tracked.T_world_camera});
+  }
+  return poses;
+}
+
 }  // namespace roomradar

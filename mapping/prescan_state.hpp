@@ -45,6 +45,9 @@ struct FusionPass {
   std::optional<std::int64_t> ghost_voxels;  ///< set once ghost removal is complete
 };
 
+/// Returns the trusted poses, in the map's world.
+std::vector<TimedPose> trusted_poses(const FusionPass& pass);
+
 inline constexpr const char* kTrackingStage = "track";
 inline constexpr const char* kTrackingAgainStage = "track again";  ///< after a restart; shown, not stored
 inline constexpr const char* kFusingStage = "fuse";

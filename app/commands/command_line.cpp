@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/building/building_command.hpp"
 #include "app/cli/completion.hpp"
 #include "app/cli/help_topics.hpp"
 #include "app/cli/manual_page.hpp"
@@ -163,6 +164,13 @@ void add_commands(CLI::App& app, std::function<int()>& work) {
   add_command<PrescanOptions>(app, "prescan", "scan a room and save it as a map", work);
   add_command<RunOptions>(app, "run", "run augmented reality in a saved map", work);
   add_map_commands(app, work);
+  add_command<BuildingOptions>(
+      app, "building",
+      "make one map of a building from many recordings, or bring it up to date:\n"
+      "tracks each recording, finds those that show the same places, puts all into one world, and\n"
+      "saves octree and surface in tiles, also as tileset.json with .glb for viewers of 3D Tiles",
+      work);
+  add_building_steps(app, work);
   add_command<RecordOptions>(app, "record", "write a source's frames as a recording", work);
   add_command<CalibrateOptions>(
       app, "calibrate",

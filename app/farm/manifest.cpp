@@ -21,17 +21,11 @@ constexpr std::uintmax_t kLargestManifest_bytes = 256U << 20U;
 constexpr std::size_t kMostJobs = 1'000'000;
 constexpr std::size_t kLongestName = 100;
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::array<std::string_view, 8> kCommands = {"calibrate", "fallthrough", "map",      "prescan",
-                                                       "record",    "run",         "simulate", "trade"};
+constexpr std::array<std::string_view, 9> kCommands = {
+    "building-step", "calibrate", "fallthrough", "map", "prescan", "record", "run", "simulate", "trade"};
 
 [[noreturn]] void fail(const std::filesystem::path& path, int line, const std::string& fault) {
   throw Error(path.string() + ", line " + std::to_string(line) + ": " + fault);
-}
-
-bool is_name(std::string_view name) {
-  return !name.empty() && name.size() <= kLongestName && name.front() != '.' && name.front() != '-' &&
-         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
-             std::string_view::npos;
 }
 
 /// Returns nullopt if a quote is not closed.
@@ -68,7 +62,7 @@ std::string_view trimmed(std::string_view text) {
 void read_head(std::string_view head, Job& job, const std::filesystem::path& path) {
   const std::size_t bracket = head.find('(');
   job.name = trimmed(head.substr(0, bracket));
-  if (!is_name(job.name))
+  if (!is_job_name(job.name))
     fail(path, job.line,
          "must begin with a name and a colon, such as `kitchen: prescan ...`; a name has letters, digits, - "
          "_ . and at most " +
@@ -135,6 +129,12 @@ void refuse_circles(const Manifest& manifest) {
 }
 
 }  // namespace
+
+bool is_job_name(std::string_view name) {
+  return !name.empty() && name.size() <= kLongestName && name.front() != '.' && name.front() != '-' &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
+             std::string_view::npos;
+}
 
 std::vector<WordPart> parts_of(const std::string& word) {
   std::vector<WordPart> parts;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace roomradar {
@@ -39,6 +40,9 @@ Manifest read_manifest(const std::filesystem::path& path);
 /// Parses the text of a manifest; see read_manifest().
 /// @param path  for messages, and as Manifest::path
 Manifest parse_manifest(const std::string& text, const std::filesystem::path& path);
+
+/// Returns true if a job may have this name: 1 to 100 letters, digits, - _ . that begin with neither . nor -.
+bool is_job_name(std::string_view name);
 
 /// A part of a word: text, or a placeholder.
 struct WordPart {

@@ -1,0 +1,241 @@
+// building.cpp: the stages in order, and the files of the finished building.
+#include "app/building/building.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/building/tileset.hpp"
+#include "mapping/storage/sha256.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/make_folder.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Plans and runs a stage. Counts its jobs.
+StageCounts run_counted(const BuildingWork& work, const std::string& stage, Manifest manifest,
+                        const RunStage& run_stage, std::set<std::string>& failed) {
+  StageCounts counts;
+  counts.stage = stage;
+  if (manifest.jobs.empty()) return counts;
+  const auto begin = std::chrono::steady_clock::now();
+  const FarmPlan plan = plan_farm(std::move(manifest), work.jobs());
+  const FarmState state = run_stage(stage, plan);
+  counts.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  counts.done = state.schedule.count(JobState::kDone);
+  counts.present = state.schedule.count(JobState::kPresent);
+  for (const auto& [job, result] : state.results) {
+    counts.cpu_s += result.cpu_s;
+    counts.peak_mb = std::max(counts.peak_mb, result.peak_mb);
+    if (result.is_done) continue;
+    const std::string& name = plan.manifest.jobs[job].name;
+    failed.insert(name);
+    counts.faults.push_back(name + ": " + result.fault);
+  }
+  counts.failed = counts.faults.size();
+  if (counts.done + counts.present + counts.failed < plan.jobs.size())
+    throw Error(work.folder.string() + ": stopped; the same command does the rest");
+  return counts;
+}
+
+/// Throws if a job failed whose result the building cannot be without.
+void require_all(const StageCounts& counts) {
+  if (counts.failed == 0) return;
+  throw Error(std::to_string(counts.failed) + " of the jobs '" + counts.stage + "' failed, for instance " +
+              counts.faults.front() + "; the same command tries them again");
+}
+
+std::vector<GraphSubmap> graph_submaps(const BuildingWork& work, const std::vector<std::string>& recordings,
+                                       const std::vector<Submap>& submaps) {
+  std::vector<GraphSubmap> graph(submaps.size());
+  for (std::size_t i = 0; i < submaps.size(); ++i) {
+    for (const MapKeyframe& keyframe : submaps[i].keyframes.keyframes)
+      graph[i].T_submap_keyframe.push_back(keyframe.T_world_camera);
+    std::error_code ignored;
+    if (fs::exists(work.placed(recordings[i]), ignored)) try {
+        graph[i].T_building_keyframe = load_placed_keyframes(work.placed(recordings[i]));
+      } catch (const Error&) {
+        graph[i].T_building_keyframe.clear();  // damaged: placed once more
+      }
+  }
+  return graph;
+}
+
+TrajectoryError recorded_error(const std::vector<Submap>& submaps,
+                               const std::vector<std::vector<TimedPose>>& trajectories) {
+  std::vector<TimedPose> estimate, recorded;
+  constexpr std::int64_t kApart = 1'000'000'000;  // frame numbers of two recordings do not meet
+  for (std::size_t i = 0; i < submaps.size(); ++i) {
+    const auto offset = static_cast<std::int64_t>(i) * kApart;
+    for (TimedPose pose : trajectories[i]) {
+      pose.frame_index += offset;
+      estimate.push_back(pose);
+    }
+    for (TimedPose pose : submaps[i].recorded) {
+      pose.frame_index += offset;
+      recorded.push_back(pose);
+    }
+  }
+  return absolute_trajectory_error(estimate, recorded);
+}
+
+/// Puts a file of a job into the building under a name with its hash. An equal file that is there stays.
+ContentFile adopt(const fs::path& from, const fs::path& folder, const std::string& stem,
+                  const std::string& extension) {
+  ContentFile file;
+  file.sha256 = sha256_of_file(from);
+  file.bytes = fs::file_size(from);
+  file.name = std::string(kTilesFolder) + "/" + stem + "." + file.sha256.substr(0, 16) + extension;
+  const fs::path to = folder / file.name;
+  std::error_code fault;
+  if (fs::exists(to, fault)) return file;
+  fs::create_hard_link(from, to, fault);
+  if (fault) fs::copy_file(from, to, fs::copy_options::overwrite_existing);
+  return file;
+}
+
+BuildingTile adopted_tile(const BuildingWork& work, const std::string& name, const json& facts) {
+  const fs::path job = work.job(tile_job(tile_of_name(name)));
+  const auto vector = [&](const char* key) {
+    const json& value = facts.at(key);
+    return Eigen::Vector3d(value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>());
+  };
+  BuildingTile tile;
+  tile.index = tile_of_name(name);
+  tile.triangles = facts.at("triangles").get<std::int64_t>();
+  tile.surface_world = {vector("surface_min_m"), vector("surface_max_m")};
+  tile.mesh_origin = vector("mesh_origin_m");
+  tile.octree = adopt(job / "tile.octree", work.folder, name, ".octree");
+  tile.mesh = adopt(job / "tile.mesh", work.folder, name, ".mesh");
+  tile.glb = adopt(job / "tile.glb", work.folder, name, ".glb");
+  return tile;
+}
+
+/// Deletes files of tiles that are not part of the building any more.
+void delete_others(const BuildingInfo& info, const fs::path& folder) {
+  std::set<std::string> used;
+  for (const BuildingTile& tile : info.tiles)
+    for (const ContentFile* file : {&tile.octree, &tile.mesh, &tile.glb})
+      used.insert(fs::path(file->name).filename().string());
+  std::vector<fs::path> others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / kTilesFolder))
+    if (!used.contains(entry.path().filename().string())) others.push_back(entry.path());
+  for (const fs::path& other : others) {
+    std::error_code ignored;
+    fs::remove(other, ignored);
+  }
+}
+
+std::string sentence_of(const StageCounts& counts, const std::string& outcome) {
+  std::string text = counts.stage + ": " + outcome;
+  if (counts.present > 0)
+    text += "; " + std::to_string(counts.present) + " of " +
+            std::to_string(counts.present + counts.done + counts.failed) + " jobs were done before";
+  if (counts.failed > 0) text += "; " + std::to_string(counts.failed) + " failed";
+  return text;
+}
+
+}  // namespace
+
+BuildingResult build_building(const BuildingWork& work, const RunStage& run_stage,
+                              const std::function<void(const std::string&)>& show) {
+  require_valid(work.grid);
+  BuildingResult result;
+  std::set<std::string> failed;
+  const auto stage = [&](const char* name, Manifest manifest) -> StageCounts& {
+    return result.stages.emplace_back(run_counted(work, name, std::move(manifest), run_stage, failed));
+  };
+
+  // Each recording alone. Those that cannot be tracked are left out.
+  const StageCounts tracked = stage("track", track_stage(work));
+  std::vector<std::string> names;
+  std::vector<Submap> submaps;  // without features
+  for (const ListedRecording& recording : work.recordings) {
+    if (failed.contains(track_job(recording.name))) continue;
+    names.push_back(recording.name);
+    submaps.push_back(load_submap_poses(work.job(track_job(recording.name))));
+  }
+  show(sentence_of(tracked, std::to_string(names.size()) + " recordings"));
+  if (names.empty()) require_all(tracked);
+
+  // Pairs that meet.
+  require_all(stage("retrieve", retrieve_stage(work, names)));
+  const std::vector<RetrievedPair> pairs = read_pairs(work.job(kRetrieveJob) / "pairs.json", names.size());
+  const StageCounts joined = stage("join", join_stage(work, names, pairs));
+  require_all(joined);
+  std::vector<GraphJoin> joins;
+  for (const RetrievedPair& pair : pairs)
+    for (SubmapJoin& join : load_joins(work.job(join_job(names[pair.a], names[pair.b])) / "joins.bin")) {
+      result.joins.push_back({names[pair.a], names[pair.b], join});
+      if (join.status == JoinStatus::kJoined) joins.push_back({pair.a, pair.b, std::move(join)});
+    }
+  show(sentence_of(
+      joined, std::to_string(pairs.size()) + " pairs may meet, " + std::to_string(joins.size()) + " joins"));
+
+  // All recordings in one world. The largest connected part is the building.
+  const BuildingGraph graph = solve_building(graph_submaps(work, names, submaps), joins);
+  std::size_t at = 0;
+  for (JoinedPair& pair : result.joins) {
+    if (pair.join.status != JoinStatus::kJoined) continue;
+    pair.is_used = graph.is_used[at];
+    pair.off_m = graph.off_m[at++];
+  }
+  std::vector<std::size_t> size_of_part(graph.parts, 0);
+  for (const PlacedSubmap& placed : graph.submaps) ++size_of_part[placed.part];
+  const auto building_part = static_cast<std::size_t>(
+      std::max_element(size_of_part.begin(), size_of_part.end()) - size_of_part.begin());
+  std::vector<std::string> placed_names;
+  std::vector<Submap> placed_submaps;
+  std::vector<std::vector<TimedPose>> trajectories;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const PlacedSubmap& placed = graph.submaps[i];
+    const bool is_placed = placed.part == building_part;
+    result.info.recordings.push_back({names[i], submaps[i].source, submaps[i].frames_read,
+                                      static_cast<std::int64_t>(submaps[i].trajectory.size()),
+                                      static_cast<std::int64_t>(submaps[i].keyframes.keyframes.size()),
+                                      is_placed});
+    if (!is_placed) continue;
+    result.kept += placed.was_kept ? 1 : 0;
+    save_placed_keyframes(placed.T_building_keyframe, work.placed(names[i]));
+    placed_names.push_back(names[i]);
+    trajectories.push_back(corrected_trajectory(submaps[i], placed.T_building_keyframe));
+    placed_submaps.push_back(submaps[i]);
+  }
+  result.recorded_error = recorded_error(placed_submaps, trajectories);
+  show("place: " + std::to_string(placed_names.size()) + " of " + std::to_string(names.size()) +
+       " recordings hang together, " +
+       std::to_string(std::count(graph.is_used.begin(), graph.is_used.end(), true)) + " joins agree");
+
+  // Tiles.
+  require_all(stage("fuse", fuse_stage(work, placed_names)));
+  const auto parts_of = parts_by_tile(work, placed_names);
+  const StageCounts tiled = stage("tile", tile_stage(work, parts_of));
+  require_all(tiled);
+  result.info.grid = work.grid;
+  make_folder(work.folder / kTilesFolder);
+  make_folder(work.folder / kRecordingsFolder);
+  for (const auto& [name, recordings] : parts_of) {
+    const json facts =
+        json::parse(read_bytes(work.job(tile_job(tile_of_name(name))) / "tile.json", "a tile's numbers"));
+    if (facts.at("triangles").get<std::int64_t>() > 0)
+      result.info.tiles.push_back(adopted_tile(work, name, facts));
+  }
+  std::sort(result.info.tiles.begin(), result.info.tiles.end(),
+            [](const BuildingTile& a, const BuildingTile& b) { return is_before(a.index, b.index); });
+  for (std::size_t i = 0; i < placed_names.size(); ++i)
+    write_trajectory(work.folder / kRecordingsFolder / (placed_names[i] + ".trajectory.txt"),
+                     trajectories[i]);
+  write_tileset(result.info, work.folder);
+  write_building(result.info, work.folder);
+  delete_others(result.info, work.folder);
+  show(sentence_of(tiled, std::to_string(result.info.tiles.size()) + " tiles with surface"));
+  return result;
+}
+
+}  // namespace roomradar

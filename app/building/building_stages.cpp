@@ -1,0 +1,146 @@
+// building_stages.cpp: words of the jobs.
+#include "app/building/building_stages.hpp"
+
+#include <algorithm>
+
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/make_folder.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A manifest's text, line by line.
+class Lines {
+ public:
+  void begin(const std::string& job) { text_ += job + ":"; }
+  void word(const std::string& word) {
+    const char quote = word.find('\'') == std::string::npos ? '\'' : '"';
+    if (word.find(quote) != std::string::npos || word.find('\n') != std::string::npos)
+      throw Error("'" + word +
+                  "': a name with both kinds of quotes, or a line end, cannot be handed to a job");
+    text_ += std::string(" ") + quote + word + quote;
+  }
+  /// A word that may have { or }.
+  void literal(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) escaped += c == '{' || c == '}' ? std::string(2, c) : std::string(1, c);
+    word(escaped);
+  }
+  void end() { text_ += "\n"; }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+Manifest written(const BuildingWork& work, const char* stage, const Lines& lines) {
+  make_folder(work.jobs());
+  const fs::path path = work.jobs() / (std::string(stage) + ".jobs");
+  write_bytes(path, lines.text());
+  return read_manifest(path);
+}
+
+/// A recording's source as a word: relative to the folder of jobs if it is a file or folder, so that a
+/// building that is moved with its recordings stays the same.
+std::string source_word(const BuildingWork& work, const std::string& recording) {
+  const auto listed = std::find_if(work.recordings.begin(), work.recordings.end(),
+                                   [&](const ListedRecording& one) { return one.name == recording; });
+  const fs::path path = work.list_folder / listed->source;
+  std::error_code ignored;
+  return fs::exists(path, ignored) ? path.lexically_normal().lexically_proximate(work.jobs()).string()
+                                   : listed->source;
+}
+
+void begin_step(Lines& lines, const std::string& job, const char* step) {
+  lines.begin(job);
+  lines.word("building-step");
+  lines.word(step);
+}
+
+void add_grid(Lines& lines, const TileGrid& grid) {
+  lines.word("--resolution=" + format_number(grid.resolution_m));
+  lines.word("--tile-edge=" + std::to_string(grid.edge_voxels));
+}
+
+}  // namespace
+
+Manifest track_stage(const BuildingWork& work) {
+  Lines lines;
+  for (const ListedRecording& recording : work.recordings) {
+    begin_step(lines, track_job(recording.name), "track");
+    lines.literal(source_word(work, recording.name));
+    lines.word("--poses=" + std::string(to_string(work.poses)));
+    lines.word("--out={}");
+    lines.end();
+  }
+  return written(work, "track", lines);
+}
+
+Manifest retrieve_stage(const BuildingWork& work, const std::vector<std::string>& recordings) {
+  Lines lines;
+  begin_step(lines, kRetrieveJob, "retrieve");
+  for (const std::string& recording : recordings) lines.word(track_job(recording));
+  lines.word("--out={}");
+  lines.end();
+  return written(work, "retrieve", lines);
+}
+
+Manifest join_stage(const BuildingWork& work, const std::vector<std::string>& recordings,
+                    const std::vector<RetrievedPair>& pairs) {
+  Lines lines;
+  for (const RetrievedPair& pair : pairs) {
+    begin_step(lines, join_job(recordings[pair.a], recordings[pair.b]), "join");
+    lines.word(track_job(recordings[pair.a]));
+    lines.word(track_job(recordings[pair.b]));
+    lines.word("--keyframes=" + pair.keyframes);
+    lines.word("--out={}");
+    lines.end();
+  }
+  return written(work, "join", lines);
+}
+
+Manifest fuse_stage(const BuildingWork& work, const std::vector<std::string>& recordings) {
+  Lines lines;
+  for (const std::string& recording : recordings) {
+    begin_step(lines, fuse_job(recording), "fuse");
+    lines.literal(source_word(work, recording));
+    lines.word("--submap=" + track_job(recording));
+    lines.word("--placed=" + work.placed(recording).filename().string());
+    add_grid(lines, work.grid);
+    if (work.poses == PoseOrigin::kRecorded) lines.word("--keep-ghosts");
+    lines.word("--out={}");
+    lines.end();
+  }
+  return written(work, "fuse", lines);
+}
+
+Manifest tile_stage(const BuildingWork& work,
+                    const std::map<std::string, std::vector<std::string>>& parts_of) {
+  Lines lines;
+  for (const auto& [tile, recordings] : parts_of) {
+    begin_step(lines, tile_job(tile_of_name(tile)), "tile");
+    lines.word("--tile=" + tile);
+    for (const std::string& recording : recordings)
+      lines.word(fuse_job(recording) + "/parts/" + tile + ".octree");
+    add_grid(lines, work.grid);
+    lines.word("--deviation=" + format_number(work.deviation_m));
+    lines.word("--out={}");
+    lines.end();
+  }
+  return written(work, "tile", lines);
+}
+
+std::map<std::string, std::vector<std::string>> parts_by_tile(const BuildingWork& work,
+                                                              const std::vector<std::string>& recordings) {
+  std::map<std::string, std::vector<std::string>> parts_of;
+  for (const std::string& recording : recordings)
+    for (const fs::directory_entry& file : fs::directory_iterator(work.job(fuse_job(recording)) / "parts"))
+      if (file.path().extension() == ".octree") parts_of[file.path().stem().string()].push_back(recording);
+  return parts_of;
+}
+
+}  // namespace roomradar

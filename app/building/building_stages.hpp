@@ -1,0 +1,60 @@
+// building_stages.hpp: the jobs of each stage, from recordings to tiles.
+//
+// Each stage is a manifest of jobs that do not depend on each other. What a stage's jobs read is known before
+// they begin, so a job is done again only if the content of its inputs changed.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/building/building_steps.hpp"
+#include "app/building/recording_list.hpp"
+#include "app/farm/manifest.hpp"
+
+namespace roomradar {
+
+/// Folders and settings of a building in the making.
+struct BuildingWork {
+  std::filesystem::path folder;             ///< of the building, absolute
+  std::filesystem::path list_folder;        ///< of the list of recordings, absolute
+  std::vector<ListedRecording> recordings;  ///< in order of their names
+  TileGrid grid;
+  PoseOrigin poses = PoseOrigin::kTracked;
+  double deviation_m = 0.002;
+
+  /// Folder with a folder per job.
+  [[nodiscard]] std::filesystem::path jobs() const { return folder / "work"; }
+  [[nodiscard]] std::filesystem::path job(const std::string& name) const { return jobs() / name; }
+  /// File with the keyframes' poses of a recording in the building.
+  [[nodiscard]] std::filesystem::path placed(const std::string& recording) const {
+    return jobs() / ("placed-" + recording + ".bin");
+  }
+};
+
+inline std::string track_job(const std::string& recording) { return "track-" + recording; }
+inline std::string fuse_job(const std::string& recording) { return "fuse-" + recording; }
+inline std::string join_job(const std::string& a, const std::string& b) { return "join-" + a + "-" + b; }
+inline std::string tile_job(const TileIndex& tile) { return "tile-" + name_of(tile); }
+inline constexpr const char* kRetrieveJob = "pairs";  // no folder may have the name of a step
+
+// Each function writes a stage's manifest to the folder of jobs and returns it. Throws Error if that fails.
+
+/// A job per recording.
+Manifest track_stage(const BuildingWork& work);
+/// One job, which reads the submaps of `recordings`.
+Manifest retrieve_stage(const BuildingWork& work, const std::vector<std::string>& recordings);
+/// A job per pair. RetrievedPair counts in `recordings`.
+Manifest join_stage(const BuildingWork& work, const std::vector<std::string>& recordings,
+                    const std::vector<RetrievedPair>& pairs);
+/// A job per recording that has a place in the building.
+Manifest fuse_stage(const BuildingWork& work, const std::vector<std::string>& recordings);
+/// A job per tile, of the parts of these recordings, in order.
+Manifest tile_stage(const BuildingWork& work,
+                    const std::map<std::string, std::vector<std::string>>& parts_of);
+
+/// Returns, by the tile's name, the recordings whose folders of parts have the tile.
+std::map<std::string, std::vector<std::string>> parts_by_tile(const BuildingWork& work,
+                                                              const std::vector<std::string>& recordings);
+
+}  // namespace roomradar

@@ -1,0 +1,218 @@
+// building_steps.cpp: calls of mapping, from files to files.
+#include "app/building/building_steps.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/cli/open_source.hpp"
+#include "app/sources/formats/parse_numbers.hpp"
+#include "mapping/building/building_info.hpp"
+#include "mapping/building/keyframe_retrieval.hpp"
+#include "mapping/building/submap_join.hpp"
+#include "mapping/building/tile_surface.hpp"
+#include "mapping/deskewed_source.hpp"
+#include "mapping/mesh/mesh_file.hpp"
+#include "mapping/prescan_passes.hpp"
+#include "mapping/storage/binary_file.hpp"
+#include "mapping/types/serialize.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/make_folder.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::string_view kPlacedMagic = "RRPLACED";
+constexpr std::uint32_t kPlacedVersion = 1;
+
+/// Parses "I:J,I:J".
+std::vector<std::pair<std::size_t, std::size_t>> keyframe_pairs(const std::string& text, std::size_t count_a,
+                                                                std::size_t count_b) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size()), colon = text.find(':', at);
+    const auto number = [&](std::size_t from, std::size_t to, std::size_t count) {
+      const auto value = from < to && to <= end ? parse_number(text.substr(from, to - from)) : std::nullopt;
+      if (!value || *value < 0.0 || *value != std::floor(*value) || *value >= static_cast<double>(count))
+        throw Error("'" + text.substr(at, end - at) + "' is no pair of keyframes of the two recordings");
+      return static_cast<std::size_t>(*value);
+    };
+    const std::size_t a = number(at, colon, count_a);
+    pairs.emplace_back(a, number(colon + 1, end, count_b));
+    at = end + 1;
+  }
+  return pairs;
+}
+
+/// Fuses the frames and removes ghosts, as prescan() does.
+StaticMap fused(FrameSource& source, const Submap& submap, const std::vector<TimedPose>& trajectory,
+                const FuseStep& step) {
+  PrescanConfig config;
+  config.resolution_m = step.grid.resolution_m;
+  StageTimes times;
+  const PrescanProgress no_progress;
+  FusionPass pass;
+  pass.counts.frames_read = submap.frames_read;
+  pass.octree = StaticMap(config.resolution_m);
+  DeskewedSource deskewed(source, trajectory, submap.timing);
+  PrescanWork work{&deskewed, config, times, no_progress, nullptr, pass.octree.reach_m()};
+  run_fusion_pass(work, trajectory, pass);
+  if (pass.fused.empty())
+    throw Error(source.name() + ": no frame could be fused; is the recording within " +
+                std::to_string(static_cast<int>(work.reach_m)) + " m of the building's origin?");
+  if (step.remove_ghosts) run_ghost_removal(work, pass);
+  return std::move(pass.octree);
+}
+
+}  // namespace
+
+int run(const TrackStep& step) {
+  const std::unique_ptr<FrameSource> source = open_source(step.source, {});
+  PrescanConfig config;
+  config.poses = step.poses;
+  StageTimes times;
+  const PrescanProgress no_progress;
+  PrescanWork work{source.get(), config,  times,
+                   no_progress,  nullptr, StaticMap(config.resolution_m).reach_m()};
+  std::optional<SavedMap> no_map;
+  FusionPass pass = run_tracking_pass(work, no_map);
+
+  Submap submap;
+  submap.source = source->name();
+  submap.frames_read = pass.counts.frames_read;
+  submap.timing = pass.counts.timing;
+  submap.trajectory = trusted_poses(pass);
+  submap.recorded = std::move(pass.found.recorded);
+  if (submap.trajectory.empty())
+    throw Error(source->name() +
+                ": no frame has a pose that can be trusted; is there depth between 0.5 and 6 m "
+                "in the frames?");
+  submap.keyframes = std::move(pass.found.keyframe_database);
+  transform(submap.keyframes, pass.T_world_found);
+  std::stable_sort(submap.keyframes.keyframes.begin(), submap.keyframes.keyframes.end(),
+                   [](const MapKeyframe& a, const MapKeyframe& b) { return a.frame_index < b.frame_index; });
+  submap.keyframes.index = {};
+  save_submap(submap, step.out);
+  std::printf("%s: %zu of %lld frames tracked, %zu keyframes\n", submap.source.c_str(),
+              submap.trajectory.size(), static_cast<long long>(submap.frames_read),
+              submap.keyframes.keyframes.size());
+  return 0;
+}
+
+int run(const RetrieveStep& step) {
+  KeyframeRetrieval retrieval;
+  for (const fs::path& folder : step.submaps) retrieval.add(load_submap(folder));
+  json pairs = json::array();
+  for (const CandidatePair& pair : retrieval.pairs()) {
+    std::string keyframes;
+    for (const auto& [i, j] : pair.keyframes)
+      keyframes += (keyframes.empty() ? "" : ",") + std::to_string(i) + ":" + std::to_string(j);
+    pairs.push_back({{"a", pair.a}, {"b", pair.b}, {"keyframes", keyframes}});
+  }
+  write_bytes(step.out / "pairs.json", pairs.dump(1) + "\n");
+  std::printf("%zu keyframes of %zu recordings: %zu pairs of recordings may meet\n", retrieval.keyframes(),
+              step.submaps.size(), pairs.size());
+  return 0;
+}
+
+std::vector<RetrievedPair> read_pairs(const fs::path& file, std::size_t submaps) {
+  std::vector<RetrievedPair> pairs;
+  try {
+    for (const json& one : json::parse(read_bytes(file, "pairs of recordings")))
+      pairs.push_back({one.at("a").get<std::size_t>(), one.at("b").get<std::size_t>(),
+                       one.at("keyframes").get<std::string>()});
+  } catch (const json::exception& fault) {
+    throw Error(file.string() + ": is damaged: " + fault.what());
+  }
+  for (const RetrievedPair& pair : pairs)
+    if (pair.a >= pair.b || pair.b >= submaps)
+      throw Error(file.string() + ": is damaged: no such recordings");
+  return pairs;
+}
+
+int run(const JoinStep& step) {
+  const Submap a = load_submap(step.a), b = load_submap(step.b);
+  const auto keyframes =
+      keyframe_pairs(step.keyframes, a.keyframes.keyframes.size(), b.keyframes.keyframes.size());
+  const std::vector<SubmapJoin> joins = join_submaps(a, b, keyframes);
+  save_joins(joins, step.out / "joins.bin");
+  for (const SubmapJoin& join : joins)
+    std::printf("%s and %s: %s\n", a.source.c_str(), b.source.c_str(), describe(join).c_str());
+  return 0;
+}
+
+int run(const FuseStep& step) {
+  require_valid(step.grid);
+  const Submap submap = load_submap_poses(step.submap);
+  const std::vector<Eigen::Isometry3d> placed = load_placed_keyframes(step.placed);
+  if (placed.size() != submap.keyframes.keyframes.size())
+    throw Error(step.placed.string() + ": has poses of another recording");
+  const std::vector<TimedPose> trajectory = corrected_trajectory(submap, placed);
+  const std::unique_ptr<FrameSource> source = open_source(step.source, {});
+  const StaticMap map = fused(*source, submap, trajectory, step);
+  const fs::path folder = step.out / "parts";
+  make_folder(folder);
+  const std::vector<TileIndex> tiles = tiles_of(map, step.grid, kSurfaceReach_voxels);
+  for (const TileIndex& tile : tiles) {
+    StaticMap part(step.grid.resolution_m);
+    part.add_evidence(map, lowest_voxel(step.grid, tile) - VoxelIndex::Constant(kSurfaceReach_voxels),
+                      step.grid.edge_voxels + 2 * kSurfaceReach_voxels);
+    part.write(folder / (name_of(tile) + ".octree"));
+  }
+  std::printf("%s: %zu frames, parts of %zu tiles\n", submap.source.c_str(), trajectory.size(), tiles.size());
+  return 0;
+}
+
+int run(const TileStep& step) {
+  require_valid(step.grid);
+  const TileIndex tile = tile_of_name(step.tile);
+  StaticMap map(step.grid.resolution_m);
+  for (const fs::path& part : step.parts) map.add_evidence(StaticMap::read(part));
+  SurfaceConfig config;
+  config.max_deviation_m = static_cast<float>(step.deviation_m);
+  Mesh mesh = extract_tile_surface(map, step.grid, tile, config);
+  json facts = {{"triangles", mesh.triangles.size()}};
+  if (!mesh.triangles.empty()) {
+    StaticMap own(step.grid.resolution_m);
+    own.add_evidence(map, lowest_voxel(step.grid, tile), step.grid.edge_voxels);
+    own.write(step.out / "tile.octree");
+    write_tile_mesh(mesh, step.out / "tile.mesh");
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3f& v : mesh.vertices) box.extend(mesh.origin + v.cast<double>());
+    const auto array_of = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
+    facts.update({{"surface_min_m", array_of(box.min())},
+                  {"surface_max_m", array_of(box.max())},
+                  {"mesh_origin_m", array_of(mesh.origin)}});
+    mesh.origin.setZero();
+    write_mesh(mesh, step.out / "tile.glb");
+  }
+  write_bytes(step.out / "tile.json", facts.dump(1) + "\n");
+  std::printf("tile %s: %zu parts, %zu triangles\n", step.tile.c_str(), step.parts.size(),
+              mesh.triangles.size());
+  return 0;
+}
+
+void save_placed_keyframes(const std::vector<Eigen::Isometry3d>& T_building_keyframe, const fs::path& path) {
+  ByteWriter out;
+  std::vector<Eigen::Isometry3d> copy = T_building_keyframe;
+  serialize(out, copy);
+  write_binary(path, kPlacedMagic, kPlacedVersion, out.bytes());
+}
+
+std::vector<Eigen::Isometry3d> load_placed_keyframes(const fs::path& path) {
+  const std::string bytes = read_binary(path, kPlacedMagic, kPlacedVersion);
+  ByteReader in(bytes, path.string());
+  std::vector<Eigen::Isometry3d> poses;
+  serialize(in, poses);
+  in.require_end();
+  return poses;
+}
+
+}  // namespace roomradar

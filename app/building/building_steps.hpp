@@ -1,0 +1,75 @@
+// building_steps.hpp: the steps from recordings to tiles. Each is one job: it reads files and writes files,
+// and depends on nothing else.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mapping/building/tile_grid.hpp"
+#include "mapping/types/pose_origin.hpp"
+
+namespace roomradar {
+
+/// Tracks the camera of one recording. Writes the submap to `out`.
+struct TrackStep {
+  std::string source;
+  PoseOrigin poses = PoseOrigin::kTracked;
+  std::filesystem::path out;  ///< folder, which must exist
+};
+int run(const TrackStep& step);
+
+/// Finds pairs of recordings that may show the same place. Writes out/pairs.json; see read_pairs().
+struct RetrieveStep {
+  std::vector<std::filesystem::path> submaps;  ///< folders
+  std::filesystem::path out;
+};
+int run(const RetrieveStep& step);
+
+/// Compares two submaps at pairs of keyframes. Writes out/joins.bin; see load_joins().
+struct JoinStep {
+  std::filesystem::path a, b;  ///< folders of submaps
+  std::string keyframes;       ///< pairs of keyframes "I:J,I:J"
+  std::filesystem::path out;
+};
+int run(const JoinStep& step);
+
+/// Fuses a recording's frames with its poses in the building, and splits the octree. Writes
+/// out/parts/TILE.octree for each tile, with a margin of kSurfaceReach_voxels.
+struct FuseStep {
+  std::string source;
+  std::filesystem::path submap;  ///< folder
+  std::filesystem::path placed;  ///< file; see save_placed_keyframes()
+  TileGrid grid;
+  bool remove_ghosts = true;
+  std::filesystem::path out;
+};
+int run(const FuseStep& step);
+
+/// Adds the parts of one tile, and extracts its surface. Writes out/tile.octree (the tile's cube), tile.mesh
+/// and tile.glb, or nothing but out/tile.json if the tile has no surface of its own.
+struct TileStep {
+  std::string tile;                          ///< its name
+  std::vector<std::filesystem::path> parts;  ///< files, in the order in which they are added
+  TileGrid grid;
+  double deviation_m = 0.002;
+  std::filesystem::path out;
+};
+int run(const TileStep& step);
+
+/// Two submaps, by position in RetrieveStep::submaps, and pairs of their keyframes.
+struct RetrievedPair {
+  std::size_t a = 0, b = 0;
+  std::string keyframes;  ///< as in JoinStep
+};
+/// Reads pairs.json. Throws Error naming the file and the fault if it is missing or damaged.
+std::vector<RetrievedPair> read_pairs(const std::filesystem::path& file, std::size_t submaps);
+
+/// Writes a submap's keyframe poses in the building. Throws Error if the file cannot be written.
+void save_placed_keyframes(const std::vector<Eigen::Isometry3d>& T_building_keyframe,
+                           const std::filesystem::path& path);
+/// Reads them. Throws Error naming the file and the fault if it is missing or damaged.
+std::vector<Eigen::Isometry3d> load_placed_keyframes(const std::filesystem::path& path);
+
+}  // namespace roomradar

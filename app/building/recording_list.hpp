@@ -1,0 +1,26 @@
+// recording_list.hpp: the list of a building's recordings.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace roomradar {
+
+struct ListedRecording {
+  std::string name;    ///< in reports, and of its folder
+  std::string source;  ///< as open_source() takes it; a file or folder is relative to the list's folder
+};
+
+/// Reads a list of recordings, one per line:
+///
+///     # first floor
+///     hall: recordings/hall
+///     office-1: recordings/office-1.bag
+///
+/// Empty lines and lines that begin with # are left out. The order does not matter: the recordings are
+/// returned in order of their names.
+/// @throws Error with file, line and fault if the file cannot be read, a line has another form, a name occurs
+///         twice, or the list is empty
+std::vector<ListedRecording> read_recording_list(const std::filesystem::path& path);
+
+}  // namespace roomradar

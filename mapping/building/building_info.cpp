@@ -1,0 +1,154 @@
+// building_info.cpp: building.json and the meshes of tiles.
+#include "mapping/building/building_info.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "mapping/mesh/serialize_mesh.hpp"
+#include "mapping/storage/binary_file.hpp"
+#include "mapping/types/system/atomic_file.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kFormat = 1;
+constexpr std::string_view kMeshMagic = "RRTILEMS";
+constexpr std::uint32_t kMeshVersion = 1;
+
+json to_json(const ContentFile& file) {
+  return {{"file", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}};
+}
+
+json array_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+ContentFile content_file_of(const json& value) {
+  ContentFile file{value.at("file").get<std::string>(), value.at("sha256").get<std::string>(),
+                   value.at("bytes").get<std::uintmax_t>()};
+  const fs::path path = file.name;
+  const bool is_inside =
+      path.is_relative() &&
+      std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
+  if (!is_inside || file.name.empty()) throw Error("names a file outside its folder: '" + file.name + "'");
+  const bool is_hash =
+      file.sha256.size() == 64 && file.sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (!is_hash) throw Error("has no SHA-256 of " + file.name);
+  return file;
+}
+
+Eigen::Vector3d vector_of(const json& value) {
+  const Eigen::Vector3d v(value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>());
+  if (!v.allFinite()) throw Error("has a coordinate that is no number");
+  return v;
+}
+
+BuildingTile tile_of(const json& value) {
+  BuildingTile tile;
+  tile.index = tile_of_name(value.at("name").get<std::string>());
+  tile.triangles = value.at("triangles").get<std::int64_t>();
+  tile.surface_world = {vector_of(value.at("surface_min_m")), vector_of(value.at("surface_max_m"))};
+  tile.mesh_origin = vector_of(value.at("mesh_origin_m"));
+  tile.octree = content_file_of(value.at("octree"));
+  tile.mesh = content_file_of(value.at("mesh"));
+  tile.glb = content_file_of(value.at("glb"));
+  return tile;
+}
+
+BuildingInfo info_of(const json& value) {
+  const int format = value.at("format").get<int>();
+  if (format != kFormat)
+    throw Error("is of format " + std::to_string(format) + "; this program reads format " +
+                std::to_string(kFormat));
+  BuildingInfo info;
+  info.grid.resolution_m = value.at("resolution_m").get<double>();
+  info.grid.edge_voxels = value.at("tile_edge_voxels").get<int>();
+  require_valid(info.grid);
+  for (const json& one : value.at("recordings"))
+    info.recordings.push_back({one.at("name").get<std::string>(), one.at("source").get<std::string>(),
+                               one.at("frames_read").get<std::int64_t>(),
+                               one.at("frames_tracked").get<std::int64_t>(),
+                               one.at("keyframes").get<std::int64_t>(), one.at("is_placed").get<bool>()});
+  for (const json& one : value.at("tiles")) info.tiles.push_back(tile_of(one));
+  const auto is_unordered = [](const BuildingTile& a, const BuildingTile& b) {
+    return !is_before(a.index, b.index);
+  };
+  if (std::adjacent_find(info.tiles.begin(), info.tiles.end(), is_unordered) != info.tiles.end())
+    throw Error("lists a tile twice, or tiles out of order");
+  return info;
+}
+
+}  // namespace
+
+bool is_building(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder / kBuildingFile, ignored);
+}
+
+BuildingInfo read_building(const fs::path& folder) {
+  const fs::path path = folder / kBuildingFile;
+  const std::string text = read_bytes(path, "a building's list of tiles");
+  try {
+    return info_of(json::parse(text));
+  } catch (const json::exception& fault) {
+    throw Error(path.string() + ": is damaged: " + fault.what());
+  } catch (const Error& fault) {
+    throw Error(path.string() + ": " + fault.what());
+  }
+}
+
+void write_building(const BuildingInfo& info, const fs::path& folder) {
+  json value = {{"format", kFormat},
+                {"resolution_m", info.grid.resolution_m},
+                {"tile_edge_voxels", info.grid.edge_voxels},
+                {"recordings", json::array()},
+                {"tiles", json::array()}};
+  for (const BuildingRecording& one : info.recordings)
+    value["recordings"].push_back({{"name", one.name},
+                                   {"source", one.source},
+                                   {"frames_read", one.frames_read},
+                                   {"frames_tracked", one.frames_tracked},
+                                   {"keyframes", one.keyframes},
+                                   {"is_placed", one.is_placed}});
+  for (const BuildingTile& tile : info.tiles)
+    value["tiles"].push_back({{"name", name_of(tile.index)},
+                              {"triangles", tile.triangles},
+                              {"surface_min_m", array_of(tile.surface_world.min())},
+                              {"surface_max_m", array_of(tile.surface_world.max())},
+                              {"mesh_origin_m", array_of(tile.mesh_origin)},
+                              {"octree", to_json(tile.octree)},
+                              {"mesh", to_json(tile.mesh)},
+                              {"glb", to_json(tile.glb)}});
+  AtomicFile file(folder / kBuildingFile);
+  file.stream() << value.dump(1) << "\n";
+  file.commit();
+}
+
+void write_tile_mesh(const Mesh& mesh, const fs::path& path) {
+  ByteWriter out;
+  Mesh copy = mesh;
+  serialize(out, copy);
+  write_binary(path, kMeshMagic, kMeshVersion, out.bytes());
+}
+
+Mesh read_tile_mesh(const fs::path& path) {
+  const std::string bytes = read_binary(path, kMeshMagic, kMeshVersion);
+  ByteReader in(bytes, path.string());
+  Mesh mesh;
+  serialize(in, mesh);
+  in.require_end();
+  const auto is_one_each = [&](std::size_t count) { return count == 0 || count == mesh.vertices.size(); };
+  if (!mesh.origin.allFinite() || !is_one_each(mesh.normals.size()) || !is_one_each(mesh.colours.size()))
+    in.fail("is damaged: normals, colours or origin are not those of a mesh");
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t)
+      if (v >= mesh.vertices.size()) in.fail("is damaged: a triangle names a vertex that is not there");
+  for (const Eigen::Vector3f& v : mesh.vertices)
+    if (!v.allFinite()) in.fail("is damaged: a vertex is no number");
+  return mesh;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,64 @@
+// building_info.hpp: building.json, which lists the recordings and the tiles of a building.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mapping/building/tile_grid.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// A file of a building, named by its content.
+struct ContentFile {
+  std::string name;    ///< relative to the building's folder
+  std::string sha256;  ///< in hexadecimal digits
+  std::uintmax_t bytes = 0;
+};
+
+struct BuildingTile {
+  TileIndex index = TileIndex::Zero();
+  std::int64_t triangles = 0;
+  Eigen::AlignedBox3d surface_world;  ///< bounding box of the tile's surface, m
+  ContentFile octree;                 ///< StaticMap::write(); only the tile's cube
+  ContentFile mesh;                   ///< write_tile_mesh()
+  ContentFile glb;                    ///< the same mesh relative to mesh_origin, y up
+  Eigen::Vector3d mesh_origin = Eigen::Vector3d::Zero();
+};
+
+struct BuildingRecording {
+  std::string name;
+  std::string source;
+  std::int64_t frames_read = 0, frames_tracked = 0, keyframes = 0;
+  /// False: no other recording shows a place of this one, so its place in the building is not known and it is
+  /// not in the tiles.
+  bool is_placed = true;
+};
+
+/// What building.json holds.
+struct BuildingInfo {
+  TileGrid grid;
+  std::vector<BuildingRecording> recordings;
+  std::vector<BuildingTile> tiles;  ///< in the order of is_before()
+};
+
+inline constexpr const char* kBuildingFile = "building.json";
+inline constexpr const char* kTilesFolder = "tiles";
+inline constexpr const char* kRecordingsFolder = "recordings";  ///< a submap per recording, in the building
+
+/// Returns true if the folder holds a building.
+bool is_building(const std::filesystem::path& folder);
+/// Reads building.json. Throws Error naming the file and the fault if it is missing, damaged, of a later
+/// version, or names files outside the folder.
+BuildingInfo read_building(const std::filesystem::path& folder);
+/// Writes building.json, whole or not at all. Throws Error if it cannot be written.
+void write_building(const BuildingInfo& info, const std::filesystem::path& folder);
+
+/// Writes a tile's mesh with a checksum. Throws Error if the file cannot be written.
+void write_tile_mesh(const Mesh& mesh, const std::filesystem::path& path);
+/// Reads it. Throws Error naming the file and the fault if it is missing or damaged.
+Mesh read_tile_mesh(const std::filesystem::path& path);
+
+}  // namespace roomradar

@@ -1,0 +1,128 @@
+// submap.cpp: reads and writes submaps; moves a trajectory with its keyframes.
+#include "mapping/building/submap.hpp"
+
+#include <algorithm>
+
+#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/storage/binary_file.hpp"
+#include "mapping/types/serialize.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::string_view kSubmapMagic = "RRSUBMAP";
+constexpr std::uint32_t kSubmapVersion = 1;
+constexpr const char* kSubmapFile = "submap.bin";
+constexpr const char* kKeyframesFile = "keyframes.bin";
+
+template <typename Archive>
+void serialize(Archive& archive, TimedPose& pose) {
+  serialize(archive, pose.frame_index);
+  serialize(archive, pose.stamp_s);
+  serialize(archive, pose.T_world_camera);
+}
+
+template <typename Archive>
+void serialize_poses(Archive& archive, std::vector<TimedPose>& poses) {
+  std::uint64_t count = poses.size();
+  serialize(archive, count);
+  if constexpr (Archive::kReads) {
+    constexpr std::size_t kPoseBytes = sizeof(std::int64_t) + 17 * sizeof(double);
+    archive.require(count, kPoseBytes);
+    poses.resize(count);
+  }
+  for (TimedPose& pose : poses) serialize(archive, pose);
+}
+
+/// All but the keyframes' features and depth.
+template <typename Archive>
+void serialize(Archive& archive, Submap& submap) {
+  serialize(archive, submap.source);
+  serialize(archive, submap.frames_read);
+  serialize(archive, submap.timing);
+  serialize_poses(archive, submap.trajectory);
+  serialize_poses(archive, submap.recorded);
+  std::vector<TimedPose> keyframes;
+  for (const MapKeyframe& keyframe : submap.keyframes.keyframes)
+    keyframes.push_back({keyframe.frame_index, 0.0, keyframe.T_world_camera});
+  serialize_poses(archive, keyframes);
+  submap.keyframes.keyframes.resize(keyframes.size());
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    submap.keyframes.keyframes[k].frame_index = keyframes[k].frame_index;
+    submap.keyframes.keyframes[k].T_world_camera = keyframes[k].T_world_camera;
+  }
+}
+
+/// Returns the pose `part` of the way from a to b.
+Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double part) {
+  Eigen::Isometry3d mean = Eigen::Isometry3d::Identity();
+  mean.linear() =
+      Eigen::Quaterniond(a.linear()).slerp(part, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+  mean.translation() = (1.0 - part) * a.translation() + part * b.translation();
+  return mean;
+}
+
+}  // namespace
+
+void save_submap(const Submap& submap, const std::filesystem::path& folder) {
+  ByteWriter out;
+  Submap copy = submap;
+  serialize(out, copy);
+  write_binary(folder / kSubmapFile, kSubmapMagic, kSubmapVersion, out.bytes());
+  write_keyframe_database(submap.keyframes, folder / kKeyframesFile);
+}
+
+Submap load_submap_poses(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / kSubmapFile;
+  const std::string bytes = read_binary(path, kSubmapMagic, kSubmapVersion);
+  ByteReader in(bytes, path.string());
+  Submap submap;
+  serialize(in, submap);
+  in.require_end();
+  const auto& keyframes = submap.keyframes.keyframes;
+  const auto is_before = [](const auto& a, const auto& b) { return a.frame_index < b.frame_index; };
+  if (!std::is_sorted(keyframes.begin(), keyframes.end(), is_before) ||
+      !std::is_sorted(submap.trajectory.begin(), submap.trajectory.end(), is_before))
+    throw Error(path.string() + ": is damaged: frames are not in order");
+  return submap;
+}
+
+Submap load_submap(const std::filesystem::path& folder) {
+  Submap submap = load_submap_poses(folder);
+  KeyframeDatabase read = read_keyframe_database(folder / kKeyframesFile);
+  const auto is_same = [](const MapKeyframe& a, const MapKeyframe& b) {
+    return a.frame_index == b.frame_index && a.T_world_camera.isApprox(b.T_world_camera, 1e-9);
+  };
+  if (!std::equal(read.keyframes.begin(), read.keyframes.end(), submap.keyframes.keyframes.begin(),
+                  submap.keyframes.keyframes.end(), is_same))
+    throw Error((folder / kKeyframesFile).string() + ": does not belong to the submap beside it");
+  submap.keyframes = std::move(read);
+  return submap;
+}
+
+std::vector<TimedPose> corrected_trajectory(const Submap& submap,
+                                            std::span<const Eigen::Isometry3d> T_world_keyframe) {
+  const auto& keyframes = submap.keyframes.keyframes;
+  std::vector<TimedPose> corrected;
+  if (keyframes.empty() || T_world_keyframe.size() != keyframes.size()) return corrected;
+  std::size_t next = 0;  // first keyframe after the frame
+  for (const TimedPose& frame : submap.trajectory) {
+    while (next < keyframes.size() && keyframes[next].frame_index <= frame.frame_index) ++next;
+    const auto moved_with = [&](std::size_t k) -> Eigen::Isometry3d {
+      return T_world_keyframe[k] * keyframes[k].T_world_camera.inverse() * frame.T_world_camera;
+    };
+    Eigen::Isometry3d T_world_camera;
+    if (next == 0 || next == keyframes.size()) {
+      T_world_camera = moved_with(next == 0 ? 0 : next - 1);
+    } else {
+      const auto before = static_cast<double>(frame.frame_index - keyframes[next - 1].frame_index);
+      const auto span = static_cast<double>(keyframes[next].frame_index - keyframes[next - 1].frame_index);
+      T_world_camera = between(moved_with(next - 1), moved_with(next), before / span);
+    }
+    corrected.push_back({frame.frame_index, frame.stamp_s, T_world_camera});
+  }
+  return corrected;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,42 @@
+// submap.hpp: what tracking one recording of a building gives.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mapping/localization/keyframe_database.hpp"
+#include "mapping/types/frame.hpp"
+#include "mapping/types/trajectory.hpp"
+
+namespace roomradar {
+
+/// The camera's path in one recording, in a world of its own: +z up, the origin on the floor below the first
+/// camera.
+struct Submap {
+  std::string source;  ///< name of the recording
+  std::int64_t frames_read = 0;
+  SensorTiming timing;
+  std::vector<TimedPose> trajectory;  ///< of the frames with a trusted pose, in order
+  std::vector<TimedPose> recorded;    ///< poses that the recording states, in its own world; empty: none
+  KeyframeDatabase keyframes;         ///< in order of frame_index
+};
+
+/// Writes a submap to `folder`, which must exist: submap.bin and keyframes.bin. Throws Error if a file cannot
+/// be written.
+void save_submap(const Submap& submap, const std::filesystem::path& folder);
+/// Reads a submap. Throws Error naming the file and the fault if a file is missing, damaged or of another
+/// version.
+Submap load_submap(const std::filesystem::path& folder);
+/// Reads only submap.bin. Keyframes then have a frame index and a pose, but no features and no depth.
+Submap load_submap_poses(const std::filesystem::path& folder);
+
+/// Moves the poses of all frames with the keyframes' poses: a frame between two keyframes gets the mean of
+/// their corrections, weighted by the number of frames to each.
+/// @param T_world_keyframe  one new pose per keyframe of the submap
+/// @return the trajectory in the new world; empty if the submap has no keyframe
+std::vector<TimedPose> corrected_trajectory(const Submap& submap,
+                                            std::span<const Eigen::Isometry3d> T_world_keyframe);
+
+}  // namespace roomradar

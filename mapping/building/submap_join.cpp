@@ -1,0 +1,339 @@
+// submap_join.cpp: keyframes vote for a relative pose; depth and features of those around test it.
+#include "mapping/building/submap_join.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "mapping/alignment/align.hpp"
+#include "mapping/alignment/view.hpp"
+#include "mapping/localization/place_matching.hpp"
+#include "mapping/odometry/keyframe_graph.hpp"
+#include "mapping/storage/binary_file.hpp"
+#include "mapping/types/serialize.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Relative pose implied by a pair of keyframes that match.
+struct Vote {
+  std::size_t a = 0, b = 0;  ///< keyframes
+  int inliers = 0;
+  Eigen::Isometry3d T_camera_a_camera_b, T_a_b;
+};
+
+double angle_rad(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
+
+std::vector<Vote> collect_votes(const Submap& a, const Submap& b,
+                                std::span<const std::pair<std::size_t, std::size_t>> keyframes,
+                                const JoinConfig& config) {
+  std::vector<Vote> votes;
+  for (const auto& [i, j] : keyframes) {
+    const MapKeyframe& from = a.keyframes.keyframes.at(i);
+    const MapKeyframe& to = b.keyframes.keyframes.at(j);
+    const KeyframeMatch match = match_keyframes(from, to);
+    if (match.inliers < config.min_inliers) continue;
+    votes.push_back(
+        {i, j, match.inliers, match.T_a_b, from.T_world_camera * match.T_a_b * to.T_world_camera.inverse()});
+  }
+  return votes;
+}
+
+/// Returns whether two votes give the view of one of them nearly the same pose. Drift of both submaps between
+/// the votes is allowed for.
+bool agree(const Vote& vote, const Vote& other, const Submap& b) {
+  constexpr double kNear_m = 0.15, kNear_rad = 0.1, kDrift = 0.03;
+  const Eigen::Isometry3d& T_b_camera = b.keyframes.keyframes[vote.b].T_world_camera;
+  const double apart_m =
+      (T_b_camera.translation() - b.keyframes.keyframes[other.b].T_world_camera.translation()).norm();
+  const Eigen::Isometry3d gap = (vote.T_a_b * T_b_camera).inverse() * other.T_a_b * T_b_camera;
+  return gap.translation().norm() < kNear_m + kDrift * apart_m && angle_rad(gap) < kNear_rad;
+}
+
+/// Returns the votes that agree with one of them; of each keyframe of b, only the vote with most inliers.
+std::vector<Vote> agreeing_with(const Vote& middle, const std::vector<Vote>& votes, const Submap& b) {
+  std::map<std::size_t, Vote> best;  // by keyframe of b
+  for (const Vote& vote : votes) {
+    if (!agree(vote, middle, b)) continue;
+    const auto [at, is_new] = best.emplace(vote.b, vote);
+    if (!is_new && vote.inliers > at->second.inliers) at->second = vote;
+  }
+  std::vector<Vote> agreeing;
+  for (const auto& [keyframe, vote] : best) agreeing.push_back(vote);
+  return agreeing;
+}
+
+/// Common pixels of two previews, seen from one of them.
+struct PreviewOverlap {
+  int valid = 0;    ///< pixels with depth in the image
+  int same = 0;     ///< of these, those at the other's surface
+  int through = 0;  ///< those in front of the other's surface: the other saw through them
+};
+
+/// Compares the depth of a keyframe with that of another, at a relative pose.
+PreviewOverlap compare(const MapKeyframe& from, const MapKeyframe& to, const Eigen::Isometry3d& T_to_from,
+                       double drift_m) {
+  constexpr int kStep_px = 4;
+  constexpr double kMax_m = 4.0;  // noise grows beyond
+  PreviewOverlap overlap;
+  for (int y = kStep_px / 2; y < from.preview_depth_mm.height; y += kStep_px)
+    for (int x = kStep_px / 2; x < from.preview_depth_mm.width; x += kStep_px) {
+      const double depth_m = 1e-3 * from.preview_depth_mm.at(x, y);
+      if (depth_m <= 0.0 || depth_m > kMax_m) continue;
+      ++overlap.valid;
+      const Eigen::Vector3d p = T_to_from * back_project(from.preview_camera, x, y, depth_m);
+      if (p.z() < 0.3) continue;
+      const Eigen::Vector2d at = project(to.preview_camera, p).array().round();
+      if (!(at.x() >= 0.0 && at.y() >= 0.0 && at.x() < to.preview_depth_mm.width &&
+            at.y() < to.preview_depth_mm.height))
+        continue;
+      const double other_m =
+          1e-3 * to.preview_depth_mm.at(static_cast<int>(at.x()), static_cast<int>(at.y()));
+      if (other_m <= 0.0) continue;
+      const double gate_m = 0.06 + 0.03 * p.z() + drift_m;
+      if (std::abs(other_m - p.z()) < gate_m)
+        ++overlap.same;
+      else if (other_m > p.z() + gate_m)
+        ++overlap.through;
+    }
+  return overlap;
+}
+
+/// What keyframes of b show of the places where a's keyframes say that they are.
+struct Test {
+  int expected = 0, recognised = 0;
+  std::int64_t same = 0, through = 0;
+};
+
+/// Tests one keyframe of b against the keyframes of a around it.
+void test_keyframe(const Submap& a, const MapKeyframe& view, const Eigen::Isometry3d& T_a_b, double drift_m,
+                   Test& test) {
+  constexpr double kSimilarView = 0.6;     // of view_distance()
+  constexpr double kOverlap = 0.4;         // of the view's pixels
+  constexpr std::size_t kDescribed = 100;  // features, below which a view need not be recognised
+  constexpr std::size_t kMostPartners = 3;
+  constexpr int kInliers = 10;
+  const Eigen::Isometry3d T_a_camera = T_a_b * view.T_world_camera;
+  std::vector<std::pair<double, const MapKeyframe*>> partners;
+  for (const MapKeyframe& other : a.keyframes.keyframes) {
+    const double distance = view_distance(other.T_world_camera.inverse() * T_a_camera);
+    if (distance < kSimilarView) partners.emplace_back(distance, &other);
+  }
+  std::sort(partners.begin(), partners.end());
+  if (partners.size() > kMostPartners) partners.resize(kMostPartners);
+
+  bool is_expected = false, is_recognised = false;
+  std::int64_t same = 0, through = 0;
+  for (const auto& [distance, other] : partners) {
+    const Eigen::Isometry3d T_other_view = other->T_world_camera.inverse() * T_a_camera;
+    const PreviewOverlap forth = compare(view, *other, T_other_view, drift_m);
+    const PreviewOverlap back = compare(*other, view, T_other_view.inverse(), drift_m);
+    same += forth.same + back.same;
+    through += forth.through + back.through;
+    const int both = forth.same + forth.through;
+    if (both < kOverlap * forth.valid || is_recognised) continue;
+    if (std::min(view.descriptors.size(), other->descriptors.size()) < kDescribed) continue;
+    is_expected = true;
+    const KeyframeMatch match = match_keyframes(*other, view);
+    const Eigen::Isometry3d gap = match.T_a_b.inverse() * T_other_view;
+    is_recognised =
+        match.inliers >= kInliers && gap.translation().norm() < 0.25 + drift_m && angle_rad(gap) < 0.15;
+  }
+  test.same += same;
+  test.through += through;
+  test.expected += is_expected ? 1 : 0;
+  test.recognised += is_recognised ? 1 : 0;
+}
+
+/// Tests a relative pose with all keyframes of b that are near the votes for it.
+Test test_of(const Submap& a, const Submap& b, const std::vector<Vote>& votes, const JoinConfig& config) {
+  constexpr double kDrift = 0.02;
+  Test test;
+  for (const MapKeyframe& view : b.keyframes.keyframes) {
+    const Vote* nearest = nullptr;
+    double nearest_m = config.near_m;
+    for (const Vote& vote : votes) {
+      const Eigen::Vector3d& p = b.keyframes.keyframes[vote.b].T_world_camera.translation();
+      const double distance_m = (p - view.T_world_camera.translation()).norm();
+      if (distance_m >= nearest_m) continue;
+      nearest_m = distance_m;
+      nearest = &vote;
+    }
+    if (nearest) test_keyframe(a, view, nearest->T_a_b, kDrift * nearest_m, test);
+  }
+  return test;
+}
+
+/// A keyframe's preview, prepared for alignment.
+struct AlignedPreview {
+  TargetView target;
+  SourcePoints source;
+};
+
+AlignedPreview prepared(const MapKeyframe& keyframe) {
+  ViewConfig config;
+  config.finest_width_px = std::max(keyframe.preview_camera.width_px, 1);
+  config.levels = 2;
+  config.normal_reach_px = 2;
+  DepthImage depth_m;
+  depth_m.resize(keyframe.preview_depth_mm.width, keyframe.preview_depth_mm.height);
+  std::transform(keyframe.preview_depth_mm.pixels.begin(), keyframe.preview_depth_mm.pixels.end(),
+                 depth_m.pixels.begin(), [](std::uint16_t mm) { return 1e-3F * static_cast<float>(mm); });
+  ViewPyramid pyramid;
+  make_pyramid(depth_m, keyframe.preview_camera, config, pyramid);
+  AlignedPreview preview;
+  make_target_view(pyramid, Eigen::Isometry3d::Identity(), config, preview.target);
+  make_source_points(pyramid, preview.source, {}, 1);
+  return preview;
+}
+
+/// Aligns the depth of a vote's keyframes in both directions. Adds two links if both results agree.
+void add_links(const Submap& a, const Submap& b, const Vote& vote, std::vector<KeyframeLink>& links) {
+  constexpr double kMaxGap_m = 0.03, kMaxGap_rad = 0.03, kMinInliers = 0.5;
+  AlignConfig config;
+  config.coarsest_level = 1;
+  config.max_correction_m = 0.15F;
+  const AlignedPreview view_a = prepared(a.keyframes.keyframes[vote.a]),
+                       view_b = prepared(b.keyframes.keyframes[vote.b]);
+  const Tracking b_in_a = align(view_b.source, view_a.target, vote.T_camera_a_camera_b, config);
+  const Tracking a_in_b = align(view_a.source, view_b.target, vote.T_camera_a_camera_b.inverse(), config);
+  const Eigen::Isometry3d gap = b_in_a.T_world_camera * a_in_b.T_world_camera;
+  if (!has_pose(b_in_a) || !has_pose(a_in_b) || gap.translation().norm() > kMaxGap_m ||
+      angle_rad(gap) > kMaxGap_rad || std::min(b_in_a.inlier_fraction, a_in_b.inlier_fraction) < kMinInliers)
+    return;
+  // The mean of both directions, with the features' information where depth does not constrain it.
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d T_back = a_in_b.T_world_camera.inverse();
+  T_a_b.linear() = Eigen::Quaterniond(b_in_a.T_world_camera.linear())
+                       .slerp(0.5, Eigen::Quaterniond(T_back.linear()))
+                       .toRotationMatrix();
+  T_a_b.translation() = 0.5 * (b_in_a.T_world_camera.translation() + T_back.translation());
+  constexpr double kSigma_m = 0.01, kSigma_rad = 0.01;
+  Vector6d information;
+  information << Eigen::Vector3d::Constant(1.0 / (kSigma_m * kSigma_m)),
+      Eigen::Vector3d::Constant(1.0 / (kSigma_rad * kSigma_rad));
+  links.push_back({vote.a, vote.b, T_a_b, information.asDiagonal()});
+}
+
+/// Returns up to `count` of the votes, spread evenly over b's keyframes.
+std::vector<Vote> spread(const std::vector<Vote>& votes, std::size_t count) {
+  if (votes.size() <= count) return votes;
+  std::vector<Vote> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(votes[i * votes.size() / count]);
+  return chosen;
+}
+
+SubmapJoin judged(const Submap& a, const Submap& b, const std::vector<Vote>& agreeing, const Vote& middle,
+                  const JoinConfig& config) {
+  SubmapJoin join;
+  join.T_a_b = middle.T_a_b;
+  join.agreeing = static_cast<int>(agreeing.size());
+  const Test test = test_of(a, b, agreeing, config);
+  join.expected = test.expected;
+  join.recognised = test.recognised;
+  const auto common = static_cast<double>(test.same + test.through);
+  join.agreement = common > 0.0 ? static_cast<double>(test.same) / common : 0.0;
+  if (join.agreement < config.min_agreement) {
+    join.status = JoinStatus::kContradicted;
+  } else if (test.expected - test.recognised > std::max(1.0, config.max_different * test.expected)) {
+    join.status = JoinStatus::kLooksDifferent;
+  } else {
+    for (const Vote& vote : spread(agreeing, config.max_links)) add_links(a, b, vote, join.links);
+    join.status = join.links.size() >= 2 ? JoinStatus::kJoined : JoinStatus::kNotRecognised;
+    if (join.status != JoinStatus::kJoined) join.links.clear();
+  }
+  return join;
+}
+
+constexpr std::string_view kJoinsMagic = "RRJOINED";
+constexpr std::uint32_t kJoinsVersion = 1;
+
+}  // namespace
+
+template <typename Archive>
+static void serialize(Archive& archive, KeyframeLink& link) {
+  auto a = static_cast<std::uint64_t>(link.a), b = static_cast<std::uint64_t>(link.b);
+  serialize(archive, a);
+  serialize(archive, b);
+  serialize(archive, link.T_a_b);
+  serialize(archive, link.information);
+  if constexpr (Archive::kReads) {
+    if (!link.information.allFinite()) archive.fail("is damaged: a link's information is no number");
+    link.a = a;
+    link.b = b;
+  }
+}
+
+template <typename Archive>
+static void serialize(Archive& archive, SubmapJoin& join) {
+  serialize(archive, join.status, JoinStatus::kLooksDifferent);
+  serialize(archive, join.links);
+  serialize(archive, join.T_a_b);
+  serialize(archive, join.agreeing);
+  serialize(archive, join.expected);
+  serialize(archive, join.recognised);
+  serialize(archive, join.agreement);
+}
+
+std::string describe(const SubmapJoin& join) {
+  std::array<char, 200> text{};
+  const char* outcome = join.status == JoinStatus::kJoined          ? "joined"
+                        : join.status == JoinStatus::kNotRecognised ? "not recognised"
+                        : join.status == JoinStatus::kContradicted
+                            ? "refused, since surfaces contradict"
+                            : "refused, since other parts look different";
+  std::snprintf(text.data(), text.size(),
+                "%s: %d keyframes agree, %d of %d others are recognised, %.0f %% of the surface agrees",
+                outcome, join.agreeing, join.recognised, join.expected, 100.0 * join.agreement);
+  return text.data();
+}
+
+std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,
+                                     std::span<const std::pair<std::size_t, std::size_t>> keyframes,
+                                     const JoinConfig& config) {
+  std::vector<Vote> votes = collect_votes(a, b, keyframes, config);
+  std::vector<SubmapJoin> joins;
+  while (!votes.empty()) {
+    // The vote that most others agree with; features break ties.
+    std::vector<Vote> agreeing;
+    const Vote* middle = nullptr;
+    for (const Vote& vote : votes) {
+      std::vector<Vote> found = agreeing_with(vote, votes, b);
+      if (middle && std::pair(found.size(), vote.inliers) <= std::pair(agreeing.size(), middle->inliers))
+        continue;
+      middle = &vote;
+      agreeing = std::move(found);
+    }
+    if (static_cast<int>(agreeing.size()) < config.min_agreeing) {
+      if (joins.empty()) joins.emplace_back().agreeing = static_cast<int>(agreeing.size());
+      break;
+    }
+    const Vote chosen = *middle;
+    joins.push_back(judged(a, b, agreeing, chosen, config));
+    std::erase_if(votes, [&](const Vote& vote) { return agree(vote, chosen, b); });
+  }
+  if (joins.empty()) joins.emplace_back();
+  return joins;
+}
+
+void save_joins(const std::vector<SubmapJoin>& joins, const std::filesystem::path& path) {
+  ByteWriter out;
+  std::vector<SubmapJoin> copy = joins;
+  serialize(out, copy);
+  write_binary(path, kJoinsMagic, kJoinsVersion, out.bytes());
+}
+
+std::vector<SubmapJoin> load_joins(const std::filesystem::path& path) {
+  const std::string bytes = read_binary(path, kJoinsMagic, kJoinsVersion);
+  ByteReader in(bytes, path.string());
+  std::vector<SubmapJoin> joins;
+  serialize(in, joins);
+  in.require_end();
+  return joins;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,72 @@
+// submap_join.hpp: proves that two recordings show the same place, and measures their relative pose.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mapping/building/submap.hpp"
+#include "mapping/types/linear_algebra.hpp"
+
+namespace roomradar {
+
+/// Measured relative pose of a keyframe of submap a and a keyframe of submap b.
+struct KeyframeLink {
+  std::size_t a = 0, b = 0;                                 ///< keyframes
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< of the two cameras
+  /// Inverse covariance of T_a_b, as a twist (translation m, rotation rad) in the frame of camera b.
+  Matrix6d information = Matrix6d::Identity();
+};
+
+enum class JoinStatus {
+  kJoined,
+  kNotRecognised,  ///< too few keyframes match, or they disagree
+  /// The keyframes match, but elsewhere one recording saw through what the other measured as surface.
+  kContradicted,
+  /// The keyframes match, but others look different although they would show the same place: another room
+  /// with the same furniture.
+  kLooksDifferent,
+};
+
+/// Keyframes of two submaps that agree on where the submaps are to each other.
+struct SubmapJoin {
+  JoinStatus status = JoinStatus::kNotRecognised;
+  std::vector<KeyframeLink> links;  ///< only if joined
+  /// Relative pose of the submaps' worlds near the links. Elsewhere, drift of both adds to it.
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
+  int agreeing = 0;        ///< pairs of keyframes whose features agree on T_a_b
+  int expected = 0;        ///< keyframes of b that overlap enough with one of a to be recognised in it
+  int recognised = 0;      ///< of these, those that were recognised
+  double agreement = 0.0;  ///< fraction of the common surface that is at the same place in both
+};
+/// Returns the end of a sentence for the user with the outcome and its numbers.
+std::string describe(const SubmapJoin& join);
+
+struct JoinConfig {
+  int min_inliers = 20;         ///< features that agree on the relative pose of two keyframes
+  int min_agreeing = 3;         ///< pairs of keyframes that agree on T_a_b
+  double min_agreement = 0.75;  ///< see SubmapJoin::agreement
+  double max_different = 0.25;  ///< max fraction of the expected keyframes that are not recognised
+  double near_m = 6.0;          ///< farther from the links, drift of the submaps prevents a comparison
+  std::size_t max_links = 12;   ///< the links are chosen evenly along b
+};
+
+/// Compares two submaps at all pairs of keyframes that look similar. Returns one join for each place where
+/// they meet; if there is none, the reason. A join is proved by three tests: several pairs of keyframes agree
+/// on one relative pose by their features; the depth of the keyframes around agrees, and none sees through
+/// the other's surface; and keyframes that would show the same place are recognised in each other.
+/// Links are refined by aligning the keyframes' depth in both directions; links whose results differ are
+/// dropped. Source: as registration.hpp; Chen and Medioni 1992 (alignment).
+std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,
+                                     std::span<const std::pair<std::size_t, std::size_t>> keyframes,
+                                     const JoinConfig& config = {});
+
+/// Writes the outcome of comparing two submaps. Throws Error if the file cannot be written.
+void save_joins(const std::vector<SubmapJoin>& joins, const std::filesystem::path& path);
+/// Reads it. Throws Error naming the file and the fault if it is missing, damaged or of another version.
+std::vector<SubmapJoin> load_joins(const std::filesystem::path& path);
+
+}  // namespace roomradar

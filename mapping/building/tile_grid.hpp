@@ -1,0 +1,45 @@
+// tile_grid.hpp: the cubes into which a building's octree is split.
+#pragma once
+#include <Eigen/Geometry>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mapping/octree/static_map.hpp"
+
+namespace roomradar {
+
+/// Integer coordinates of a tile.
+using TileIndex = Eigen::Vector3i;
+
+/// A grid of cubes on the octree's voxels. Tile `index` begins at voxel index * edge_voxels, less a quarter of
+/// the edge along z: the floor, at z = 0, would otherwise be cut along its whole length.
+struct TileGrid {
+  double resolution_m = 0.01;  ///< edge of a voxel
+  int edge_voxels = 512;       ///< a power of two, 64 to 4,096
+};
+/// Throws Error naming the field and the rule if a value is out of range.
+void require_valid(const TileGrid& grid);
+
+inline VoxelIndex lowest_voxel(const TileGrid& grid, const TileIndex& tile) {
+  return tile * grid.edge_voxels - VoxelIndex(0, 0, grid.edge_voxels / 4);
+}
+inline double edge_m(const TileGrid& grid) { return grid.edge_voxels * grid.resolution_m; }
+/// Returns the tile's cube in the world, m.
+Eigen::AlignedBox3d box_of(const TileGrid& grid, const TileIndex& tile);
+/// Returns the tile that contains a point.
+TileIndex tile_at(const TileGrid& grid, const Eigen::Vector3d& p_world);
+
+/// Returns the tiles that have a sample of the map within `margin_voxels` of their cubes, in order of z, y,
+/// x.
+std::vector<TileIndex> tiles_of(const StaticMap& map, const TileGrid& grid, int margin_voxels);
+
+/// Orders tiles by z, then y, then x.
+bool is_before(const TileIndex& a, const TileIndex& b);
+
+/// Returns a tile's name, such as `3_-1_0`.
+std::string name_of(const TileIndex& tile);
+/// Returns the tile of a name. Throws Error if it is no tile's name.
+TileIndex tile_of_name(std::string_view name);
+
+}  // namespace roomradar
