@@ -11,7 +11,6 @@ namespace roomradar {
 /// If they do not fit into max_side_px x max_side_px texels, all texels are enlarged by the same factor.
 /// @return size of the atlas; multiples of 16, at most max_side_px (a multiple of 16). 0 x 0 if there are too
 /// many
-///         charts for any size of texel
 Eigen::Vector2i pack(std::vector<TextureChart>& charts, int max_side_px);
 
 }  // namespace roomradar
