@@ -11,8 +11,8 @@
 namespace roomradar {
 
 struct TextureConfig {
-  int max_side_px =
-      4096;  ///< max side of the atlas, a multiple of 16; GPUs of the last ten years support 4096
+  /// Max side of the atlas, a multiple of 16. GPUs of the last ten years support 4096.
+  int max_side_px = 4096;
   double min_texel_m = 0.001;  ///< > 0
   int jpeg_quality = 88;       ///< 1..100
 };
@@ -31,8 +31,7 @@ struct TextureConfig {
 /// @param mesh   with normals and colours
 /// @param views  with evened exposure
 /// @return an empty texture (no corners) if there are neither views nor earlier textures, or too many charts
-/// for an
-///         atlas
+///         for an atlas
 /// Source: Waechter, Moehrle, Goesele, Let there be color!, ECCV 2014 (choice of views); Burt, Adelson, A
 /// multiresolution spline with application to image mosaics, ACM TOG 1983 (two bands).
 SurfaceTexture bake_texture(const Mesh& mesh, std::span<const TextureView> views,
