@@ -10,7 +10,8 @@ namespace roomradar {
 /// Hashes contents, and remembers each file's hash by its size and time of change, in memory and in a file.
 class ContentHashes {
  public:
-  /// @param memory  file with what earlier runs computed; need not exist, and is not trusted beyond its form
+  /// @param memory  file with the hashes of earlier runs; need not exist. Its form is checked, its hashes are
+  ///                not
   explicit ContentHashes(std::filesystem::path memory);
 
   /// Returns the SHA-256 of a file's content, or of the names and contents of all files of a folder, in

@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// How a farm stands, or how it ended.
+/// State of a farm during or after its run.
 struct FarmState {
   Schedule schedule;
   std::map<std::size_t, JobResult> results;  ///< of the jobs that ended in this run, by index

@@ -1,4 +1,4 @@
-// farm_plan.hpp: what a manifest's jobs depend on, and which of them are done already.
+// farm_plan.hpp: keys of a manifest's jobs, made of all that they depend on, and which jobs are done.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -25,7 +25,7 @@ struct FarmPlan {
   std::vector<PlannedJob> jobs;  ///< in the manifest's order
 };
 
-/// Hashes the inputs and looks which jobs are done.
+/// Hashes the inputs, and finds the jobs that are already done.
 /// @param out     folder of the results; is created
 /// @param wanted  jobs to plan, with those that they need; empty: all
 /// @throws Error if an input cannot be read or the folder cannot be created

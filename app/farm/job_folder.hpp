@@ -1,4 +1,4 @@
-// job_folder.hpp: a job's folder, which is there as a whole or not at all.
+// job_folder.hpp: a job's folder, which appears as a whole or not at all.
 //
 // NAME holds the results of a finished job and job.json, NAME.running those of a running or killed one,
 // NAME.failed those of the last failed one, and NAME.log what the command printed.

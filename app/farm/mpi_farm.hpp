@@ -17,7 +17,7 @@ std::optional<FarmPlan> share_plan(const FarmPlan* plan);
 /// @param plan     from share_plan()
 /// @param program  file of the program that the jobs run
 /// @param watch    called on rank 0 only
-/// @return on rank 0 how it ended; on other ranks nothing of use
+/// @return rank 0: the final state; other ranks: meaningless
 FarmState run_farm_on_ranks(const FarmPlan& plan, const std::filesystem::path& program,
                             const WatchFarm& watch = {});
 

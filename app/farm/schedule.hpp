@@ -1,4 +1,4 @@
-// schedule.hpp: which job is next.
+// schedule.hpp: chooses the next job of a plan.
 #pragma once
 #include <cstddef>
 #include <optional>

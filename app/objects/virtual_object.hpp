@@ -41,13 +41,14 @@ struct VirtualObject {
   /// True if a surface intersects the object, no free pose is within 10 cm, and the object has been awake and
   /// still for 1 s. Reset when the object moves.
   bool stuck = false;
-  double still_s = 0.0;  ///< time for which it has been awake and within 2 mm of T_world_still
+  double still_s = 0.0;  ///< time for which the object has been awake and within 2 mm of T_world_still
   /// Pose from which its motion is measured for still_s.
   Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
   /// Contacts before its last motion, within 1.5 contact margins. They stay while it sleeps.
   std::vector<ObjectContact> contacts;
   double waited_s = 0.0;  ///< time since advance() was last called for it
-  /// Pose at which no surface of the room and no other object overlaps it, since physics moved it there.
+  /// Pose to which physics last moved the object, if no surface of the room and no other object overlaps it
+  /// there.
   std::optional<Eigen::Isometry3d> T_world_undisturbed;
   std::string_view why_not_in_room = "nothing placed or dropped it";  ///< valid while in_room is false
   /// Number of cells of the last frame's dynamic mesh that have full resolution because this object is near.

@@ -1,4 +1,4 @@
-// mean_picture.hpp: mean of pictures, as a sensor sees during an exposure.
+// mean_picture.hpp: mean of pictures, which simulates a sensor's exposure.
 #pragma once
 #include <algorithm>
 #include <array>
