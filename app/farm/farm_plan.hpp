@@ -1,4 +1,4 @@
-// farm_plan.hpp: keys of a manifest's jobs, made of all that they depend on, and which jobs are done.
+// farm_plan.hpp: plans the jobs of a manifest: their keys, and whether they are done.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -12,10 +12,10 @@ namespace roomradar {
 
 /// A job of a plan.
 struct PlannedJob {
-  /// SHA-256 of all that the job's results depend on: this program's version, the words of the command, the
-  /// contents of its inputs, and the keys of the jobs that it needs. Empty: the job is not part of the plan.
+  /// SHA-256 of this program's version, the words of the command, the contents of its inputs, and the keys of
+  /// the jobs that it needs. Empty: the job is not part of the plan.
   std::string key;
-  double cost = 0.0;        ///< as stated, otherwise the size of its inputs in 10^6 bytes, and 1
+  double cost = 0.0;        ///< as stated, otherwise 1 plus the size of its inputs in 10^6 bytes
   bool is_present = false;  ///< its folder holds the results for this key
 };
 

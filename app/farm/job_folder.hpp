@@ -26,7 +26,7 @@ class RunningFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return running_; }
   /// Writes job.json and renames the folder to NAME, in place of an older one. Throws Error on failure.
-  /// @param command  the job's words, for whoever reads job.json
+  /// @param command  the job's words, as information in job.json
   void commit(const std::string& key, const std::vector<std::string>& command);
 
  private:

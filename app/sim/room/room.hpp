@@ -68,12 +68,12 @@ struct Room {
 
 /// Returns the names of the fixed furnished rooms that make_room() accepts.
 const std::vector<std::string>& room_names();
-/// A further name that make_room() accepts: a room with furniture drawn at random from the seed.
+/// Another name for make_room(): a room with furniture drawn at random from the seed.
 inline constexpr std::string_view kRandomRoom = "random";
-/// A further name that make_room() accepts: a room with a checkerboard on a stand, for camera calibration.
+/// Another name for make_room(): a room with a checkerboard on a stand, for camera calibration.
 inline constexpr std::string_view kBoardRoom = "board";
-/// A further name that make_room() accepts: a flat of four rooms in a ring, with doorways between them and
-/// furniture drawn at random from the seed.
+/// Another name for make_room(): a flat of four rooms in a ring, with doorways between them and furniture
+/// drawn at random from the seed.
 inline constexpr std::string_view kFlatRoom = "flat";
 /// Throws Error listing the known names if `name` is none of them.
 void require_room(std::string_view name);

@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Mean of the pictures added; all have the same size.
+/// Mean of the added pictures, which must have the same size.
 class MeanPicture {
  public:
   MeanPicture(int width_px, int height_px) : sums_(width_px, height_px) {}
