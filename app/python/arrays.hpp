@@ -1,5 +1,5 @@
-// arrays.hpp: converts NumPy arrays to checked arguments, images and meshes to arrays that share memory, and
-// texts.
+// arrays.hpp: checks and converts NumPy arrays and texts, and returns images and meshes as arrays that share
+// memory.
 #pragma once
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>

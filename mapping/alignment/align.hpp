@@ -43,8 +43,8 @@ inline bool has_pose(const Tracking& tracking) {
 }
 
 struct AlignConfig {
-  int coarsest_level = 2;  ///< index of the coarsest pyramid level used
-  int finest_level = 0;    ///< index of the finest pyramid level used; 0 is full resolution
+  int coarsest_level = 2;  ///< pyramid level at which alignment begins
+  int finest_level = 0;    ///< pyramid level at which alignment ends; 0 is full resolution
   int iterations = 6;      ///< max number of iterations per level
   /// Max point-to-plane distance of a correspondence at the coarsest level, m. The limit is halved at each
   /// finer level, but never below 0.03 m.
@@ -72,8 +72,8 @@ struct PosedReference {
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Earlier pose from which align() computes the camera's velocity during the readout of the image. Each
-/// iteration uses the velocity of its own pose.
+/// Earlier pose, from which align() computes the camera's velocity during the readout of the image. Each
+/// iteration recomputes the velocity from its current pose.
 struct ReadoutMotion {
   Eigen::Isometry3d T_world_before = Eigen::Isometry3d::Identity();
   double dt_s = 0.0;       ///< time since that pose; 0: the velocity is not known and taken as 0

@@ -18,8 +18,8 @@ struct Change {
       Eigen::Vector3d::Zero();    ///< centroid of its surface, in the world of map a
   Eigen::AlignedBox3d box_world;  ///< bounding box of its surface, in the world of map a
   double area_m2 = 0.0;           ///< area of its observed surface; two sides of a voxel count once
-  /// Volume, within the box, that is free in the map without the object but not in the map with it. Includes
-  /// the object's unobserved interior.
+  /// Volume, within the box, that only the map without the object has as free space. Includes the object's
+  /// unobserved interior.
   double volume_m3 = 0.0;
   std::vector<Eigen::Vector3d> surface_world;  ///< centres of its surface voxels, in the world of map a
 };
@@ -42,11 +42,11 @@ struct DiffConfig {
 void require_valid(const DiffConfig& config);
 
 /// Returns the changes, largest first. Regions that are unknown in one of the maps count as unchanged.
-/// Surface at which one map's scan ends counts as unchanged, too, and so does the roughness of a surface that
-/// was measured from far away. Objects smaller than the clearance are not detected. Objects that moved by
-/// less than max_pose_error_m, or stand out from a plane by less, are not detected either. A pole a few
-/// centimetres thick that one scan measured only from beyond 3 m can be missing from that scan's map, and is
-/// then listed as a change.
+/// Surface at which one map's scan ends, and the roughness of surfaces measured from far away, count as
+/// unchanged, too. Objects smaller than the clearance are not detected. Objects that moved by less than
+/// max_pose_error_m, or stand out from a plane by less, are not detected either. A pole a few centimetres
+/// thick that one scan measured only from beyond 3 m can be missing from that scan's map, and is then listed
+/// as a change.
 /// @param T_a_b  maps points from b's world to a's world
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const DiffConfig& config = {});

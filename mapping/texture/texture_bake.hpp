@@ -29,7 +29,7 @@ struct TextureConfig {
 ///
 /// Time: about 1 s per million texels on one processor. Memory: about 10 bytes per texel besides the views.
 /// @param mesh   with normals and colours
-/// @param views  with evened exposure
+/// @param views  with gains from even_exposure()
 /// @return an empty texture (no corners) if there are neither views nor earlier textures, or too many charts
 ///         for an atlas
 /// Source: Waechter, Moehrle, Goesele, Let there be color!, ECCV 2014 (choice of views); Burt, Adelson, A

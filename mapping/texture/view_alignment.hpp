@@ -32,7 +32,7 @@ std::vector<MeshPoint> sample_mesh(const Mesh& mesh, std::size_t count);
 /// Each view is then aligned to these by a Gauss-Newton step. Visibility stays that of the first poses, from
 /// which views move by some centimetres at most.
 /// @param mesh   with normals
-/// @param views  with evened exposure
+/// @param views  with gains from even_exposure()
 /// Source: Zhou, Koltun, Color map optimization for 3D reconstruction with consumer depth cameras, ACM TOG
 /// 2014.
 void align_views(const Mesh& mesh, std::span<TextureView> views);

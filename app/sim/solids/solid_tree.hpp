@@ -38,7 +38,8 @@ class SolidTree {
  private:
   struct Node {
     Eigen::AlignedBox3d bounds_world;
-    /// Index of a leaf's solid. -1 for an inner node. Its children are the next node and node `second`.
+    /// Index of a leaf's solid; -1 for an inner node. An inner node's children are the next node and node
+    /// `second`.
     int solid = -1;
     int second = -1;
   };
