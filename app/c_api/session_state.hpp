@@ -18,14 +18,14 @@ namespace roomradar::c_api {
 struct SessionState : Handled {
   static constexpr const char* kKind = "session";
   std::shared_ptr<const MapState> shared_map;  ///< null if own_map is set
-  std::optional<SavedMap> own_map;             ///< set if changes are adopted, which modify its octree
+  std::optional<SavedMap> own_map;             ///< set if changes are committed, which modify its octree
   std::int32_t poses = ROOMRADAR_POSES_TRACKED;
   Frame frame;  ///< buffer
   StageTimes times;
   std::uint64_t located_frames = 0;
   std::vector<std::string> notices;  ///< not taken so far
   std::uint64_t room_version = 1;
-  std::uint64_t room_revision = 0;    ///< revision of the radar's tree at room_version
+  std::uint64_t room_revision = 0;    ///< revision of the radar's tree when room_version last changed
   std::uint64_t blocks_revision = 0;  ///< room_revision for which `blocks` was made
   RoomBlocks blocks;
   CyberRadar radar;  ///< exact; for the caller's queries

@@ -18,7 +18,7 @@ struct ObjectSource {
   ModelOrigin origin = ModelOrigin::kNear;
 };
 
-/// Loads a model and scales it. Throws Error with the file's name and the fault.
+/// Throws Error with the file's name and the fault.
 Model object_model(const ObjectSource& source);
 /// Returns the mesh of object_model().
 /// @param size_m  longest side after scaling; 0: not scaled

@@ -26,8 +26,7 @@ struct ShownView {
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Draws virtual objects and their shadows into the camera's picture. Not thread safe: call all functions on
-/// the constructing thread, whose GL context is used.
+/// Not thread safe: call all functions on the constructing thread, whose GL context is used.
 class PictureComposer {
  public:
   /// All arguments must outlive the composer. Changes of `config` take effect at the next call.

@@ -36,7 +36,7 @@ struct MapDetails {
 /// Returns the folder of an interrupted scan of this map, which need not exist.
 std::filesystem::path unfinished_scan_of(const std::filesystem::path& map);
 
-/// Returns true if a folder is a saved map, or an interrupted scan of one is beside it.
+/// Returns true if a folder is a saved map, or has an interrupted scan beside it.
 bool is_map(const std::filesystem::path& folder);
 
 /// Reads map.json. Never throws: MapEntry::fault states an error.
@@ -52,7 +52,7 @@ std::vector<MapEntry> list_maps(const std::filesystem::path& folder);
 /// @param ground    colour around the room
 MapDetails examine_map(const std::filesystem::path& folder, int width_px, Rgb ground);
 
-/// Returns lines of name and value for people: date, size, area, holes, source.
+/// Returns the properties as lines of text, each a name and a value: date, size, area, holes, source.
 /// @param details  null: they are not known so far
 std::vector<std::pair<std::string, std::string>> facts_of(const MapEntry& map, const MapDetails* details);
 

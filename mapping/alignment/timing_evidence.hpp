@@ -25,8 +25,8 @@ struct TimingEvidence {
 };
 
 /// Pose and velocity of the camera when a view was taken. The colour delay is estimated with the steady
-/// velocity, since noise of a single pose shifts the points and changes `velocity` alike, which looks like a
-/// delay.
+/// velocity. The noise of a single pose both shifts the points and changes `velocity`, which would look like
+/// a delay.
 struct MovingView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   CameraVelocity velocity;

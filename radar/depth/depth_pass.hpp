@@ -34,7 +34,7 @@ struct DepthPassConfig {
 /// @throws Error naming the field, its value and the rule
 void require_valid(const DepthPassConfig& config);
 
-/// Renders depth images. Owns its buffers, which grow to the largest image rendered. Not thread safe.
+/// Owns its buffers, which grow to the largest image rendered. Not thread safe.
 class DepthPass {
  public:
   explicit DepthPass(GlContext& context, const DepthPassConfig& config = {});

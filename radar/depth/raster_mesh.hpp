@@ -19,7 +19,7 @@ struct RasterPiece {
   Eigen::AlignedBox3f bounds_local;
 };
 
-/// A mesh cut into pieces. The vertices of a piece are contiguous, so each is projected only once, with SIMD.
+/// The vertices of a piece are contiguous, so each is projected only once, with SIMD.
 struct RasterMesh {
   /// Max number of triangles of a piece.
   static constexpr std::uint32_t kPieceTriangles = 256;

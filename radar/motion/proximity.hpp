@@ -15,10 +15,10 @@
 namespace roomradar {
 
 /// Proximity queries between an object and the scene's triangle trees. CyberRadar searches along one
-/// direction, this class in all directions, as an object needs that tips over an edge near a contact.
-/// Traverses both trees together and tests pairs of triangles exactly, in double. Ignores the scene's depth
-/// images. Uses no OpenGL. Not thread safe: use one instance per thread. Allocates nothing once queries of
-/// this size have been run.
+/// direction, this class in all directions: an object that tips over an edge moves in many. Traverses both
+/// trees together and tests pairs of triangles exactly, in double. Ignores the scene's depth images. Uses no
+/// OpenGL. Not thread safe: use one instance per thread. Allocates nothing once queries of this size have
+/// been run.
 ///
 /// Surfaces that intersect the object have no closest features. Use CyberRadar's overlaps for them. One-sided
 /// surfaces (is_one_sided()) are considered only from their front side and are never reported as

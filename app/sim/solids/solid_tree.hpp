@@ -16,8 +16,8 @@ struct RayHit {
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
 };
 
-/// A bounding volume hierarchy over solids. The tree stores only indices. A copy of the tree thus works with
-/// a copy of the solids. All calls must pass the unchanged solids from which the tree was built, or a copy.
+/// Stores only indices of solids. A copy of the tree thus works with a copy of the solids. All calls must
+/// pass the unchanged solids from which the tree was built, or a copy.
 class SolidTree {
  public:
   SolidTree() = default;
