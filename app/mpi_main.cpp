@@ -17,7 +17,7 @@ namespace {
 
 using namespace roomradar;
 
-/// Returns the file of `roomradar`: the one beside this program.
+/// Returns the path of `roomradar`, which is in the folder of this program.
 std::filesystem::path roomradar_program() {
   const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "roomradar";
   if (access(program.c_str(), X_OK) != 0)

@@ -1,5 +1,4 @@
-// deskewed_source.hpp: frames of a source as a global shutter would have seen them, by the camera's known
-// motion.
+// deskewed_source.hpp: corrects the rolling shutter of a source's frames by the camera's known motion.
 #pragma once
 #include <map>
 #include <vector>
@@ -10,9 +9,9 @@
 
 namespace roomradar {
 
-/// Delivers the frames of another source with their depth moved to the middle of its readout, and with the
-/// colour camera where it was when the colour image was taken. Frames whose neighbours have no pose stay as
-/// they are. All else is the other source's, which must outlive this one.
+/// Delivers the frames of another source with depth as a global shutter would have seen it at the middle of
+/// the readout, and with T_colour_depth for the time of the colour image. Frames without neighbours of known
+/// pose are unchanged. The other source must outlive this one.
 class DeskewedSource final : public FrameSource {
  public:
   /// @param trajectory  poses in the order of their stamps

@@ -56,9 +56,9 @@ struct PrescanResult {
 };
 
 /// Callback after each frame. `stage` is "track", "track again" (from the first frame, with better times of
-/// the sensor), "fuse" or "ghosts", and `note` states the frame's outcome. Called once more, as "surface",
-/// when the frames have been read and the surface is to be extracted, and as "texture" before it is baked.
-/// While tracking, the note also states the surface area observed in total and in the last second.
+/// the sensor), "fuse" or "ghosts", and `note` states the frame's outcome. Also called with "surface" before
+/// the surface is extracted, and with "texture" before the texture is baked. While tracking, the note also
+/// states the surface area observed in total and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
 class Checkpoints;
@@ -78,8 +78,8 @@ struct PrescanInput {
 /// there are ghosts, a fourth time. To bake the texture, reads at most 160 frames once more.
 ///
 /// A new map's world has +z up. With recorded poses, the world's origin is the recording's. With tracked
-/// poses, the origin is on the floor below the first camera. If no level surface is measured, it is at the
-/// height of the first camera. With start.map, the map's world is kept.
+/// poses, the origin is on the floor below the first camera. If no level surface is measured, the origin is
+/// at the height of the first camera. With start.map, the map's world is kept.
 ///
 /// Stages timed: read, track, optimise, fuse, ghosts, surface, texture, coverage, checkpoint (time during
 /// which the work is blocked), and frame (track plus fuse of one frame, without reading).

@@ -59,7 +59,7 @@ void skip_frames(FrameSource& source, std::int64_t count, const char* stage,
   if (position < count) refuse(std::to_string(position));
 }
 
-/// Returns whether the memory in use, plus the memory that later stages need, exceeds the cap.
+/// Returns true if the memory in use, plus the memory that later stages need, exceeds the cap.
 bool is_full(const PrescanConfig& config, double needed_later_bytes) {
   return config.max_memory_bytes > 0 && static_cast<double>(resident_bytes()) + needed_later_bytes >
                                             static_cast<double>(config.max_memory_bytes);

@@ -12,7 +12,7 @@ namespace roomradar {
 inline constexpr double kSurfaceMemory = 3.0;
 
 struct MemoryEstimate {
-  std::int64_t frames = 0;  ///< number of frames in the source; one minute's if unknown
+  std::int64_t frames = 0;  ///< number of frames in the source; that of one minute if unknown
   bool length_known = false;
   double octree_bytes = 0.0;
   double process_bytes = 0.0;  ///< peak of the whole process

@@ -19,8 +19,8 @@ class ScanObserver {
   /// Called after each readable frame, with its tracking result and the state of the odometry after it.
   virtual void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) = 0;
 
-  /// Called after after_frame(). Returns how many seconds of the scan are to be undone, by the frames'
-  /// stamps; 0: none. The camera must then go back to where it was.
+  /// Called after after_frame(). Returns the duration of the scan's end to undo, s by the frames' stamps; 0:
+  /// none. After an undo, the camera must return to where it was at that time.
   virtual double take_undo_s() { return 0.0; }
   /// Called when the frames from this index on have been removed from the scan.
   virtual void forgot_frames(std::int64_t /*from_index*/) {}

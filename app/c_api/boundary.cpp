@@ -1,4 +1,4 @@
-// boundary.cpp: exceptions to statuses.
+// boundary.cpp: converts exceptions to statuses.
 #include "app/c_api/boundary.hpp"
 
 #include <new>

@@ -1,5 +1,5 @@
-// boundary.hpp: the line between C++ and C: turns exceptions into a status and a sentence. No other unit
-// catches exceptions.
+// boundary.hpp: boundary between C++ and C, which converts exceptions to a status and a sentence. No other
+// unit catches exceptions.
 #pragma once
 #include <mutex>
 #include <stdexcept>
@@ -10,8 +10,8 @@
 
 namespace roomradar::c_api {
 
-/// A call that is refused with a status of its own. Other exceptions become FAILED (Error), OUT_OF_MEMORY or
-/// INTERNAL.
+/// Exception of a call that is refused, with the status to return. Other exceptions become FAILED (Error),
+/// OUT_OF_MEMORY or INTERNAL.
 class Refusal : public std::runtime_error {
  public:
   Refusal(roomradar_status of, const std::string& sentence) : std::runtime_error(sentence), status(of) {}
@@ -45,7 +45,8 @@ roomradar_status guarded(const char* call, HandleError* error, const Work& work)
 
 /// Returns the sentence of this thread's last failed call.
 const char* last_error() noexcept;
-/// Returns a copy of a handle's sentence that belongs to this thread, valid until its next call.
+/// Returns a copy of a handle's sentence. The copy belongs to the calling thread and is valid until the
+/// thread's next call.
 const char* sentence_of(HandleError& error) noexcept;
 
 }  // namespace roomradar::c_api

@@ -1,4 +1,4 @@
-// conversions.cpp: checks what comes from outside.
+// conversions.cpp: checks the values that a program passes.
 #include "app/c_api/conversions.hpp"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ double readout_of(double readout_s, const char* name) {
   return readout_s;
 }
 
-/// Copies depth; what is no measurement becomes 0.
+/// Copies depth; pixels without a valid measurement become 0.
 void copy_depth(const float* from, std::vector<float>& to) {
   constexpr float kMost = std::numeric_limits<float>::max();
   for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i] > 0.0F && from[i] <= kMost ? from[i] : 0.0F;

@@ -1,5 +1,5 @@
-// conversions.hpp: C structs and buffers to checked C++ values, and back. Throws Refusal that names the
-// argument, its value and the rule.
+// conversions.hpp: converts C structs and buffers to checked C++ values, and back. All functions throw
+// Refusal naming the argument, its value and the rule.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -15,10 +15,11 @@
 
 namespace roomradar::c_api {
 
-[[noreturn]] void refuse(const std::string& sentence);  ///< with INVALID_ARGUMENT
+[[noreturn]] void refuse(const std::string& sentence);  ///< throws Refusal with INVALID_ARGUMENT
 /// Throws Refusal for a null pointer.
 void require_given(const void* pointer, const char* name);
-/// Throws Refusal unless the size is that of the struct in this version. Larger ones are of a newer header.
+/// Throws Refusal unless the size is that of the struct in this version. Larger sizes come from a newer
+/// header.
 void require_struct_size(std::size_t given, std::size_t wanted, const char* name);
 
 /// Checks pointer and struct_size of a struct that begins with struct_size.
@@ -28,7 +29,7 @@ void require_struct(const Struct* given, const char* name) {
   require_struct_size(given->struct_size, sizeof(Struct), name);
 }
 
-/// Returns the struct; if it is null, all zero.
+/// Returns the struct; all fields are zero if `given` is null.
 template <typename Struct>
 Struct options_of(const Struct* given, const char* name) {
   if (given == nullptr) return {};
@@ -41,13 +42,13 @@ std::string text_of(const char* text, const char* name, std::size_t most = 4096)
 /// Returns an object's name.
 std::string name_of(const char* name);
 
-/// Return finite values.
+/// Return the argument. Throw Refusal if it is not finite.
 double number_of(double value, const char* name);
 Eigen::Vector3d vector_of(const double* xyz, const char* name);
 /// Returns a pose. Its rotation is proper within 1e-6.
 Eigen::Isometry3d pose_of(const roomradar_pose* pose, const char* name);
 roomradar_pose pose_of(const Eigen::Isometry3d& T);
-/// Returns the matrix as it stands.
+/// Returns the pose without checking it.
 Eigen::Isometry3d unchecked_pose_of(const roomradar_pose& pose);
 /// Returns true if the pose is rigid within 1e-6.
 bool is_pose(const roomradar_pose& pose);
@@ -58,7 +59,7 @@ roomradar_camera camera_of(const Intrinsics& camera);
 
 /// Reads a frame into `to`, whose buffers are reused. Depth that is negative or not finite becomes 0.
 void read_frame(const roomradar_frame* from, Frame& to);
-/// Describes a frame. The pointers are those of `from`.
+/// Sets `to` to describe a frame, with pointers to the images of `from`.
 void write_frame(const Frame& from, roomradar_frame& to);
 
 /// Returns a mesh whose vertices are finite and whose indices are in range.
@@ -66,7 +67,7 @@ Mesh mesh_of(const roomradar_mesh* mesh);
 /// Writes a mesh to the caller's buffers, in the axes that they want.
 void write_mesh(const Mesh& from, std::uint64_t version, roomradar_mesh_buffers* to);
 
-/// Throws Refusal with BUFFER_TOO_SMALL if the capacity is less than `count`, after setting *needed.
+/// Sets *needed to `count`. Then throws Refusal with BUFFER_TOO_SMALL if the capacity is less than `count`.
 void require_capacity(const void* buffer, std::size_t capacity, std::size_t count, std::size_t* needed);
 /// Copies an array to the caller's buffer.
 template <typename Element>
@@ -75,13 +76,14 @@ void write_array(std::span<const Element> from, void* to, std::size_t capacity, 
   require_capacity(to, capacity, from.size() * units_per_element, needed);
   if (!from.empty()) std::memcpy(to, from.data(), from.size_bytes());
 }
-/// Copies a text with its 0.
+/// Copies a text and its terminating zero.
 void write_text(const std::string& from, char* to, std::size_t capacity, std::size_t* needed);
 
-/// How an engine's coordinates follow from the world's.
+/// Conversion from world coordinates to an engine's.
 struct EngineAxes {
   Eigen::Matrix3d C_engine_world;  ///< exchanges and negates axes; determinant -1 for left-handed axes
-  /// Turns the axes of this library's cameras (x right, y down, z forward) into those of the engine's.
+  /// Converts the axes of this library's cameras (x right, y down, z forward) to those of the engine's
+  /// cameras.
   Eigen::Matrix3d C_engine_camera;
   double units_per_m;
   bool has_clockwise_fronts;

@@ -1,4 +1,4 @@
-// handles.cpp: numbers of handles.
+// handles.cpp: assigns numbers to handles.
 #include "app/c_api/handles.hpp"
 
 #include <atomic>

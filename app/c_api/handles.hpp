@@ -1,5 +1,5 @@
-// handles.hpp: the library's objects behind handles. A handle is a number that is never used twice, so that a
-// closed one is recognised.
+// handles.hpp: the library's objects behind handles. A handle is a number that is never used twice, so that
+// closed handles are recognised.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -33,7 +33,7 @@ struct MapState : Handled {
   std::string folder;
   SavedMap map;  ///< immutable
   std::optional<RoomBlocks> blocks;
-  std::shared_ptr<ShapeState> shape;  ///< null until it is asked for
+  std::shared_ptr<ShapeState> shape;  ///< null until the first request
 };
 
 /// Returns a number that no handle of any kind has had.
@@ -61,7 +61,7 @@ class HandleTable {
     const auto found = states_.find(reinterpret_cast<std::uintptr_t>(handle));
     return found == states_.end() ? nullptr : found->second;
   }
-  /// Returns the object, which has no handle from now on; null as find() does.
+  /// Closes the handle and returns its object; null as find() does.
   std::shared_ptr<State> take(const void* handle) {
     const std::lock_guard lock(mutex_);
     const auto node = states_.extract(reinterpret_cast<std::uintptr_t>(handle));

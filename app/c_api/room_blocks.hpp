@@ -31,10 +31,10 @@ using RoomBlocks = std::map<std::uint64_t, RoomBlock>;
 /// blocks of `before` without triangles stay, empty.
 RoomBlocks room_blocks(const Mesh& mesh, const RoomBlocks& before = {});
 
-/// Lists the blocks in the caller's buffer.
+/// Writes the description of each block to the caller's buffer.
 void write_blocks(const RoomBlocks& blocks, roomradar_block* to, std::size_t capacity, std::size_t* needed);
 /// Writes one block's mesh to the caller's buffers. Throws Refusal for an id without a block.
-/// @param mesh  the whole mesh, of which the blocks are
+/// @param mesh  the whole mesh, to which the blocks belong
 void write_block_mesh(const Mesh& mesh, const RoomBlocks& blocks, std::uint64_t id,
                       roomradar_mesh_buffers* to);
 

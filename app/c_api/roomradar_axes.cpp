@@ -19,7 +19,7 @@ void convert(const Eigen::Matrix3d& by, const double* from, double* to, size_t c
     write_vector(by * Eigen::Vector3d(from[i], from[i + 1], from[i + 2]), to + i);
 }
 
-/// Converts a pose; `of_node` turns the node's axes, as `of_space` turns those of the space around it.
+/// Converts a pose: `of_node` turns the node's axes, `of_space` those of the space around it.
 void convert(const Eigen::Matrix3d& of_space, const Eigen::Matrix3d& of_node, double scale,
              const roomradar_pose* from, roomradar_pose* to) {
   require_given(to, "the result");

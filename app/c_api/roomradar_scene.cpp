@@ -1,4 +1,4 @@
-// roomradar_scene.cpp: what a session knows of the room.
+// roomradar_scene.cpp: a session's expected depth, dynamic surfaces, mesh blocks and changes.
 #include "app/c_api/roomradar_scene.h"
 
 #include <span>

@@ -1,5 +1,4 @@
-// session_state.hpp: the objects behind handles of sessions and locators, which draw on a thread of their
-// own.
+// session_state.hpp: the objects behind handles of sessions and locators. Each renders on its own thread.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -19,17 +18,17 @@ namespace roomradar::c_api {
 struct SessionState : Handled {
   static constexpr const char* kKind = "session";
   std::shared_ptr<const MapState> shared_map;  ///< null if own_map is set
-  std::optional<SavedMap> own_map;             ///< set if changes are adopted, which modify its octree
+  std::optional<SavedMap> own_map;             ///< set if changes are committed, which modify its octree
   std::int32_t poses = ROOMRADAR_POSES_TRACKED;
   Frame frame;  ///< buffer
   StageTimes times;
   std::uint64_t located_frames = 0;
   std::vector<std::string> notices;  ///< not taken so far
   std::uint64_t room_version = 1;
-  std::uint64_t room_revision = 0;    ///< of the radar's tree at room_version
-  std::uint64_t blocks_revision = 0;  ///< the same, at `blocks`
+  std::uint64_t room_revision = 0;    ///< revision of the radar's tree when room_version last changed
+  std::uint64_t blocks_revision = 0;  ///< room_revision for which `blocks` was made
   RoomBlocks blocks;
-  CyberRadar radar;  ///< exact; of queries from outside
+  CyberRadar radar;  ///< exact; for the caller's queries
   std::unique_ptr<Session> session;
   GlThread thread;  ///< on which the session lives; declared last, so that it ends first
 
@@ -40,11 +39,11 @@ struct SessionState : Handled {
   void run(const Work& work) {
     thread.run([&] { work(*session); });
   }
-  /// Returns the object. Throws Refusal if there is none of that name.
+  /// Throws Refusal if there is no object of that name.
   [[nodiscard]] const VirtualObject& object(const char* name) const;
   /// Keeps sentences for roomradar_session_notices(), at most the newest 1,000.
   void keep(const std::vector<ObjectNotice>& sentences);
-  /// Raises room_version if the session's room is another than before.
+  /// Increments room_version if the session's room has changed.
   void look_for_new_room();
 };
 

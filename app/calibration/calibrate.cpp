@@ -1,4 +1,4 @@
-// calibrate.cpp: a joint least-squares fit, its initial values, and when it is refused.
+// calibrate.cpp: a joint least-squares fit, its initial values, and the checks of its result.
 #include "app/calibration/calibrate.hpp"
 
 #include <ceres/ceres.h>

@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-/// Returns where pixel (x, y) of the ideal camera is in the real image.
+/// Returns the position in the real image of pixel (x, y) of the ideal camera.
 PlanePoint<double> real_pixel(const Intrinsics& camera, const Lens& lens, int x, int y) {
   const PlanePoint<double> p =
       distorted({(x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px}, lens);

@@ -10,8 +10,8 @@ namespace roomradar {
 /// default-constructed config unchanged.
 void apply(const ScanQuality& quality, PrescanConfig& config);
 
-/// Gives a prescan that extends a map the map's resolution and its mesh's deviation. A deviation that was
-/// asked for takes precedence, and the map keeps it.
+/// Configures a prescan that extends a map: sets the map's resolution, and the deviation of the map's mesh. A
+/// deviation that the user gave takes precedence and is stored in the map.
 void keep_settings_of(SavedMap& map, bool is_deviation_asked_for, PrescanConfig& config);
 
 /// Returns the configuration of a prescan with these options.

@@ -1,4 +1,4 @@
-// deferred_errors.hpp: collects errors while results are saved. One failure thus does not prevent saving
+// deferred_errors.hpp: collects errors while results are saved, so that one failure does not prevent saving
 // other results.
 #pragma once
 #include <cstdio>

@@ -22,7 +22,7 @@ class Interrupt {
   static bool take();
   /// Returns true if Ctrl-C was pressed and take() has not been called since.
   static bool is_asked();
-  /// Returns true if Ctrl-C was pressed since the last instance was made, taken or not.
+  /// Returns true if Ctrl-C was pressed since the last instance was made, whether or not take() was called.
   static bool was_pressed();
 };
 

@@ -22,13 +22,13 @@ std::filesystem::path calibration_for(const std::string& source, const std::file
 /// camera.json or session.json cannot be read.
 bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen);
 
-/// Opens `kinect:N[?depth=raw|mm|registered]`, `openni:N`, `sim:ROOM[?key=value&...]`, or a file or folder.
-/// It contains a recording or a recorded session, recognised by its content. With `frames`, the source
-/// delivers only that range. With a file of calibration_for(), the source corrects lens and depth errors.
-/// Recordings and simulated frames are read one frame ahead, on a second thread.
+/// Opens `kinect:N[?depth=raw|mm|registered]`, `openni:N`, `sim:ROOM[?key=value&...]`, or a file or folder
+/// with a recording or a recorded session, recognised by its content. With `frames`, the source delivers only
+/// that range. With a file of calibration_for(), the source corrects lens and depth errors. Recordings and
+/// simulated frames are read one frame ahead, on a second thread.
 ///
 /// @throws Error with a list of the kinds of source if `source` is none of them. Also throws if the frames
-/// would be corrected twice, or if source or calibration cannot be opened
+///         would be corrected twice, or if source or calibration cannot be opened
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});

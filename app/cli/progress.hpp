@@ -27,8 +27,8 @@ struct ProgressState {
 /// appears only if the total is known and with_bar is true.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
-/// Speed of an operation, averaged over about the last 15 s. A single slow or fast step thus hardly affects
-/// the remaining time.
+/// Speed of an operation, averaged over about the last 15 s, so that a single slow or fast step hardly
+/// affects the remaining time.
 class SmoothRate {
  public:
   /// Adds a number of steps that together took `seconds`.
@@ -40,9 +40,9 @@ class SmoothRate {
   double steps_ = 0.0, seconds_ = 0.0;  ///< sums with weights that decay with age
 };
 
-/// Remaining time of an operation. Between estimates it counts down; an estimate that disagrees moves it by a
-/// part of the ratio, with a time constant of the estimate or 15 s, whichever is less. So the remaining time
-/// does not jump with the speed.
+/// Remaining time of an operation, smoothed so that it does not jump with the speed. Counts down between
+/// estimates. An estimate pulls the remaining time exponentially (on a logarithmic scale) with a time
+/// constant of 15 s, or of the estimate itself if that is less.
 class SmoothRemaining {
  public:
   /// @param estimate_s  remaining steps divided by the recent speed, s

@@ -21,9 +21,8 @@ struct MapChanges {
   std::vector<Change> changes;                              ///< largest first
 };
 
-/// Returns the objects that appeared in map b or vanished since map a. Registers the maps
-/// first, unless map b was saved by a run in map a and so has its world. Throws Error as require_registered()
-/// does.
+/// Returns the objects that appeared in map b or vanished since map a. Registers the maps first, unless they
+/// are known to have the same world (share_world()). Throws Error as require_registered() does.
 MapChanges changes_between(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                            const std::string& name_b, Report& report);
 

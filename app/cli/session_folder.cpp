@@ -155,7 +155,7 @@ bool is_session_events(const fs::path& file) {
 Script read_session_events(const fs::path& file) {
   Script script = read_script(file, LastLine::kMayBeCut);
   if (read_settings(file.parent_path())["format_version"] != kOldestVersion) return script;
-  // Then an .obj stood with z up, and an object's origin was its file's.
+  // In that version, an .obj had z up, and an object's origin was that of its file.
   for (ScriptEvent& event : script.events) {
     if (event.action != Action::kAdd) continue;
     event.origin = ModelOrigin::kAsInFile;

@@ -22,7 +22,7 @@
 
 namespace roomradar {
 
-/// Throws Error if the folder exists and is not empty. A session can then not be recorded in it.
+/// Throws Error if the folder exists and is not empty, so that no session can be recorded in it.
 void require_can_become_session(const std::filesystem::path& folder);
 
 /// Records a session during the run. The session of a killed run can be replayed up to its last recorded
@@ -39,8 +39,8 @@ class SessionRecorder {
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
   /// Writes the model of a kAdd event into the folder, and returns the event with the copy's name. Does not
   /// write the built-in teapot. Returns other events unchanged. Call before the object is added to the
-  /// session. Throws Error if the model cannot be written. Callers must then not add the object. All objects
-  /// of the run are thus in the recording.
+  /// session. Throws Error if the model cannot be written. Callers must then not add the object, so that all
+  /// objects of the run are in the recording.
   /// @param model  the model loaded for the event
   ScriptEvent with_mesh_kept(ScriptEvent event, const Model& model);
   /// Records an event that was returned by with_mesh_kept() and is executed before frame `run_frame`. Throws
@@ -64,8 +64,8 @@ bool is_session_calibrated(const std::filesystem::path& folder);
 bool is_session_events(const std::filesystem::path& file);
 
 /// Reads the events file of a recorded session. Ignores an incomplete last line. Completes events of sessions
-/// recorded by older versions. Objects thus get the same pose as in that run. Throws Error as read_script()
-/// does.
+/// recorded by older versions, so that objects get the same pose as in that run. Throws Error as
+/// read_script() does.
 Script read_session_events(const std::filesystem::path& file);
 
 /// Returns the options of a replay. They contain the folder as source, its events file as script, the

@@ -78,7 +78,7 @@ std::string progress_note(const BoardViews& views, const Board& board) {
          (advice.empty() ? "" : "; " + advice);
 }
 
-/// Says once, with the first colour image, that the relative pose of the cameras is not in the recording.
+/// At the first colour image, prints that both cameras count as one if the depth is registered to the colour.
 void say_if_registered(const BoardViews& views, bool& was_said) {
   if (was_said || views.first.colour.empty()) return;
   was_said = true;

@@ -13,7 +13,7 @@ int run(const FarmOptions& options);
 /// Returns the plan of the jobs that the options name. Throws Error as plan_farm() does.
 FarmPlan plan_of(const FarmOptions& options);
 
-/// Runs the jobs of a plan and calls its argument after each.
+/// Function that runs the jobs of a plan, and calls the given function after each.
 using RunJobs = std::function<FarmState(const WatchFarm&)>;
 /// Runs a plan with progress on stderr, prints and reports how it ended. Returns the exit status.
 int run_planned(const FarmOptions& options, const FarmPlan& plan, const RunJobs& run_jobs);

@@ -33,7 +33,7 @@ nlohmann::json report_replay(const ReplayCheck& check) {
   return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
 }
 
-/// Closes the stream of frames, and says what its reader did not get.
+/// Closes the stream of frames, and prints how many lines its reader did not get.
 void close_stream(OpenedRun& run) {
   const LineStream& lines = run.stream->lines();
   run.stream->close();
@@ -111,7 +111,8 @@ int play(OpenedRun& run) {
   return 1;
 }
 
-/// Returns where to look for what the first object on the border of unknown space rests on.
+/// Returns the place to scan under the first object that rests on the border of unknown space, and a
+/// viewpoint.
 std::optional<PlaceToScan> place_to_scan(const Session& session) {
   for (const auto& object : session.objects()) {
     if (!object->in_room || !rests_on_unknown(*object)) continue;

@@ -11,12 +11,13 @@ namespace roomradar {
 /// Processes the source's frames without a window, and writes the requested results. Returns the exit status:
 /// 0, or 1 if the camera was not localised in any frame.
 /// @throws Error if the run cannot begin, has no readable frame or fails. Results obtained before the error
-/// are written
+///         are written
 int play(const RunOptions& options);
 
 struct PlayResult {
   PlayWindowResult window;
-  /// If the user asks to scan more: the border of unknown space on which an object rests; unset: none does.
+  /// If the user asks to scan more: the place where an object rests on the border of unknown space; unset if
+  /// none does.
   std::optional<PlaceToScan> look_at{};
 };
 /// Does the same in a window.

@@ -1,4 +1,5 @@
-// scan_and_play.cpp: which options a part takes from the one before it.
+// scan_and_play.cpp: alternates scanning and playing, and derives the options of each part from the part
+// before it.
 #include "app/commands/scan_and_play.hpp"
 
 #include <memory>

@@ -1,4 +1,4 @@
-// start_command.hpp: roomradar start, or roomradar alone: choose what to do in a window.
+// start_command.hpp: roomradar start, or roomradar without arguments: offers maps and actions in a window.
 #pragma once
 #include <optional>
 #include <string>
@@ -21,8 +21,8 @@ struct StartOptions {
 /// @param options  receives the values; must outlive the parsing
 void add_options(CLI::App& command, StartOptions& options);
 
-/// Shows the start view, carries out what the user chooses in the same window, and shows it again, until the
-/// user closes it. Faults of an action are shown in the view. Returns the exit status: that of the last
+/// Shows the start view, performs the chosen action in the same window, and shows the view again, until the
+/// user closes the window. The view shows faults of an action. Returns the exit status: that of the last
 /// action if the window was closed during it, else 0.
 /// @throws Error if there is no window
 int run(const StartOptions& options);

@@ -77,7 +77,7 @@ std::vector<MeasuredWork> works_of(const TradeOptions& options) {
   return works;
 }
 
-/// Remembers a Ctrl-C: the measurements so far are the result.
+/// Records a Ctrl-C, after which the measurements so far are the result.
 class Stop {
  public:
   Stop() {
@@ -269,7 +269,7 @@ int run(const TradeOptions& options) {
   const std::vector<MeasuredWork> works = works_of(options);
   TradeCsv csv(options.csv, works);
   Stop stop;              // until the results are written
-  DeferredErrors faults;  // earlier measurements are written all the same
+  DeferredErrors faults;  // errors do not keep earlier measurements from being written
   const std::vector<TradeResult> results = measure_all(works, options, stop, csv, report.times, faults);
   for (const TradeResult& result : results) {
     print_result(result);

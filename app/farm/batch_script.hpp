@@ -14,8 +14,8 @@ enum class BatchForm {
 };
 
 /// Returns a script that runs the jobs that are not present, each by `roomradar farm MANIFEST --out DIR --job
-/// NAME`, and none before those that it needs. For Slurm, also writes the lists of names that the script
-/// reads to the results' folder. The script calls $ROOMRADAR if that is set, otherwise `program`.
+/// NAME`, after the jobs that it needs. For Slurm, also writes the lists of names that the script reads to
+/// the results' folder. The script calls $ROOMRADAR if that is set, otherwise `program`.
 /// @throws Error if a list cannot be written
 std::string batch_script(const FarmPlan& plan, BatchForm form, const std::filesystem::path& program);
 

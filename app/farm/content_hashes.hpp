@@ -10,7 +10,8 @@ namespace roomradar {
 /// Hashes contents, and remembers each file's hash by its size and time of change, in memory and in a file.
 class ContentHashes {
  public:
-  /// @param memory  file with what earlier runs computed; need not exist, and is not trusted beyond its form
+  /// @param memory  file with the hashes of earlier runs; need not exist. Its format is checked, its hashes
+  ///                are not
   explicit ContentHashes(std::filesystem::path memory);
 
   /// Returns the SHA-256 of a file's content, or of the names and contents of all files of a folder, in
@@ -19,7 +20,7 @@ class ContentHashes {
   /// Returns the size of all files hashed so far, bytes.
   [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
 
-  /// Writes the file, if something was added. A failure is not an error: the next run hashes once more.
+  /// Writes the file if hashes were added. Ignores a failure: the next run then computes them again.
   void save() const noexcept;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// How a farm stands, or how it ended.
+/// State of a farm during or after its run.
 struct FarmState {
   Schedule schedule;
   std::map<std::size_t, JobResult> results;  ///< of the jobs that ended in this run, by index
@@ -19,8 +19,8 @@ struct FarmState {
 /// Called after each job, with its index, on one thread at a time.
 using WatchFarm = std::function<void(const FarmState& state, std::size_t job)>;
 
-/// Runs the jobs that are not present, each in a process of its own. A job that fails is counted, and those
-/// that do not need it go on.
+/// Runs the jobs that are not present, each in a process of its own. If a job fails, only the jobs that need
+/// it are skipped.
 /// @param processes     number of jobs at a time; at least 1
 /// @param program       file of the program that the jobs run
 /// @param is_cancelled  once it returns true, running jobs are killed and no other begins

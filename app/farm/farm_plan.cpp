@@ -21,7 +21,7 @@ bool has_placeholder(const std::string& word) {
   return std::any_of(parts.begin(), parts.end(), [](const WordPart& part) { return part.is_folder; });
 }
 
-/// Splits "--option=value" behind the sign, other words before their first letter.
+/// Splits "--option=value" after the equals sign, other words before their first letter.
 std::size_t value_at(const std::string& word) {
   const std::size_t sign = word.find('=');
   return word.starts_with("--") && sign != std::string::npos ? sign + 1 : 0;

@@ -1,4 +1,4 @@
-// farm_plan.hpp: what a manifest's jobs depend on, and which of them are done already.
+// farm_plan.hpp: plans the jobs of a manifest: their keys, and whether they are done.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -12,10 +12,10 @@ namespace roomradar {
 
 /// A job of a plan.
 struct PlannedJob {
-  /// SHA-256 of all that the job's results depend on: this program's version, the words of the command, the
-  /// contents of its inputs, and the keys of the jobs that it needs. Empty: the job is not part of the plan.
+  /// SHA-256 of this program's version, the words of the command, the contents of its inputs, and the keys of
+  /// the jobs that it needs. Empty: the job is not part of the plan.
   std::string key;
-  double cost = 0.0;        ///< as stated, otherwise the size of its inputs in 10^6 bytes, and 1
+  double cost = 0.0;        ///< as stated, otherwise 1 plus the size of its inputs in 10^6 bytes
   bool is_present = false;  ///< its folder holds the results for this key
 };
 
@@ -25,7 +25,7 @@ struct FarmPlan {
   std::vector<PlannedJob> jobs;  ///< in the manifest's order
 };
 
-/// Hashes the inputs and looks which jobs are done.
+/// Hashes the inputs, and finds the jobs that are already done.
 /// @param out     folder of the results; is created
 /// @param wanted  jobs to plan, with those that they need; empty: all
 /// @throws Error if an input cannot be read or the folder cannot be created

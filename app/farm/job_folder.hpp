@@ -1,4 +1,4 @@
-// job_folder.hpp: a job's folder, which is there as a whole or not at all.
+// job_folder.hpp: a job's folder, which appears as a whole or not at all.
 //
 // NAME holds the results of a finished job and job.json, NAME.running those of a running or killed one,
 // NAME.failed those of the last failed one, and NAME.log what the command printed.
@@ -26,7 +26,7 @@ class RunningFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return running_; }
   /// Writes job.json and renames the folder to NAME, in place of an older one. Throws Error on failure.
-  /// @param command  the job's words, for whoever reads job.json
+  /// @param command  the job's words, as information in job.json
   void commit(const std::string& key, const std::vector<std::string>& command);
 
  private:

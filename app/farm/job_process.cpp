@@ -72,7 +72,7 @@ std::string last_line(const fs::path& log_file) {
   return tail.substr(tail.find_last_of("\r\n") + 1);
 }
 
-/// Returns why a process did not end well, with what it said last; empty if it did.
+/// Returns the reason why a process failed, with its last output; empty if it succeeded.
 std::string fault_of(int status, const fs::path& log_file) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
   if (WIFSIGNALED(status)) return std::string("was killed: ") + strsignal(WTERMSIG(status));

@@ -10,18 +10,18 @@ namespace roomradar {
 
 struct JobResult {
   bool is_done = false;
-  std::string fault;  ///< if not: the reason, as a sentence
+  std::string fault;  ///< reason of a failure, as a sentence
   double wall_s = 0.0;
   double cpu_s = 0.0;    ///< of all threads of the process
   double peak_mb = 0.0;  ///< memory, 10^6 bytes
 };
 
-/// Returns true once the farm is to end. Is called on several threads.
+/// Returns true after the farm was asked to end. Called on several threads.
 using IsCancelled = std::function<bool()>;
 
-/// Runs a job in its folder, and waits for its end. What it prints goes to NAME.log. The process is killed
-/// when the calling thread ends or `is_cancelled` returns true. Does not throw: a job that cannot be run is a
-/// failed one.
+/// Runs a job in its folder, and waits for its end. Its output goes to NAME.log. The process is killed when
+/// the calling thread ends or `is_cancelled` returns true. Does not throw: a job that cannot be run counts as
+/// failed.
 /// @param program  file of the program, such as /proc/self/exe
 JobResult run_job(const FarmPlan& plan, std::size_t job, const std::filesystem::path& program,
                   const IsCancelled& is_cancelled);

@@ -29,9 +29,10 @@ struct Manifest {
 ///     evening (cost 2): prescan recordings/evening --map {}/map
 ///     change: map diff {morning}/map {evening}/map --html {}/change.html
 ///
-/// {} stands for the job's own folder and {NAME} for the folder of another job, which is done before. Words
-/// are separated by blanks; '...' and "..." keep blanks. A word that names an existing file or folder,
-/// relative to the manifest's folder, is an input. Empty lines and lines that begin with # are left out.
+/// {} stands for the job's own folder, and {NAME} for the folder of another job, which is run before this
+/// one. Words are separated by blanks; '...' and "..." keep blanks. A word that names an existing file or
+/// folder, relative to the manifest's folder, is an input. Empty lines and lines that begin with # are left
+/// out.
 ///
 /// @throws Error with file, line and fault if the file cannot be read, a line is not such a job, a name
 ///         occurs twice or is unknown, jobs need each other in a circle, or a job writes nothing to {}

@@ -23,7 +23,7 @@ constexpr int kEndedTag = 1, kNextTag = 2;
 constexpr std::int64_t kNone = -1;
 constexpr std::size_t kKeyLength = 64;  // SHA-256 in hexadecimal digits
 
-/// From a worker to rank 0: how its job ended; it asks for the next one.
+/// Message from a worker to rank 0: the outcome of its job, and a request for the next one.
 struct EndedJob {
   std::int64_t job = kNone;  ///< kNone: it had none so far
   std::int64_t is_done = 0;

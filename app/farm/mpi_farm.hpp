@@ -7,9 +7,9 @@
 
 namespace roomradar {
 
-/// Makes rank 0's plan known to all ranks of MPI_COMM_WORLD. Each rank reads the manifest itself, so all must
-/// see the same files under the same paths.
-/// @param plan  rank 0: the plan; null: there is none, and all ranks return nullopt. Other ranks: not read
+/// Sends rank 0's plan to all ranks of MPI_COMM_WORLD. Each rank reads the manifest itself, so all must see
+/// the same files under the same paths.
+/// @param plan  rank 0: the plan; if null, all ranks return nullopt. Other ranks: not read
 std::optional<FarmPlan> share_plan(const FarmPlan* plan);
 
 /// Runs the jobs of a plan, one at a time on each rank. Rank 0 hands them out and runs jobs, too. A rank that
@@ -17,7 +17,7 @@ std::optional<FarmPlan> share_plan(const FarmPlan* plan);
 /// @param plan     from share_plan()
 /// @param program  file of the program that the jobs run
 /// @param watch    called on rank 0 only
-/// @return on rank 0 how it ended; on other ranks nothing of use
+/// @return rank 0: the final state; other ranks: meaningless
 FarmState run_farm_on_ranks(const FarmPlan& plan, const std::filesystem::path& program,
                             const WatchFarm& watch = {});
 

@@ -1,4 +1,4 @@
-// schedule.hpp: which job is next.
+// schedule.hpp: chooses the next job of a plan.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -20,14 +20,14 @@ enum class JobState {
   kSkipped,  ///< a job that it needs failed
 };
 
-/// Hands out the jobs of a plan: the most expensive first, and none before those that it needs are done.
+/// Hands out the jobs of a plan, the most expensive first, and each after the jobs that it needs.
 class Schedule {
  public:
   explicit Schedule(const FarmPlan& plan);
 
-  /// Returns the next job, which is running from then on; nullopt if none can begin now.
+  /// Returns the next job, which counts as running from now on; nullopt if none can begin now.
   std::optional<std::size_t> next();
-  /// States how a running job ended. If it failed, the jobs that need it are skipped.
+  /// Records the outcome of a running job. If it failed, the jobs that need it are skipped.
   void finish(std::size_t job, bool is_done);
 
   /// Returns true if no job is waiting or running.
@@ -38,9 +38,9 @@ class Schedule {
  private:
   std::vector<JobState> states_;
   std::vector<double> costs_;
-  std::vector<std::size_t> open_needs_;  ///< jobs that must be done before, by job
+  std::vector<std::size_t> open_needs_;  ///< per job: number of needed jobs that are not done
   std::vector<std::vector<std::size_t>> needed_by_;
-  std::priority_queue<std::pair<double, std::ptrdiff_t>> ready_;  ///< cost, minus the index
+  std::priority_queue<std::pair<double, std::ptrdiff_t>> ready_;  ///< cost, and the negative index
   std::size_t left_ = 0;
 
   void make_ready(std::size_t job);

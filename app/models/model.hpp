@@ -37,8 +37,8 @@ struct ModelPart {
   friend bool operator==(const ModelPart&, const ModelPart&) = default;
 };
 
-/// A mesh with textures. Mesh colours are material colours times vertex colours, in sRGB. Textures multiply
-/// them. Vertices at texture seams are duplicated, one per side.
+/// Mesh colours are material colours times vertex colours, in sRGB. Textures multiply them. Vertices at
+/// texture seams are duplicated, one per side.
 struct Model {
   Mesh mesh;
   /// Texture coordinates, one per vertex; empty without textures. (0, 0) is the texture's top left corner,

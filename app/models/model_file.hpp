@@ -19,9 +19,9 @@ enum class ModelOrigin {
 /// material colours and base-colour textures. Skinned meshes are read in their rest pose.
 ///
 /// In the result, +z is up and coordinates are in metres. glTF prescribes metres, and a .dae file states its
-/// unit. Numbers in the other formats are taken as metres. With ModelOrigin::kNear, a model's origin that is
-/// farther away than the longest side is moved to the model's centre. A note is then added. Model::notes
-/// names textures that cannot be read.
+/// unit. Numbers in the other formats are taken as metres. With ModelOrigin::kNear, an origin farther from
+/// the model than its longest side is moved to the model's centre, and a note is added. Model::notes names
+/// textures that cannot be read.
 ///
 /// @param up  axis of the file that points up; unset: y for .glb, .gltf and .obj, z for .ply and .stl, and
 ///            the axis that a .dae states

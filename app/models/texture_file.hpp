@@ -27,7 +27,6 @@ Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size
 /// author's machine. Returns an empty path if there is no such file.
 std::filesystem::path find_texture(const std::filesystem::path& model, const std::string& name);
 
-/// Reads and decodes an image file.
 /// @throws Error as decode_texture(), also for a file above 64 MiB
 Texture read_texture(const std::filesystem::path& path, std::size_t max_pixels);
 

@@ -20,8 +20,8 @@ std::string_view to_string(UpAxis up);
 /// Returns the axis of such a word, or nullopt for any other word.
 std::optional<UpAxis> up_axis_of(std::string_view word);
 
-/// Rotates the mesh so that axis `up` points to +z. Coordinates are only exchanged and negated. The result is
-/// thus exact.
+/// Rotates the mesh so that axis `up` points to +z. Only exchanges and negates coordinates, so the result is
+/// exact.
 void stand_up(Mesh& mesh, UpAxis up);
 
 }  // namespace roomradar

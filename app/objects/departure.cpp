@@ -1,4 +1,4 @@
-// departure.cpp: sets back what fell out of the map.
+// departure.cpp: detects objects below the map, and sets them back.
 #include "app/objects/departure.hpp"
 
 #include <utility>
@@ -6,7 +6,7 @@
 namespace roomradar {
 
 std::optional<Departure> end_departure(VirtualObject& object, double lowest_known_m) {
-  constexpr double kBelow_m = 0.5;  // one sees the object fall, and a floor's noise is not its end
+  constexpr double kBelow_m = 0.5;  // the fall is visible, and a floor's noise is not a fall
   if (!object.in_room || object.carried_to_world) return std::nullopt;
   Body& body = object.body;
   if (body.asleep) object.T_world_rested = body.T_world_object;

@@ -16,7 +16,7 @@ struct Departure {
   bool is_back = false;  ///< true: returned to its last resting pose; false: removed from the room
 };
 
-/// Checks whether an object has fallen out of the map. An object has if its bounding sphere is more than 0.5
+/// Checks whether an object has fallen out of the map, that is, whether its bounding sphere is more than 0.5
 /// m below lowest_known_m. Returns such an object to the pose in which it last slept, and puts it to sleep.
 /// Removes the object from the room if it has not slept since it was added or last returned. Ignores carried
 /// objects. Call once per frame, after physics.

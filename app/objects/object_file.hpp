@@ -18,7 +18,7 @@ struct ObjectSource {
   ModelOrigin origin = ModelOrigin::kNear;
 };
 
-/// Loads a model and scales it. Throws Error with the file's name and the fault.
+/// Throws Error with the file's name and the fault.
 Model object_model(const ObjectSource& source);
 /// Returns the mesh of object_model().
 /// @param size_m  longest side after scaling; 0: not scaled
@@ -31,8 +31,8 @@ struct SizeCheck {
 };
 
 /// Throws Error for a model without a given size whose longest side is below 5 mm, above 5 m or above half of
-/// room_m. The message ends with an option that the user can paste. Its size assumes that the file is in
-/// millimetres or centimetres if the model is then 2 cm to 2 m long. Otherwise its size is 0.3 m.
+/// room_m. The message ends with an option that the user can paste. The option's size assumes that the file
+/// is in millimetres or centimetres if the model is then 2 cm to 2 m long. Otherwise the size is 0.3 m.
 void require_sensible_size(const Model& model, const ObjectSource& source, const SizeCheck& check);
 
 }  // namespace roomradar

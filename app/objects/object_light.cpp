@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns the fraction of a lamp's light that passes, as the distance of the first surface says.
+/// Returns the fraction of a lamp's light that passes, from the distance of the first surface.
 float lamp_fraction(const TreeInstance& room, const Vector3d& p_world, const Vector3d& to_lamp) {
   constexpr double kTakes_m = 0.8, kBehind_m = 1.3;
   const auto hit = hit_mesh(room, {p_world, to_lamp}, kBehind_m);

@@ -1,4 +1,4 @@
-// object_light.hpp: how much light the room's surfaces leave for an object, and for points on them.
+// object_light.hpp: fractions of light that reach an object, or a surface point, past the room's surfaces.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -13,25 +13,26 @@
 
 namespace roomradar {
 
-/// Casts rays at the room's surfaces: towards lamps in each direction, from four points half a radius from
-/// the middle, and 16 upwards, cosine weighted, up to 1 m. A surface takes a lamp's light if it is nearer
-/// than 0.8 m, and none beyond 1.3 m: ceilings and walls are behind the lamps. Nearer surfaces take more of
-/// the ambient light. All fractions are 1 without surfaces, and for values that are not finite.
+/// Casts rays against the room's surfaces. For lamps, casts rays in each of lamp_directions() from four
+/// points half a radius from the middle. For ambient light, casts 16 cosine-weighted rays upwards, up to 1 m.
+/// A surface nearer than 0.8 m blocks a lamp. A surface beyond 1.3 m does not, since ceilings and walls are
+/// behind the lamps. Surfaces block the more ambient light, the nearer they are. All fractions are 1 without
+/// surfaces, and for values that are not finite.
 /// @param room          the room's surfaces; may be null or empty
 /// @param middle_world  centre of the object
 /// @param radius_m      radius of its bounding sphere
 LightReach light_reach(const TreeInstance& room, const Eigen::Vector3d& middle_world, double radius_m);
 
-/// The same for a point on a surface of the room: ambient light arrives from the side of the normal, and is
-/// taken by surfaces within 0.5 m; lamps are 3 m from `place_world`.
+/// Returns the fractions for a point on a surface of the room. Ambient light arrives from the side of the
+/// normal, and surfaces within 0.5 m block it. Lamps are 3 m from `place_world`.
 LightReach surface_reach(const TreeInstance& room, const Eigen::Vector3d& p_world,
                          const Eigen::Vector3d& normal_world, const Eigen::Vector3d& place_world);
 
-/// The light that the room leaves for each object, smoothed over time.
+/// Light reach of each object, smoothed over time.
 class ObjectReaches {
  public:
-  /// Determines it for objects that were placed since the last call, and for one other object in turn: one
-  /// that moved by more than 3 cm, or whose light was determined more than two seconds ago.
+  /// Computes the reach of objects that were placed since the last call. Also recomputes it for one other
+  /// object, in turn, that moved by more than 3 cm or whose reach is older than two seconds.
   /// @param renewed  fraction of the smoothed values that is new
   void update(std::span<const std::unique_ptr<VirtualObject>> objects, const TreeInstance& room, double dt_s,
               float renewed);
@@ -43,7 +44,7 @@ class ObjectReaches {
  private:
   struct Entry {
     LightReach now, smooth;
-    Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();  ///< where `now` was determined
+    Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();  ///< where `now` was computed
     double age_s = 0.0;
   };
   std::vector<std::optional<Entry>> entries_;

@@ -26,11 +26,11 @@ struct ObjectParts {
   std::vector<LevelOfDetail> levels;  ///< finest first
 };
 
-/// Computes the data. Levels of detail of a mesh with many triangles take a few tenths of a second.
+/// Levels of detail of a mesh with many triangles take a few tenths of a second.
 /// @param name  name of the object in error messages
 /// Throws Error if the mesh has no valid triangles.
 ObjectParts object_parts(const std::string& name, Model source);
-/// Computes the data of a mesh without textures.
+/// The same for a mesh without textures.
 ObjectParts object_parts(const std::string& name, Mesh mesh);
 
 /// A simplified mesh of an object, for rendering.

@@ -1,4 +1,4 @@
-// unknown_support.hpp: what objects rest on; viewpoints for scanning supports in unknown space.
+// unknown_support.hpp: words for an object's support, and viewpoints for scanning supports in unknown space.
 #pragma once
 #include <Eigen/Core>
 #include <optional>

@@ -27,7 +27,7 @@ struct ObjectContact {
 struct VirtualObject {
   Body body;  ///< includes name and pose
   bool in_room = false;
-  /// The object was in solid unknown space when it was last placed.
+  /// When the object was last placed, it was in unknown space that is solid; see is_in_solid_unknown().
   bool began_in_unknown = false;
   /// The object has been in solid unknown space ever since it was placed.
   bool in_unknown = false;
@@ -41,13 +41,14 @@ struct VirtualObject {
   /// True if a surface intersects the object, no free pose is within 10 cm, and the object has been awake and
   /// still for 1 s. Reset when the object moves.
   bool stuck = false;
-  double still_s = 0.0;  ///< time for which it has been awake and within 2 mm of T_world_still
+  double still_s = 0.0;  ///< time for which the object has been awake and within 2 mm of T_world_still
   /// Pose from which its motion is measured for still_s.
   Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
   /// Contacts before its last motion, within 1.5 contact margins. They stay while it sleeps.
   std::vector<ObjectContact> contacts;
   double waited_s = 0.0;  ///< time since advance() was last called for it
-  /// Pose at which no surface of the room and no other object overlaps it, since physics moved it there.
+  /// Pose to which physics last moved the object, if no surface of the room and no other object overlaps it
+  /// there.
   std::optional<Eigen::Isometry3d> T_world_undisturbed;
   std::string_view why_not_in_room = "nothing placed or dropped it";  ///< valid while in_room is false
   /// Number of cells of the last frame's dynamic mesh that have full resolution because this object is near.
@@ -71,7 +72,7 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
 /// Overwrites the values of the object's material that `change` sets, and wakes the object. Throws Error, and
-/// changes nothing, if a value is out of range, and for a density if the mesh is open.
+/// changes nothing, if a value is out of range, or if a density is set and the mesh is open.
 void change_material(VirtualObject& object, const BodyMaterial& change);
 
 /// Returns the object of this name; null if there is none.
@@ -96,8 +97,8 @@ double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_
 /// in the given orientation, m.
 Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
-/// Returns the coarsest level of detail that deviates by at most error_px pixels from the full mesh. Pixels
-/// are converted at the object's point nearest to the camera. Valid while the object's model exists.
+/// Returns the coarsest level of detail that deviates by at most error_px pixels from the full mesh. The size
+/// of a pixel is taken at the object's nearest depth. Valid while the object's model exists.
 DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
                          const Eigen::Isometry3d& T_world_camera, double error_px);
 

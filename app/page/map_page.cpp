@@ -1,4 +1,4 @@
-// map_page.cpp: collects what a page shows of a map.
+// map_page.cpp: collects the contents of a map's page.
 #include "app/page/map_page.hpp"
 
 #include <memory>

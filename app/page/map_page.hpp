@@ -1,4 +1,4 @@
-// map_page.hpp: pages of saved maps.
+// map_page.hpp: writes HTML pages of saved maps.
 #pragma once
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -13,9 +13,9 @@ namespace roomradar {
 /// Returns true if the path ends in .html.
 bool is_page(const std::filesystem::path& path);
 
-/// Writes a page of a map: its surface, with the texture if it has one, the scan's path and what it missed.
-/// Throws Error as write_room_page() does, or if a part of the map is damaged.
-/// @param folder  of the map; its name becomes the title
+/// Writes a page of a map, with its surface, its texture if it has one, the scan's path and the holes. Throws
+/// Error as write_room_page() does, or if a part of the map is damaged.
+/// @param folder  the map's folder; its name becomes the title
 void write_map_page(const SavedMap& map, const std::filesystem::path& folder,
                     const std::filesystem::path& path);
 
@@ -25,8 +25,8 @@ struct NamedMap {
   std::string folder;
 };
 
-/// Writes a page of two maps of one room, and what appeared and vanished between them. Throws Error as
-/// write_map_page() does.
+/// Writes a page of two maps of one room, with the objects that appeared and vanished between them. Throws
+/// Error as write_map_page() does.
 /// @param T_a_b    maps points from b's world to a's world
 /// @param changes  in the world of map a
 void write_diff_page(const NamedMap& a, const NamedMap& b, const Eigen::Isometry3d& T_a_b,

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// The page; kPageRoom stands where the room's data belong.
+/// The page's HTML, with kPageRoom in place of the room's data.
 extern const std::string_view kPageTemplate;
 inline constexpr std::string_view kPageRoom = "@ROOM@";
 

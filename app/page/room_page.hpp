@@ -1,4 +1,4 @@
-// room_page.hpp: one HTML file that shows a scanned room, or what changed between two scans, in a browser.
+// room_page.hpp: one HTML file that shows a scanned room, or the changes between two scans, in a browser.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -28,9 +28,9 @@ struct RoomPage {
   std::vector<Change> changes{};  ///< kVanished belongs to rooms[0], kAppeared to rooms[1]
 };
 
-/// Writes the page: room, texture and program in one file that needs no network, only WebGL 2. Positions are
-/// rounded to 1/65535 of the room's size. The page turns the room, walks in it, cuts it, measures between two
-/// points, and lists holes and changes. An existing file is replaced once the new one is complete.
+/// Writes room, texture and program as one file that needs WebGL 2, but no network. Positions are rounded to
+/// 1/65535 of the room's size. In the page, users can turn the room, walk in it, cut it and measure
+/// distances. The page lists holes and changes. An existing file is replaced once the new one is complete.
 /// @throws Error if a room has no triangles, or the file cannot be written
 void write_room_page(const RoomPage& page, const std::filesystem::path& path);
 

@@ -16,7 +16,7 @@ namespace roomradar {
 struct Body {
   std::string name;
   MassProperties mass;
-  BodyMaterial material;  ///< its friction and restitution; mass.mass_kg includes its mass
+  BodyMaterial material;  ///< friction and restitution; its mass is already in mass.mass_kg
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();            ///< of the centre of mass
   Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< right-handed
@@ -69,8 +69,9 @@ Eigen::Vector3d centre_world(const Body& body);
 /// Returns the inertia about the centre of mass, in world axes.
 Eigen::Matrix3d inertia_world_m2(const Body& body);
 
-/// Returns the constant angular velocity that turns the body in time_s as far as free rotation from the given
-/// one does. Free rotation conserves angular momentum, not angular velocity. Fourth order in time_s.
+/// Returns the constant angular velocity that gives the same rotation over time_s as torque-free rotation
+/// that starts with angular_rad_s. Torque-free rotation conserves angular momentum, not angular velocity.
+/// Integrates by a Runge-Kutta method of fourth order.
 Eigen::Vector3d mean_free_spin(const Body& body, const Eigen::Vector3d& angular_rad_s, double time_s);
 
 }  // namespace roomradar

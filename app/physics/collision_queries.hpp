@@ -26,7 +26,6 @@ struct SceneBody {
   double mass_ratio = 0.0;
 };
 
-/// Collision queries of a moving body: its own mesh against the frame's scene.
 struct CollisionQueries {
   /// First contact along a direction.
   DistanceQuery travel;

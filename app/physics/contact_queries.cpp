@@ -41,8 +41,8 @@ bool must_be_queried(const MovingBody& moving, double margin_m) {
   return !moving.T_world_near || strayed_m(*moving.body, *moving.T_world_near) > kKeptWithin * margin_m;
 }
 
-/// Returns true if one of the points is the point, within rounding. A contact close to it does not do: while
-/// bodies turn about that one, they may approach here.
+/// Returns true if one of the points equals the point, within rounding. A contact nearby is not enough: while
+/// bodies turn about it, they may approach here.
 bool is_among(const std::vector<ClosestPoint>& points, const ClosestPoint& sought, double margin_m) {
   return std::any_of(points.begin(), points.end(), [&](const ClosestPoint& p) {
     return (p.point_world - sought.point_world).norm() < 1e-3 * margin_m &&

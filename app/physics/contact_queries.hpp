@@ -1,4 +1,4 @@
-// contact_queries.hpp: which surfaces and bodies are within contact distance of the bodies of a substep.
+// contact_queries.hpp: finds the surfaces and bodies within contact distance of a substep's bodies.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -13,12 +13,13 @@ inline std::size_t member_of(const MovingBody& moving, const ClosestPoint& p) {
   return p.tree < moving.member_of_tree.size() ? moving.member_of_tree[p.tree] : kNoOther;
 }
 
-/// Sets MovingBody::near of all active bodies, and of the sleeping ones that they touch, directly or through
-/// others. Features within 1.5 contact margins are near. A pair of active bodies is queried once, from the
+/// Sets MovingBody::near of all active bodies, and of sleeping bodies that they touch, directly or through
+/// others, to the features within 1.5 contact margins. A pair of active bodies is queried once, from the
 /// lower one. In a substep's later queries, a body that has moved by at most a quarter of the margin keeps
 /// the features of surfaces and of bodies that have not moved either. Sets `crosses` of active bodies that a
 /// surface intersects. Returns which sleeping bodies are touched.
-/// @param system  ContactSystem::upwards is the order; sleepers' contacts are kept in it
+/// @param system  bodies are queried in the order of ContactSystem::upwards; ContactSystem::sleepers caches
+///                contacts
 std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config,
                                  ContactSystem& system);
 

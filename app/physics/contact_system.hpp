@@ -16,7 +16,7 @@
 namespace roomradar {
 
 /// A contact at which a dynamic surface pushes the body throughout a step. Until the push ends, dynamic
-/// surfaces intersect the body. The step therefore ignores all other contacts with them.
+/// surfaces intersect the body, so the step ignores all other contacts with them.
 struct Push {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, towards the body
@@ -37,7 +37,7 @@ struct MovingBody {
   const CollisionQueries* probe = nullptr;
   double mass_kg = 1.0;
   bool is_carried = false;       ///< moves without gravity, friction and restitution
-  std::vector<Push> pushes{};    ///< of dynamic surfaces that overlap the body
+  std::vector<Push> pushes{};    ///< pushes by dynamic surfaces that overlap the body
   SurfaceKindMask left_out = 0;  ///< kinds that are no contacts, because they push or grip the body
   StepReport* report = nullptr;  ///< the substep adds its contacts
   double dt_s = 0.0;             ///< length of the substep
@@ -56,8 +56,8 @@ struct MovingBody {
   int stops_in_place = 0;            ///< motions in this substep that hardly moved the body
   bool contacts_known = false;       ///< sleeping bodies: contacts are in the system
   std::vector<ClosestPoint> near{};  ///< closest features at its pose
-  std::size_t near_found = 0;        ///< size of `near` without the feature that ended its last motion
-  /// Pose at which its features were queried in this substep; unset: they were not.
+  std::size_t near_found = 0;        ///< size of `near` without the feature that ended the body's last motion
+  /// Pose at which the body's features were queried in this substep; unset if they were not.
   std::optional<Eigen::Isometry3d> T_world_near{};
 };
 
@@ -81,7 +81,7 @@ struct ContactSystem {
   std::vector<SolverContact> contacts;
   std::vector<double> gap_m;       ///< per contact; 0 for a Push
   std::vector<SurfaceKind> kinds;  ///< of the surface that SolverContact::body touches
-  std::vector<const Push*> push;   ///< per contact; null if it is none
+  std::vector<const Push*> push;   ///< per contact; null if the contact is not a Push
   std::vector<SolverBody> bodies;
   std::vector<Bystander> bystanders;
   std::vector<PastContact> past;  ///< contacts of the last support solve, for warm starts
@@ -103,7 +103,7 @@ void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, co
 
 /// Bodies that a solve moves. All others are immovable in it.
 enum class Movable {
-  kAllButSleeping,          ///< and sleeping bodies that something hits faster than 5 cm/s
+  kAllButSleeping,          ///< awake bodies, and sleeping bodies that another body hits faster than 5 cm/s
   kActiveAndKnownSleepers,  ///< active bodies, and sleeping bodies whose contacts are in the system
   kActive,
 };
@@ -112,7 +112,7 @@ void set_masses(std::span<const MovingBody> bodies, Movable movable, ContactSyst
 
 /// Returns the longer left_s of a contact's bodies; dt_s if neither has time left. s, > 0.
 double left_s(std::span<const MovingBody> bodies, const SolverContact& contact);
-/// Sets leaves_mps so that each contact may close its gap, down to the margin, in the time left. A push gets
+/// Sets leaves_mps so that each contact may close its gap, down to the margin, in the time left. A Push keeps
 /// its own speed.
 void allow_closing_gaps(std::span<const MovingBody> bodies, double margin_m, ContactSystem& system);
 void clear_impulses(ContactSystem& system);

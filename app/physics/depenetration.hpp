@@ -15,10 +15,10 @@
 
 namespace roomradar {
 
-/// Returns true if the inferred backs of dynamic surfaces engulf the body. They do if they overlap the body
-/// along gravity or a depenetration direction, and each such penetration depth exceeds max_depenetration_mps
-/// * dt_s + wake_overlap_m. Callers then omit the backs from the scene. Resolving such deep overlaps would
-/// throw the body.
+/// Returns true if the inferred backs of dynamic surfaces engulf the body: they overlap it along gravity or a
+/// depenetration direction, and each such penetration depth exceeds max_depenetration_mps * dt_s +
+/// wake_overlap_m. Callers then omit the backs from the scene, since resolving such deep overlaps would throw
+/// the body.
 bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
                  std::span<const Eigen::Vector3d> depenetration_directions_world);
 
@@ -29,16 +29,17 @@ struct DirectedOverlap {
   Contact contact;
 };
 
-/// Returns the contacts at which dynamic surfaces push a body out of an overlap: the closest features after a
-/// translation out of it, each with the speed that it then needs. The pushed body may rotate, but not into
-/// another part of the surfaces. If the translated body still meets a surface, the only contact is that of
-/// the overlap.
+/// Returns the contacts at which dynamic surfaces push a body out of an overlap. These are the closest
+/// features of the body when it is translated out of the overlap, each with the normal speed that this
+/// translation needs there. Hence the pushed body may rotate, but not into another part of the surfaces. If
+/// the translated body still intersects a surface, the only contact is that of the overlap.
 /// @param push_m  displacement by the push during dt_s, at most the depth and the margin
 std::vector<Push> push_contacts(const Body& body, const DirectedOverlap& overlap, double push_m, double dt_s,
                                 const CollisionQueries& queries, const PhysicsConfig& config);
 
-/// Up to three unit directions from a body towards dynamic surfaces near it: horizontal ones to their nearest
-/// vertex and to the mean of their vertices within reach_m, then the one that their motion comes from.
+/// Up to three unit directions from a body towards dynamic surfaces near it. Two are horizontal: to the
+/// surfaces' nearest vertex, and to the mean of their vertices within reach_m. The third is the direction
+/// from which the surfaces move.
 struct PushDirections {
   int count = 0;
   std::array<Eigen::Vector3d, 3> direction_world{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),

@@ -22,8 +22,8 @@ struct MassProperties {
 /// computes those of a thin shell of uniform thickness. A mesh with negligible area is treated as point
 /// masses at its vertices.
 ///
-/// Each principal moment is raised to at least 1/10,000 of the largest. A thin rod thus has inertia about its
-/// own axis. Source: Eberly, Polyhedral mass properties (revisited), 2002.
+/// Each principal moment is raised to at least 1/10,000 of the largest, so that a thin rod has inertia about
+/// its own axis. Source: Eberly, Polyhedral mass properties (revisited), 2002.
 MassProperties mass_properties(const Mesh& mesh, bool is_closed);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// physics.cpp: moves a virtual object by radar queries.
+// physics.cpp: moves virtual objects by radar queries.
 #include "app/physics/physics.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ PhysicsConfig physics_of(const AdvancedBody& advanced, PhysicsConfig config) {
   return config;
 }
 
-/// One body in a call of advance_together(): what concerns it alone.
+/// The part of advance_together() that concerns a single body.
 class Stepper {
  public:
   Stepper(AdvancedBody& advanced, const PhysicsConfig& config)
@@ -74,7 +74,7 @@ class Stepper {
   /// Returns true if the overlap is only a surface between the body's parts, as in a handle, that crosses
   /// none of them.
   [[nodiscard]] bool is_in_a_hollow(const DirectedOverlap& way);
-  /// Returns up to which depth an overlap is left as it is. A sleeping body does not wait for a surface that
+  /// Returns the depth of overlap that is allowed to remain. A sleeping body does not wait for a surface that
   /// would be deeper in it than wake_overlap_m by the next call.
   [[nodiscard]] double allowed_overlap_m(const DirectedOverlap& way, double dt_s) const;
   static DirectedOverlap overlap_in(const Contact& contact, const Vec3& direction);
@@ -167,7 +167,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_di
   double free_m = push_m;
   if (behind.status == ContactStatus::kContact)
     free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
-  if (behind.status == ContactStatus::kOverlap)  // hides what comes after it
+  if (behind.status == ContactStatus::kOverlap)  // hides surfaces farther along
     free_m =
         behind.touched == SurfaceKind::kStatic
             ? 0.0

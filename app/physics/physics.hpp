@@ -24,7 +24,7 @@ struct AdvancedBody {
   bool is_carried = false;
   double dt_s = 0.0;  ///< time since the body was last advanced, >= 0; 0 changes nothing
   /// No surface has moved near the body since it was last advanced, except bodies that were advanced with it.
-  /// Nothing can overlap it then: no query looks for overlaps, and a sleeping body costs nothing.
+  /// Then nothing can overlap it, overlaps are not queried, and a sleeping body takes no time.
   bool is_undisturbed = false;
   /// Dynamic surfaces grip the body from two sides. They may overlap it, and do not push it. The caller also
   /// sets is_carried, and the body's velocity to theirs.
@@ -50,14 +50,14 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 /// Each substep first finds the contacts within 1.5 contact_margin_m (CollisionQueries::near). A first solve
 /// cancels approach velocity, with restitution for impacts faster than bounce_mps. A second solve adds
 /// gravity, support and friction, without restitution. Both solve each connected component of bodies in
-/// contact as one system. A body thus bears the weight of everything on it. Each body then moves with the
-/// mean of its velocities before and after the second solve, all bodies at the same time, each until its
-/// first time of impact (CollisionQueries::free_time). Two bodies that meet stop together; the others move
-/// on, past the two at rest. Bodies whose paths cannot meet are independent. The remaining time of a stopped
-/// body's substep is simulated in the same way from the new poses. Hence neither translation nor rotation
-/// tunnels, at any step size. No body enters another. A body that four stops hardly move, jammed between
-/// others, stays for the rest of the substep. Between contacts, the path is a parabola and angular momentum
-/// is conserved.
+/// contact as one system, so a body bears the weight of everything on it. Each body then moves with the mean
+/// of its velocities before and after the second solve, all bodies at the same time, each until its first
+/// time of impact (CollisionQueries::free_time). Two bodies that meet stop together; the others move on, past
+/// the two at rest. Bodies whose paths cannot meet are independent. The remaining time of a stopped body's
+/// substep is simulated in the same way from the new poses. Hence neither translation nor rotation tunnels,
+/// at any step size. No body enters another. A body that hardly moves in four motions, jammed between others,
+/// stays for the rest of the substep. Between contacts, the path is a parabola and angular momentum is
+/// conserved.
 ///
 /// Bodies in the scene of AdvancedBody::probe that are not advanced in this call receive the opposite
 /// impulses. Their velocity changes at once, their pose when they are advanced.

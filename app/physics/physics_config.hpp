@@ -18,8 +18,8 @@ struct PhysicsConfig {
   /// the distance. Without a gap, rounding errors would turn contacts into overlaps.
   double contact_margin_m = 0.001;
   double max_step_s = 1.0 / 60.0;  ///< max substep, exceeded by 5 % at most
-  /// Max time simulated per call of advance(). Time beyond it is discarded. Objects thus do not jump after a
-  /// camera stall.
+  /// Max time simulated per call of advance(). Time beyond it is discarded, so that objects do not jump after
+  /// a camera stall.
   double max_advance_s = 0.5;
   /// Max number of contact events per substep. The time left after the last event is not simulated.
   int max_slides = 16;

@@ -144,8 +144,8 @@ void Substep::hold_up(bool keeps_impulses) {
     if (is_active(bodies_[i])) bodies_[i].after = system_.bodies[i].velocity;
 }
 
-/// Wakes sleeping bodies that the weight on them would set in motion: slowly, if it lasts; fast, at once.
-/// What jiggles on a heap before it comes to rest does not keep the heap awake.
+/// Wakes sleeping bodies that the weight on them would set in motion: slowly, if it lasts; fast, at once. A
+/// body that still jiggles on a heap does not keep the heap awake.
 void Substep::wake_unbalanced_sleepers() {
   constexpr double kFast = 0.05, kSlow = 1.5 * kUnbalanced;  // fractions of gravity's acceleration
   constexpr double kLasts_s = 0.04;

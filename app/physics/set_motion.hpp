@@ -11,7 +11,7 @@ namespace roomradar {
 /// Moves the active bodies at the same time, each until its first contact or for the rest of its substep
 /// (MovingBody::left_s). Bodies that meet stop at the same time; the others move on, past those two at rest.
 /// Bodies whose paths cannot meet are independent. Sets MovingBody::limited_by.
-/// @param motions   per body; used of active bodies only
+/// @param motions   one per body; only those of active bodies are used
 /// @param margin_m  contact margin; approaching surfaces stop at half of it
 /// @return per body the duration of its motion, s; 0 if it is not active
 std::vector<double> move_active(std::span<MovingBody> bodies, const std::vector<RigidMotion>& motions,

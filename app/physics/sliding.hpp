@@ -19,8 +19,8 @@ inline constexpr double kTouching_m = 1e-6;
 Contact query_travel(Body& body, const Eigen::Vector3d& direction_world, double distance_m,
                      const CollisionQueries& probe, StepReport& report);
 
-/// Returns how far a body that surfaces overlap can be translated before it meets another one, m, at most
-/// distance_m. Ignores the bodies that cross it, and surfaces of the kinds that cross or overlap it.
+/// Returns the distance, m, at most distance_m, by which a body that surfaces overlap can be translated until
+/// its first contact. Ignores bodies that cross it, and surfaces of the kinds that cross or overlap it.
 /// @param direction_world  unit
 /// @param overlapping      kinds of surfaces that overlap the body, perhaps without crossing it
 double free_past_overlaps_m(const Body& body, const Eigen::Vector3d& direction_world, double distance_m,

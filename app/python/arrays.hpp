@@ -1,4 +1,5 @@
-// arrays.hpp: NumPy arrays as checked arguments, images and meshes as arrays that share memory, and texts.
+// arrays.hpp: checks and converts NumPy arrays and texts, and returns images and meshes as arrays that share
+// memory.
 #pragma once
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -30,7 +31,7 @@ py::array required_array(py::handle value, const char* name, const ArrayShape& s
 template <typename Element>
 py::array required_output(py::handle value, const char* name, const ArrayShape& shape);
 
-/// Returns a float64 array (4, 4) as a pose. Any strides are read. Throws ValueError unless it is a finite
+/// Returns a float64 array (4, 4) as a pose. Any strides are allowed. Throws ValueError unless it is a finite
 /// rigid transform, to 1e-6.
 Eigen::Isometry3d pose_of(py::handle value, const char* name);
 /// Returns pose_of(), or nullopt for None.
@@ -68,11 +69,11 @@ py::array_t<double> array_of(const Eigen::Matrix3d& matrix);
 /// Returns the lower and upper corner of a box, (2, 3).
 py::array_t<double> array_of(const Eigen::AlignedBox3d& box);
 
-/// Returns a text of C++, which may hold the bytes of any path, as Python has paths: bytes that are not UTF-8
-/// become surrogates.
+/// Returns a C++ string, such as a path, as a Python str. Bytes that are not UTF-8 become surrogates, as in
+/// Python's paths.
 py::str text_of(const std::string& text);
 
-/// Returns the text. Throws ValueError if it holds a zero byte, at which messages would end.
+/// Returns the text. Throws ValueError if it contains a zero byte, since messages would end there.
 const std::string& required_text(const std::string& text, const char* name);
 
 /// Returns None or a new array.

@@ -1,4 +1,4 @@
-// frames.hpp: cameras, noise, timing and frames in Python.
+// frames.hpp: Python bindings of cameras, noise, timing and frames.
 #pragma once
 #include <pybind11/pybind11.h>
 

@@ -1,4 +1,4 @@
-// locator.hpp: finding the camera in a saved map, in Python.
+// locator.hpp: Python bindings of localisation in a saved map.
 #pragma once
 #include <pybind11/pybind11.h>
 

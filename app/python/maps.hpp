@@ -1,4 +1,4 @@
-// maps.hpp: saved maps in Python.
+// maps.hpp: Python bindings of saved maps.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -10,7 +10,7 @@
 
 namespace roomradar::python {
 
-/// A map in memory. It does not change.
+/// An immutable map in memory.
 struct Map : std::enable_shared_from_this<Map> {
   SavedMap saved;
   std::string folder;  ///< empty: neither loaded nor saved

@@ -1,4 +1,4 @@
-// meshes.hpp: triangle meshes in Python.
+// meshes.hpp: Python bindings of triangle meshes.
 #pragma once
 #include <pybind11/pybind11.h>
 

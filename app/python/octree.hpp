@@ -1,4 +1,4 @@
-// octree.hpp: the octree of occupancy and signed distance in Python: fusion and queries.
+// octree.hpp: Python bindings of the octree of occupancy and signed distance, for fusion and queries.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -11,7 +11,7 @@
 
 namespace roomradar::python {
 
-/// An octree that is fused into by one call at a time, or one of a saved map, which does not change.
+/// An octree for fusion, changed by one call at a time, or the immutable octree of a saved map.
 class Octree {
  public:
   explicit Octree(StaticMap map) : Octree(std::make_shared<StaticMap>(std::move(map))) {}
@@ -35,7 +35,7 @@ class Octree {
 
  private:
   std::shared_ptr<const StaticMap> map_;
-  StaticMap* changing_ = nullptr;  ///< map_, unless it is a saved map's
+  StaticMap* changing_ = nullptr;  ///< equals map_; null for the octree of a saved map
   mutable std::shared_mutex mutex_;
 
   explicit Octree(std::shared_ptr<StaticMap> own) : map_(own), changing_(own.get()) {}

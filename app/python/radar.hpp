@@ -1,4 +1,4 @@
-// radar.hpp: Cyber Radar in Python: distance to contact of moving objects, one query or many.
+// radar.hpp: Python bindings of Cyber Radar: distance to contact of moving objects, by one query or many.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -11,7 +11,7 @@
 
 namespace roomradar::python {
 
-/// The surfaces of queries. Keeps trees and frames alive. Does not change while many queries run.
+/// The surfaces of queries. Keeps trees and frames alive. Rejects changes while another call reads it.
 class Scene {
  public:
   std::size_t add_tree(std::shared_ptr<TriangleTree> tree, const Eigen::Isometry3d& T_world_mesh,

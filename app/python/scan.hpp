@@ -1,4 +1,4 @@
-// scan.hpp: prescanning a room in Python.
+// scan.hpp: Python bindings of the prescan.
 #pragma once
 #include <pybind11/pybind11.h>
 

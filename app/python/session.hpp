@@ -1,4 +1,4 @@
-// session.hpp: augmented reality in a saved room, in Python.
+// session.hpp: Python bindings of sessions of augmented reality in a saved room.
 #pragma once
 #include <pybind11/pybind11.h>
 

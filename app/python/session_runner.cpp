@@ -1,4 +1,5 @@
-// session_runner.cpp: when images may change their size, and which thread does the work.
+// session_runner.cpp: calls the session on its thread, and checks that no array shares an image whose size
+// changes.
 #include "app/python/session_runner.hpp"
 
 #include "app/session/apply_quality.hpp"
@@ -106,7 +107,7 @@ void SessionRunner::require_no_views() const {
         "arrays of the session's images are still in use, and would lose their memory; delete them first");
 }
 
-/// Images of a frame of another size get other memory. The picture of a frame without colour may have the
+/// Images are reallocated for a frame of another size. The picture of a frame without colour may have the
 /// size of the depth image.
 void SessionRunner::require_sizes_kept(const Frame& frame) const {
   const bool may_grow =

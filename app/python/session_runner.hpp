@@ -24,7 +24,7 @@ using QualityValues = std::map<std::string, std::variant<bool, std::int64_t, dou
 /// Returns a quality with the given fields, the others unchanged. Throws Error for an unknown field or value.
 RunQuality quality_with(RunQuality quality, const QualityValues& values);
 
-/// Settings of a session that are given once.
+/// Settings of a session that are fixed when it is made.
 struct SessionSettings {
   PoseOrigin poses = PoseOrigin::kTracked;
   SurfacePolicy surfaces = SurfacePolicy::kMap;

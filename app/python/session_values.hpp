@@ -1,4 +1,4 @@
-// session_values.hpp: results of a session's frames and states of its objects in Python.
+// session_values.hpp: Python bindings of the results of a session's frames and the states of its objects.
 #pragma once
 #include <pybind11/pybind11.h>
 

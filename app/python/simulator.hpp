@@ -1,4 +1,4 @@
-// simulator.hpp: the simulated Kinect with its ground truth in Python.
+// simulator.hpp: Python bindings of the simulated Kinect with its ground truth.
 #pragma once
 #include <pybind11/pybind11.h>
 

@@ -1,4 +1,4 @@
-// sources.hpp: frame sources in Python: iterators of frames.
+// sources.hpp: Python bindings of frame sources, as iterators of frames.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -20,8 +20,8 @@ class Source {
   /// Returns the next readable frame; null at the end. Call with the interpreter's lock, which is released
   /// meanwhile. Waits for a live device until Ctrl-C.
   std::shared_ptr<Frame> next();
-  /// Goes back to the first frame if frames were read. A live device continues. Returns true at the first
-  /// frame.
+  /// Rewinds to the first frame if frames were read. Returns false, and changes nothing, if the source cannot
+  /// rewind (a live device).
   bool restart();
   bool seek(std::int64_t index);
   /// Closes files and devices. Later calls throw Error.

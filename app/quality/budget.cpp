@@ -64,8 +64,8 @@ bool has_time(const BudgetState& state, const BudgetConfig& config, std::size_t 
   return rest_ms(state, step, 0, load) < config.back_below * config.budget_ms;
 }
 
-/// Returns the most accurate step before the settled one that fits, or the settled one if none does. It need
-/// not be the next: a step may gain time in one part and lose time in another.
+/// Returns the most accurate step that fits, among those before the settled one; the settled one if none
+/// fits. It may be several steps away, because a step may gain time in one part and lose time in another.
 std::size_t most_accurate_in_time(const BudgetState& state, const BudgetConfig& config,
                                   const FrameLoad& load) {
   std::size_t step = 0;

@@ -1,4 +1,5 @@
-// contact_pixels.hpp: pixels along an object's contact with what it stands on, which is never in front of it.
+// contact_pixels.hpp: pixels along an object's contact with its support, where the support must not occlude
+// the object.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -29,8 +30,8 @@ struct DepthTolerance {
   float constant_m = 0.0F, per_m2 = 0.0F;
 };
 
-/// Values of the mask of contacts: a point just above an object's foot, before another surface or before the
-/// support itself.
+/// Values of the mask of contacts: a point just above an object's foot, in front of another surface (kAtFoot)
+/// or of the support itself (kOnSupport).
 inline constexpr std::uint8_t kAtFoot = 128, kOnSupport = 255;
 
 /// Marks the pixels that show a point just above an object's foot: with kOnSupport where the real surface is
@@ -44,8 +45,8 @@ void find_contacts(const Feet& feet, const PixelRect& rect, const DepthImage& re
                    const Image<float>& object_m, const DepthTolerance& tolerance, MaskImage& contact);
 
 /// Averages over 3 x 3 pixels with more weight at the centre. Neighbours that no object covers have a depth
-/// borrowed from elsewhere, so the pixel's own value is used instead. Contacts get 0, and so do pixels at a
-/// foot that are more visible than hidden: an occluder beside them does not blur over the contact.
+/// borrowed from elsewhere, so the pixel's own value replaces theirs. Contacts get 0. Pixels at a foot that
+/// are more visible than hidden get 0, too, so that an occluder beside them does not blur over the contact.
 void soften(const Image<float>& hidden, const MaskImage& covered, const MaskImage& contact,
             Image<float>& softened);
 

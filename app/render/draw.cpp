@@ -140,7 +140,7 @@ struct ObjectDrawer::State {
     height_px = high_px;
   }
 
-  /// Sets what is the same for all objects.
+  /// Sets the values that are the same for all objects.
   static void set_lighting(unsigned program, const Lighting& lighting) {
     const Eigen::Vector3f up = lighting.up_world.normalized().cast<float>();
     const Eigen::Vector3f to_light = lighting.to_key_light_world.normalized().cast<float>();

@@ -20,36 +20,36 @@ struct LightConfig {
 /// @throws Error naming the field, its value and the rule
 void require_valid(const LightConfig& config);
 
-/// Fraction of a smoothed value that is new after a time; the memory's part is exp(-seconds / memory_s).
+/// Returns the weight of a new value in exponential smoothing, 1 - exp(-seconds / memory_s).
 float renewed_fraction(double seconds, const LightConfig& config);
 
-/// Number of points to take from a frame, dt_s after the previous one.
-/// @param is_first  more are taken from the first frame
+/// Returns the number of points to take from a frame, dt_s after the previous one.
+/// @param is_first  true: more points are taken
 int wanted_samples(bool is_first, double dt_s, const LightConfig& config);
 
 /// Estimates the light that arrives at a place in the room, from the points of the last seconds.
 ///
-/// The light is ambient light plus one lamp, whose light falls off with the square of its distance. Candidate
-/// lamps are on a grid of 43 directions, 3 distances and 3 strengths around the place. Both are reduced by
-/// the surfaces around a point (LightSample::reach). The logarithm of a pixel's colour is log albedo + log
-/// irradiance. Surfaces of one hue are assumed to have one albedo, so a candidate is judged by the variance
-/// of log colour - log irradiance within the hues, robust against outliers such as patterns. The light is the
-/// mean over the candidates, weighted by their likelihood: an uncertain direction gives soft light, and the
-/// estimate has no jumps. The level and the colour follow from the hues' albedos, since the brightest common
-/// surfaces are near white. Source of the latter: Finlayson and Trezzi, Shades of gray and colour constancy,
-/// CIC 2004 (Minkowski norm with p = 6).
+/// The model is ambient light plus one lamp, whose light falls off with the square of its distance. Surfaces
+/// around a point reduce both (LightSample::reach). Candidate lamps are on a grid of 43 directions, 3
+/// distances and 3 strengths around the place. The logarithm of a pixel's colour is log albedo + log
+/// irradiance. Surfaces of one hue are assumed to have one albedo. The score of a candidate is thus the
+/// variance of log colour - log irradiance within the hues, by an estimate robust against outliers such as
+/// patterns. The result is the mean over the candidates, weighted by their likelihood. Hence an uncertain
+/// direction gives soft light, and the estimate does not jump. Level and colour of the light follow from the
+/// hues' albedos, since the brightest common surfaces are near white. Source of this step: Finlayson and
+/// Trezzi, Shades of gray and colour constancy, CIC 2004 (Minkowski norm with p = 6).
 class LightEstimator {
  public:
-  /// Adds a frame's samples, dt_s after the previous frame. They replace the oldest of 720. The first
-  /// estimate tests all candidates, later ones some in turn, so that all are tested every second. There is no
-  /// estimate from fewer than 30 samples. Ignores samples that are not finite, and frames with a dt_s that is
-  /// not.
-  /// @param place_world_m  where the light is wanted; should change slowly
+  /// Adds a frame's samples, dt_s after the previous frame. They replace the oldest of 720 samples. The first
+  /// estimate tests all candidates. Later estimates test some in turn, so that all are tested every second.
+  /// There is no estimate from fewer than 30 samples. Ignores samples that are not finite, and all samples if
+  /// dt_s is not finite.
+  /// @param place_world_m  position for which light is estimated; should change slowly
   void add(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m, double dt_s,
            const LightConfig& config);
-  /// The light at the place, if nothing shades it; unset before the first samples.
+  /// Returns the light at the place without shade; unset before the first estimate.
   [[nodiscard]] const std::optional<RoomLight>& light() const { return light_; }
-  /// The light where the room's surfaces leave only some of it. All zero before the first samples.
+  /// Returns the light at a position with this reach. All zero before the first estimate.
   [[nodiscard]] RoomLight light_at(const LightReach& reach) const;
 
  private:

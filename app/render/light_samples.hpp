@@ -28,7 +28,7 @@ struct ColourView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// The map's surface as seen from the depth camera, and what the sensor measured there.
+/// The map's surface as seen from the depth camera, and the depth measured there.
 struct SurfaceView {
   const DepthImage& expected_m;  ///< depth of the map
   const Intrinsics& camera;      ///< camera of expected_m
@@ -40,10 +40,10 @@ struct SurfaceView {
 };
 
 /// Takes up to `wanted` points at the next pixels of a sequence that covers the depth image evenly. Leaves
-/// out points where measured and expected depth disagree, which are dynamic, whose neighbourhood is not one
-/// smooth surface, which the colour image does not show, or whose colour is saturated or almost black. Looks
-/// at no more than four times as many pixels. Reuses the vector's memory. Returns no samples without colour
-/// or depth, or if sizes do not match.
+/// out dynamic points, points where measured and expected depth disagree, and points whose neighbourhood is
+/// not one smooth surface. Also leaves out points outside the colour image, and points with a saturated or
+/// almost black colour. Looks at no more than four times as many pixels. Reuses the vector's memory. Returns
+/// no samples without colour or depth, or if sizes do not match.
 /// @param[in,out] position  in the sequence; 0 at first. Source of the sequence: see spread_points()
 void take_light_samples(const ColourView& colour, const SurfaceView& surface, int wanted,
                         std::uint64_t& position, std::vector<LightSample>& samples);

@@ -41,7 +41,7 @@ struct Occlusion {
   /// 255 in pixels that are occluded according to depth alone.
   Image<std::uint8_t> by_depth;
   MaskImage edges;
-  /// Pixels at an object's foot and of its contact with its support, see find_contacts().
+  /// Result of find_contacts().
   MaskImage contact;
   /// Numbers of edge pixels and of occluded pixels in each pixel's neighbourhood.
   Image<int> near_edges, near_hidden;
@@ -71,9 +71,9 @@ int occlusion_margin_px(const OcclusionConfig& config);
 ///
 /// Contacts of objects with their support are not hidden, see find_contacts().
 ///
-/// @param camera_image  colour image of the camera. Edges are found in it, since an object's shadow makes
-///                      what it stands on look like darker things before it
-/// @param background    the same with the objects' shadows; may be the same image
+/// @param camera_image  colour image of the camera. Edges are found in it, since shadows would make an
+///                      object's support look like a darker occluder
+/// @param background    camera_image with the objects' shadows; may be the same image
 /// @param real_depth_m  depth of real surfaces in the same camera, with the size of both images; pixels with
 ///                      depth 0 occlude nothing
 /// @param layer         the rendered objects, within the image

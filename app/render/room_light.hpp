@@ -6,17 +6,18 @@
 
 namespace roomradar {
 
-/// Slope of the ambient light from above, over its mean: a surface that faces up gets 1 + kFromAbove of it.
+/// Relative slope of ambient light with the normal's z: a surface that faces up gets 1 + kFromAbove times the
+/// mean.
 inline constexpr float kFromAbove = 0.1F;
 
-/// Directions in which lamps are looked for: 43 on rings at 15 to 90 degrees above the horizon.
+/// Number of candidate directions of lamps, on rings at 15 to 90 degrees above the horizon.
 inline constexpr std::size_t kLampDirections = 43;
 std::span<const Eigen::Vector3f, kLampDirections> lamp_directions();
 
-/// Fractions, 0 to 1, of the light that the room's surfaces leave for a place.
+/// Fractions, 0 to 1, of the light that reaches a place past the room's surfaces.
 struct LightReach {
   float ambient = 1.0F;
-  /// Of a lamp in each of lamp_directions().
+  /// Fraction for a lamp in each of lamp_directions().
   std::array<float, kLampDirections> lamps = [] {
     std::array<float, kLampDirections> all{};
     all.fill(1.0F);
@@ -59,7 +60,7 @@ struct MainLight {
 /// linear coefficient kFromAbove A z + D / 2 l. The direction is that of the channels' sum.
 MainLight main_light(const RoomLight& light);
 
-/// Light with its parts.
+/// A light, and its separation into directed and ambient light.
 struct SplitLight {
   RoomLight whole;
   MainLight main;

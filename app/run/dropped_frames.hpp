@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Counts dropped frames as gaps in the frames' indices. The source numbers dropped frames, too.
+/// Counts gaps in the frames' indices, since the source numbers dropped frames, too.
 struct DroppedFrames {
   std::int64_t count = 0;  ///< number of frames dropped so far
   /// Index of the first frame that was passed to see(), minus the number of frames read before it.

@@ -1,4 +1,4 @@
-// frame_stream.cpp: JSON of one frame: camera, objects, contacts, what moved, times.
+// frame_stream.cpp: JSON of one frame: camera, objects, contacts, dynamic surfaces, times.
 #include "app/run/frame_stream.hpp"
 
 #include <algorithm>

@@ -20,8 +20,8 @@ namespace roomradar {
 /// Version of the lines' form. Increased when a key is removed or changes its meaning, not when one is added.
 inline constexpr int kFrameStreamVersion = 1;
 
-/// Returns the bounding boxes, in the world, of the mesh's connected components (by shared vertices), the
-/// largest first by triangles. Components with fewer triangles than `min_triangles` have none.
+/// Returns the bounding boxes, in the world, of the mesh's connected components (by shared vertices), those
+/// with the most triangles first. Leaves out components with fewer triangles than `min_triangles`.
 std::vector<Eigen::AlignedBox3d> component_boxes(const Mesh& mesh, std::size_t min_triangles);
 
 /// Returns the runs of non-zero pixels, row by row from the top left, as pairs of first index and length.

@@ -1,4 +1,4 @@
-// growing_file.hpp: a text file that grows with the run.
+// growing_file.hpp: a text file to which lines are appended during a run.
 #pragma once
 #include <filesystem>
 #include <fstream>

@@ -33,7 +33,7 @@ class LineStream {
   /// writing has failed.
   bool offer(MakeLine line);
   bool offer(std::string line);
-  /// Returns how many lines were dropped.
+  /// Returns the number of dropped lines.
   [[nodiscard]] std::int64_t dropped() const { return dropped_; }
   /// Returns true if the reader has closed its end.
   [[nodiscard]] bool is_reader_gone() const { return is_reader_gone_; }

@@ -1,4 +1,5 @@
-// opened_run.cpp: opens what a run needs; the order of the steps decides which error is reported first.
+// opened_run.cpp: opens the map, source and outputs of a run. The order of the steps decides which error is
+// reported first.
 #include "app/run/opened_run.hpp"
 
 #include <algorithm>
@@ -59,7 +60,7 @@ bool has(const Script& script, Action action) {
                      [action](const ScriptEvent& event) { return event.action == action; });
 }
 
-/// Says which events are due before an event above them, and therefore wait for it.
+/// Prints the events that wait for an event above them, because they are due before it.
 void say_what_waits(const Script& script, const std::string& path) {
   std::int64_t latest_frame = 0;
   double latest_s = 0.0;
@@ -297,8 +298,8 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   open_outputs(run);
   if (!options.frames_csv.empty()) run.frames_csv.emplace(options.frames_csv);
   if (!options.trajectory.empty()) run.trajectory.emplace(options.trajectory, kTrajectoryHeader);
-  record_frames(run, frames);  // last, so a run that fails to open leaves no folder that blocks the next
-                               // attempt
+  // Last, so that a run that fails to open leaves no folder that blocks the next attempt.
+  record_frames(run, frames);
   play_frames(run, std::move(frames));
   if (!options.stream.empty()) run.stream.emplace(options.stream, options.source, options.map);
   if (link != nullptr)

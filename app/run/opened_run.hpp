@@ -20,7 +20,6 @@
 
 namespace roomradar {
 
-/// Options, inputs, outputs and state of a run.
 struct OpenedRun {
   explicit OpenedRun(const RunOptions& of) : options(of) {}
 

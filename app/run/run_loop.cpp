@@ -81,7 +81,7 @@ class RunLoop {
   std::size_t next_event_ = 0;
   std::int64_t run_frame_ = 0;
   double run_time_s_ = 0.0;
-  /// Where objects rested on the border of unknown space when that was last said, world, m.
+  /// Positions at which objects were last reported to rest on the border of unknown space, world, m.
   std::map<std::string, Eigen::Vector3d> on_unknown_;
   /// Objects reported to have fallen out of the map; second: true if the object was set back.
   std::set<std::pair<std::string, bool>> departed_;
@@ -193,8 +193,8 @@ void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {
       if (event.action == Action::kAdd) not_made.insert(event.name);
       continue;
     }
-    record(applied);  // outside the try block: an event that cannot be recorded ends the run, as replays
-                      // would differ
+    // Outside the try block: an event that cannot be recorded ends the run, because replays would differ.
+    record(applied);
   }
 }
 
@@ -218,7 +218,7 @@ void RunLoop::step() {
   progress_.step(is_located ? "located" : "not located");
 }
 
-/// Says that an object fell out of the map, and what to do: once if it is set back, once if it is not.
+/// Reports that an object fell out of the map, once with and once without its being set back.
 void RunLoop::report(const Departure& departure) {
   if (!departed_.emplace(departure.name, departure.is_back).second) return;
   say(sentence_of(departure, *run_.session));
@@ -229,8 +229,8 @@ void RunLoop::say(const std::string& sentence) {
   if (run_.host) run_.host->complain(sentence);
 }
 
-/// Says of each object that came to rest on the border of unknown space, from where to scan what is there.
-/// Says it again only if the object moved on.
+/// Reports each object that came to rest on the border of unknown space, and the viewpoint from which to scan
+/// its support. Repeats this only after the object has moved.
 void RunLoop::say_what_rests_on_unknown() {
   constexpr double kMovedOn_m = 0.1;
   const Session& session = *run_.session;
@@ -245,7 +245,7 @@ void RunLoop::say_what_rests_on_unknown() {
   }
 }
 
-/// Says which events of the script were due after the last frame.
+/// Reports the events of the script that were due after the last frame.
 void RunLoop::say_what_never_came() {
   const std::vector<ScriptEvent>& events = run_.script.events;
   if (run_.was_quit || run_.host || run_.check || next_event_ >= events.size()) return;

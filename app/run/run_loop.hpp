@@ -7,7 +7,7 @@ namespace roomradar {
 /// Processes frames until the source ends, a quit event occurs, the window is closed, or the user presses
 /// Ctrl-C. Requests from the window that fail are reported in the window only.
 /// @throws Error if the source or a script event fails, or output cannot be written. `run` keeps the results
-/// of earlier frames
+///         of earlier frames
 void play_to_end(OpenedRun& run);
 
 }  // namespace roomradar

@@ -32,8 +32,8 @@ Eigen::Vector3d camera_position_world(const Session& session) {
 
 namespace {
 
-/// Returns from where to scan what an object on the border of unknown space rests on; null for other objects,
-/// or if it is hidden from all sides.
+/// Returns the viewpoint from which to scan the support of an object that rests on the border of unknown
+/// space; null for other objects, or if the support is hidden from all sides.
 nlohmann::json scan_from(const VirtualObject& object, const Session& session) {
   if (!rests_on_unknown(object)) return nullptr;
   const auto from =

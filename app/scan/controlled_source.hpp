@@ -16,8 +16,8 @@ struct ScanDiscarded : Error {
 void throw_if_discarded(const ScanChannel& channel);
 
 /// Returns a source that delivers the frames of `source`, waits while the channel is paused, and ends when
-/// the channel requests to finish. Throws ScanDiscarded if the scan is discarded. Once it has ended, it
-/// delivers frames without regard to the channel.
+/// the channel requests to finish. Throws ScanDiscarded if the scan is discarded. After its first end, the
+/// source ignores the channel.
 /// @param channel  must outlive the source
 std::unique_ptr<FrameSource> controlled(std::unique_ptr<FrameSource> source, ScanChannel& channel);
 

@@ -19,16 +19,16 @@
 
 namespace roomradar {
 
-/// A part of the live model, and where it is.
+/// A part of the live model, and its pose.
 struct ShownPart {
   std::shared_ptr<const Mesh> mesh;
   Eigen::Isometry3d T_world_mesh = Eigen::Isometry3d::Identity();
 };
 
-/// Where the scan finds most of what it has not seen.
+/// The view to move to next, see best_next_view().
 struct ShownNextView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::string way;  ///< from the camera to there, in words
+  std::string way;  ///< way from the camera to the view, in words
 };
 
 struct ScanCounts {
@@ -40,7 +40,8 @@ struct ScanCounts {
   double well_known = 0.0;                   ///< fraction of the surface seen so far
   std::optional<double> table_tops_known{};  ///< fraction known well; unset: none seen above a floor
   std::size_t memory_bytes = 0;
-  std::optional<double> left_s{};  ///< until memory or disk run out; unset: not known, or not in sight
+  /// Time until memory or disk run out; unset: not known, or not foreseeable.
+  std::optional<double> left_s{};
 };
 
 /// State of a scan after a frame. The world's +z is up, as far as the scan can tell so far.
@@ -48,10 +49,10 @@ struct ShownScan {
   std::int64_t frame_index = -1;  ///< -1: no frame so far
   double stamp_s = 0.0;
   ColourImage picture;        ///< colour; depth as grey if there is no colour
-  Image<std::uint32_t> tint;  ///< over the whole picture: RGBA, red in the lowest byte; coarser than it
+  Image<std::uint32_t> tint;  ///< tint of the whole picture, coarser than it: RGBA, red in the lowest byte
   TrackStatus status = TrackStatus::kTracked;
   std::optional<ScanFault> fault;
-  double relative_speed = 0.0;  ///< 1: the most that the tracking bears
+  double relative_speed = 0.0;  ///< see relative_speed()
   Intrinsics camera;            ///< depth camera
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<ShownPart> parts;
@@ -95,7 +96,7 @@ class ScanChannel {
   void request(ScanRequest request);
   /// Asks to undo the last seconds of the scan.
   void undo(double seconds);
-  /// Swaps the newest state with `shown`. Returns false if there is none since the last call.
+  /// Swaps the newest state with `shown`. Returns false if no state was published since the last call.
   bool take(ShownScan& shown);
   [[nodiscard]] ScanStage stage() const;
   /// Returns the result once the scan is over; ScanOutcome::text is empty before.
@@ -103,7 +104,7 @@ class ScanChannel {
 
   // For the scan's thread.
   [[nodiscard]] ScanRequest requested() const;
-  /// Returns how much is to be undone since the last call, s.
+  /// Returns the sum of the durations passed to undo() since the last call, s.
   double take_undo_s();
   /// Waits while the window is paused. Returns at a request.
   void wait_while_paused();

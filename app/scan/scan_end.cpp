@@ -1,4 +1,4 @@
-// scan_end.cpp: deletes or keeps checkpoints, and says so.
+// scan_end.cpp: deletes or keeps checkpoints, and reports it.
 #include "app/scan/scan_end.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// scan_end.hpp: what is kept when a scan ends, and the sentences about it.
+// scan_end.hpp: keeps or deletes a scan's files at its end, and throws errors that say what is kept.
 #pragma once
 #include <exception>
 #include <new>

@@ -12,7 +12,7 @@
 
 namespace roomradar {
 
-/// What Ctrl-C says in a scan that is then left without a map.
+/// Message of Ctrl-C in a scan that then ends without a map.
 inline constexpr const char* kStopsWithoutMap =
     "\nroomradar: stops after the next frame, without a map; after the last frame the map is still made. "
     "Press Ctrl-C again to end at once\n";
@@ -20,7 +20,7 @@ inline constexpr const char* kStopsWithoutMap =
 /// Returns true for the stages of PrescanProgress in which frames are tracked.
 inline bool is_tracking(const std::string& stage) { return stage == "track" || stage == "track again"; }
 
-/// The window of a scan, and what it shows of the first pass. Both null: there is no window.
+/// The window of a scan, and the observer that fills it during the first pass. Both null: there is no window.
 struct ScanWindow {
   ScanChannel* channel = nullptr;
   std::unique_ptr<ScanView> view{};

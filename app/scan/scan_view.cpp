@@ -1,4 +1,4 @@
-// scan_view.cpp: the scan's thread hands over frames; the view's thread prepares what is shown.
+// scan_view.cpp: takes frames from the scan's thread, and prepares the view on a thread of its own.
 #include "app/scan/scan_view.hpp"
 
 #include <algorithm>
@@ -134,7 +134,8 @@ void ScanView::estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_
   T_shown_world_ = level_rotation(up_.estimate().up_world);
 }
 
-/// Takes up what was explored, and the next view, on a thread of its own about once a second.
+/// Starts computing the explored space and the next view on another thread, about once a second, and takes
+/// the results.
 void ScanView::explore(const Work& work) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kEvery = std::chrono::seconds(1);

@@ -1,4 +1,4 @@
-// scan_view.hpp: follows a scan and publishes what the scan window shows.
+// scan_view.hpp: follows a scan and publishes the content of the scan window.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -67,7 +67,7 @@ class ScanView final : public ScanObserver {
   std::optional<Pose> last_;
   double speed_mps_ = 0.0, speed_rad_s_ = 0.0;
   std::int64_t frames_ = 0;
-  std::deque<double> seen_s_;  ///< times at which the last frames came
+  std::deque<double> seen_s_;  ///< times at which the last frames arrived
 
   // For the view's thread.
   ScanChannel& channel_;
@@ -86,7 +86,7 @@ class ScanView final : public ScanObserver {
   const std::filesystem::path folder_;
   ResourceForecast forecast_;
   LiveModel model_;
-  /// In the shown world of that time.
+  /// Result of a search for views and holes, in the shown world of its time.
   struct Explored {
     Eigen::Isometry3d T_shown_world = Eigen::Isometry3d::Identity();
     std::optional<ExplorationGrid> grid;

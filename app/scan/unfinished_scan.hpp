@@ -26,7 +26,7 @@ struct ScanStart {
 /// Opens the source. Decides whether to begin a new scan, resume a scan or extend a map. The decision depends
 /// on --resume, the existing map, and an interrupted scan in the folder MAP.unfinished.
 /// @throws Error if there is nothing to resume, the interrupted scan belongs to another command, or an
-/// interrupted live scan would be lost without --resume. Also throws as open_source() does
+///         interrupted live scan would be lost without --resume. Also throws as open_source() does
 ScanStart start_scan(const PrescanOptions& options);
 
 }  // namespace roomradar

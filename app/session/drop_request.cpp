@@ -38,14 +38,14 @@ bool is_fall_free(const VirtualObject& object, const Eigen::Isometry3d& T_world_
   const Contact around = scene.radar.query({at_start, down, height_m + kClearance_m, kClearance_m}, surfaces);
   if (!(around.lower_m >= height_m - kClearance_m - early_m)) return false;
   const Contact below = scene.radar.query({at_start, down, height_m + kUnevenness_m + early_m}, surfaces);
-  // Without the map, the frame's own surfaces are all that there is.
+  // Without the map, only the frame's own surfaces exist.
   const bool has_map = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
                                    [](const SceneTree& s) { return s.kind == SurfaceKind::kStatic; });
   return below.status == ContactStatus::kContact &&
          below.touched == (has_map ? SurfaceKind::kStatic : SurfaceKind::kDynamic);
 }
 
-/// Returns the end of a sentence that says why there is no place.
+/// Returns the end of a sentence: the reason why there is no place.
 std::string reason_of(SupportStatus status, double footprint_radius_m) {
   std::array<char, 160> text{};
   switch (status) {

@@ -1,4 +1,4 @@
-// object_motion.cpp: steps of physics for one object.
+// object_motion.cpp: advances the objects that are due, and the surfaces around them.
 #include "app/session/object_motion.hpp"
 
 #include <algorithm>
@@ -35,7 +35,8 @@ SurfaceSweep sweep_near(const DueObject& one, const FrameScene& moving) {
   return {way.value_or(Eigen::Vector3d::Zero()), {}};
 }
 
-/// Returns in how many steps the surfaces move; 1 if slow: then only this frame's surfaces count.
+/// Returns the number of steps in which the surfaces move. If it is 1, as for slow surfaces, only this
+/// frame's surfaces count.
 int steps_of(const SurfaceSweep& sweep) {
   constexpr double kStep_m = 0.015;
   return std::max(1, static_cast<int>(std::ceil(sweep.way_world.norm() / kStep_m)));
@@ -88,7 +89,7 @@ Mesh side_of(Mesh mesh, const Eigen::Vector3d& point_world, const Eigen::Vector3
   return mesh;
 }
 
-/// Returns how deep the surfaces on one side of the object's middle overlap it; 0: not.
+/// Returns the depth by which the surfaces on one side of the object's middle overlap it; 0 without overlap.
 double depth_m(const Mesh& side, const Eigen::Vector3d& shift_world, const VirtualObject& object,
                const Eigen::Vector3d& direction, CyberRadar& radar) {
   TriangleTree tree;

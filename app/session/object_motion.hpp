@@ -38,7 +38,7 @@ struct ContactCounts {
 /// index be advanced in this frame.
 bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config);
 
-/// An object that is moved in this frame, and what it can touch.
+/// An object that is moved in this frame, and the surfaces and objects that it can touch.
 struct DueObject {
   VirtualObject* object = nullptr;
   double waited_s = 0.0;  ///< time since the object was last advanced; may exceed config.max_advance_s
@@ -54,18 +54,18 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
                                  std::span<const std::unique_ptr<VirtualObject>> objects,
                                  const VirtualObject& object);
 
-/// Returns true if nothing can have come to overlap the object since physics moved it to its pose: nothing
-/// else has moved it, and no moving surface is within 25 cm.
+/// Returns true if nothing new can overlap the object: only physics has moved it to its pose, and no moving
+/// surface is within 25 cm.
 bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene);
 
 /// Advances the objects together; see advance_together(). A carried object moves at the velocity that reaches
 /// its target after waited_s. Gravity, friction and restitution do not act on it. It stops at obstacles.
 ///
-/// The dynamic surfaces near an object move from their place in the last frame to that in this frame, in
-/// steps of at most 15 mm, and push the object on the way: a fast hand does not pass it between two frames.
-/// If the surface's inferred back engulfs the object (is_engulfed()), the object's scene is without it.
+/// The dynamic surfaces near an object move from their position in the last frame to that in this frame, in
+/// steps of at most 15 mm, and push the object on the way. Hence a fast hand does not pass the object between
+/// two frames. An inferred back that engulfs the object (is_engulfed()) is left out of the object's scene.
 /// @param moving    this frame's surfaces; null: none is known to be dynamic
-/// @param contacts  buffers, and first guesses of impulses if the next call has the same objects
+/// @param contacts  buffers; keeps impulses as initial guesses for a next call with the same objects
 /// @param counts    incremented by the contacts of this call
 /// @param radar_ms  incremented by the duration of the radar's queries, ms
 void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,

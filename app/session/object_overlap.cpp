@@ -43,12 +43,12 @@ bool share_space(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a
   return overlap_shifted(shift_m) && overlap_shifted(-shift_m);
 }
 
-constexpr double kWayOut_m = 0.10;   // max way of an object out of what it was put into
+constexpr double kWayOut_m = 0.10;   // max way of an object out of an overlap
 constexpr double kSearched_m = 1.0;  // radius in which a free place is searched for the message
 
 std::string millimetres(double distance_m) { return std::to_string(std::lround(1e3 * distance_m)) + " mm"; }
 
-/// Returns "X Y Z m", as a script takes it.
+/// Returns "X Y Z m", in the form that a script accepts.
 std::string coordinates(const Eigen::Vector3d& p) {
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "%.3f %.3f %.3f m", p.x(), p.y(), p.z());
@@ -117,7 +117,7 @@ bool is_still_too_long(VirtualObject& object, double waited_s) {
 }
 
 std::string free_or_stuck(VirtualObject& object, const WayOut& way) {
-  std::vector<SceneTree> lasting = way.all;  // what moves goes away, or pushes
+  std::vector<SceneTree> lasting = way.all;  // dynamic surfaces go away, or push the object
   std::erase_if(lasting, [](const SceneTree& surface) { return is_moving_surface(surface.kind); });
   if (!is_crossed(instance_of(object), lasting, way.proximity)) return {};
   if (const auto free = free_pose_near(object, kWayOut_m, way)) {

@@ -50,8 +50,8 @@ bool is_still_too_long(VirtualObject& object, double waited_s);
 
 /// Moves the object to the nearest free pose within 10 cm if a surface intersects it. Dynamic surfaces do not
 /// count. Sets VirtualObject::stuck if there is no such pose.
-/// @return notice text without the object's name. Empty if no surface intersects the object or it was stuck
-/// already
+/// @return notice text without the object's name; empty if no surface intersects the object, or if it was
+///         stuck already
 std::string free_or_stuck(VirtualObject& object, const WayOut& way);
 
 /// Returns the penetration depth of the scene's surfaces into the object along a direction, m, >= 0. A

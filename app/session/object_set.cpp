@@ -1,4 +1,4 @@
-// object_set.cpp: what users do to objects, and one frame of their physics.
+// object_set.cpp: the calls of users on objects, and one frame of their physics.
 #include "app/session/object_set.hpp"
 
 #include <algorithm>
@@ -185,7 +185,7 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
   ContactCounts counts;
   advance_objects(due, has_map ? &scene_ : nullptr, config_.physics, radar_, proximity_, contact_system_,
                   counts, radar_ms);
-  const bool is_any_overlapped =  // what was shifted out of an overlap may overlap other objects now
+  const bool is_any_overlapped =  // an object shifted out of an overlap may overlap others now
       std::any_of(due.begin(), due.end(), [](const DueObject& one) { return one.was_overlapped; });
   for (const DueObject& one : due) {
     VirtualObject& object = *one.object;

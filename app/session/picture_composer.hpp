@@ -26,8 +26,7 @@ struct ShownView {
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Draws virtual objects and their shadows into the camera's picture. Not thread safe: call all functions on
-/// the constructing thread, whose GL context is used.
+/// Not thread safe: call all functions on the constructing thread, whose GL context is used.
 class PictureComposer {
  public:
   /// All arguments must outlive the composer. Changes of `config` take effect at the next call.
@@ -57,7 +56,8 @@ class PictureComposer {
   [[nodiscard]] const Occlusion& occlusion() const { return occlusion_; }
   /// The room's light as estimated from the colours so far; unset before the first colours.
   [[nodiscard]] const std::optional<RoomLight>& room_light() const { return light_.light(); }
-  /// Standard deviation of the camera's noise in brightness, of 255; 0 before the first colours.
+  /// Standard deviation of the camera's brightness noise, in grey levels of 0..255; 0 before the first
+  /// colours.
   [[nodiscard]] float noise() const { return noise_; }
   /// Camera and pose of the picture. Unset before the first localised frame with a picture, and after a frame
   /// that is not localised.
@@ -85,7 +85,7 @@ class PictureComposer {
   std::vector<LightSample> light_samples_;
   float noise_ = 0.0F;                     ///< standard deviation of the camera's noise, of 255; smoothed
   std::uint64_t pictures_ = 0;             ///< number of composed pictures; seed of the grain
-  std::uint64_t light_position_ = 0;       ///< in the sequence of sampled pixels
+  std::uint64_t light_position_ = 0;       ///< position in the sequence of sampled pixels
   ObjectReaches reaches_;                  ///< in the order of the objects
   std::vector<SplitLight> object_lights_;  ///< buffer: light of each drawn object
   Feet feet_;                              ///< buffer

@@ -9,8 +9,8 @@
 
 namespace roomradar {
 
-/// Scheduled changes of the quality settings. A change takes effect when the next frame reaches its part
-/// (FramePart: localisation, mesh, physics or picture).
+/// A change takes effect when the next frame reaches its part (FramePart: localisation, mesh, physics or
+/// picture).
 class QualitySchedule {
  public:
   /// Schedules a change for a part. Replaces an earlier change scheduled for the same part.

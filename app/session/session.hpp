@@ -117,7 +117,7 @@ class Session {
   /// that is not localised.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return composer_.shown_view(); }
   [[nodiscard]] const FrameScene& scene() const { return scene_; }
-  /// The room's current mesh, with all committed changes: its shapes, and the mesh with colours.
+  /// The room's current mesh with all committed changes: as shapes, and as a mesh with colours.
   [[nodiscard]] const Shape& room() const { return room_.shape; }
   [[nodiscard]] const Mesh& room_mesh() const { return map_updater_ ? map_updater_->room().mesh : map_.mesh; }
   /// Longest side of the bounding box of surface and observed space at the session's start, m.

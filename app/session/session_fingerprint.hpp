@@ -6,7 +6,7 @@ namespace roomradar {
 
 class Session;
 
-/// Hashes of a frame's result. Equal hashes in two runs indicate equal results.
+/// Equal hashes in two runs indicate equal results.
 struct FrameFingerprint {
   std::int64_t run_frame = 0;
   std::uint64_t objects = 0;  ///< hash of names and poses (all bits) of the objects in the room

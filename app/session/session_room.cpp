@@ -1,4 +1,4 @@
-// session_room.cpp: whether an object is in unknown space, and where the map ends.
+// session_room.cpp: tests objects for unknown space, and computes the extent of the map.
 #include "app/session/session_room.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// background_jobs.hpp: runs work on another thread and hands the results over to the thread of a window.
+// background_jobs.hpp: runs work on another thread and delivers the results on the thread of a window.
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -11,13 +11,13 @@
 
 namespace roomradar {
 
-/// Runs jobs one after the other, in the order in which they were added. All calls must come from one thread,
-/// on which the results are handed over.
+/// Runs jobs one after the other, in the order in which they were added. All calls must come from one thread.
+/// deliver() passes the results on that thread.
 class BackgroundJobs {
  public:
   /// @param on_result  called on the jobs' thread when a result waits for deliver()
   explicit BackgroundJobs(std::function<void()> on_result);
-  /// Waits for the job that runs; those that wait are dropped.
+  /// Waits for the running job; drops waiting jobs.
   ~BackgroundJobs();
   BackgroundJobs(const BackgroundJobs&) = delete;
   BackgroundJobs& operator=(const BackgroundJobs&) = delete;
@@ -35,9 +35,9 @@ class BackgroundJobs {
     });
   }
 
-  /// Hands over the results that wait.
+  /// Passes the waiting results to their callbacks.
   void deliver();
-  /// Returns true if no job waits or runs, and all results were handed over.
+  /// Returns true if no job waits or runs, and all results were delivered.
   [[nodiscard]] bool is_idle() const { return pending_ == 0; }
 
  private:

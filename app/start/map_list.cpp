@@ -78,7 +78,7 @@ std::string holes_text(const MapDetails& details) {
                                               : std::string());
 }
 
-/// Returns the first source, and the number of the others.
+/// Returns a text of the first source and the number of the others.
 std::string sources_text(const std::string& sources) {
   constexpr std::string_view kBetween = "; ";
   std::size_t others = 0;

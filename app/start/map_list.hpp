@@ -1,4 +1,4 @@
-// map_list.hpp: the saved maps that a user can choose from, and what is shown of a map.
+// map_list.hpp: the saved maps that a user can choose from, and their properties for display.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -20,10 +20,10 @@ struct MapEntry {
   std::string source;                                ///< recordings or devices that it was scanned from
   bool has_unfinished_scan = false;                  ///< FOLDER.unfinished exists
   bool is_saved = true;                              ///< false: only FOLDER.unfinished exists
-  std::string fault;  ///< sentence on why the map cannot be used; empty: it can
+  std::string fault;  ///< sentence on why the map cannot be used; empty if it can
 };
 
-/// What takes a while to compute.
+/// Properties of a map that take time to compute.
 struct MapDetails {
   ColourImage picture;             ///< the room obliquely from above
   double surface_m2 = 0.0;         ///< whole surface
@@ -36,10 +36,10 @@ struct MapDetails {
 /// Returns the folder of an interrupted scan of this map, which need not exist.
 std::filesystem::path unfinished_scan_of(const std::filesystem::path& map);
 
-/// Returns true if a folder is a saved map, or an interrupted scan of one is beside it.
+/// Returns true if a folder is a saved map, or has an interrupted scan beside it.
 bool is_map(const std::filesystem::path& folder);
 
-/// Reads map.json. Never throws: MapEntry::fault says what is wrong.
+/// Reads map.json. Never throws: MapEntry::fault states an error.
 MapEntry describe_map(const std::filesystem::path& folder);
 
 /// Returns the maps among the subfolders of `folder`/maps and of `folder`, and `folder` itself if it is a
@@ -47,12 +47,12 @@ MapEntry describe_map(const std::filesystem::path& folder);
 std::vector<MapEntry> list_maps(const std::filesystem::path& folder);
 
 /// Loads the map, draws it and looks for holes. Takes about a second for a room. Never throws:
-/// MapDetails::fault says what is wrong.
+/// MapDetails::fault states an error.
 /// @param width_px  width of the picture
 /// @param ground    colour around the room
 MapDetails examine_map(const std::filesystem::path& folder, int width_px, Rgb ground);
 
-/// Returns lines of name and value for people: date, size, area, holes, source.
+/// Returns the properties as lines of text, each a name and a value: date, size, area, holes, source.
 /// @param details  null: they are not known so far
 std::vector<std::pair<std::string, std::string>> facts_of(const MapEntry& map, const MapDetails* details);
 

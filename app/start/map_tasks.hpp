@@ -1,4 +1,4 @@
-// map_tasks.hpp: what the start view does with a saved map: name, rename, delete, export, compare.
+// map_tasks.hpp: tasks of the start view with saved maps: name, rename, delete, export, compare.
 #pragma once
 #include <ctime>
 #include <filesystem>
@@ -16,7 +16,7 @@ std::string proposed_map_name(const std::filesystem::path& folder, std::time_t n
 std::filesystem::path rename_map(const std::filesystem::path& map, const std::string& new_name);
 
 /// Deletes the map, and its interrupted scan if there is one. Throws Error, with nothing deleted, if the
-/// folder is no map or holds anything that is no part of one.
+/// folder is not a map or contains anything that is not part of a map.
 void delete_map(const std::filesystem::path& map);
 
 /// Exports the map beside itself, to NAME.glb, or NAME-2.glb if that is taken, and so on. Returns the path.

@@ -10,13 +10,13 @@ enum class SourceKind { kKinect, kRecording, kSimulated };
 
 struct SourceEntry {
   SourceKind kind = SourceKind::kSimulated;
-  std::string name;    ///< for a list
+  std::string name;    ///< text in the list
   std::string detail;  ///< a few words, such as "300 frames"
   std::string source;  ///< as open_source() takes it
-  /// The source to play with, as open_source() takes it; differs from `source` for simulated rooms, whose
+  /// The source to play with, as open_source() takes it; differs from `source` for simulated rooms, where the
   /// camera then stays at one place.
   std::string play_source;
-  std::string fault;  ///< sentence on why it cannot be used; empty: it can
+  std::string fault;  ///< sentence on why the source cannot be used; empty if it can
 };
 
 /// Returns the Kinects on the USB bus, or the recording that fakenect replays in place of one. Opens none.
@@ -30,7 +30,7 @@ std::vector<SourceEntry> list_recordings(const std::filesystem::path& folder);
 /// Returns the simulated rooms.
 std::vector<SourceEntry> list_simulated_rooms();
 
-/// Returns the entry of any source, with a fault if it is none or cannot be read.
+/// Returns the entry of any source, with a fault if `source` is not a source or cannot be read.
 /// @param source  as open_source() takes it
 SourceEntry describe_source(const std::string& source);
 

@@ -1,4 +1,4 @@
-// start_settings.hpp: what the start view remembers: $XDG_CONFIG_HOME/roomradar/start.json.
+// start_settings.hpp: settings that the start view remembers, in $XDG_CONFIG_HOME/roomradar/start.json.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -16,7 +16,7 @@ struct StartSettings {
 
 struct ReadSettings {
   StartSettings settings;
-  std::string fault;  ///< sentence on what is wrong with the file; empty: nothing
+  std::string fault;  ///< sentence on a fault of the file; empty: none
 };
 
 /// Returns the path of the settings file: in $XDG_CONFIG_HOME/roomradar, or ~/.config/roomradar if that

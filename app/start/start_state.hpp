@@ -1,4 +1,4 @@
-// start_state.hpp: the lists of the start view, what is chosen in them, and what can be done with it.
+// start_state.hpp: the lists of the start view, the chosen entries, and the actions on them.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -27,25 +27,25 @@ struct StartState {
   std::vector<std::filesystem::path> given_maps;  ///< maps that were named, dropped or last used
   std::vector<SourceEntry> sources;
   std::vector<MapEntry> maps;
-  std::size_t source = 0, map = 0;         ///< what is chosen: index in the list
+  std::size_t source = 0, map = 0;         ///< index of the chosen entry in its list
   StartList active = StartList::kSources;  ///< list that the arrow keys move in
   StartMessage message;
   StartSettings settings;
 };
 
-/// What the user decided to do.
+/// The user's decision.
 struct StartChoice {
   StartAction action = StartAction::kQuit;
   std::string source;  ///< as open_source() takes it
   std::string map;     ///< folder
 };
 
-/// Lists sources and maps again. What was chosen stays chosen if it is still there.
-/// @param recordings  of list_recordings(), which may take a while
+/// Lists sources and maps again. A chosen entry stays chosen if it is still there.
+/// @param recordings  result of list_recordings(), which may take a while
 void refresh_sources(StartState& state, const std::vector<SourceEntry>& recordings);
 void refresh_maps(StartState& state);
 
-/// Adds what a user names or drops, a map or a source, and chooses it. What is neither becomes a message.
+/// Adds and chooses a map or a source that a user names or drops. Sets a message if `name` is neither.
 void choose(StartState& state, const std::string& name);
 
 /// Returns the chosen entry; null if the list is empty.
@@ -55,7 +55,7 @@ const MapEntry* chosen_map(const StartState& state);
 /// Moves the choice in the active list by a number of rows, and stops at its ends.
 void move_choice(StartState& state, int rows);
 
-/// Returns a sentence on why an action cannot be done with what is chosen; empty if it can.
+/// Returns a sentence on why an action cannot be done with the chosen entry; empty if it can.
 std::string why_not(const StartState& state, StartAction action);
 
 /// Returns the command line of a choice, without the program's name, such as "run sim:table --map maps/table

@@ -36,7 +36,7 @@ class GlfwWindow {
   std::vector<std::string> files_;
 };
 
-/// Returns the window that is open, with a new title, or opens one. It closes when its last owner is gone.
+/// Returns the open window, with a new title, or opens one. The window closes when its last owner is gone.
 /// @throws Error as GlfwWindow() does
 std::shared_ptr<GlfwWindow> open_window(const std::string& title);
 

@@ -18,7 +18,7 @@ class WindowContent {
   WindowContent& operator=(const WindowContent&) = delete;
   virtual ~WindowContent() = default;
 
-  /// Takes what is new since the last call. Called before each drawing.
+  /// Takes the news since the last call. Called before each drawing.
   virtual void take_news() = 0;
   virtual void press(const Key& key) = 0;
   /// Called in place of press() while a text field has the keyboard.
@@ -32,8 +32,8 @@ class WindowContent {
   [[nodiscard]] virtual std::optional<double> ui_scale() const { return std::nullopt; }
 };
 
-/// Shows a content, with the fonts that it is given, until it wants to quit or the window is closed. Draws
-/// after every event, otherwise four times a second.
+/// Shows the content that make_content() returns, until the content wants to quit or the window is closed.
+/// Draws after every event, otherwise four times a second.
 /// @param ui_scale  scale of text and panes; unset: that of the monitor
 void show_until_closed(GlfwWindow& window, std::optional<double> ui_scale,
                        const std::function<std::unique_ptr<WindowContent>(const look::Fonts&)>& make_content);

@@ -195,7 +195,7 @@ void PlayUi::press(int key, int modifiers) {
   static_cast<void>(press_window_key(key, modifiers));
 }
 
-/// Pause, steps, the camera and the speed.
+/// Executes keys for pause, steps, the camera and the speed.
 bool PlayUi::press_run_key(int key) {
   switch (key) {
     case GLFW_KEY_SPACE:
@@ -232,7 +232,7 @@ bool PlayUi::press_run_key(int key) {
   }
 }
 
-/// What happens to objects.
+/// Executes keys for objects.
 bool PlayUi::press_object_key(int key) {
   UserCommand command;
   switch (key) {
@@ -265,8 +265,8 @@ bool PlayUi::press_object_key(int key) {
   }
 }
 
-/// Surfaces, unknown space and radar. These change shown_ at once, because the next key may precede the next
-/// frame.
+/// Executes keys for surfaces, unknown space and radar. They change shown_ at once, because the next key may
+/// precede the next frame.
 bool PlayUi::press_scene_key(int key) {
   switch (key) {
     case GLFW_KEY_S: {
@@ -289,7 +289,7 @@ bool PlayUi::press_scene_key(int key) {
   }
 }
 
-/// Views, help and the end.
+/// Executes keys for views, help and quitting.
 bool PlayUi::press_window_key(int key, int modifiers) {
   switch (key) {
     case GLFW_KEY_V:

@@ -26,7 +26,7 @@ struct PlayWindowResult {
 /// @param budget_ms  the run's time limit per frame; unset: none
 /// @param ui_scale   scale of text and panes; unset: that of the monitor
 /// @throws Error with advice if the program was built without a window, or if there is no display with OpenGL
-/// 3.3. Exceptions of `work` are rethrown
+///         3.3. Exceptions of `work` are rethrown
 PlayWindowResult run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,
                                std::optional<double> budget_ms, std::optional<double> ui_scale,
                                const std::function<int(UiChannel&)>& work);

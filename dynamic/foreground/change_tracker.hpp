@@ -13,13 +13,13 @@
 
 namespace roomradar {
 
-/// Stores points, in the world, on dynamic and on removed surfaces, and projects the points into every depth
-/// image. A frame confirms a point on a dynamic surface if it measures the surface at the point. A frame
-/// confirms a point on a removed surface if it sees through the point. Only confirming frames add to the
-/// point's steady_s. A frame that shows the opposite contradicts the point. The point is dropped once its
-/// contradiction score exceeds 7 (ChangePoint::contradiction). Hidden points and points out of view keep
-/// their score and times. Hence the result does not depend on the camera's motion. Allocates nothing after
-/// the first frame except the changes it returns. Not thread safe.
+/// Stores world points on dynamic and on removed surfaces, and projects them into every depth image. A frame
+/// confirms a point on a dynamic surface if it measures the surface at the point. A frame confirms a point on
+/// a removed surface if it sees through the point. Only confirming frames add to the point's steady_s. A
+/// frame that measures the point's position but does not confirm the point contradicts it. The point is
+/// dropped once its contradiction score exceeds 7 (ChangePoint::contradiction). Hidden points and points out
+/// of view keep their score and steady_s. Hence the result does not depend on the camera's motion. Allocates
+/// nothing after the first frame except the changes it returns. Not thread safe.
 class ChangeTracker {
  public:
   explicit ChangeTracker(const ChangeTrackerConfig& config = {});

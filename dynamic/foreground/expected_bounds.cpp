@@ -49,7 +49,8 @@ void find_extremes(const DepthImage& expected_m, ExpectedBounds& bounds) {
 }
 
 // Computes how many blocks to each side an edge may be shifted. A rotation error shifts all edges alike; a
-// translation error and the map's distortion shift near edges more. Composed of steps that `spread` allows.
+// translation error and the map's distortion shift near edges more. Composed of the steps that `spread`
+// allows.
 void choose_reach(const Intrinsics& camera, const ForegroundConfig& config, ExpectedBounds& bounds) {
   spread(bounds.grid, bounds.nearest_m, 1, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
   spread(bounds.grid, bounds.nearest_level_m, 2, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);

@@ -20,11 +20,11 @@ struct ExpectedBounds {
   /// Standard deviation of measured minus expected depth, from all errors combined.
   std::vector<float> sigma_m;
   /// Range of the expected depths within `reach` of the block. Pose and map errors could shift the edges of
-  /// these surfaces into the block. nearest_in_reach_m is kNoDepth_m if everything nearer within reach is
-  /// only the block's own surface, continued as a plane. farthest_in_reach_m is 0 if the same holds for
-  /// everything farther. With kNoDepth_m or 0, a pixel is compared only with its own expected depth.
-  /// farthest_in_reach_m is kNoDepth_m if a hole of the model (pixels without expected depth) is within
-  /// reach.
+  /// these surfaces into the block. nearest_in_reach_m is kNoDepth_m if no surface within reach is in front
+  /// of the block's own surface, continued as a plane. farthest_in_reach_m is 0 if none is behind that plane,
+  /// and kNoDepth_m if a hole of the model (pixels without expected depth) is within reach. If
+  /// nearest_in_reach_m is kNoDepth_m or farthest_in_reach_m is 0, a pixel is compared on that side only with
+  /// its own expected depth.
   std::vector<float> nearest_in_reach_m, farthest_in_reach_m;
   /// Nearest expected depth within hole_reach_px of the block, for pixels in the model's holes. kNoDepth_m:
   /// none.

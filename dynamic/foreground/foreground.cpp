@@ -1,4 +1,4 @@
-// foreground.cpp: the steps of one frame, and which regions are accepted.
+// foreground.cpp: the steps of one frame, and the tests that accept regions.
 #include "dynamic/foreground/foreground.hpp"
 
 #include <algorithm>

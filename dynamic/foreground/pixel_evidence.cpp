@@ -104,8 +104,8 @@ std::uint8_t resolve_ambiguous(const DepthImage& depth_m, int column, int row, c
       ++count;
     }
   }
-  for (int i = count; i < kLanes; ++i) {  // the rest repeat the first, so the loop below has a constant
-                                          // length
+  // The rest repeat the first, so that the loop below has a constant length.
+  for (int i = count; i < kLanes; ++i) {
     depth[i] = depth[0];
     tolerance[i] = tolerance[0];
   }
@@ -196,8 +196,8 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
 void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m,
                          const ExpectedBounds& bounds, PixelEvidence& evidence) {
   const BlockGrid grid = bounds.grid;
-  std::vector<std::uint8_t>& within = evidence.blocks.revealed_for;  // number of revealed blocks to all
-                                                                     // sides, itself included
+  std::vector<std::uint8_t>& within =
+      evidence.blocks.revealed_for;  // sum of revealed blocks around each block, itself included
   within.assign(grid.size(), 0);
   bool any = false;
   for (int row = 0; row < grid.rows; ++row) {

@@ -9,8 +9,8 @@ namespace roomradar {
 
 /// Typical standard deviation of the difference in inverse depth between model and measurement. Drift of the
 /// map, pose errors and sensor distortion cause errors of inverse depth that hardly change with depth. For a
-/// Kinect recording and its own map, the value is 0.003 / m from 0.9 m to 3.5 m. This is one disparity step
-/// of the sensor. For an exact model, it is 0.0005 / m.
+/// Kinect recording and its own map, the value is 0.003 / m (one disparity step of the sensor) from 0.9 m to
+/// 3.5 m. For an exact model, it is 0.0005 / m.
 inline constexpr float kUsualMisfit_per_m = 0.003F;
 
 struct StaticResidual {

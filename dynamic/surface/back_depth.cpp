@@ -183,12 +183,12 @@ class BackMaker {
     }
   }
 
-  /// Returns how far, in pixels, a round object of this half width bulges at this distance from its outline.
+  /// Returns the bulge, in pixels, of a round object of this half width at this distance from its outline.
   static float round_px(float rim_px, float width_px) {
     return rim_px < kFar_px ? std::sqrt(rim_px * (2.0F * width_px - rim_px)) : kFar_px;
   }
 
-  /// Returns true if the object itself ends beside this point, towards one of its four neighbours.
+  /// Returns true if the object itself ends between this point and one of its four neighbours.
   [[nodiscard]] bool has_outline(std::size_t i, int column, int row) const {
     const float here = lattice_.inverse_depth[i];
     for (std::size_t k = 0; k < kSteps.size(); k += 2) {

@@ -42,8 +42,8 @@ struct BackLattice {
 /// the ratio of the front's bulge to that of a round object (1: round, 0: flat). It is fitted per connected
 /// component and limited to least_roundness..1. The thickness is least_thickness_m plus twice the round
 /// object's bulge times the roundness, at most most_thickness_m. The back stays clearance_m in front of the
-/// static model, but always behind the front. The cut by a nearer surface or the image's edge is not an
-/// outline. The thickness does not decrease towards the cut.
+/// static model, but always behind the front. A boundary where a nearer surface or the image's edge cuts the
+/// object off is not an outline. The thickness does not decrease towards such a boundary.
 ///
 /// @param depth_m           measured depth of all pixels, dynamic or not
 /// @param expected_depth_m  depth of the static model; 0 is unknown and does not limit the back

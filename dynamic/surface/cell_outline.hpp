@@ -1,5 +1,4 @@
-// cell_outline.hpp: convex polygon for the part of a cell of 4 x 4 pixels that a surface with an outline in
-// the cell covers.
+// cell_outline.hpp: convex polygon for the part of a cell of 4 x 4 pixels that a surface covers.
 #pragma once
 #include <array>
 #include <cstdint>

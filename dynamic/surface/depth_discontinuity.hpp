@@ -10,8 +10,8 @@
 
 namespace roomradar {
 
-/// Decides whether two pixels are on one surface. They are if their depths differ by at most the noise of
-/// both plus the depth change of the steepest plane.
+/// Two pixels are on one surface if their depths differ by at most the noise of both plus the depth change of
+/// the steepest plane.
 class DepthDiscontinuity {
  public:
   /// @param noise          of the sensor

@@ -43,11 +43,11 @@ void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const
                  DepthMeshScratch& scratch, Mesh& mesh);
 
 /// Meshes the whole frame, as a system without a map would. kHoles and kMap leave depth discontinuities open.
-/// kSkirt connects both sides of each discontinuity by polygons. It also does so for each unmeasured gap
-/// within a row. kBorder does the same as kSkirt. It also extends each row's first and last depth over the
-/// unmeasured pixels at the row's ends. It moves vertices on the image's border by border_push_m outwards in
-/// the image plane and by border_push_m nearer. Objects that leave the view then do not fall. Parameters as
-/// for mesh_masked(). Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
+/// kSkirt connects the two sides of each discontinuity, and of each unmeasured gap within a row, by polygons.
+/// kBorder adds two steps to kSkirt. It extends each row's first and last depth over the unmeasured pixels at
+/// the row's ends. It moves vertices on the image's border by border_push_m outwards in the image plane and
+/// by border_push_m nearer, so objects that leave the view do not fall. Parameters as for mesh_masked().
+/// Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
 void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);
 

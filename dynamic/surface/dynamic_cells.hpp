@@ -36,7 +36,7 @@ struct CellCounts {
 /// camera.
 using PixelTriangle = std::array<std::uint32_t, 3>;
 
-/// Cells of one frame. In the comments of the members, a square is a block of 8 x 8 cells (kSquareCells).
+/// Cells of one frame. Below, a square is a block of 8 x 8 cells (kSquareCells).
 struct DynamicCells {
   std::vector<CellKind> kinds;                 ///< one per cell; a cell is between four lattice points
   std::vector<std::uint8_t> is_flat;           ///< 1 if the kind is kFlat

@@ -73,7 +73,7 @@ Plane mean_of_pairs(const float* middle, std::ptrdiff_t width, CellBits window, 
           by_y / static_cast<float>(std::max(y2, 1)), 0.0F};
 }
 
-/// Averages flat points with pairs of opposite flat neighbours, unless that would round off a bend.
+/// Averages each flat point with pairs of opposite flat neighbours, unless that would round off a bend.
 void average_neighbours(DynamicLattice& lattice) {
   constexpr float kMostBend_sigmas = 1.5F;
   lattice.raw = lattice.inverse_depth;

@@ -38,7 +38,7 @@ struct DynamicLattice {
   InverseDepthNoise noise;
   int columns = 0, rows = 0;  ///< number of points: a multiple of kSquareCells plus one
   /// Inverse depth, 1/m; 0 where the pixel is not dynamic. Averaged over pairs of pixels on opposite sides of
-  /// the point. Planes are unchanged.
+  /// the point, which leaves planes unchanged.
   std::vector<float> inverse_depth;
   std::vector<float> sigma;  ///< noise of one pixel at this depth and angle, 1/m
   /// 1 if the 5 x 5 pixels around the point are all dynamic and, within noise, on a plane.

@@ -55,7 +55,7 @@ struct DynamicSurfaceScratch {
 ///      with pairs of opposite pixels whose mean agrees with the point within noise.
 ///   3. Classifies cells of 4 x 4 pixels as flat, cut or full. In cut cells, straight lines follow outlines
 ///      and discontinuities to about a pixel. In full cells, every pixel is a vertex. Cells in `regions` are
-///      full. Cells whose outlines straight lines approximate too coarsely are full, too.
+///      full, and so are cells whose outlines differ too much from straight lines.
 ///   4. Meshes flat cells as an RTIN (rtin.hpp): right triangles with legs of up to 32 pixels, bisected until
 ///      every lattice point is within deviation_sigmas of its triangle. The mesh has no cracks.
 ///   5. Makes the back, which has the front's outline but is farther away (make_back()). Walls connect the

@@ -13,7 +13,7 @@ namespace {
 constexpr int kLeastSide_px = 32;
 constexpr float kJumpSigmas = 4.0F, kJumpIncidence_deg = 80.0F;  // as where what moved is meshed
 
-/// The surface that most of the inverse depths are of, some of which are 0: none.
+/// The surface to which most of the inverse depths belong. An inverse depth of 0 means none.
 template <std::size_t kCount>
 float most_shown(std::array<float, kCount>& inverse, const DepthDiscontinuity& jump) {
   std::sort(inverse.begin(), inverse.end(), std::greater<>());

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// Returns `stride`, halved until the reduced image has at least 32 rows and columns, or 1.
+/// Returns `stride`, halved until the reduced image has at least 32 rows and columns, but at least 1.
 int usable_stride(const Intrinsics& depth_camera, int stride);
 
 /// Replaces each block of stride x stride pixels by one pixel, and scales the camera to match. Chooses the

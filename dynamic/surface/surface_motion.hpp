@@ -10,20 +10,21 @@
 
 namespace roomradar {
 
-/// Sets points_world to points of the dynamic pixels with depth, in the image's order: at most about 20,000,
-/// of every n-th row and column.
+/// Sets points_world to the back-projected dynamic pixels with depth, row by row. Takes every n-th row and
+/// column, so that at most about 20,000 pixels are read.
 void dynamic_points(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& camera,
                     const Eigen::Isometry3d& T_world_camera, std::vector<Eigen::Vector3d>& points_world);
 
-/// Estimates the translation of a surface between two frames near a point, by registration of its points:
-/// tries the translations that take a point of the last frame to one of the newest points, and refines the
-/// best one by iterative closest points. Points that are farther than 3 cm from any other have no match, so a
-/// hand that enters the view, or turns, gets the translation of its part near the point.
+/// Estimates the translation of a surface between two frames near a point, by registration of the surface's
+/// points. Candidates are translations of points of the last frame to those points of this frame that are
+/// farthest from all points of the last frame. The best candidate is refined by iterative closest points. A
+/// point more than 3 cm from every other has no match. A hand that enters the view, or turns, thus gets the
+/// translation of its part near the point.
 /// @param before_world, now_world  points of the surface, see dynamic_points()
 /// @param centre_world, reach_m    only points of `now_world` within reach_m of the centre count
 /// @param farthest_m               max translation found
-/// Returns nothing if fewer than 12 points are near, or if no translation brings them to within 15 mm of each
-/// other. Source: Besl, McKay, A method for registration of 3-D shapes, PAMI 1992.
+/// Returns nullopt if fewer than 12 points are near, or if no translation brings the two sets of points to
+/// within 15 mm of each other. Source: Besl, McKay, A method for registration of 3-D shapes, PAMI 1992.
 std::optional<Eigen::Vector3d> translation_near(std::span<const Eigen::Vector3d> before_world,
                                                 std::span<const Eigen::Vector3d> now_world,
                                                 const Eigen::Vector3d& centre_world, double reach_m,

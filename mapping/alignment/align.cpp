@@ -86,7 +86,7 @@ MatchLimits limits_at(int level, const AlignConfig& config) {
           .inverse_intensity_sigma = config.intensity_sigma > 0.0F ? 1.0F / config.intensity_sigma : 0.0F};
 }
 
-/// Returns whether a correction of the guess is not finite or larger than the config allows.
+/// Returns true if a correction of the guess is not finite, or larger than the config allows.
 bool is_too_large(const Eigen::Isometry3d& T_guess_found, const AlignConfig& config) {
   const Vector6d correction = local(T_guess_found);
   return !correction.allFinite() ||

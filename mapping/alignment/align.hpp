@@ -43,8 +43,8 @@ inline bool has_pose(const Tracking& tracking) {
 }
 
 struct AlignConfig {
-  int coarsest_level = 2;  ///< index of the coarsest pyramid level used
-  int finest_level = 0;    ///< index of the finest pyramid level used; 0 is full resolution
+  int coarsest_level = 2;  ///< pyramid level at which alignment begins
+  int finest_level = 0;    ///< pyramid level at which alignment ends; 0 is full resolution
   int iterations = 6;      ///< max number of iterations per level
   /// Max point-to-plane distance of a correspondence at the coarsest level, m. The limit is halved at each
   /// finer level, but never below 0.03 m.
@@ -72,17 +72,17 @@ struct PosedReference {
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Earlier pose from which align() computes the camera's velocity during the readout of the image. Each
-/// iteration uses the velocity of its own pose.
+/// Earlier pose, from which align() computes the camera's velocity during the readout of the image. Each
+/// iteration recomputes the velocity from its current pose.
 struct ReadoutMotion {
   Eigen::Isometry3d T_world_before = Eigen::Isometry3d::Identity();
   double dt_s = 0.0;       ///< time since that pose; 0: the velocity is not known and taken as 0
-  double readout_s = 0.0;  ///< of the depth image; 0: a global shutter
+  double readout_s = 0.0;  ///< readout time of the depth image; 0: global shutter
 };
 
 /// Estimates T_world_camera by point-to-plane ICP with projective association. Adds intensity residuals, with
 /// one gain and one offset per reference. Minimises by Gauss-Newton, from coarse to fine. Residuals are
-/// weighted by their standard deviations and by a robust kernel. Moving objects thus have little effect. Each
+/// weighted by their standard deviations and by a robust kernel, so moving objects have little effect. Each
 /// reference contributes in proportion to its number of correspondences.
 ///
 /// If the guess is not finite, returns kDiverged with the identity as pose. Source: Chen and Medioni 1992
@@ -96,8 +96,8 @@ Tracking align(const SourcePoints& live, std::span<const PosedReference> referen
 Tracking align(const SourcePoints& live, const TargetView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 
-/// Returns the motion for a twist (translation m, rotation vector rad). Translation and rotation are
-/// converted separately. This equals the exponential map to first order.
+/// Returns the motion for a twist (translation m, rotation vector rad). Converts translation and rotation
+/// separately, which equals the exponential map to first order.
 Eigen::Isometry3d retract(const Eigen::Matrix<double, 6, 1>& twist);
 /// Returns the twist of a motion: the inverse of retract().
 Eigen::Matrix<double, 6, 1> local(const Eigen::Isometry3d& T);

@@ -1,5 +1,5 @@
-// keyframe.hpp: keyframes in compact form. Later frames are aligned with keyframes. The frames' depth is
-// averaged into the keyframes.
+// keyframe.hpp: keyframes in compact form, with which later frames are aligned and into which the depth of
+// later frames is averaged.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -20,7 +20,7 @@ struct StoredView {
 };
 
 /// Step of the 16-bit inverse depth, 1/m. Depths from 0.27 m upwards can be represented. The step corresponds
-/// to 0.06 mm at 1 m and 2 mm at 6 m. At 6 m, this is a thirtieth of a Kinect's noise.
+/// to 0.06 mm at 1 m, and to 2 mm at 6 m, a thirtieth of a Kinect's noise there.
 constexpr float kInverseDepthStep_per_m = 5.7e-5F;
 
 struct Keyframe {

@@ -45,13 +45,13 @@ struct PointMatches {
 /// Limits and weights of the residuals.
 struct MatchLimits {
   float gate_m;  ///< max point-to-plane distance of a correspondence
-  /// 1 / scale of the Geman-McClure kernel, the scale in standard deviations. At the scale, the weight is
+  /// 1 / scale of the Geman-McClure kernel. The scale is the residual, in standard deviations, with weight
   /// 1/4.
   float inverse_soft;
   float inverse_intensity_sigma;  ///< 1 / standard deviation, in grey levels; 0: intensity is not used
 };
 
-/// Geman-McClure weight of a residual: 1 at x = 0, 1/4 at 1, decreasing with the fourth power of x.
+/// Geman-McClure weight of a residual: 1 at x = 0, 1/4 at 1, about x^-4 for large x.
 template <typename Real>
 Real robust_weight(Real x) {
   const Real w = Real(1) / (Real(1) + x * x);

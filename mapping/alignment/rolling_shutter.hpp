@@ -8,23 +8,24 @@
 
 namespace roomradar {
 
-/// Velocity of the depth camera in its own frame, at the middle of its depth image.
+/// Velocity of the depth camera in its own frame, at the middle of the depth image's readout.
 struct CameraVelocity {
   Eigen::Vector3d linear_mps = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_radps = Eigen::Vector3d::Zero();
 };
 
-/// Returns true if a motion in this time gives a velocity: 1 ms to 0.2 s.
+/// Returns true if a motion over dt_s gives a usable velocity: for 1 ms to 0.2 s.
 bool gives_velocity(double dt_s);
-/// Returns the constant velocity of a camera that moves by T_before_after in dt_s. Returns 0 if dt_s gives no
-/// velocity, or if the motion is not finite.
+/// Returns the constant velocity of a camera that moves by T_before_after in dt_s. Returns 0 if
+/// gives_velocity(dt_s) is false or the motion is not finite.
 CameraVelocity velocity_of(const Eigen::Isometry3d& T_before_after, double dt_s);
 
-/// Returns the speed of image points at a depth of 1 m, px/s, an upper bound over the image's centre.
+/// Returns an upper bound of the image speed of points at a depth of 1 m near the image's centre, px/s.
 double image_speed_pxps(const CameraVelocity& velocity, const Intrinsics& camera);
 
-/// Motion of the points of an image during its readout: a point of row y moves by
-/// (y - middle_px) * row_s * (linear + angular x point) until it is seen at the image's middle.
+/// Motion of the points of an image during its readout. Row middle_px is read at the middle of the readout.
+/// Between that time and the readout of row y, a point moves by (y - middle_px) * row_s * (linear + angular x
+/// point).
 struct RowMotion {
   Eigen::Vector3f linear_mps = Eigen::Vector3f::Zero();
   Eigen::Vector3f angular_radps = Eigen::Vector3f::Zero();
@@ -32,7 +33,8 @@ struct RowMotion {
   float fy_px = 0.0F;
   float above_middle_px = 0.0F;  ///< cy - middle_px
 
-  /// Returns the point's coordinates in the camera frame at the image's middle. Its z must be > 0.
+  /// Returns the point's coordinates in the camera frame at the middle of the readout. The point's z must be
+  /// > 0.
   [[nodiscard]] Eigen::Vector3f at_middle(const Eigen::Vector3f& p_camera) const {
     if (row_s == 0.0F) return p_camera;
     const float t_s = row_s * (fy_px * p_camera.y() / p_camera.z() + above_middle_px);
@@ -41,10 +43,10 @@ struct RowMotion {
 };
 RowMotion row_motion(const Intrinsics& camera, const CameraVelocity& velocity, double readout_s);
 
-/// Moves depths and intensities to the pixels at which the camera would have seen them at the image's middle,
-/// and changes the depths to those of that time. Values between pixels of one surface are interpolated;
-/// elsewhere they are the nearest pixel's. First order in the motion during the readout: at 90 degrees/s and
-/// 30 ms, an error of 0.2 px in an image 640 px wide.
+/// Moves depths and intensities to the pixels at which a global shutter would have seen them at the middle of
+/// the readout, and changes the depths accordingly. Interpolates between pixels of one surface; elsewhere
+/// takes the nearest pixel's value. Uses a first-order model of the motion: at 90 degrees/s and 30 ms of
+/// readout, the error is 0.2 px in an image 640 px wide.
 /// @param[in,out] inverse_depth_per_m  1/m; 0: no depth
 /// @param[in,out] intensity            -1: unknown; may be empty
 /// Source: Ringaby and Forssen, Scan Rectification for Structured Light Range Sensors with Rolling Shutters,

@@ -38,7 +38,7 @@ Vector3d motion_of(const Vector3d& p_camera, const CameraVelocity& velocity) {
   return velocity.linear_mps + velocity.angular_radps.cross(p_camera);
 }
 
-/// A point's correspondence: what the Jacobians of its residuals are made of.
+/// Parts of the Jacobians of a point's residuals.
 struct Correspondence {
   const TargetPixel* pixel = nullptr;
   int x = 0, y = 0;

@@ -1,5 +1,5 @@
-// timing_evidence.hpp: what the residuals of an alignment say about the times at which a sensor reads its
-// rows.
+// timing_evidence.hpp: normal equations for a sensor's readout times and colour delay, from an alignment's
+// residuals.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -10,22 +10,23 @@
 
 namespace roomradar {
 
-/// Corrections of a sensor's parameters: depth readout, colour readout and colour delay (s), then an offset
-/// of inverse depth (1/m) a x + b y + c x^2 + d x y + e y^2, where x and y are 0 in the image's middle and x
-/// is 1 at its right border. The offset is not applied; left out, a distortion of the depth would be taken
-/// for a time.
+/// Parameters: corrections of depth readout, colour readout and colour delay (s), then the five coefficients
+/// of an inverse-depth offset (1/m) a x + b y + c x^2 + d x y + e y^2. Here x and y are 0 at the image's
+/// centre and x is 1 at its right border. The offset is estimated but not applied. Without it, distortion of
+/// the depth would bias the times.
 inline constexpr int kTimingParameters = 8;
 using TimingVector = Eigen::Matrix<double, kTimingParameters, 1>;
 using TimingMatrix = Eigen::Matrix<double, kTimingParameters, kTimingParameters>;
 
-/// Normal equations H x = b of the corrections x. Sums over frames are the evidence of all of them.
+/// Normal equations H x = b of the corrections x. Equations of several frames are added.
 struct TimingEvidence {
   TimingMatrix H = TimingMatrix::Zero();
   TimingVector b = TimingVector::Zero();
 };
 
-/// A view and the camera's velocity when it was taken. The delay of colour is judged by the steady velocity:
-/// the noise of a pose moves the points and changes the velocity, which would be taken for a delay.
+/// Pose and velocity of the camera when a view was taken. The colour delay is estimated with the steady
+/// velocity. The noise of a single pose both shifts the points and changes `velocity`, which would look like
+/// a delay.
 struct MovingView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   CameraVelocity velocity;
@@ -33,10 +34,10 @@ struct MovingView {
 };
 
 /// Linearises the residuals of an aligned image in the camera's pose and in the parameters, and eliminates
-/// the pose. Images taken at equal velocities say nothing about times. Uses every fourth point of the level
-/// before the finest, or of the only one.
+/// the pose. Two images taken at equal velocities constrain no times. Uses every fourth point of the second
+/// finest level, or of the only level.
 /// @param live    points of the image before any correction
-/// @param timing  times with which the views were aligned; points move with them
+/// @param timing  times with which the views were aligned
 TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camera,
                                const TargetView& reference, const MovingView& view,
                                const SensorTiming& timing);

@@ -12,7 +12,7 @@ float inverse_depth(float depth_m, const ViewConfig& config) {
   return depth_m >= config.min_depth_m && depth_m <= config.max_depth_m ? 1.0F / depth_m : 0.0F;
 }
 
-/// Averages those of four inverse depths that lie on the nearest surface; returns 0 if fewer than two do.
+/// Returns the mean of those of four inverse depths that lie on the nearest surface; 0 if fewer than two do.
 float nearest_surface(float a, float b, float c, float d) {
   const float least = std::max({a, b, c, d}) * (1.0F - kSameSurface);
   float sum = 0.0F;

@@ -16,7 +16,7 @@ struct ViewConfig {
   int finest_width_px = 320;  ///< wider images are halved until they are at most this wide
   int levels = 3;             ///< number of pyramid levels, each half the width and height of the previous
   float min_depth_m = 0.3F;
-  float max_depth_m = 6.0F;  ///< larger depths are not used; a Kinect v1's noise exceeds 6 cm beyond
+  float max_depth_m = 6.0F;  ///< larger depths are not used: there, a Kinect v1's noise exceeds 6 cm
   /// Half the side of the square around a pixel to which the pixel's plane is fitted, at the finest level.
   /// The square is sampled at 5 x 5 pixels.
   int normal_reach_px = 4;
@@ -49,7 +49,8 @@ struct FrameMotion {
 /// level is at most finest_width_px wide. Leaves out depths outside min_depth_m..max_depth_m, and intensity
 /// outside the colour camera's view. The frame's images must have their cameras' sizes. Reuses memory
 /// allocated in `pyramid`.
-/// @param motion  moves points from the time of their depth to that of their colour. Depth is not moved
+/// @param motion  accounts for the time between a point's depth and its colour when looking up intensity.
+///                Depth is not moved
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
                   const FrameMotion& motion = {});
 

@@ -12,8 +12,8 @@
 
 namespace roomradar {
 
-/// Max standard deviation of a well observed surface's distance, m, computed from the samples' weights. About
-/// 4 frames from 2 m reach it, or 22 from 3 m.
+/// Max standard deviation, m, of the signed distances of surface that counts as well observed. Computed from
+/// the samples' weights. About 4 frames from 2 m reach it, or 22 from 3 m.
 inline constexpr double kSeenWell_m = 0.003;
 
 /// Draws orthographic projections of the surface from above and from two sides. Back faces are left out, so

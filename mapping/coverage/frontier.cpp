@@ -162,8 +162,8 @@ std::optional<Vector3d> find_viewpoint(const OccupancyCells& grid, const Vector3
   return best_world;
 }
 
-// Marks small open components as enclosed: a corner that was left out counts as inside.
-// occupied_m: size of the bounds of all occupied leaves.
+// Marks small open components as enclosed, so that a corner that was left out counts as inside. occupied_m:
+// size of the bounds of all occupied leaves.
 void enclose_small_components(const OccupancyCells& grid, const Vector3d& occupied_m,
                               const FrontierConfig& config, Border& border) {
   const Vector3d extent_m = occupied_m.cwiseMax(Vector3d::Constant(grid.cell_m));

@@ -14,8 +14,8 @@ struct FrontierConfig {
   /// Min fraction of the rays from a border cell into the unknown that end at a surface. At or above it, the
   /// cell is inside the scan.
   double min_enclosed = 0.5;
-  /// Border cells below min_enclosed are inside, too, if their connected component is small. Its area is then
-  /// at most max_open_part times that of the scan's bounding box, seen along the component's mean normal.
+  /// Border cells below min_enclosed are inside, too, if the area of their connected component is at most
+  /// this fraction of the area of the scan's bounding box, seen along the component's mean normal.
   double max_open_part = 0.08;
 };
 
@@ -35,8 +35,8 @@ struct Frontier {
 };
 
 /// Finds the border cells: unknown cells that share a face with a free cell. Adjacent border cells form one
-/// hole. Each face's area is projected along the border's normal. The area of a slanted border is thus not
-/// that of its staircase. Returns no holes for an empty grid. Throws Error if the config is invalid.
+/// hole. Faces count with their area projected along the border's normal, since the staircase of a slanted
+/// border has a larger area. Returns no holes for an empty grid. Throws Error if the config is invalid.
 /// FrontierConfig::cell_m is not used.
 Frontier find_frontier(const OccupancyCells& grid, const FrontierConfig& config = {});
 /// As above, in the octree's occupancy_cells().

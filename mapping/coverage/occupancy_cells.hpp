@@ -15,7 +15,7 @@ struct OccupancyCells {
   Eigen::Vector3i first = Eigen::Vector3i::Zero();  ///< the grid's lowest cell; cell 0 begins at the origin
   Eigen::Vector3i size = Eigen::Vector3i::Zero();   ///< number of cells along each axis
   std::vector<Occupancy> cells;                     ///< by index(); x runs fastest
-  Eigen::AlignedBox3d occupied_world;               ///< bounds of all that is occupied; may be empty
+  Eigen::AlignedBox3d occupied_world;               ///< bounds of all occupied space; may be empty
 
   // Cells are counted from `first`.
   [[nodiscard]] bool contains(const Eigen::Vector3i& cell) const {

@@ -17,8 +17,8 @@ using Eigen::Vector3f;
 constexpr double kCoarse_m = 0.15;
 constexpr double kMostCells = 5e5;
 constexpr float kNearest_m = 0.4F, kFarthest_m = 5.0F;  // beyond 5 m a Kinect's noise exceeds a cube
-constexpr float kWidest = 10.0F;  // max ratio of a ray's length to its depth: 84 degrees from the optical
-                                  // axis
+/// Max ratio of a ray's length to its depth: 84 degrees from the optical axis.
+constexpr float kWidest = 10.0F;
 constexpr int kHeadings = 72;
 
 /// Returns points of an image on a lattice of `columns` x `rows` pixels; empty if the image is too small.

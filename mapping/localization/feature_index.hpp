@@ -35,7 +35,7 @@ class FeatureIndex {
   /// A descriptor in a bucket. Buckets are linked lists in one array: many small arrays that grow beside
   /// large images would fragment the heap.
   struct Entry {
-    std::uint32_t rest_and_keyframe;  ///< the bits of the hash that the bucket does not imply, and the number
+    std::uint32_t rest_and_keyframe;  ///< hash bits that the bucket does not imply, and the keyframe's number
     std::uint32_t next;               ///< index of the bucket's next entry; 0: none
   };
   std::size_t keyframes_ = 0;

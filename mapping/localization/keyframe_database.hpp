@@ -31,12 +31,12 @@ struct MapKeyframe {
 
 struct KeyframeDatabase {
   std::vector<MapKeyframe> keyframes;
-  /// Index of the first index.size() keyframes' descriptors. May be behind, or empty: searches compare all
-  /// features of the keyframes that are not in it.
+  /// Index of the descriptors of the first index.size() keyframes. May be empty: searches compare all
+  /// features of keyframes that are not in the index.
   FeatureIndex index;
 };
 
-/// Adds the keyframes that are not yet in the database's index to it.
+/// Adds all keyframes to the database's index that it lacks.
 void update_index(KeyframeDatabase& keyframe_database);
 
 /// Max number of features, and of patches, per keyframe. The limit bounds the cost of matching all pairs.

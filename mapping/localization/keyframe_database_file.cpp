@@ -132,7 +132,7 @@ class ItemReader {
     std::copy_n(columns_->bytes.data() + byte_, count, bytes);
     byte_ += count;
   }
-  /// These fail if the pixels, or the features or patches, are not all there.
+  /// Throw if not all pixels, features or patches are there.
   void require_depth(std::size_t pixels) const {
     if (!columns_) return in_.require(pixels, sizeof(std::uint16_t), "preview depth");
     if (pixels > columns_->depth_mm.size() - depth_) fail_cut_short("preview depth");

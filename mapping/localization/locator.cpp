@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kLiveStep_px = 1;  // all pixels of the finest level: less pose jitter
 
-/// Returns whether the depth of a recalibrating Kinect bent, instead of the camera moving. Alignment takes
-/// such a bend for a motion, which puts edges in wrong places. So a motion that was not predicted must
-/// explain at least as many pixels as a stationary camera.
+/// Returns true if the depth bent because the Kinect recalibrates, and the camera did not move. Alignment
+/// takes such a bend for a motion, which puts edges in wrong places. So a motion that was not predicted must
+/// explain about as many pixels as a stationary camera.
 bool is_bend_not_motion(const Tracking& tracking, const Eigen::Isometry3d& T_world_predicted,
                         const Eigen::Isometry3d& T_world_before, const DepthImage& depth_m,
                         const ExpectedDepth& expected_depth) {
@@ -61,8 +61,8 @@ void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPa
     J.leftCols<3>().setIdentity();
     for (int k = 0; k < 3; ++k) J.col(3 + k) = Eigen::Vector3d::Unit(k).cross(pair.b);
     const Eigen::Vector3d gap = tracking.T_world_camera.inverse() * pair.a - pair.b;
-    const double weight = kIndependent * 9.0 / (pair.gate_m * pair.gate_m);  // a gate is three standard
-                                                                             // deviations
+    // A gate is three standard deviations.
+    const double weight = kIndependent * 9.0 / (pair.gate_m * pair.gate_m);
     H += weight * J.transpose() * J;
     g += weight * J.transpose() * gap;
   }
@@ -72,13 +72,13 @@ void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPa
   tracking.information = H;
 }
 
-/// Returns whether the model explains the depth as well if the camera moves 6 cm, or rotates about as much,
+/// Returns true if the model explains the depth as well after the camera moved 6 cm, or rotated by as much,
 /// along a direction that `information` leaves unconstrained.
 bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double fit,
             const Eigen::Matrix<double, 6, 6>& information, const ExpectedDepth& expected_depth) {
-  constexpr double kSlide_m = 0.06, kDistance_m = 2.0;  // kDistance_m: distance at which rotations are
-                                                        // measured
-  constexpr double kMinLoss = 0.015;                    // of the fit: outlines shift by a few pixels
+  // kDistance_m: distance at which rotations are measured.
+  constexpr double kSlide_m = 0.06, kDistance_m = 2.0;
+  constexpr double kMinLoss = 0.015;  // of the fit: outlines shift by a few pixels
   const SymmetricEigen<6> solved = symmetric_eigen(information);
   for (int i = 0; i < 6 && solved.values(i) < 1e-3; ++i) {
     const Eigen::Matrix<double, 6, 1> direction = solved.vectors.col(i);
@@ -206,7 +206,7 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
   return tracking;
 }
 
-/// Returns whether enough patches of the frame coincide with known ones and look like them.
+/// Returns true if enough patches of the frame coincide with known ones and look like them.
 bool is_verified_by_appearance(Locator& locator, const Frame& frame,
                                const KeyframeDatabase& keyframe_database,
                                const Eigen::Isometry3d& T_world_camera) {

@@ -22,7 +22,8 @@ struct PatchIndex {
     /// Per hash of a 5 cm cell, the number (index in `patches` + 1) of the last patch whose centre is in one
     /// of these cells; 0: none. The size is a power of two, or 0.
     std::vector<std::uint32_t> last_of_hash;
-    std::vector<std::uint32_t> before;  ///< per patch, the number of the one before it with the same hash
+    /// Per patch, the number of the previous patch with the same hash; 0: none.
+    std::vector<std::uint32_t> before;
   };
   std::array<OfSize, kPatchSizes> by_size;
   [[nodiscard]] bool empty() const;

@@ -62,7 +62,7 @@ std::vector<std::size_t> inliers_of(const std::vector<PointPair>& pairs, const E
   return inliers;
 }
 
-/// Returns whether three pairs span a triangle that constrains the rotation, with equal sides in both frames.
+/// Returns true if three pairs span a triangle that constrains the rotation, with equal sides in both frames.
 bool is_usable_triple(const std::vector<PointPair>& pairs, const std::vector<std::size_t>& triple) {
   constexpr double kMinSide_m = 0.1;
   for (std::size_t i = 0; i < 3; ++i) {

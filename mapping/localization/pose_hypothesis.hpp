@@ -47,9 +47,10 @@ bool is_verified_by_patches(const PoseHypothesis& hypothesis);
 bool is_supported_by_patches(const PatchAgreement& appearance);
 
 /// Returns true if the pose is certain, without regard to other hypotheses. Its uncertainty must be at most
-/// 15 mm, and the model must cover 20 % of the valid depth. One of two further conditions must hold. Either
-/// many patches match known ones, and the depth does not contradict the pose. Or depth alone constrains the
-/// pose, at most 3 % of the pixels see through the model, and the patches do not contradict the pose.
+/// 15 mm, and the model must cover 20 % of the valid depth. In addition, patches or depth must prove the
+/// pose. Patches do if many match known ones and the depth does not contradict the pose. Depth does if it
+/// alone constrains the pose, at most 3 % of the pixels see through the model, and the patches do not
+/// contradict the pose.
 bool is_certain(const PoseHypothesis& hypothesis);
 
 /// Returns true if another hypothesis, at a different pose, explains the frame about as well as `best`. With

@@ -1,4 +1,4 @@
-// changed_map.cpp: a changed octree to a complete map.
+// changed_map.cpp: derives surface, texture and coverage from a changed octree.
 #include "mapping/map/changed_map.hpp"
 
 #include <string>

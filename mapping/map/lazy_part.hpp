@@ -9,12 +9,12 @@
 namespace roomradar {
 
 /// Holds a value, or a function that makes the value at its first use. Converts to a reference to the value,
-/// like std::reference_wrapper. Concurrent const calls are thread safe. If the function throws, so does the
-/// use, and the next use calls it again. A moved-from part can only be assigned or destroyed.
+/// like std::reference_wrapper. Concurrent const calls are thread safe. A use rethrows what the function
+/// throws, and the next use calls the function again. A moved-from part can only be assigned or destroyed.
 template <typename Part>
 class LazyPart {
  public:
-  /// The value is there from the start.
+  /// Holds this value from the start.
   LazyPart(Part part) : state_(std::make_unique<State>()) { state_->part.emplace(std::move(part)); }
   /// @param make  returns the value; called at most once successfully
   explicit LazyPart(std::function<Part()> make) : state_(std::make_unique<State>()) {

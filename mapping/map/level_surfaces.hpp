@@ -18,8 +18,8 @@ struct LevelSurface {
 };
 
 /// Returns the level surfaces of a mesh, largest first. Triangles count as level if their normal is within 10
-/// degrees of +z. Level triangles that share vertices form one surface. Only those within 3 cm of the
-/// surface's most frequent height are counted. Surfaces under min_area_m2 are left out.
+/// degrees of +z. Level triangles that share vertices form one surface, of which only triangles within 3 cm
+/// of the most frequent height are counted. Surfaces under min_area_m2 are left out.
 std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area_m2 = 0.05);
 
 /// Returns the index of the floor: the lowest surface with at least a tenth of the largest surface's area.
@@ -27,8 +27,8 @@ std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area
 std::optional<std::size_t> floor_among(std::span<const LevelSurface> surfaces);
 
 /// Returns the height of the floor above the keyframes' world origin along `up_world`, m. The floor is the
-/// lowest height with at least a tenth as much level surface, in the keyframes' depth, as the most frequent
-/// height. Returns nullopt if no level surface is measured.
+/// lowest height at which the keyframes' depth shows at least a tenth as much level surface as at the most
+/// frequent height. Returns nullopt if no level surface is measured.
 /// @param up_world  unit vector
 std::optional<double> floor_height_m(const KeyframeDatabase& keyframe_database,
                                      const Eigen::Vector3d& up_world);

@@ -17,7 +17,7 @@ namespace {
 
 /// A surface voxel of one map in free space of the other.
 struct Suspect {
-  bool clear = false;  ///< the other map is also free all round
+  bool clear = false;  ///< the other map is also free on all sides
   int steps = -1;      ///< from the nearest clear voxel; -1: farther than the clearance
   int thing = -1;
 };
@@ -57,8 +57,8 @@ class ObjectFinder {
     return (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * has_.resolution_m();
   }
 
-  /// Returns whether no frame, or too few frames for the mesh, measured the surface of a voxel in a leaf.
-  /// Larger leaves than coarse cells have no signed distance.
+  /// Returns true if no frame, or too few for the mesh, measured the surface of a voxel in a leaf. Leaves
+  /// larger than coarse cells have no signed distance.
   [[nodiscard]] bool is_hardly_measured(const VoxelIndex& voxel, const MapLeaf& leaf) const {
     const auto sample = has_.sample_at(centre(voxel));
     return sample ? sample->weight < SurfaceConfig{}.min_weight : leaf.edge_voxels <= 2;
@@ -179,16 +179,16 @@ class ObjectFinder {
       box.extend(centre(voxel));
     }
     const double voxel_m = has_.resolution_m();
-    constexpr std::size_t kOneInClear = 6;  // less: remains of noise, in surface that is noisy all round
+    constexpr std::size_t kOneInClear = 6;  // less: remains of noise, in surface that is noisy as a whole
     return kOneInClear * clear >= thing.size() &&
            static_cast<double>(clear) * voxel_m * voxel_m >= config_.min_area_m2 &&
            box.sizes().maxCoeff() + voxel_m >= config_.min_size_m;
   }
 
-  /// Returns whether the other map's scan ends at this surface: behind a quarter of it or more, what is not
-  /// free there is unknown, because rays that grazed the surface, or were measured too far, freed voxels in
-  /// front of it and saw nothing of it. Behind the surface of an object that appeared or disappeared, the map
-  /// without it has free space or the next surface.
+  /// Returns true if the other map's scan ends at this surface: free space is followed by unknown space
+  /// behind more than a quarter of it. Such free voxels come from rays that grazed the surface, or that were
+  /// measured too far. If an object appeared or disappeared, the map without it has free space or another
+  /// surface behind the object's surface.
   [[nodiscard]] bool ends_the_scan(const std::vector<VoxelIndex>& thing) const {
     static const std::array<Eigen::Vector3d, 14> kAround = directions();
     const double step_m = lacks_.resolution_m(), behind_m = 2.0 * clearance_m_;
@@ -212,7 +212,7 @@ class ObjectFinder {
     return 4 * unknown > looked;
   }
 
-  /// Returns whether the other map also has the object, slightly shifted.
+  /// Returns true if the other map also has the object, slightly shifted.
   [[nodiscard]] bool is_there_aside(const std::vector<VoxelIndex>& thing) const {
     constexpr std::size_t kLooked = 150;
     const double step_m = std::max(0.02, lacks_.resolution_m());

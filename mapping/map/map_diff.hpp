@@ -18,17 +18,17 @@ struct Change {
       Eigen::Vector3d::Zero();    ///< centroid of its surface, in the world of map a
   Eigen::AlignedBox3d box_world;  ///< bounding box of its surface, in the world of map a
   double area_m2 = 0.0;           ///< area of its observed surface; two sides of a voxel count once
-  /// Volume, within the box, that is free in the map without the object but not in the map with it. Includes
-  /// the object's unobserved interior.
+  /// Volume, within the box, that only the map without the object has as free space. Includes the object's
+  /// unobserved interior.
   double volume_m3 = 0.0;
   std::vector<Eigen::Vector3d> surface_world;  ///< centres of its surface voxels, in the world of map a
 };
 
 struct DiffConfig {
-  /// A surface voxel is clear if the other map is free around the voxel, up to the larger of clearance_m and
-  /// clearance_voxels; twice that for the voxels of coarse cells. Surface that too few frames measured for
-  /// the mesh is never clear. An object needs enough clear surface. The rest of its surface, down to its
-  /// support, only has to be in the other map's free space.
+  /// A surface voxel is clear if the other map is free within a radius around it. The radius is the larger of
+  /// clearance_m and clearance_voxels, and twice as large for the voxels of coarse cells. Surface that too
+  /// few frames measured for the mesh is never clear. An object needs min_area_m2 of clear surface. The rest
+  /// of its surface, down to its support, only has to be in the other map's free space.
   double clearance_m = 0.045;
   double clearance_voxels = 3.0;
   double min_area_m2 = 4.9e-3;  ///< min clear surface of an object: 7 x 7 cm
@@ -42,11 +42,11 @@ struct DiffConfig {
 void require_valid(const DiffConfig& config);
 
 /// Returns the changes, largest first. Regions that are unknown in one of the maps count as unchanged.
-/// Surface at which one map's scan ends counts as unchanged, too, and so does the roughness of a surface that
-/// was measured from far away. Objects smaller than the clearance are not detected. Objects that moved by
-/// less than max_pose_error_m, or stand out from a plane by less, are not detected either. A pole of a few
-/// centimetres that one of the scans only measured from beyond 3 m can be missing in its map, and is then
-/// listed.
+/// Surface at which one map's scan ends, and the roughness of surfaces measured from far away, count as
+/// unchanged, too. Objects smaller than the clearance are not detected. Objects that moved by less than
+/// max_pose_error_m, or stand out from a plane by less, are not detected either. A pole a few centimetres
+/// thick that one scan measured only from beyond 3 m can be missing from that scan's map, and is then listed
+/// as a change.
 /// @param T_a_b  maps points from b's world to a's world
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const DiffConfig& config = {});

@@ -45,12 +45,12 @@ struct MapInfo {
   std::map<std::string, MapFile> files;
 };
 
-/// Returns true if info.T_world_recorded is known. It is if the map was scanned with recorded poses, or the
-/// recording had poses.
+/// Returns true if info.T_world_recorded is known: the map was scanned with recorded poses, or the recording
+/// had poses.
 bool knows_recorded_world(const MapInfo& info);
 
-/// Returns true if both maps are known to have one world: a map saved by a run in another map has the
-/// keyframes of that map.
+/// Returns true if both maps are known to have the same world, since their keyframe files are equal. A map
+/// that a run in another map saves has the other map's keyframes.
 bool share_world(const MapInfo& a, const MapInfo& b);
 
 /// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if

@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// Adds map `from` to map `into`. Log-odds are added, signed distances averaged by weight. Each voxel of
+/// Adds map `from` to map `into`: adds log-odds, and averages signed distances by weight. Each voxel of
 /// `into` gets the log-odds of `from` at its centre, and the distance interpolated from the eight samples of
 /// `from` around it. The result is exact if the grids coincide. If `into` is coarser than `from`, parts of
 /// thin surfaces are lost. Throws Error if a part of `from` is outside the octree of `into`.

@@ -45,7 +45,7 @@ std::vector<Vote> collect_votes(const KeyframeDatabase& a, const KeyframeDatabas
   return votes;
 }
 
-/// Returns whether two transforms give a view of b nearly the same pose in a.
+/// Returns true if two transforms give a view of b nearly the same pose in a.
 bool agree(const Vote& vote, const Eigen::Isometry3d& T_a_b, const MapKeyframe& view) {
   constexpr double kNear_m = 0.15, kNear_rad = 0.1;
   const Eigen::Isometry3d gap = (vote.T_a_b * view.T_world_camera).inverse() * T_a_b * view.T_world_camera;

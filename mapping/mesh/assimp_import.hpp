@@ -23,7 +23,7 @@ inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 std::string lower_extension(const std::filesystem::path& path);
 
 /// Throws Error if the file is missing, empty, larger than 512 MiB, or declares more triangles than
-/// kMaxMeshTriangles or than it can hold. Allocates nothing for the mesh.
+/// kMaxMeshTriangles or than its bytes can hold. Allocates nothing for the mesh.
 void require_plausible_size(const std::filesystem::path& path);
 
 /// Reads a file as triangles, without animations, lights and cameras. assimp crashes or hangs on some damaged

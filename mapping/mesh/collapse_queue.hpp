@@ -19,8 +19,8 @@ struct Candidate {
 };
 
 /// Bucket queue. Pops candidates in order of cost, rounded to four steps per factor of two. Candidates of
-/// equal rounded cost are popped first in, first out. Flat areas thus thin out evenly. A heap would take
-/// longer than all other work of the simplification.
+/// equal rounded cost are popped first in, first out, so flat areas thin out evenly. A heap would take longer
+/// than all other work of the simplification.
 class CandidateQueue {
  public:
   void push(const Candidate& candidate) {

@@ -13,7 +13,6 @@ namespace roomradar {
 /// Index that stands for "no vertex", "no triangle" or "no corner of a triangle".
 inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
 
-/// Accumulated data of all vertices merged into one.
 struct MergedVertex {
   Quadric quadric;
   Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();
@@ -37,7 +36,7 @@ struct MergedVertex {
   }
 };
 
-/// Linked lists of indices. An index is in at most one list.
+/// An index is in at most one list.
 struct IndexLists {
   IndexLists(std::size_t lists, std::size_t indices) : first(lists, kNoIndex), next(indices, kNoIndex) {}
   void push_front(std::uint32_t list, std::uint32_t index) {

@@ -1,4 +1,5 @@
-// mesh_file.cpp: reads and writes meshes through assimp, with explicit limits; .ply of its own directly.
+// mesh_file.cpp: reads and writes meshes through assimp, with explicit limits, and .ply files of roomradar
+// directly.
 #include "mapping/mesh/mesh_file.hpp"
 
 #include <assimp/config.h>
@@ -105,7 +106,7 @@ void fill_scene(const Mesh& mesh, bool for_gltf, aiScene& scene) {
   scene.mRootNode->mNumMeshes = 1;
 }
 
-/// Adds the texture points and a matt material. The texture is embedded for .glb, else a file beside.
+/// Adds the texture points and a matt material. The texture is embedded in a .glb, otherwise a separate file.
 void add_texture(const TexturedMesh& textured, bool for_gltf, const std::string& file, aiScene& scene) {
   aiMesh& part = *scene.mMeshes[0];
   part.mNumUVComponents[0] = 2;
@@ -228,7 +229,7 @@ void write_mesh(const TexturedMesh& textured, const std::filesystem::path& path)
   add_texture(textured, for_gltf, picture.filename().string(), scene);
   std::string bytes = assimp_bytes(scene, for_gltf ? "glb2" : "obj", path);
   if (!for_gltf) {
-    // assimp does not know the name of the file that it writes to memory, nor how its material is called.
+    // When assimp writes to memory, it knows neither the file's name nor that of its material.
     replace_line(bytes, "mtllib ", material.filename().string());
     replace_line(bytes, "usemtl ", "room");
     write_whole({textured.texture_jpeg.begin(), textured.texture_jpeg.end()}, picture);

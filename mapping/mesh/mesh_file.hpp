@@ -26,10 +26,10 @@ struct TexturedMesh {
 /// kMaxMeshTriangles triangles. The message names the file, the fault and a remedy.
 Mesh read_mesh(const std::filesystem::path& path);
 
-/// Writes the mesh in the format that the extension names. The mesh's origin is added to the vertices. They
-/// are written as floats; a vertex 300 m from zero is accurate to 0.03 mm. .glb, .ply and .obj keep colours
-/// and normals. .stl has no colours. A .glb is rotated to y up. Throws Error if the extension is unknown, the
-/// mesh is empty or inconsistent, or writing fails.
+/// Writes the mesh in the format that the extension names. Vertices are written with the mesh's origin added,
+/// as floats; a vertex 300 m from zero is accurate to 0.03 mm. .glb, .ply and .obj keep colours and normals.
+/// .stl has no colours. A .glb is rotated to y up. Throws Error if the extension is unknown, the mesh is
+/// empty or inconsistent, or writing fails.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
 /// Writes a textured mesh as .glb, with the texture in it, or as .obj, with NAME.mtl and NAME.jpg beside it.

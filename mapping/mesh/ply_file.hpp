@@ -20,8 +20,9 @@ std::string ply_bytes(const Mesh& mesh);
 /// triangles.
 std::optional<Mesh> mesh_of_ply(std::string_view bytes, const std::filesystem::path& path);
 
-/// Erases triangles that are less than 10^-12 as high as long, in the coordinates of a file, where the origin
-/// is added. A superset of those that reading a file drops, whose area is 0 except for rounding.
+/// Erases degenerate triangles: those whose first two sides, with vertices rounded as in a file (origin
+/// added), enclose an angle with a sine of at most 1e-12. These include all that reading a file drops for
+/// their area of 0.
 void erase_flat_triangles(Mesh& mesh);
 
 }  // namespace roomradar

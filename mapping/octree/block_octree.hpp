@@ -189,7 +189,7 @@ class BlockOctree {
     inner(kept) = block;
     return kept;
   }
-  /// Call when threads of several lanes have changed the octree.
+  /// Call after several threads have changed the octree; see BlockPool::gather_free().
   void gather_free() { inner_.gather_free(), leaves_.gather_free(), colours_.gather_free(); }
 
  private:

@@ -27,10 +27,10 @@ std::array<std::int16_t, 8> voxel_distances(const BlockOctree& tree, const LeafB
                                             const Sides& sides, unsigned i);
 
 /// Replaces a coarse leaf block by the voxels that it stands for. Each takes its cell's log-odds, weight and
-/// colour. Distances are interpolated within the block. Samples in front of a surface and outside the
-/// truncation band of voxels are dropped: the band of coarse cells is wider, and close frames would have to
-/// correct what is in it. Those behind the surface are kept: on a surface seen obliquely, even the samples
-/// next to it are outside of the band. Returns the node's new state.
+/// colour. Distances are interpolated within the block. Samples in front of a surface are dropped outside the
+/// truncation band of voxels, which is narrower than that of coarse cells, since close frames would have to
+/// correct them. Samples behind the surface are kept, since on a surface seen obliquely even adjacent samples
+/// are outside the band. Returns the node's new state.
 Slot refined(BlockOctree& tree, Slot node);
 
 /// Returns true if a node at kCoarseDepth has no fine samples, so that its cells may be coarse: it is not an
@@ -70,7 +70,7 @@ Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const Nod
 }
 
 /// Calls visit(place, block, sides, i) in Morton order for each cell that has a signed distance and a voxel
-/// in the range: cell i of the leaf block `block` at `place`. `sides` and `place` of the call are those of
+/// in the range: cell i of the leaf block `block` at `place`. The arguments `sides` and `place` are those of
 /// `node`.
 template <typename Visit>
 void for_each_cell(const BlockOctree& tree, Slot node, const Sides& sides, const NodePlace& place,

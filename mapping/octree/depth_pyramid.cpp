@@ -11,7 +11,7 @@ namespace roomradar {
 namespace {
 
 constexpr float kNothing_m = std::numeric_limits<float>::infinity();
-// Front of a cell without depth; neutral, so the neighbours decide.
+// Front of a cell without depth: neutral, so that the neighbours decide.
 constexpr std::int16_t kNoWord = std::numeric_limits<std::int16_t>::max();
 constexpr float kFarthestStep = 32'000.0F;
 constexpr int kHoleLevel = 2;  // from this level on (4 x 4 pixels) cells must contain some depth

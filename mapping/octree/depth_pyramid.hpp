@@ -38,7 +38,7 @@ class TruncationBand {
 /// free along every pixel's ray. Space nearer than `nearest` is free along the rays of all pixels with depth.
 /// Space farther than -`behind` is occluded or unmeasured along every ray. A surface is possible only between
 /// `front` and -`behind`. The unit is 1 / DepthPyramid::steps_per_m, rounded conservatively. `behind` is
-/// stored negated. Each bound of a rectangle is thus the minimum of that bound over its pixels.
+/// stored negated, so that each bound of a rectangle is the minimum of that bound over its pixels.
 struct DepthBounds {
   std::int16_t front = 0;
   std::int16_t nearest = 0;
@@ -66,9 +66,9 @@ struct DepthPyramid {
 };
 
 /// Builds the pyramid, reusing its memory. Pixels without depth prove no space free or occluded. Small gaps
-/// (pixels without depth) take the bounds of the pixels around them. Single dropouts thus do not leave the
-/// space in front of a wall unknown. Small gaps are below 4 x 4 pixels, or 2 x 2 for query rectangles up to
-/// six pixels wide. A pixel whose depth exceeds max_range_m makes space free up to max_range_m.
+/// take the bounds of the pixels around them, so that single dropouts do not leave the space in front of a
+/// wall unknown. Gaps are small below 4 x 4 pixels, or 2 x 2 for query rectangles up to six pixels wide. A
+/// pixel whose depth exceeds max_range_m makes space free up to max_range_m.
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid);
 

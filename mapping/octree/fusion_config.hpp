@@ -12,14 +12,14 @@ struct FusionConfig {
   /// applies. A wider band blurs the surface if poses disagree. A narrower band leaves gaps in it.
   float truncation_voxels = 2.0F;
   float truncation_sigmas = 2.5F;  ///< half-width of the truncation band, in standard deviations of depth
-  /// Max edge of a coarse cell, in standard deviations of depth. A finer cell would store the same surface in
-  /// more cells, each with more noise. With 1 cm voxels and the default, cells have an edge of 2 cm where the
-  /// surface was measured from more than 2.5 m only. 0: all cells are voxels.
+  /// Max edge of a coarse cell, in standard deviations of depth. Finer cells would store the same surface in
+  /// more samples, each with more noise. With 1 cm voxels and the default, cells have an edge of 2 cm where
+  /// the surface was measured from more than 2.5 m only. 0: all cells are voxels.
   float max_cell_sigmas = 2.9F;
   float max_weight = 64.0F;  ///< max weight of a sample, so that samples adapt to changes
   /// Weight of a frame that clearly sees through a sample, relative to a frame that measures the sample. The
-  /// default is above 1. No frame sees through a static surface, but many frames may have measured an object
-  /// before its removal.
+  /// default is above 1, since no frame sees through a static surface, but many frames may have measured an
+  /// object before its removal.
   float seen_through_gain = 8.0F;
   /// Log-odds added to a voxel that contains a ray endpoint. OctoMap's default, p = 0.7.
   float hit_log_odds = 0.847298F;

@@ -87,8 +87,8 @@ class LeafUpdate {
   /// Updates the eight cells of `node`, and returns the node's new state. With coarse cells, may_be_coarse()
   /// must hold for the node.
   /// @param hit  bit i: a ray ends in cell i
-  /// @param refresh_colour  true: also updates colours of cells for which this frame's part of the weight is
-  ///                        below kSettledPart
+  /// @param refresh_colour  true: also updates colours of cells for which this frame's fraction of the weight
+  ///                        is below kSettledPart
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
@@ -104,17 +104,17 @@ class LeafUpdate {
     return pruned(node, block);
   }
 
-  /// Adds a miss to all voxels of a block. A frame of this weight must see through all of them. `clear` means
-  /// that the frame also sees through the space around the block. If `clear`, each sample's distance is
-  /// averaged with the truncation distance. The sample is erased once its voxel has the minimum log-odds and
-  /// its distance exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free
-  /// space around them.
+  /// Adds a miss to all voxels of a block, all of which a frame of this weight sees through. With `clear`,
+  /// the frame also sees through the space around the block. Then each sample's distance is averaged with the
+  /// truncation distance. The sample is erased once its voxel has the minimum log-odds and its distance
+  /// exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free space around
+  /// them.
   ///
   /// Without `clear`, most samples are kept. Beside edges and on obliquely seen surfaces, seeing through a
-  /// voxel is caused by noise more often than by a change. The exceptions are samples behind a surface.
-  /// Frames see through such samples only if the surface has gone. Each such frame subtracts kCancelled times
-  /// its weight from the sample's weight. Otherwise an object too close to a wall for `clear` would leave its
-  /// back side in the map after it moved away.
+  /// voxel is caused by noise more often than by a change. Samples behind a surface are different: frames see
+  /// through them only if the surface has gone. Each such frame subtracts kCancelled times its weight from
+  /// the sample's weight. Otherwise an object too close to a wall for `clear` would leave its back side in
+  /// the map after it moved away.
   Slot mark_free(Slot node, float weight, bool clear) {
     LeafBlock& block = tree_.leaves(node);
     add_log_odds(block, 0, 0xFFU);

@@ -68,8 +68,8 @@ struct MapCounts {
   Eigen::AlignedBox3d occupied_world;
 };
 
-/// Octree of the static room. With resolution r, it covers +-32768 r around the world's origin (+-327 m at 1
-/// cm). Concurrent const calls are thread safe. Calls that change the map need exclusive access.
+/// With resolution r, the octree covers +-32768 r around the world's origin (+-327 m at 1 cm). Concurrent
+/// const calls are thread safe. Calls that change the map need exclusive access.
 class StaticMap {
  public:
   /// Creates an empty map. Throws Error if resolution_m is not within 0.001..1 m or the config is invalid.

@@ -18,7 +18,7 @@ struct TsdfSample {
   Rgb colour;
   bool has_colour : 1 = false;
   bool extrapolated : 1 = false;  ///< extrapolated from neighbouring samples, not measured
-  bool mirrored : 1 = false;      ///< the place belongs to another grid of bricks; see tsdf_levels.hpp
+  bool mirrored : 1 = false;      ///< copy of the other grid's sample; see tsdf_levels.hpp
 
   [[nodiscard]] bool known() const { return weight > 0.0F; }
 };
@@ -32,7 +32,7 @@ struct Brick {
   std::array<TsdfSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
 };
 
-/// Bricks of samples, found by their place.
+/// Bricks of samples, found by their lowest voxel.
 class TsdfBricks {
  public:
   /// Bricks of unknown samples, with these lowest voxels. None may repeat.

@@ -12,7 +12,7 @@
 namespace roomradar {
 namespace {
 
-/// Connects the newest keyframe to distant ones that look alike; returns whether any was connected.
+/// Connects the newest keyframe to distant ones that look alike; returns true if any was connected.
 bool join_alike(KeyframeGraph& graph, const MapKeyframe& newest, const KeyframeDatabase& keyframe_database,
                 const ConnectConfig& config, KeyframeCache& cache) {
   constexpr int kMinMatches = 25, kMinInliers = 30;

@@ -116,8 +116,8 @@ void close_loops(KeyframeGraph& graph, std::vector<KeyframePair> aligned, const 
 }
 
 std::size_t PairAligner::advance(const std::vector<Keyframe>& keyframes, const ConnectConfig& config) {
-  constexpr std::size_t kNewer =
-      4;  // a keyframe with so many newer ones is final; few frames refine it later
+  // A keyframe followed by kNewer keyframes is final; few frames refine it later.
+  constexpr std::size_t kNewer = 4;
   constexpr std::size_t kBatch = 8;  // in a batch, a prepared reference serves several pairs
   const std::size_t left = keyframes.size() - std::min(keyframes.size(), kNewer);
   const std::size_t until = left - left % kBatch;  // depends on nothing else, so a resumed scan is the same

@@ -9,10 +9,10 @@
 
 namespace roomradar {
 
-/// Chooses older keyframes to align a keyframe with: at most max_edges_rebuild, with similar views. The
-/// keyframes with similar views are divided, in order of time, into as many groups. One keyframe per group is
-/// chosen, so each visit to a part of the room is represented: the one with the most similar view. Keyframes
-/// that are aligned with `newer` already are preferred.
+/// Chooses at most max_edges_rebuild older keyframes with views similar to that of `newer`. Divides the
+/// keyframes with similar views, in order of time, into that many groups, so that each visit to a part of the
+/// room is represented. From each group, chooses the keyframe with the most similar view, and prefers
+/// keyframes that are already aligned with `newer`.
 /// @param aligned  pairs that are aligned already, sorted by (newer, older)
 std::vector<std::size_t> choose_older(std::span<const Keyframe> keyframes, std::size_t newer,
                                       std::span<const KeyframePair> aligned,

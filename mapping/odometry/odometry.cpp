@@ -82,8 +82,8 @@ Tracking Odometry::State::recover(const Frame& frame) {
   return tracking;
 }
 
-/// Limits the change of motion between frames to what a hand can do. A recalibrating sensor seems to exceed
-/// it. The first motion is a change from nothing known.
+/// Limits the change of motion between frames to that of a hand. A recalibrating sensor seems to exceed it.
+/// The first motion may turn more, because no motion is known before it.
 bool Odometry::State::is_plausible(const Tracking& tracking,
                                    const Eigen::Isometry3d& T_world_expected) const {
   constexpr double kMost_m = 0.10, kMost_rad = 0.10, kMostAtFirst_rad = 0.15;
@@ -93,7 +93,7 @@ bool Odometry::State::is_plausible(const Tracking& tracking,
          Eigen::AngleAxisd(change.linear()).angle() < (kept.frames.size() < 2 ? kMostAtFirst_rad : kMost_rad);
 }
 
-/// Adds what the aligned frame says about the sensor's times.
+/// Adds the aligned frame's evidence on the sensor's times.
 void Odometry::State::take_evidence(const Frame& frame, const Tracking& tracking) {
   const CameraVelocity steady = mean_velocity(kept, tracking.T_world_camera, frame.stamp_s);
   const Keyframe& keyframe = kept.graph.keyframes[kept.current];

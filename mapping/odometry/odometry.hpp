@@ -25,8 +25,8 @@ class Odometry {
   ~Odometry();
 
   /// Sets the keyframe database of an earlier map; call before the first frame. Each new keyframe is
-  /// localised in the earlier map if possible. Once a keyframe was localised, all poses are in the earlier
-  /// map's world. This includes poses of earlier frames. The earlier map's own poses stay constant.
+  /// localised in the earlier map if possible. Once a keyframe was localised, all poses, also those of
+  /// earlier frames, are in the earlier map's world. The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
 
   /// Tracks the next frame and returns its current pose estimate. While tracking is lost, tries the last pose
@@ -46,14 +46,14 @@ class Odometry {
   KeyframeDatabase take_keyframe_database();
 
   [[nodiscard]] OdometryCounts counts() const;
-  /// Returns the state after the last frame, without the second thread's next result.
+  /// Returns the state after the last frame, without pending results of the background threads.
   [[nodiscard]] const OdometrySnapshot& state() const;
 
-  /// Waits until the second thread is idle. Call before snapshot(). Changes no pose.
-  /// The thread's result is applied later, at the frame where it is due.
+  /// Waits until the thread that connects keyframes is idle. Call before snapshot(). Changes no pose: the
+  /// thread's result is applied later, at the frame where it is due.
   void finish_jobs();
-  /// Returns a copy of the complete state, to which the second thread's result has been applied. Views are
-  /// shared, not copied. Call only after finish_jobs().
+  /// Returns a copy of the complete state, with the pending result of the thread that connects keyframes
+  /// applied. Views are shared, not copied. Call only after finish_jobs().
   [[nodiscard]] OdometrySnapshot snapshot() const;
   /// Resumes from a snapshot, which must be consistent (load_odometry() checks this). Call set_prior_map()
   /// again if it was used.

@@ -35,9 +35,9 @@ struct OdometryConfig {
   int references = 2;  ///< max number of keyframes that a frame is aligned with
   /// Number of frames averaged into a keyframe's depth before its points and normals are recomputed.
   int improve_every = 5;
-  /// Number of frames after which the second thread's result for a new keyframe is applied.
+  /// Number of frames after which the background thread's result for a new keyframe is applied.
   int apply_result_after_frames = 4;
-  /// Times of the sensor to begin with. Unset: those that the first frame states.
+  /// Initial times of the sensor. Unset: those that the first frame states.
   std::optional<SensorTiming> timing;
   bool estimate_timing = true;  ///< correct the times while tracking
 };

@@ -54,9 +54,9 @@ struct OdometrySnapshot {
 /// Returns a frame's present pose in the world.
 Eigen::Isometry3d T_world_camera_of(const OdometrySnapshot& kept, const KeptFrame& frame);
 
-/// Returns the mean velocity from 0.09 s ago or a little more, or from the first frame, to now. Returns 0 if
-/// a frame since then has no trusted pose, or if the stamps do not allow it. Single motions between frames
-/// are too noisy to move colour by.
+/// Returns the camera's mean velocity over the last 0.09 s or slightly more, or since the first frame if that
+/// is later. Returns 0 if a frame in this time has no trusted pose, or if the stamps do not increase. The
+/// velocity between two consecutive frames is too noisy for correcting the time of colour.
 CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now,
                              double now_s);
 
@@ -67,8 +67,8 @@ struct PredictedMotion {
   double dt_s = 0.0;  ///< time since the last frame
 };
 
-/// Predicts that the camera goes on at its velocity. If a time between frames is not within 1 ms to 0.2 s,
-/// the last motion is repeated, and the velocity is 0.
+/// Predicts that the camera continues at its velocity. If a time between these frames is outside 1 ms to 0.2
+/// s, repeats the last motion and returns velocity 0.
 PredictedMotion predict(const OdometrySnapshot& kept, double stamp_s);
 
 /// Sets new poses of keyframes and moves all poses that depend on them. The camera pose moves with the
@@ -91,8 +91,8 @@ void add_posed(OdometrySnapshot& kept, const Frame& frame, const Eigen::Isometry
 void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking);
 
 /// Removes the frames from this index on, and the keyframes made of them with their constraints. The next
-/// frame is then aligned with the keyframe of the last frame that is left. Depth that removed frames had
-/// averaged into older keyframes stays.
+/// frame is then aligned with the keyframe of the last remaining frame. Depth of removed frames stays
+/// averaged into older keyframes.
 void forget_frames_from(std::int64_t frame_index, OdometrySnapshot& kept);
 
 /// Returns all frames, with their present poses in the world.

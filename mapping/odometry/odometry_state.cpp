@@ -14,8 +14,8 @@ KeyframeJobConfig job_config(const OdometryConfig& config) {
   return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
 }
 
-/// The first keyframe's velocity is known once the second frame is tracked. Its intensity was registered
-/// without one: it is dropped if that is wrong by more than a pixel.
+/// The first keyframe's velocity is known once the second frame is tracked. The keyframe's intensity was
+/// registered without it, and is dropped if the error exceeds a pixel.
 void Odometry::State::deskew_first_keyframe(const Frame& frame) {
   constexpr double kMost_px = 1.0;
   Keyframe& keyframe = kept.graph.keyframes.front();

@@ -1,4 +1,4 @@
-// odometry_state.hpp: what an odometry holds between two frames, and the handling of its current keyframe.
+// odometry_state.hpp: state of an odometry between two frames, and the handling of its current keyframe.
 #pragma once
 #include <cstdint>
 #include <future>
@@ -23,9 +23,9 @@ struct Odometry::State {
   ReadoutMotion readout;    ///< of the current frame
   CameraVelocity velocity;  ///< of the current frame; 0 until its pose is known
   KeyframeCache cache;
-  ViewPyramid open;  ///< the current keyframe's, refined by the views since it became current
+  ViewPyramid open;  ///< pyramid of the current keyframe, refined by the frames tracked since
   Image<std::uint8_t> open_measured;
-  bool open_is_newer = false;  ///< newer than the stored view
+  bool open_is_newer = false;  ///< `open` is newer than the keyframe's stored view
   std::future<KeyframeJobResult> job;
   std::optional<KeyframeJobResult> joined;  ///< the job's result, once it has been waited for
   int job_frames = 0;                       ///< frames since the job began

@@ -52,7 +52,8 @@ std::optional<Measured> usable(std::size_t a, std::size_t b, std::size_t count,
 ceres::Solver::Options solver_options() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // SuiteSparse calls a BLAS whose threads wait for each other; beside tracking, a solve took up to 30 s.
+  // SuiteSparse calls a BLAS whose threads wait for each other; a solve concurrent with tracking took up to
+  // 30 s.
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.max_num_iterations = 50;
   options.function_tolerance = 1e-4;  // smaller changes of the cost move poses by less than their error

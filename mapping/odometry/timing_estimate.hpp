@@ -11,8 +11,8 @@ namespace roomradar {
 struct TimingEstimate {
   SensorTiming stated;  ///< as the first frame states; the estimate's prior
   SensorTiming current;
-  TimingEvidence sum;  ///< of frames tracked with `current`
-  int frames = 0;      ///< in `sum`
+  TimingEvidence sum;  ///< evidence of frames tracked with `current`
+  int frames = 0;      ///< number of frames in `sum`
 };
 
 TimingEstimate start_estimate(const SensorTiming& stated);
@@ -22,17 +22,17 @@ TimingEstimate start_estimate(const SensorTiming& stated);
 /// @return true if `current` changed
 bool add_evidence(TimingEstimate& estimate, const TimingEvidence& evidence);
 
-/// Returns true if a recording should be tracked again from its beginning with the current times: keyframes
-/// and poses were made with times that have turned out to be wrong by more than 8 ms. Asked after
-/// kProbeFrames frames, or at the end of a shorter recording. By then the estimates have converged: with 300
-/// frames instead of 100, tracking is no more accurate (kitchen 20.3 against 20.1 mm, fr1_rpy 22.4
-/// against 22.2, simulated delay of 40 ms 2.1 against 2.2), and three times as much work is repeated.
+/// Returns true if the current times differ from those of the start by more than 8 ms. The recording should
+/// then be tracked again from its beginning with the current times. Callers test this after kProbeFrames
+/// frames, or at the end of a shorter recording. By then the estimates have converged: with 300 frames
+/// instead of 100, tracking is no more accurate (kitchen 20.3 against 20.1 mm, fr1_rpy 22.4 against 22.2,
+/// simulated delay of 40 ms 2.1 against 2.2), and three times as much work is repeated.
 bool are_times_wrong(const TimingEstimate& estimate);
 inline constexpr std::int64_t kProbeFrames = 100;
 inline constexpr int kMostRestarts = 3;
 
-/// Standard deviations of the current times, s, by the evidence since they last changed. At most those of
-/// the prior: 10 ms for the readouts, 30 ms for the delay.
+/// Returns the standard deviations of the current times, s, from the evidence since the last change. They are
+/// at most those of the prior: 10 ms for the readouts, 30 ms for the delay.
 SensorTiming standard_deviation(const TimingEstimate& estimate);
 
 }  // namespace roomradar

@@ -68,8 +68,8 @@ class UpEstimator {
  private:
   /// Returns the cameras' mean -y axis.
   [[nodiscard]] Eigen::Vector3d camera_up() const;
-  /// Stores the normal if it is a keep_every_-th one. When the buffer is full, drops every second stored
-  /// normal and doubles keep_every_. Early and late frames thus have equal weight.
+  /// Stores every keep_every_-th normal. When the buffer is full, drops every second stored normal and
+  /// doubles keep_every_, so early and late frames have equal weight.
   void keep(const Eigen::Vector3f& normal_world);
 
   std::vector<Eigen::Vector3f> normals_world_;

@@ -100,7 +100,8 @@ class BrickProjection {
   /// Offsets from the centre of a brick's first voxel to the centres of the voxels along each axis, in the
   /// camera frame, m.
   std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps_;
-  Eigen::Vector3f to_coarse_centre_;  ///< from a coarse cell's lowest voxel's centre to its own, m
+  /// From the centre of a coarse cell's lowest voxel to the cell's centre, m.
+  Eigen::Vector3f to_coarse_centre_;
 };
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// depth_windows.hpp: sparse table for the minimum depth in any square window of a depth image by four
-// lookups.
+// depth_windows.hpp: sparse table that gives the minimum depth in any square window of a depth image with
+// four lookups.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -19,9 +19,9 @@ struct DepthWindows {
 };
 
 struct WindowDepth {
-  float nearest_m = 0.0F;  ///< infinity if no pixel of the window has depth
-  float measured_share =
-      0.0F;  ///< fraction of the window's pixels with depth; pixels outside the image count as without
+  float nearest_m = 0.0F;       ///< infinity if no pixel of the window has depth
+  float measured_share = 0.0F;  ///< fraction of the window's pixels with depth; pixels outside the image
+                                ///< count as pixels without depth
 };
 
 /// Builds the sparse table and the integral image, reusing the memory of `windows`.

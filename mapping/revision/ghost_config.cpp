@@ -1,4 +1,4 @@
-// ghost_config.cpp: which settings are valid.
+// ghost_config.cpp: checks the settings of ghost removal.
 #include "mapping/revision/ghost_config.hpp"
 
 #include <cmath>

@@ -36,8 +36,7 @@ struct GhostConfig {
 /// Throws Error (naming the field, its value and the rule) if a setting is out of range.
 void require_valid(const GhostConfig& config);
 
-/// Returns the distance between two frames used, of `frames` frames: each is used (1), every second (2) and
-/// so on.
+/// Returns n such that every n-th of `frames` frames is used; 1: all.
 std::int64_t look_stride(std::int64_t frames, const GhostConfig& config);
 
 }  // namespace roomradar

@@ -17,7 +17,7 @@
 namespace roomradar {
 namespace {
 
-// Surface nearer than this gives no depth, and hides what is behind it.
+// Surface nearer than this gives no depth, and hides the surfaces behind it.
 constexpr float kTooNear_m = 0.8F;
 constexpr int kHiddenCell_px = 8;  // about the size of a 1 cm voxel at that distance
 
@@ -183,7 +183,7 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
     else if (measured_m - z > margin_m(measured_m))
       ++votes.glimpsed;
   };
-  // The votes of a brick concern no other, so the bricks are shared among threads.
+  // The votes of different bricks are independent, so the bricks are shared among threads.
   constexpr std::size_t kPiece = 64;  // bricks
   const std::span<const CellBrick> bricks(bricks_);
   parallel_for((bricks.size() + kPiece - 1) / kPiece, hardware_threads(), [&](std::size_t i, unsigned) {

@@ -1,4 +1,4 @@
-// refuse_region.cpp: masks the frames, erases what they contradict, fuses them.
+// refuse_region.cpp: masks the frames, erases the samples that they contradict, and fuses the frames.
 #include "mapping/revision/refuse_region.hpp"
 
 #include <algorithm>

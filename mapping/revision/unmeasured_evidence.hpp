@@ -22,7 +22,7 @@ struct AbsenceVotes {
   std::uint16_t gone = 0;  ///< frames with hardly any depth at and around the voxel
   /// Frames without depth at the voxel and in most pixels around it, and without nearer depth around it.
   std::uint16_t unmeasured = 0;
-  std::uint16_t last_look = 0;      ///< index of the frame that last measured it or found it gone
+  std::uint16_t last_look = 0;      ///< index of the frame that last measured the voxel or found it gone
   std::uint16_t turn_change = 0;    ///< sum over `turns` of the largest change of a colour channel
   std::uint16_t steady_change = 0;  ///< sum over `steadies` of the largest change of a colour channel
   /// Number of switches between measured and gone, in consecutive observations from one camera position.
@@ -42,8 +42,8 @@ class AbsenceVoter {
   void measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const;
   /// Adds the vote of a frame that has no depth in pixel (x, y), to which the voxel projects.
   /// @param measured_share  fraction of pixels with depth, within about 3 cm of the voxel
-  /// @param beside_nearer   true if one of these pixels is nearer than the voxel. Its surface may then shadow
-  ///                        the projector's light
+  /// @param beside_nearer   true if one of these pixels is nearer than the voxel. The nearer surface may then
+  ///                        shadow the projector's light
   /// @param has_colour      true if the voxel's colour is tracked
   void unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera, float measured_share,
                   bool beside_nearer, bool has_colour, AbsenceVotes& votes) const;

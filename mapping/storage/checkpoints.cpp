@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
   throw Error(path.string() + ": " + fault);
 }
 
-/// Returns whether the path still names the open file; the lock's last owner may have removed the folder.
+/// Returns true if the path still names the open file; the lock's last owner may have removed the folder.
 bool is_still_there(int file, const fs::path& path) {
   struct stat opened {
   }, named{};

@@ -43,11 +43,10 @@ class Checkpoints {
   /// Throws Error naming the difference if the folder belongs to work with another identity.
   void require_same_work() const;
 
-  /// Returns true if `every_s` has passed since the last checkpoint began, and no checkpoint is being
-  /// written.
+  /// Returns true if the last checkpoint began at least `every_s` ago, and no checkpoint is being written.
   bool is_due();
-  /// Waits for the last checkpoint to complete, and returns true if a third of `every_s` has passed since it
-  /// began. Call at the end of a stage.
+  /// Waits for the last checkpoint to complete, and returns true if it began at least a third of `every_s`
+  /// ago. Call at the end of a stage.
   bool is_due_at_end();
   /// Makes is_due() and is_due_at_end() wait for the last checkpoint and return true, until write() is
   /// called. For work that is about to be stopped.

@@ -25,7 +25,7 @@ void put_column(std::string& out, const std::vector<Number>& numbers) {
 }
 
 /// Takes columns from the body of a file. Throws Error naming the file if the body is cut short or damaged.
-/// Columns that together take more than 64 MB and 1,000 times the body's size are refused before memory is
+/// Rejects columns that together take more than 64 MB plus 1,000 times the body's size before memory is
 /// allocated for them: no map compresses that well. Body and path must outlive the reader.
 class ColumnReader {
  public:

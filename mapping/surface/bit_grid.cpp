@@ -114,12 +114,12 @@ void BitGrid::keep_multiples_of(int spacing) {
         row(y, z)[i] &= z % spacing == 0 && y % spacing == 0 ? kept[i] : 0;
 }
 
-/// Rows of a grid: one and those beside it. A null pointer is a row outside the grid.
+/// A row of a grid and its neighbours. A null pointer is a row outside the grid.
 struct BitGrid::Rows {
   const std::uint64_t *own, *y_before, *y_after, *z_before, *z_after;
 };
 
-/// The rows that block steps from or to a row.
+/// Rows of the grids that block steps from or to a row.
 struct BitGrid::Bars {
   const std::uint64_t *x, *y_before, *y, *z_before, *z;
 };
@@ -154,7 +154,7 @@ bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::u
   return any;
 }
 
-// Of the rows as they were before, only those of two planes must be kept.
+// Only the previous rows of two planes must be kept.
 void BitGrid::spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
   const std::size_t plane_words = words_a_row_ * static_cast<std::size_t>(size_.y());
   std::vector<std::uint64_t> below, plane;  // z - 1 and z, as they were before

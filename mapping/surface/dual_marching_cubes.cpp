@@ -29,7 +29,7 @@ Eigen::Vector3d on_vertex_grid(const Eigen::Vector3d& p_world) {
 // The eight samples of a dual cell. A mirrored corner of the voxels' grid has the sample of its coarse cell.
 struct CellCorners {
   std::array<const TsdfSample*, 8> samples;
-  std::array<Eigen::Vector3f, 8> positions;  // in the cell, 0..1; those of coarse samples are beside it
+  std::array<Eigen::Vector3f, 8> positions;  // in the cell, 0..1; those of coarse samples may be outside
 };
 
 Eigen::Vector3f corner_position(unsigned corner) {
@@ -168,8 +168,8 @@ class Net {
         }
   }
 
-  // Returns whether the cell exists in this grid: in the voxels' if it has a corner that belongs to them, in
-  // the coarse cells' if all its corners belong to those. All its samples must be known.
+  // Returns true if the cell exists in this grid, and all its samples are known. In the voxels' grid, at
+  // least one corner must be a voxel; in the coarse cells' grid, all corners must be coarse cells.
   [[nodiscard]] bool is_cell(const Grid& grid, const Eigen::Vector3i& at) const {
     unsigned mirrored = 0;
     for (unsigned i = 0; i < 8; ++i) {
@@ -264,8 +264,8 @@ class Net {
     });
   }
 
-  // A polygon around each measured crossing between two neighbouring samples, of which one belongs to this
-  // grid (of the coarse cells': both).
+  // Adds a polygon around each measured crossing between two neighbouring samples. In the voxels' grid, one
+  // of the samples must be a voxel; in the coarse cells' grid, both must be coarse.
   void span_polygons(Grid& grid, std::size_t b) {
     fill_window(grid, b);
     const BrickNeighbourhood around(grid.bricks, b);
@@ -290,7 +290,7 @@ class Net {
             // Where the coarse grid has no cell, one of the voxels' may touch both samples.
             if (corner == kNoVertex) corner = vertex_of_voxels(2 * (cell - back), back, axis);
             polygon_.push_back(corner);
-            // So may one half way to the next corner.
+            // So may a cell half way to the next corner.
             const Eigen::Vector3i both = back.cwiseMin(next), half = (back - next).cwiseAbs();
             const std::uint32_t between = vertex_of_voxels(2 * (cell - both) - half, both, axis);
             if (between != kNoVertex) polygon_.push_back(between);

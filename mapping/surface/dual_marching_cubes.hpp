@@ -21,11 +21,11 @@ namespace roomradar {
 /// MICCAI 1998 (placement); Nielson, Dual Marching Cubes, IEEE Visualization 2004 (sheets); Wenger,
 /// Isosurfaces, CRC Press 2013, chapter 3 (manifold faces).
 ///
-/// The cells where the grids of a map meet are the eight samples around a corner of a voxel, where a coarse
-/// sample stands for several corners. A polygon around a crossing between two coarse samples has up to eight
-/// corners, where voxels touch it. So there are no cracks. Only the choice of sheets at ambiguous faces
-/// between cells of different grids may differ. Source: Schaefer and Warren, Dual Marching Cubes: Primal
-/// Contouring of Dual Grids, Pacific Graphics 2004 (cells of a dual grid).
+/// Where the grids of a map meet, a cell consists of the eight samples around a corner of a voxel; one coarse
+/// sample may be several of these. A polygon around a crossing between two coarse samples has up to eight
+/// corners, since voxels may touch it. Hence there are no cracks. Only the choice of sheets at ambiguous
+/// faces between cells of different grids may differ. Source: Schaefer and Warren, Dual Marching Cubes:
+/// Primal Contouring of Dual Grids, Pacific Graphics 2004 (cells of a dual grid).
 Mesh dual_marching_cubes(const TsdfLevels& levels, double resolution_m);
 
 }  // namespace roomradar

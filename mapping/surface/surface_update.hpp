@@ -9,10 +9,10 @@
 namespace roomradar {
 
 /// Re-extracts the surface in a box from the current map. The mesh outside the box is unchanged. Old
-/// triangles are cut at the box. New triangles extend one or two voxels beyond the box. Hence no gap remains.
-/// In this overlap, old and new triangles are within twice config.max_deviation_m of the unsimplified
-/// surface. The time is proportional to the content of the box, plus one pass over the mesh's triangles.
-/// Changes nothing if the box is empty. Throws Error if the config is invalid.
+/// triangles are cut at the box. New triangles extend one or two voxels beyond the box, so no gap remains. In
+/// this overlap, old and new triangles are within twice config.max_deviation_m of the unsimplified surface.
+/// The time is proportional to the content of the box, plus one pass over the mesh's triangles. Changes
+/// nothing if the box is empty. Throws Error if the config is invalid.
 ///
 /// @param mesh  result of extract_surface(), in the world. Normals and colours are kept only if every vertex
 ///              has them

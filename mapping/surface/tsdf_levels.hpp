@@ -14,11 +14,11 @@ inline constexpr int kCoarseEdge = 2;
 
 /// Samples of a map, at the size at which the octree stores them: a grid of voxels and a grid of coarse
 /// cells. Coarse cell c covers the voxels 2 c and 2 c + 1 along each axis. Each place belongs to one grid. It
-/// belongs to the voxels if its node (a cube of 4 voxels) has a voxel's sample, or is next to such a node and
-/// has no coarse sample. All other places belong to the coarse cells. Where the grids meet, each has mirrored
-/// samples of the other, one node deep, so that algorithms on one grid find neighbours. A mirrored voxel is
-/// interpolated between coarse cells; a mirrored coarse cell is the mean of its eight voxels, if all are
-/// known.
+/// belongs to the voxels if its node (a cube with an edge of 4 voxels) has a sample of a voxel, or is next to
+/// such a node and has no coarse sample. All other places belong to the coarse cells. Where the grids meet,
+/// each has mirrored samples of the other, one node deep, so that algorithms on one grid find neighbours. A
+/// mirrored voxel is interpolated between coarse cells; a mirrored coarse cell is the mean of its eight
+/// voxels, if all are known.
 class TsdfLevels {
  public:
   /// Uses samples of weight min_weight or more, of cells that have a voxel in the box.
@@ -32,7 +32,7 @@ class TsdfLevels {
   void mirror_voxels_in_coarse();
 
  private:
-  std::vector<VoxelIndex> coarse_beside_voxels_;  ///< nodes: their lowest voxel divided by 4
+  std::vector<VoxelIndex> coarse_beside_voxels_;  ///< nodes, each given by its lowest voxel divided by 4
   std::vector<VoxelIndex> voxels_beside_coarse_;
 };
 

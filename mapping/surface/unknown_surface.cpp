@@ -49,7 +49,7 @@ CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world
 
 Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
                   const UnknownSurfaceConfig& config) {
-  // Wide enough that all unknown cells of the margin count, whatever is in the box.
+  // Wide enough that all unknown cells of the margin count, independent of the cells in the box.
   const int margin = std::max(config.least_voxels, config.cube_voxels);
   Known known;
   int edge = 1;

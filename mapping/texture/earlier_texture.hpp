@@ -14,10 +14,10 @@
 
 namespace roomradar {
 
-/// Looks up colours on an earlier surface, by place.
+/// Looks up colours of an earlier surface by position and normal.
 class EarlierTexture {
  public:
-  /// @param mesh  mesh that the texture fits. It may have been moved since, to the world of the lookups
+  /// @param mesh  mesh that the texture fits; may have been transformed into the world of the lookups
   /// @throws Error if the texture's picture is damaged
   EarlierTexture(Mesh mesh, const SurfaceTexture& texture);
   EarlierTexture(const EarlierTexture&) = delete;
@@ -40,7 +40,8 @@ class EarlierTexture {
   std::vector<std::array<AtlasPoint, 3>> corners_;
 };
 
-/// Returns what the texture with the most texels per metre has there; nullopt: none has anything.
+/// Returns the result of find() with the most texels per metre, over all textures; nullopt if no texture has
+/// a colour there.
 std::optional<EarlierTexture::Found> find_densest(std::span<const std::unique_ptr<const EarlierTexture>> all,
                                                   const Eigen::Vector3d& p_world,
                                                   const Eigen::Vector3f& normal);

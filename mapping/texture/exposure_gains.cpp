@@ -30,8 +30,8 @@ float median(std::vector<float>& values) {
   return *middle;
 }
 
-/// Returns the colours of evenly chosen triangles' centres in the views that show them; only of those that
-/// two or more show.
+/// Returns the colours of the centres of evenly chosen triangles, in all views that show them. Leaves out
+/// centres that fewer than two views show.
 std::vector<std::vector<Sample>> shared_points(const Mesh& mesh, std::span<const TextureView> views) {
   std::vector<std::vector<Sample>> points;
   const std::size_t step = std::max<std::size_t>(1, mesh.triangles.size() / kPoints);

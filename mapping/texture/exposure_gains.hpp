@@ -1,4 +1,4 @@
-// exposure_gains.hpp: evens the exposure of views by the surface that they share.
+// exposure_gains.hpp: equalises the exposure of views by the surface that they share.
 #pragma once
 #include <span>
 
@@ -8,9 +8,9 @@
 namespace roomradar {
 
 /// Sets TextureView::gain of all views. Each channel of each view gets the factor that brings its colours to
-/// the median colour of some thousand points of the surface, over all views that show them. Medians leave
-/// highlights, shadows and things that moved without effect. Views that share less than 20 points with others
-/// keep gain 1. The geometric mean of the gains is 1, or less where more than 2 % of the surface would be
+/// the median colour of some thousand points of the surface, over all views that show them. Because of the
+/// medians, highlights, shadows and moved objects have no effect. Views that share fewer than 20 points with
+/// others keep gain 1. The geometric mean of the gains is 1, or less if more than 2 % of the points would be
 /// white.
 /// @param mesh  with normals
 void even_exposure(const Mesh& mesh, std::span<TextureView> views);

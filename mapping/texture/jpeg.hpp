@@ -1,4 +1,4 @@
-// jpeg.hpp: pictures to and from JPEG.
+// jpeg.hpp: encodes and decodes JPEG pictures.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -18,8 +18,7 @@ std::vector<std::uint8_t> jpeg_of(const ColourImage& picture, int quality);
 ColourImage picture_of_jpeg(std::span<const std::uint8_t> jpeg, int width_px, int height_px,
                             const std::string& where);
 
-/// Checks what can be checked without decoding: the markers at both ends, and the size. Throws Error as
-/// picture_of_jpeg() does.
+/// Checks, without decoding, the markers at both ends and the size. Throws Error as picture_of_jpeg() does.
 void require_jpeg(std::span<const std::uint8_t> jpeg, int width_px, int height_px, const std::string& where);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// mesh_raster.hpp: which triangle of a mesh each pixel of a camera sees, without OpenGL.
+// mesh_raster.hpp: CPU rasteriser that finds the triangle of a mesh that each pixel of a camera sees.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -21,7 +21,7 @@ struct MeshRaster {
   Image<std::uint32_t> triangle;  ///< index in Mesh::triangles; kNoTriangle: none
 };
 
-/// Renders the mesh with a depth buffer; triangles are seen from both sides. Triangles that reach behind the
+/// Renders the mesh with a depth buffer; both sides of triangles are visible. Triangles that reach behind the
 /// camera are clipped 5 cm in front of it.
 /// @param T_camera_mesh  maps mesh coordinates (origin added) to camera coordinates
 MeshRaster rasterise(const Mesh& mesh, const Intrinsics& camera, const Eigen::Isometry3d& T_camera_mesh);

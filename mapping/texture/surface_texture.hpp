@@ -22,15 +22,15 @@ struct SurfaceTexture {
   std::uint64_t mesh_fingerprint = 0;              ///< of the mesh that the texture belongs to
 };
 
-/// Returns a number that changes with any vertex or triangle of the mesh, but neither when the mesh is
-/// written to a file and read, nor with its colours and normals.
+/// Returns a hash of the mesh's vertices and triangles, without colours and normals. Writing the mesh to a
+/// file and reading it back does not change the hash.
 std::uint64_t fingerprint(const Mesh& mesh);
 
 /// Returns true if the texture was made for this mesh.
 bool fits(const SurfaceTexture& texture, const Mesh& mesh);
 
-/// Returns the mesh as textured meshes are drawn and written: vertices with several positions in the atlas
-/// are duplicated. Colours are left out. The texture must fit the mesh.
+/// Returns the mesh with texture coordinates and without colours. Vertices with several positions in the
+/// atlas are duplicated. The texture must fit the mesh.
 TexturedMesh textured_mesh(const Mesh& mesh, const SurfaceTexture& texture);
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// texture_bake.cpp: which views show a block of texels best, and the colour of each texel from them.
+// texture_bake.cpp: finds the views that show a block of texels best, and computes the texels' colours from
+// them.
 #include "mapping/texture/texture_bake.hpp"
 
 #include <algorithm>
@@ -40,7 +41,7 @@ Eigen::Array3f mesh_colour(const Mesh& mesh, const MeshPoint& point) {
   return colour;
 }
 
-/// Returns the number of texels per metre that each triangle deserves: as its best view at its centre.
+/// Returns texels per metre for each triangle: as many as its best view has pixels at its centre.
 std::vector<float> texels_per_m(const Mesh& mesh, std::span<const TextureView> views, Earlier earlier,
                                 double min_texel_m) {
   std::vector<float> wanted(mesh.triangles.size(), kMinTexelsPerM);

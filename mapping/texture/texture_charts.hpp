@@ -1,4 +1,4 @@
-// texture_charts.hpp: divides a mesh into patches that are nearly flat, each with its own place in a texture.
+// texture_charts.hpp: divides a mesh into nearly flat charts, each with its own rectangle in a texture.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -32,9 +32,9 @@ inline Eigen::Vector2f atlas_point(const TextureChart& chart, const Eigen::Vecto
 
 /// Grows charts from the largest triangles over neighbours whose normals differ by less than 50 degrees from
 /// the chart's mean, to an extent of about a metre. Each triangle is in one chart. A triangle that would
-/// overlap others of its chart starts another one. Sets size and axes of the charts, and texel_m such that a
-/// metre gets the mean of its triangles' texels.
-/// @param texels_per_m  number of texels per metre that each triangle deserves, > 0
+/// overlap others of its chart starts another one. Sets size and axes of the charts, and texel_m from the
+/// mean of texels_per_m over the chart's triangles.
+/// @param texels_per_m  wanted number of texels per metre, one per triangle, > 0
 std::vector<TextureChart> texture_charts(const Mesh& mesh, std::span<const float> texels_per_m);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// texture_view.hpp: a colour picture of the room whose pose is known, and how well it shows a point.
+// texture_view.hpp: a colour picture of the room with known pose, and a measure of how well it shows a point.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -11,21 +11,23 @@
 
 namespace roomradar {
 
-/// Everything that baking needs of a frame. About 4 bytes per pixel of the picture.
+/// Data of a frame for baking. Takes about 4 bytes per pixel of the picture.
 struct TextureView {
   Intrinsics camera;  ///< colour camera
   ColourImage colour;
   ColourImage low;  ///< the picture without detail, an eighth of its size
-  /// Depth up to which the picture shows the mesh, half the picture's size, m. 0: nothing, because the frame
-  /// measured something there that is not in the mesh.
+  /// Max depth, m, at which the picture shows the mesh, in an image of half the picture's size. 0: the
+  /// picture does not show the mesh, since the frame measured a surface that is not in the mesh.
   DepthImage shown_m;
-  Eigen::Isometry3f T_camera_local = Eigen::Isometry3f::Identity();  ///< from the mesh without its origin
-  float sharpness = 1.0F;                                            ///< 0..1
-  std::array<float, 3> gain = {1.0F, 1.0F, 1.0F};                    ///< evens the exposure; by channel
+  Eigen::Isometry3f T_camera_local =
+      Eigen::Isometry3f::Identity();               ///< from points relative to the mesh's origin
+  float sharpness = 1.0F;                          ///< 0..1
+  std::array<float, 3> gain = {1.0F, 1.0F, 1.0F};  ///< per channel; equalises the exposure
 };
 
-/// Makes a view of a frame. Pixels whose measured depth differs from the mesh's show something that moved;
-/// they and their neighbours are left out, and so are pixels beside the silhouette of a nearer surface.
+/// Makes a view of a frame. Leaves out pixels whose measured depth differs from the mesh's, since they show a
+/// moved object, and the neighbours of these pixels. Also leaves out pixels beside the silhouette of a nearer
+/// surface.
 /// @param T_world_camera    pose of the frame's depth camera; the mesh is in the world
 /// @param image_speed_pxps  see ViewCandidate
 TextureView make_texture_view(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const Mesh& mesh,
@@ -40,8 +42,8 @@ inline Eigen::Vector2f pixel_of(const Intrinsics& camera, const Eigen::Vector3f&
 /// A point of the mesh's surface as a view shows it.
 struct ShownPoint {
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  ///< in TextureView::colour
-  /// Pixels of the picture per metre of the surface, in the direction in which it is foreshortened. 0: the
-  /// view does not show the point.
+  /// Pixels of the picture per metre of the surface, in the direction of greatest foreshortening. 0: the view
+  /// does not show the point.
   float px_per_m = 0.0F;
   float score = 0.0F;  ///< px_per_m times the view's sharpness; less near the picture's border
 };
@@ -50,8 +52,8 @@ struct ShownPoint {
 /// @param normal   unit
 ShownPoint shown(const TextureView& view, const Eigen::Vector3f& p_local, const Eigen::Vector3f& normal);
 
-/// Return the colour at a pixel of TextureView::colour, interpolated and evened by the gain, 0..255: with
-/// all detail, and without.
+/// Returns the colour at a pixel of TextureView::colour, interpolated and multiplied by the gain, 0..255.
+/// low_colour_at() returns the colour without detail.
 Eigen::Array3f colour_at(const TextureView& view, const Eigen::Vector2f& pixel);
 Eigen::Array3f low_colour_at(const TextureView& view, const Eigen::Vector2f& pixel);
 

@@ -130,7 +130,7 @@ void step(std::span<const MeshPoint> points, std::span<const float> brightness, 
   view.T_camera_local = (T * view.T_camera_local.cast<double>()).cast<float>();
 }
 
-/// Sets each point's brightness to the mean over the views; negative where fewer than two show it.
+/// Sets each point's brightness to the mean over the views; negative if fewer than two show it.
 void set_brightness(std::span<const MeshPoint> points, std::span<const Aligned> all,
                     std::vector<float>& brightness) {
   std::vector<float> count(points.size(), 0.0F);

@@ -25,14 +25,14 @@ MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vect
 /// Returns about `count` points, evenly distributed over the surface; the same at each call.
 std::vector<MeshPoint> sample_mesh(const Mesh& mesh, std::size_t count);
 
-/// Moves each view such that its colours meet those of the other views on the surface. Depth is fused with
-/// the poses of tracking, whose errors of some millimetres are some pixels of a picture; and colour may be
-/// taken by another camera, at another time. Each point's brightness is the mean over the views that show it;
-/// each view is aligned to these by Gauss-Newton steps; both are repeated, at a quarter and then half of the
-/// pictures' size. Visibility stays that of the first poses, from which views move by some centimetres at
-/// most.
+/// Changes the pose of each view such that its colours agree with those of the other views on the surface.
+/// The poses of tracking have errors of some millimetres, which are some pixels of a picture. Also, colour
+/// may come from another camera and another time than depth. Alternates two steps, at an eighth, a quarter
+/// and then half of the pictures' size. Each point's brightness becomes the mean over the views that show it.
+/// Each view is then aligned to these by a Gauss-Newton step. Visibility stays that of the first poses, from
+/// which views move by some centimetres at most.
 /// @param mesh   with normals
-/// @param views  with evened exposure
+/// @param views  with gains from even_exposure()
 /// Source: Zhou, Koltun, Color map optimization for 3D reconstruction with consumer depth cameras, ACM TOG
 /// 2014.
 void align_views(const Mesh& mesh, std::span<TextureView> views);

@@ -13,9 +13,9 @@ struct ViewCandidate {
   double image_speed_pxps = 0.0;  ///< see image_speed_pxps(); a fast camera's picture is blurred
 };
 
-/// Returns the indices of at most max_views candidates, increasing. The scan is divided where the camera has
-/// moved by 5 cm or 3 degrees; each part gives its slowest frame. A part whose view was chosen before gives
-/// none. If there are too many parts, they are made longer.
+/// Returns the indices of at most max_views candidates, increasing. Divides the scan into parts within which
+/// the camera moves by less than 5 cm and 3 degrees. Chooses the slowest frame of each part, unless a frame
+/// chosen earlier has about the same pose. If this gives too many views, repeats with longer parts.
 std::vector<std::size_t> choose_views(std::span<const ViewCandidate> candidates, std::size_t max_views);
 
 }  // namespace roomradar

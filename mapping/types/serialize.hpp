@@ -43,7 +43,7 @@ class ByteReader {
     if (count > 0) std::memcpy(to, bytes_.data(), count);
     bytes_.remove_prefix(count);
   }
-  /// Returns the next number, or array of numbers, as memory has it.
+  /// Returns the next number or array of numbers, in the machine's byte order.
   template <typename Number>
   Number number() {
     static_assert(std::is_trivially_copyable_v<Number>);

@@ -1,4 +1,4 @@
-// gl_query.cpp: which settings and queries of GlRadar are valid.
+// gl_query.cpp: checks the settings and queries of GlRadar.
 #include "radar/batch/gl_query.hpp"
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// gl_radar.cpp: M unless cached, R through M, the least L of each query, one read-back.
+// gl_radar.cpp: draws M unless cached, then R through M, finds the least L of each query, and reads back
+// once.
 #include "radar/batch/gl_radar.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -101,8 +102,8 @@ void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneM
 bool GlRadar::fit_atlases(std::size_t queries) {
   const auto side = static_cast<std::size_t>(std::max(config_.atlas_px / config_.resolution_px, 1));
   const auto fit = [&](TileAtlas& atlas, std::size_t tiles) {
-    constexpr std::size_t kMostGroups = 255 * 255;  // work groups in one dispatch, one per tile; GL
-                                                    // guarantees 65,535
+    // Work groups in one dispatch, one per tile; GL guarantees 65,535.
+    constexpr std::size_t kMostGroups = 255 * 255;
     tiles = std::min({tiles, side * side, kMostGroups});
     if (atlas.tile_count() >= tiles) return false;
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(tiles))));
@@ -208,7 +209,7 @@ std::span<const SceneRun> GlRadar::runs_of(const Drawn& drawn) const {
   return std::span(runs_).subspan(drawn.first_run, drawn.run_count);
 }
 
-/// Runs the exact test if scene is in the same pixel as the object, neither ahead nor behind.
+/// Runs the exact test if a pixel contains scene that is neither ahead of the object nor behind it.
 void GlRadar::exact_fallback(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
                              Contact& contact) {
   const bool is_doubtful = contact.status == ContactStatus::kNoTarget ||

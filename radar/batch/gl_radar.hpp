@@ -34,8 +34,8 @@ namespace roomradar {
 /// u is the direction of motion. M is the object's depth image (its mask) seen from the far plane. R is the
 /// scene's depth image seen from the rear plane, limited to the object's outline. L is the gap between object
 /// and scene in each pixel; the least L is the distance to contact. L is defined only in pixels that both the
-/// object and the scene cover. In each pixel, R shows the first scene surface that is not behind the object's
-/// front. A surface behind the front is ignored in a pixel if it
+/// object and the scene cover. In each pixel, R shows the first scene surface that is ahead of the object's
+/// front or overlaps the object. A surface behind the front counts as an overlap, unless it
 ///   - is back-facing, since the object moves away from it (for example the table below a lifted plate), or
 ///   - is farther behind the front than overlap_tolerance_m or the object's length along u, or
 ///   - is not certainly inside the front slab (the solid between the object's front and its next surface
@@ -47,11 +47,11 @@ namespace roomradar {
 /// slopes.
 ///
 /// lower_m and upper_m are guaranteed bounds. Both come from the same two passes. Each pixel also stores
-/// depth bounds of two sets of surfaces. One set may touch the pixel's square. The other certainly crosses
-/// its sample line (the line along u through its sample position). lower_m is 0 if, in one of the object's
-/// pixels, a scene surface is neither certainly ahead of the object nor certainly behind it. Examples are a
-/// wall that the object passes at less than a pixel's distance, and a peg in a hole. Such a query is repeated
-/// with the exact test on the CPU if possible (GlRadarConfig::exact_fallback). Then lower_m = upper_m.
+/// depth bounds of the surfaces that may touch its square, and of those that certainly cross its sample line
+/// (the line along u through its sample position). lower_m is 0 if, in one of the object's pixels, a scene
+/// surface is neither certainly ahead of the object nor certainly behind it. Examples are a wall that the
+/// object passes at less than a pixel's distance, and a peg in a hole. Such a query is repeated with the
+/// exact test on the CPU if possible (GlRadarConfig::exact_fallback). Then lower_m = upper_m.
 ///
 /// One-sided surfaces (is_one_sided(), for example the frontier of observed space) block GlRadar's objects
 /// from both sides. Use CyberRadar if they must block from their outside only.

@@ -24,7 +24,7 @@ class TileAtlas {
   }
   [[nodiscard]] int width_px() const { return columns_ * tile_px_; }
   [[nodiscard]] int height_px() const { return rows_ * tile_px_; }
-  /// Returns the least x and y of the tile's pixels.
+  /// Returns the x and y of the tile's first pixel.
   [[nodiscard]] std::array<int, 2> corner_px(std::size_t tile) const;
   [[nodiscard]] unsigned texture() const { return texture_; }
 

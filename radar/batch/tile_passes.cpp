@@ -1,4 +1,4 @@
-// tile_passes.cpp: M unless cached, then R through M.
+// tile_passes.cpp: draws M unless cached, then R through M.
 #include "radar/batch/tile_passes.hpp"
 
 #define GL_GLEXT_PROTOTYPES

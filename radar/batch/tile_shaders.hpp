@@ -6,10 +6,10 @@ namespace roomradar {
 
 // For every triangle, the geometry shader emits the rectangle of its tile's pixels that the triangle may
 // touch. The fragment shader computes coverage and depth of each pixel from the triangle's three vertices.
-// The results do not depend on the driver's vertex snapping or depth interpolation. All renderers thus agree
-// within the guaranteed bounds. The bounds include all float errors, beginning with that of the
-// matrix-vertex product. GL_MIN blending combines the fragments of a pixel. The passes thus need no depth
-// buffer and no drawing order.
+// The results do not depend on the driver's vertex snapping or depth interpolation, so all renderers agree
+// within the guaranteed bounds. The bounds include all float errors, beginning with that of the matrix-vertex
+// product. GL_MIN blending combines the fragments of a pixel, so the passes need no depth buffer and no
+// drawing order.
 //
 // A tile's coordinates are its query's outline coordinates (RadarOutline): x and y in pixels, z in metres
 // along the motion. The sample line of a pixel is the line along z through its sample position (kSample).
@@ -60,8 +60,8 @@ void main() {
 }
 )";
 
-/// Computes whether a triangle covers a pixel, and at which depths, from the triangle's vertices and their
-/// errors only.
+/// Computes a triangle's coverage of a pixel and its depth range there, from the vertices and their errors
+/// only.
 inline constexpr const char* kSpanSource = R"(
 struct Span {
   bool in_square;  // may touch the pixel's square

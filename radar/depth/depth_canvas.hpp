@@ -53,10 +53,10 @@ struct TriangleSetup {
   /// Inverse depth, 1/m: value at pixel (first_x, first_y), slopes per pixel in x and y, and range over the
   /// three vertices.
   alignas(32) Lane<float> q_first, q_per_x, q_per_y, least_q, most_q;
-  // Edges. They define the span of pixels that a triangle covers in row y. The span begins at the maximum of
-  // left_slope * (y - v) + left over the three edges. It ends at the minimum of right_slope * (y - v) +
-  // right. v is the row coordinate of one of the edge's vertices. `left` and `right` are the edge's x at row
-  // v, not at row 0, since a nearly horizontal edge has a huge slope.
+  // Edges of the span of pixels that a triangle covers in row y. The span begins at the maximum of left_slope
+  // * (y - v) + left over the three edges, and ends at the minimum of right_slope * (y - v) + right. v is the
+  // row coordinate of one of the edge's vertices. `left` and `right` are the edge's x at row v, not at row 0,
+  // since a nearly horizontal edge has a huge slope.
   alignas(32) std::array<Lane<float>, 3> left, left_slope, right, right_slope;
 };
 
@@ -65,8 +65,8 @@ struct TriangleSetup {
 ///
 /// Inverse depth is linear over a triangle, sampled at pixel centres and clamped to the range of the
 /// triangle's vertices. Triangles are enlarged by 1/1024 pixel, so neighbours leave no gap. Coordinates must
-/// be finite. The enlargement works only for coordinates within 16,000 pixels. Vertices must be in front of
-/// the camera.
+/// be finite, and vertices in front of the camera. The enlargement works only for coordinates within 16,000
+/// pixels.
 void draw_triangles(const ProjectedVertices& vertices, std::span<const PieceTriangle> triangles,
                     bool cull_back_faces, TriangleSetup& setup, DepthCanvas& canvas);
 

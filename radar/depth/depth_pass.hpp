@@ -34,7 +34,7 @@ struct DepthPassConfig {
 /// @throws Error naming the field, its value and the rule
 void require_valid(const DepthPassConfig& config);
 
-/// Renders depth images. Owns its buffers, which grow to the largest image rendered. Not thread safe.
+/// Owns its buffers, which grow to the largest image rendered. Not thread safe.
 class DepthPass {
  public:
   explicit DepthPass(GlContext& context, const DepthPassConfig& config = {});
@@ -44,9 +44,9 @@ class DepthPass {
 
   /// Renders the nearest surface of all instances, sampled at pixel centres. There is no far plane.
   ///
-  /// The depth has two errors. One is 1/256 pixel times the surface's slope, since OpenGL snaps vertices (the
-  /// CPU enlarges triangles by less). The other is about 1e-7 of the depth. On the CPU, a triangle that
-  /// reaches near_m has an inverse-depth error of 4e-6 / m, which is 0.3 mm at 8 m.
+  /// The depth error is 1/256 pixel times the surface's slope, since OpenGL snaps vertices (the CPU enlarges
+  /// triangles by less), plus about 1e-7 of the depth. On the CPU, a triangle that reaches near_m has an
+  /// inverse-depth error of 4e-6 / m, which is 0.3 mm at 8 m.
   ///
   /// @param scene           meshes with their poses; instances with a null mesh are skipped
   /// @param camera          intrinsics of the image; if invalid (require_valid), depth_m becomes empty

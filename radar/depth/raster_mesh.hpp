@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-/// A contiguous range of nearby triangles. Each piece has its own copies of the vertices it uses.
+/// A contiguous range of nearby triangles, with its own copies of the vertices it uses.
 struct RasterPiece {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_vertex = 0, vertex_count = 0;
@@ -19,7 +19,7 @@ struct RasterPiece {
   Eigen::AlignedBox3f bounds_local;
 };
 
-/// A mesh cut into pieces. The vertices of a piece are contiguous, so each is projected only once, with SIMD.
+/// The vertices of a piece are contiguous, so each is projected only once, with SIMD.
 struct RasterMesh {
   /// Max number of triangles of a piece.
   static constexpr std::uint32_t kPieceTriangles = 256;

@@ -11,8 +11,8 @@
 namespace roomradar {
 
 /// Intersection of two triangles (object and scene) projected along the motion, restricted to the equally
-/// near points. The gap at these points is at most a tolerance larger than the pair's distance to contact. In
-/// the frame of the motion, z is the direction of motion.
+/// near points: those whose gap exceeds the pair's distance to contact by at most a tolerance. In the frame
+/// of the motion, z is the direction of motion.
 struct PatchPiece {
   double contact_distance_m = 0.0;
   // Vertices of the intersection: points on the scene's triangle in the frame of the motion, m. Only the
@@ -40,12 +40,11 @@ struct PlaceSum {
 };
 
 /// Collects the equally near pieces while the search for the least distance continues. Stores up to kCapacity
-/// pieces. When the store is full, its pieces are replaced by their sums. The centroid still includes them.
+/// pieces. A full store is replaced by its sums, so the centroid still includes the pieces.
 class ContactPatch {
  public:
   static constexpr std::size_t kCapacity = 512;
-  /// Max number of equally near pieces. Later pieces are dropped. Limits the exact tests to a few
-  /// milliseconds.
+  /// Max number of equally near pieces; later ones are dropped. Limits the exact tests to a few milliseconds.
   static constexpr std::size_t kMaxPieces = 4096;
   void clear();
   /// Returns true if kMaxPieces pieces have been collected. No further piece is then accepted.

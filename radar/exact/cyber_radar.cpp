@@ -95,7 +95,7 @@ void CyberRadar::look(RadarSearch& search) {
 void CyberRadar::cut_short(RadarSearch& search) {
   queue_.drop_below_zero();
   search.is_cut_short = true;
-  search.collects_backs = true;  // which back-facing surfaces are left is unknown: none of them is a contact
+  search.collects_backs = true;  // unknown which back-facing surfaces are left, so none is a contact
   if (!search.met_a_back) return;
   search.best_m = kInfinity<double>;
   patch_.clear();

@@ -33,8 +33,8 @@ struct RadarSearch;
 ///      two bounds agree, they are the exact result.
 ///
 /// Triangles thinner than a pixel enter M and R with their whole bounding boxes, so the bounds include them.
-/// A scene surface inside a concavity of the object is behind M. Its gap to M is negative, which is not a
-/// contact. The exact test compares it with the object surfaces behind it.
+/// A scene surface inside a concavity of the object is behind M. Its gap to M is negative, which is no
+/// contact with M. The exact test compares it with the object surfaces behind it.
 ///
 /// Exactness: the error is that of double arithmetic on the float vertices, about 1e-12 m in a room and 1e-9
 /// m at a million metres from the world's origin.
@@ -75,17 +75,17 @@ class CyberRadar {
   /// Computes the first contact. Never throws. Allocates nothing once queries of this size have been run.
   ///
   /// Returns kInvalidInput for an invalid query or scene. A query is invalid if its direction is zero or not
-  /// finite, or its distance is not finite or <= 0. It is also invalid if its margin is negative or not
+  /// finite, or its distance is not finite or <= 0. A query is also invalid if its margin is negative or not
   /// finite, or its object has no triangles. A scene is invalid if a pose (also the object's) is not finite
-  /// or a camera is unusable. It is also invalid if a mask's size differs from its depth image's, a stride is
-  /// below 1, or a jump limit is negative or NaN. Sampled mode stops once three conditions hold. It has found
-  /// a contact, it has run kSampledExactTests exact tests, and the lower bounds of all untested surfaces are
-  /// at least 0. Exact mode stops once no untested surface can be nearer.
+  /// or a camera is unusable. A scene is also invalid if a mask's size differs from its depth image's, a
+  /// stride is below 1, or a jump limit is negative or NaN. Sampled mode stops once it has found a contact,
+  /// has run kSampledExactTests exact tests, and the lower bounds of all untested surfaces are at least 0.
+  /// Exact mode stops once no untested surface can be nearer.
   Contact query(const RadarQuery& query, const RadarScene& scene);
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }
-  /// Returns the number of bounds that the queries so far computed from the plane of a SurfaceKind::kStatic
-  /// triangle. Triangles smaller than a pixel of M are not counted.
+  /// Returns how many bounds all queries so far have computed from planes of SurfaceKind::kStatic triangles.
+  /// Triangles smaller than a pixel of M are not counted.
   [[nodiscard]] std::uint64_t static_triangles_tested() const { return static_triangles_asked_; }
 
   /// Minimum number of exact tests before sampled mode stops.

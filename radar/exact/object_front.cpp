@@ -15,8 +15,8 @@ std::uint64_t work_to_build(const TurnedTree& object, int px) {
   return std::min<std::uint64_t>(object.tree->triangle_count() / 2, pixels) + pixels / 50;
 }
 
-/// Returns the resolution of M for a new direction. The more scene there is to rule out, the finer an M pays:
-/// its time grows with its pixels, and the pairs left for exact tests shrink with them.
+/// Returns the resolution of M for a new direction. A finer M pays if there is more scene to rule out: it
+/// takes more time, but leaves fewer pairs for exact tests.
 int fresh_px(const SceneInFrame& scene) {
   constexpr int kLeast_px = 8, kMost_px = 40, kOverTrees_px = 24;
   if (scene.has_trees()) return kOverTrees_px;

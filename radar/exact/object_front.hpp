@@ -19,9 +19,9 @@ class ObjectFront {
   Eigen::Vector3d direction_in_object(const RadarQuery& query);
   /// Sets the object's orientation and computes bounds(); build() must follow.
   void turn(const TurnedTree& object);
-  /// Builds a coarse M for a new direction. If the direction repeats, builds a finer M once the queries with
-  /// this direction have cost more than half of a finer M's building cost. M's resolution affects the speed
-  /// of an exact query, not its result.
+  /// Builds a coarse M for a new direction. For a repeated direction, builds a finer M once the queries with
+  /// this direction have cost more than half as much as building it. M's resolution affects the speed of an
+  /// exact query, not its result.
   void build(const TurnedTree& object, const SceneInFrame& scene, const RadarConfig& config);
   /// Adds the cost of a query, in units of ColumnScratch::work.
   void add_work(std::uint64_t work) { work_ += work; }

@@ -7,8 +7,9 @@
 namespace roomradar {
 namespace {
 
-/// Returns how far back a scene triangle, crossed or inside at travel `at_m`, stays so; at_m if it is
-/// neither. At 0, crossing counts from touching_m on.
+/// Returns the travel, at most at_m, down to which a scene triangle that the object crosses or contains at
+/// travel at_m remains crossed or contained. Returns at_m if it is neither. At 0, crossing counts from
+/// touching_m on.
 double free_below(const TurnedTree& object, const FrameTriangle& scene, double at_m, OverlapScratch& scratch,
                   Eigen::Vector3d& point) {
   const double touching_m = object.touching_m;
@@ -29,7 +30,7 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
           crosses_now = crosses_now || (gap.low_m < at_m - touching_m && gap.high_m >= at_m - 1e-9);
         }
       });
-  // Crossings over a point of the triangle tell which intervals in between are inside.
+  // The crossings above a point of the triangle show which intervals between the spans are inside.
   bool knows_inside = false;
   if (object.tree->is_closed()) {
     for (int which = 0; which < 5 && !knows_inside; ++which) {
@@ -95,7 +96,7 @@ Overlap overlap_depth(const TurnedTree& object, const ObjectHeightMap& front, Sc
     scratch.items.clear();
     scene.enter(volume);
     scene.begin(bound, limit(), scratch.items);
-    // Items that may reach back farthest come first: they rule out most of the rest.
+    // Items that may reach back farthest come first, because they rule out most of the rest.
     const auto is_farther = [](const SceneItem& a, const SceneItem& b) { return a.low_m > b.low_m; };
     std::make_heap(scratch.items.begin(), scratch.items.end(), is_farther);
     while (!scratch.items.empty()) {

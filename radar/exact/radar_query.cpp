@@ -1,4 +1,4 @@
-// radar_query.cpp: which settings and queries are valid.
+// radar_query.cpp: checks settings and queries.
 #include "radar/exact/radar_query.hpp"
 
 #include <cmath>

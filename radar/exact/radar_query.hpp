@@ -21,10 +21,10 @@ constexpr std::string_view to_string(RadarMode mode) {
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
   /// Number of pixels along the longer side of the object's height map M, 1 to 4096. Determines
-  /// Contact::pixel_m and, in sampled mode, the difference of lower_m and upper_m. Sampled mode uses this
-  /// resolution only once enough queries with the same direction in the object's frame have paid for building
-  /// the map. Until then, M has at most 40 pixels per side, or 64 for an object of fewer than 500 triangles.
-  /// Exact mode chooses M's resolution by speed. Its result does not depend on M's resolution.
+  /// Contact::pixel_m and, in sampled mode, the difference of lower_m and upper_m. Sampled mode first uses at
+  /// most 40 pixels per side, or 64 for an object of fewer than 500 triangles. It changes to this resolution
+  /// once repeated queries with one direction in the object's frame have cost as much as building a finer
+  /// map. Exact mode chooses M's resolution by speed. Its result does not depend on M's resolution.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };

@@ -53,7 +53,7 @@ struct RadarSearch {
   }
   /// Returns the tolerance within which contacts count as equally near, m.
   [[nodiscard]] double equally_m() const { return object.touching_m; }
-  /// Returns true if an object triangle faces against the motion and belongs to a closed object.
+  /// Returns true if the object is closed and its triangle `o` faces against the motion.
   [[nodiscard]] bool is_rear(const FrameTriangle& o) const {
     return tree.is_closed() && o.normal.z() < -kEdgeOn;
   }

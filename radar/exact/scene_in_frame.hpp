@@ -64,7 +64,7 @@ class SceneInFrame {
   ///         jump limits)
   bool place(const RadarScene& scene, std::size_t own_tree, const Eigen::Matrix3d& R_frame_world,
              const Eigen::Vector3d& origin_world);
-  /// Finds the trees that intersect the volume, and the rectangle of each depth image into which the volume
+  /// Finds the trees that intersect the volume, and in each depth image the rectangle into which the volume
   /// projects.
   void enter(const Eigen::AlignedBox3d& volume);
   /// Returns the number of depth image cells that may be in the volume.

@@ -66,7 +66,7 @@ struct ColumnScratch {
   std::uint64_t work = 0;
 };
 
-/// Sorts the nodes from index `first` on by descending low_m. The node with the smallest gap is thus popped
+/// Sorts the nodes from index `first` on by descending low_m, so the node with the smallest gap is popped
 /// next. Uses insertion sort for the at most eight children of one node.
 inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t first) {
   for (std::size_t i = first + 1; i < pending.size(); ++i) {
@@ -118,7 +118,7 @@ struct SceneColumn {
 /// The gap between the scene triangle's plane and a point is linear in the point, so its minimum and maximum
 /// over a box are exact. If the plane is steep, the z ranges of box and triangle bound the gap as well. All
 /// bounds include float rounding. If the scene triangle is edge-on, the search keeps only boxes that extend
-/// beyond its plane on both sides by touching_m, less rounding. Triangles in other boxes can only slide along
+/// beyond its plane on both sides by touching_m minus rounding. Triangles in other boxes can only slide along
 /// the plane (see classify_pair()).
 ///
 /// Bounds and tests are in one function, so the eight lanes of a node stay in registers.

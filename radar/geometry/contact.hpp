@@ -30,8 +30,7 @@ enum class SurfaceKind {
 constexpr std::size_t kSurfaceKinds = 6;
 
 /// Returns true for the kinds of surfaces that are assumed, not observed. One-sided surfaces block motion
-/// from their outside only. If a one-sided surface appears in front of an object, the object can therefore
-/// leave.
+/// from their outside only, so an object that such a surface comes to enclose can leave.
 constexpr bool is_one_sided(SurfaceKind touched) {
   return touched == SurfaceKind::kUnknownFrontier || touched == SurfaceKind::kInferredBack;
 }

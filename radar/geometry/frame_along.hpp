@@ -6,7 +6,7 @@
 namespace roomradar {
 
 /// Returns the rotation into a right-handed frame whose z axis is the unit direction u. The rotation's rows
-/// are the frame's x, y and z axes. Depends on u alone. Queries with equal directions thus use equal pixels.
+/// are the frame's x, y and z axes. Depends on u alone, so queries with equal directions use equal pixels.
 /// Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
 inline Eigen::Matrix3d frame_along(const Eigen::Vector3d& u) {
   const double sign = std::copysign(1.0, u.z());

@@ -52,8 +52,8 @@ struct RadarScene {
   std::span<const SceneTree> trees;
   std::span<const SceneDepth> depths;
   /// Optional hierarchy of the bounding boxes of `trees` at their present poses. A query then visits only the
-  /// trees near its volume. Null: a query visits all trees. The hierarchy saves time from a few tens of trees
-  /// on, if many queries share it.
+  /// trees near its volume. Null: a query visits all trees. The hierarchy saves time if many queries share it
+  /// and the scene has more than a few tens of trees.
   const SceneBoxes* boxes = nullptr;
 };
 

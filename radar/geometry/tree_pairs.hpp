@@ -38,8 +38,8 @@ inline bool is_usable(const TreeInstance& instance) {
   return instance.tree != nullptr && !instance.tree->empty() && instance.T_world_mesh.matrix().allFinite();
 }
 
-/// Returns true if the bounding spheres of the two trees are farther apart than `than_m`. The trees then are,
-/// too.
+/// Returns true if the bounding spheres of the two trees, and thus the trees, are farther apart than
+/// `than_m`.
 inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other, double than_m) {
   constexpr double kRounding = 1.0 + 1e-5;  // covers the rounding of half_size() to float
   const auto middle_world = [](const TreeInstance& instance) -> Eigen::Vector3d {

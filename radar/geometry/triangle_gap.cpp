@@ -17,7 +17,7 @@ double cross2(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::V
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Computes twice the areas that the corners of `other` span with the edges of `t`, positive inside. Returns
+/// Computes twice the signed areas of the corners of `other` with the edges of `t`, positive inside. Returns
 /// false if all corners are outside one edge.
 bool sides_of(const Corners& t, double sign, const Corners& other, double rounding_m2, Sides& sides) {
   for (std::size_t i = 0; i < 3; ++i) {

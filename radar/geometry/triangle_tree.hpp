@@ -29,7 +29,7 @@ struct alignas(32) TreeNode {
 /// A rigid mesh (a virtual object, a saved room) or a mesh of a single frame. Vertices are float, relative to
 /// the mesh's own double-precision origin, so precision does not degrade far from zero. Triangles with an
 /// index past the last vertex, or with a vertex that is not finite, are dropped and counted. Degenerate and
-/// duplicate triangles are kept. Uses no OpenGL. Concurrent reading is safe, building is not.
+/// duplicate triangles are kept. Uses no OpenGL. Concurrent reading is thread safe; building is not.
 ///
 /// A triangle of a closed mesh is within a flat face if all its neighbours are in the same plane, within
 /// float precision (twice rounding_m()). None of its edges is then an edge of the solid. Where two solids

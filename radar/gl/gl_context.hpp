@@ -20,9 +20,10 @@ RendererChoice renderer_choice_from_environment();
 
 /// Owns an off-screen EGL display connection and an OpenGL core context of version 4.5 or later (reversed
 /// depth needs glClipControl). The context is current on the thread that made it. Any code on that thread may
-/// call GL. It has no default framebuffer, so everything is drawn into framebuffer objects. The constructor
-/// sets the clip-space convention (depth 0 to 1, lower left origin). Code that changes the convention must
-/// restore it. Not thread safe. Must outlive all objects made with it (GpuMesh, DepthPass, GlRadar).
+/// call GL. The context has no default framebuffer, so everything is drawn into framebuffer objects. The
+/// constructor sets the clip-space convention (depth 0 to 1, lower left origin). Code that changes the
+/// convention must restore it. Not thread safe. Must outlive all objects made with it (GpuMesh, DepthPass,
+/// GlRadar).
 class GlContext {
  public:
   /// @throws Error listing the devices tried and why each failed (no EGL, no GPU, a version below 4.5)

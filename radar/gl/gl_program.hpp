@@ -12,7 +12,7 @@ struct ShaderSource {
   std::initializer_list<const char*> pieces;
 };
 
-/// Compiles and links a program. The context must be current.
+/// The context must be current.
 /// @param name  name of the program for error messages
 /// @return GL name of the program; the caller frees it with glDeleteProgram
 /// @throws Error with the compiler's log

@@ -22,7 +22,7 @@ class GlThread {
   void run(const std::function<void()>& work);
 
  private:
-  std::mutex callers_;  ///< held by the caller whose work is done
+  std::mutex callers_;  ///< held by the caller whose work is running
   std::mutex mutex_;    ///< guards the members below
   std::condition_variable changed_;
   const std::function<void()>* work_ = nullptr;  ///< null: nothing to do

@@ -24,7 +24,7 @@ enum class MeshUsage {
 };
 
 /// Owns vertex and index buffers. Vertices are relative to the mesh's origin, which is stored in double.
-/// Callers compose matrices in double. A mesh a thousand kilometres from the world's origin thus keeps its
+/// Callers compose matrices in double, so a mesh a thousand kilometres from the world's origin keeps its
 /// precision. Not thread safe.
 class GpuMesh {
  public:
@@ -33,15 +33,14 @@ class GpuMesh {
   GpuMesh(const GpuMesh&) = delete;
   GpuMesh& operator=(const GpuMesh&) = delete;
 
-  /// Replaces the mesh. Includes its normals and colours if there is one per vertex. An empty mesh is valid
-  /// and draws nothing.
+  /// Replaces the mesh, its normals and its colours. An empty mesh is valid and draws nothing.
   ///
   /// A triangle is invalid if an index is past the last vertex or one of its vertices is not finite. kStatic
   /// rejects a mesh with an invalid triangle, and keeps the previous mesh. kStreamed drops and counts invalid
   /// triangles. kStreamed allocates nothing once a mesh of this size has been uploaded.
   /// @throws Error if the mesh is rejected (kStatic), its origin is not finite, or it has more than 2^31 / 3
   ///         triangles. Throws if the number of normals or colours is neither 0 nor the number of vertices.
-  ///         Also throws if the renderer is lost or has no memory. The mesh is then empty.
+  ///         Throws if the renderer is lost or has no memory; the mesh is then empty.
   void upload(const Mesh& mesh, MeshUsage usage);
 
   /// Replaces the mesh; the tree's triangles and vertices serve as the CPU copy.

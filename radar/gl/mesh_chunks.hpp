@@ -1,5 +1,5 @@
-// mesh_chunks.hpp: divides a mesh's triangles into contiguous ranges (chunks) with bounding boxes. Passes can
-// skip invisible chunks.
+// mesh_chunks.hpp: divides a mesh's triangles into contiguous ranges (chunks) with bounding boxes, so passes
+// can skip invisible ones.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -28,8 +28,8 @@ struct ChunkedTriangles {
   std::size_t dropped_triangles = 0;
 };
 
-/// Sorts the triangles by the Morton codes of their centres and cuts the list into chunks of `max_triangles`.
-/// Each chunk thus holds nearby triangles. For meshes that are drawn in many frames. O(n log n).
+/// Sorts the triangles by the Morton codes of their centres, and cuts the list into chunks of `max_triangles`
+/// nearby triangles. For meshes that are drawn in many frames. O(n log n).
 void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out);
 
 /// Cuts the triangles into chunks of `max_triangles`, in their given order. For meshes of a single depth

@@ -27,9 +27,9 @@ PixelRect pixels_of(const Eigen::AlignedBox3d& box, const Intrinsics& camera,
 
 /// Returns the matrix from camera points (x right, y down, z forward) to clip space (x and y in -w..w, z in
 /// 0..w). The viewport must have the size of `rect` and shows the pixels of `rect` in the camera's image.
-/// Pixel (0, 0) of the image is centred at image coordinates (0, 0). Image row y is framebuffer row y. Images
-/// read back thus need no flip. Triangles that are counter-clockwise seen from outside are clockwise on the
-/// framebuffer. Culling thus needs glFrontFace(GL_CW).
+/// Pixel (0, 0) of the image is centred at image coordinates (0, 0). Image row y is framebuffer row y, so
+/// images read back need no flip. Triangles that are counter-clockwise seen from outside are clockwise on the
+/// framebuffer, so culling needs glFrontFace(GL_CW).
 ///
 /// Depth is reversed and has no far plane: depth_buffer01 = near_m / depth_m, which is 1 at near_m and 0 at
 /// infinity. Callers clear the depth buffer to 0 and test with GL_GREATER. One step of a 32 bit float is 6e-8

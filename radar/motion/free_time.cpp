@@ -1,4 +1,4 @@
-// free_time.cpp: how long planes between pairs of triangles keep a motion free of contact.
+// free_time.cpp: the times for which planes between pairs of triangles keep a motion free of contact.
 #include "radar/motion/free_time.hpp"
 
 #include <algorithm>
@@ -25,8 +25,8 @@ double time_for(double allowed_m, double closing_m_s, double quadratic_m_s2) {
   return denominator > 0.0 ? 2.0 * allowed_m / denominator : kInfinity<double>;
 }
 
-/// Returns by how much a pair may approach. Never nearer than a hundredth of keep_m: rounding would hide the
-/// plane between them.
+/// Returns the distance by which a pair may approach. At least a hundredth of keep_m remains, because
+/// rounding would hide a plane in a smaller gap.
 double allowed_m(double distance_m, double keep_m) {
   constexpr double kNearest = 0.01;  // fraction of keep_m
   if (distance_m > 2.0 * keep_m) return distance_m - keep_m;
@@ -40,7 +40,7 @@ struct RelativeMotion {
   double reach_m;  // from the centre to the farthest point of the object
   double keep_m;
   double tree_quadratic_m_s2;  // displacement by the tree's rotation: at most this times t^2
-  bool tree_moves;             // then only the bound at present speed holds
+  bool tree_moves;             // if so, only the bound at present speed holds
   /// Displacement by rotation along each axis of the frame: at most quadratic_m_s2 t^2 beyond the present
   /// velocity, and at most fastest_m_s t.
   Vec3 quadratic_m_s2, fastest_m_s;
@@ -126,8 +126,8 @@ struct RelativeMotion {
     }
     return free_s;
   }
-  /// Returns the longest time for planes through `direction` that turn: with the object, and so that they
-  /// keep containing the edges of both triangles that are nearest to each other.
+  /// Returns the longest time for turning planes that start perpendicular to `direction`. One turns with the
+  /// object; the other keeps containing the nearest edges of the two triangles.
   [[nodiscard]] double free_s_turning(const Vec3& direction, const FrameTriangle& o, const FrameTriangle& s,
                                       double duration_s) const {
     const double with_object = free_s(direction, angular.cross(direction), o, s, duration_s);
@@ -259,9 +259,9 @@ struct TreeFreedom {
     if (free_s >= result.free_s) return;
     if (free_s < 0.0) {
       if (!(distance_m > 0.0) || cross(face_of(o), face_of(s))) return;
-      free_s = 0.0;  // so near that rounding hides the plane between them
+      free_s = 0.0;  // rounding hides the plane in so small a gap
     }
-    if (!(distance_m > 0.0)) return;  // they touch: how they separate is for contacts to decide
+    if (!(distance_m > 0.0)) return;  // they touch: the contacts determine how they separate
     if (is_one_sided(kind) && !is_outside(-way / distance_m, s)) return;
     result.free_s = free_s;
     result.limit = {trees.T_world_frame * (from + way), trees.T_world_frame.linear() * (-way / distance_m),

@@ -35,7 +35,7 @@ void move_to(JointMover& mover, const Progress& progress, double time_s) {
   if (mover.moved != nullptr && *mover.moved) (*mover.moved)();
 }
 
-/// Queries until when a mover is free of contact, and whether its motion ends then.
+/// Computes the time until which a mover is free of contact, and whether its motion ends then.
 void bound_free_time(JointMover& mover, double now_s, Progress& progress) {
   constexpr double kGained = 0.02;  // fraction of the duration
   constexpr int kMaxQueries = 12;   // per body
@@ -51,7 +51,7 @@ void bound_free_time(JointMover& mover, double now_s, Progress& progress) {
   progress.meets = free.limited_by;
 }
 
-/// Stops the movers whose motion ends now, and those that they meet. Returns the indices of all of them.
+/// Stops the movers whose motion ends now, and those that they meet. Returns the indices of both.
 std::vector<std::size_t> stop_at(double now_s, std::span<JointMover> movers,
                                  std::span<const Progress> progress) {
   std::vector<std::size_t> stopped;

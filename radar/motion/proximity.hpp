@@ -15,10 +15,10 @@
 namespace roomradar {
 
 /// Proximity queries between an object and the scene's triangle trees. CyberRadar searches along one
-/// direction, this class in all directions. This matters for an object that tips over an edge near a contact.
-/// Traverses both trees together and tests pairs of triangles exactly, in double. Ignores the scene's depth
-/// images. Uses no OpenGL. Not thread safe: use one instance per thread. Allocates nothing once queries of
-/// this size have been run.
+/// direction, this class in all directions: an object that tips over an edge moves in many. Traverses both
+/// trees together and tests pairs of triangles exactly, in double. Ignores the scene's depth images. Uses no
+/// OpenGL. Not thread safe: use one instance per thread. Allocates nothing once queries of this size have
+/// been run.
 ///
 /// Surfaces that intersect the object have no closest features. Use CyberRadar's overlaps for them. One-sided
 /// surfaces (is_one_sided()) are considered only from their front side and are never reported as
@@ -26,9 +26,9 @@ namespace roomradar {
 class ProximityQuery {
  public:
   /// Finds the vertex-face and edge-edge pairs within reach_m. Groups the pairs of each tree by normal into
-  /// up to four clusters, nearest cluster first. Of each, returns the nearest pair and the outermost pairs in
-  /// eight directions perpendicular to the normal. For a closed object, only features outside it count. A
-  /// tree that intersects the object gives no points.
+  /// up to four clusters, nearest cluster first. From each cluster, returns the nearest pair and the
+  /// outermost pairs in eight directions perpendicular to the normal. For a closed object, only features
+  /// outside it count. A tree that intersects the object gives no points.
   /// @param left_out  kinds of surfaces to ignore
   /// @param trees     trees to ignore; motions have no effect
   /// @param[out] points  the closest features, at most kMaxPointsPerTree per tree

@@ -80,8 +80,7 @@ struct Course {
 
   [[nodiscard]] bool has_queries() const { return queries < config.max_queries; }
 
-  /// Returns how far a step's rotation carries any point away from the straight motion in half-way
-  /// orientation.
+  /// Returns the max distance of any point from its place in a straight motion with the half-way orientation.
   [[nodiscard]] double straying_m(double step_s) const {
     constexpr double kRounding = 1.0 + 1e-9;
     return 2.0 * capsule.radius_m * std::sin(0.5 * std::min(0.5 * turn_rad_s * step_s, std::numbers::pi)) *
@@ -113,7 +112,7 @@ struct Course {
   };
   Step try_step(double start_s, double step_s) {
     const double straight_m = speed_m_s * step_s;
-    // Slow, or rotating in place: only the margin matters, but a query needs a distance, so use a small one.
+    // Slow, or rotating in place: only the margin matters, but a query needs a positive distance.
     const double distance_m = std::max(straight_m, 1e-3 * config.tolerance_m);
     const Eigen::Vector3d direction = speed_m_s > 0.0 ? motion.linear_m_s : motion.angular_rad_s;
     Step step;

@@ -57,8 +57,8 @@ struct [[nodiscard]] TimeOfImpact {
   TimeOfImpactStatus status = TimeOfImpactStatus::kInvalidInput;
   /// The motion is certainly free up to this time.
   double safe_s = 0.0;
-  /// The object is certainly in contact by this time. Infinite if contact could not be proved. Then there is
-  /// none, or the object grazes a surface and may miss it.
+  /// The object is certainly in contact by this time. Infinite if contact could not be proved: there is none,
+  /// or the object grazes a surface and may miss it.
   double contact_s = std::numeric_limits<double>::infinity();
   /// Pose of the object at safe_s.
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
@@ -71,14 +71,14 @@ struct [[nodiscard]] TimeOfImpact {
 
 /// Moves the object until contact, by conservative advancement.
 ///
-/// The motion is divided into steps. One query proves each step free. The query moves the object along a
-/// straight line, in its orientation half-way through the step. It inflates the object by the chord 2 R sin(a
-/// / 4). Here a is the step's rotation and R the max distance of a point from the axis. Rotation moves no
-/// point farther than the chord from the half-way orientation. If the inflated object's path is free, the
-/// step is free at every moment. Objects thus do not tunnel at any speed. If the chord is longer than R, the
-/// query inflates a segment of the axis by R instead. This capsule contains the object in every orientation.
-/// Steps double on success and halve on failure. An object that rotates in place and is free for a full
-/// rotation is free for the whole duration. Without rotation, a single query gives the result.
+/// The motion is divided into steps, each proved free by one query. The query moves the object along a
+/// straight line, in its orientation half-way through the step, inflated by the chord 2 R sin(a / 4). Here a
+/// is the step's rotation and R the max distance of a point from the axis. Rotation moves no point farther
+/// than the chord from the half-way orientation. If the inflated object's path is free, the step is free at
+/// every moment, so objects do not tunnel at any speed. If the chord is longer than R, the query inflates a
+/// segment of the axis by R instead. This capsule contains the object in every orientation. Steps double on
+/// success and halve on failure. An object that rotates in place and is free for a full rotation is free for
+/// the whole duration. Without rotation, a single query gives the result.
 ///
 /// An object that touches the scene at the start and rotates by more than a nanometre stops at once, even if
 /// it moves away from the scene. Callers should therefore keep a gap. A stopped object has a gap of up to

@@ -120,8 +120,8 @@ CLI::App* command_of_path(CLI::App& app, const std::string& path) {
   return command_named(*command, path.substr(blank + 1));
 }
 
-/// The default help with its options in the groups of the table, and without what only the parser needs: a
-/// positional's type, and ranges, which the messages for wrong values state.
+/// CLI11's help with the options in the groups of the table. Omits the types of positional arguments, and the
+/// ranges, which the messages for wrong values state.
 class HelpFormatter final : public CLI::Formatter {
  public:
   explicit HelpFormatter(std::vector<OptionGroup> groups = {}) : groups_(std::move(groups)) {

@@ -53,7 +53,7 @@ struct MappedRoom {
 };
 
 /// Room of a run's scenario, and the scenario's number in that room. Rooms take turns. The number in the room
-/// determines occluder, motion and shape. Each room thus gets all combinations.
+/// determines occluder, motion and shape, so each room gets all combinations.
 struct ScenarioTurn {
   std::size_t room = 0;     ///< index of the room
   std::int64_t number = 0;  ///< number of the scenario in that room

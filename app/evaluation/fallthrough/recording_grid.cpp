@@ -59,7 +59,7 @@ bool is_seen(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const 
   return depth_m > 0.0F && depth_m > p_camera.z() - kSame_m;
 }
 
-/// What can be touched under each policy. The surfaces refer to the scenes.
+/// Surfaces that an object can touch, per policy. The surfaces refer to the scenes.
 struct PolicyScenes {
   std::vector<std::unique_ptr<FrameScene>> scenes;
   std::array<std::vector<SceneTree>, kPolicyCount> surfaces;

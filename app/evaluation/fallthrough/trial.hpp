@@ -61,7 +61,7 @@ struct TrialSurfaces {
 };
 
 /// Sets the scene's surfaces to those of one frame of the scenario, with the camera at T_world_believed.
-/// Frame 0 is processed twice. The foreground detection thus has previous labels. Returns the run time, ms.
+/// Processes frame 0 twice, so that the foreground detection has previous labels. Returns the run time, ms.
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
                   std::span<const FineRegion> about_objects, FrameScene& scene);
 

@@ -1,5 +1,4 @@
-// trial_pictures.hpp: pictures of a trial. They show the camera's view, and a section along the object's
-// path.
+// trial_pictures.hpp: pictures of a trial, with the camera's view and a section along the object's path.
 #pragma once
 #include <memory>
 #include <span>

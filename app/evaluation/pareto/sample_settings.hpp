@@ -10,14 +10,13 @@ namespace roomradar {
 /// Returns up to `count` different settings other than the default, in random order. The seed determines the
 /// result.
 ///
-/// Up to two thirds of the settings change a single parameter. They show its effect. If there are more such
-/// changes, faster values come first, then values close to the default. Fronts consist mostly of faster
-/// values.
+/// Up to two thirds of the settings change a single parameter, to show its effect. If there are more such
+/// changes, faster values come first, since fronts consist mostly of them, then values close to the default.
 ///
 /// The other settings (combinations) change all quality parameters. The values of each parameter occur about
-/// equally often. Combinations tend to pair fast values with fast ones and slow values with slow ones. Mixed
-/// combinations are rarely on a front. Each value of a quality parameter occurs if there are at least as many
-/// combinations as values. Fewer settings are returned if not enough different ones are found.
+/// equally often. Combinations tend to pair fast values with fast ones and slow values with slow ones, since
+/// mixed combinations are rarely on a front. Each value of a quality parameter occurs if there are at least
+/// as many combinations as values. Fewer settings are returned if not enough different ones are found.
 std::vector<Setting> draw_settings(const std::vector<Parameter>& parameters, std::size_t count,
                                    std::uint64_t seed);
 

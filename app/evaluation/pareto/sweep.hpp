@@ -42,7 +42,7 @@ struct SweepWatch {
 
 /// Measures all settings in each scene and repetition, each time in a new random order that begins with the
 /// default. The default is also measured between any two settings. Each setting is compared with the default
-/// measured before and after it. A temporary slowdown of the machine thus affects all three measurements.
+/// measured before and after it, so that a temporary slowdown of the machine affects all three measurements.
 ///
 /// If a setting fails, its row contains the fault, and the sweep continues. The sweep ends early if
 /// is_stopped returns true, the default fails, a scene cannot be opened, or on_row throws Error. Then only

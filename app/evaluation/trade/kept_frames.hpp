@@ -1,4 +1,5 @@
-// kept_frames.hpp: frame source in memory. Measurements thus exclude the time of reading or rendering frames.
+// kept_frames.hpp: frame source in memory, so that measurements exclude the time of reading or rendering
+// frames.
 #pragma once
 #include <chrono>
 #include <cstddef>

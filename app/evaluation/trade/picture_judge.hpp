@@ -25,8 +25,8 @@ struct JudgedPicture {
 };
 
 /// Sums of colour differences from the true pictures over all pictures. A pixel's difference is the mean over
-/// channels, 0 to 1. Means are computed from these sums. A picture with a mostly hidden object thus has
-/// little weight.
+/// channels, 0 to 1. Means are computed from these sums, so a picture with a mostly hidden object has little
+/// weight.
 struct PictureErrors {
   double difference = 0.0;        ///< sum over all pixels
   std::size_t object_pixels = 0;  ///< number of pixels that objects change in the true pictures

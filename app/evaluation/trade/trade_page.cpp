@@ -81,7 +81,7 @@ bool is_shown(const TradeResult& result, std::size_t setting) {
   return summary.is_complete && has_default_load(result.work.parameters, summary.setting);
 }
 
-/// @param negligible  the error's
+/// @param negligible  largest difference of the error that does not count
 /// @param error_of    returns a setting's error; both in the plot's unit
 /// @param given_front settings on the front, if it is not this plot's own
 template <typename ErrorOf>

@@ -36,8 +36,7 @@ class HeightGrid {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
   }
   /// Returns a pointer to a cell's height above the camera (m), usually negative; kUnseen if nothing was
-  /// seen. Cells are stored row by row. Relative to a seen cell, cells up to the margin away can be
-  /// addressed.
+  /// seen. Cells are stored row by row. The pointer may be moved by up to `margin` cells from a seen cell.
   [[nodiscard]] const float* top_m(int i, int j) const { return &top_m_[index(i, j)]; }
   /// Returns the world point at the middle of a cell, at a height above the camera.
   [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {

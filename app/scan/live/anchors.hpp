@@ -10,8 +10,8 @@
 
 namespace roomradar {
 
-/// Coordinate frame of a part of the live model. Its axes were the world's when it was made, and its origin
-/// was the camera. It moves with a keyframe when closed loops correct the poses.
+/// Coordinate frame of a part of the live model. When the anchor was made, its axes were the world's and its
+/// origin was the camera. The anchor moves with a keyframe when closed loops correct the poses.
 struct Anchor {
   std::optional<std::size_t> keyframe;  ///< unset: T_keyframe_anchor is the pose in the world, and constant
   Eigen::Isometry3d T_keyframe_anchor = Eigen::Isometry3d::Identity();

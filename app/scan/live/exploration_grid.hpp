@@ -14,7 +14,7 @@ enum class CellState : std::uint8_t {
   kUnknown,
   kFree,
   kOccupied,
-  kUnmeasurable,  ///< unknown, although seen from near several times: glass, or dark
+  kUnmeasurable,  ///< unknown, although seen from near several times, such as glass or dark surfaces
 };
 
 /// A cube of cells of 10 cm, 25.6 m wide, centred at the camera. Takes 16 MB.
@@ -31,8 +31,8 @@ class ExplorationGrid {
   /// Returns the state of the cell that contains a point; kUnmeasurable outside the grid.
   [[nodiscard]] CellState at(const Eigen::Vector3d& p_world) const;
 
-  /// Returns the cells between the outermost that a ray crossed. Unmeasurable cells count as occupied: there
-  /// is nothing to find.
+  /// Returns the part of the grid inside the bounding box of all cells that rays crossed. Unmeasurable cells
+  /// count as occupied, since a scan cannot find anything there.
   [[nodiscard]] OccupancyCells occupancy() const;
 
  private:
@@ -48,8 +48,8 @@ class ExplorationGrid {
   [[nodiscard]] CellState state_of(std::int64_t index) const;
 };
 
-/// Returns the fraction of a frame's pixels whose points are in the middle of free space: something moves
-/// there. Uses every 16th pixel in both directions, up to 4 m.
+/// Returns the fraction of a frame's pixels whose points are surrounded by free space, as those of moving
+/// objects are. Uses every 16th pixel in both directions, up to 4 m.
 double moved_fraction(const ExplorationGrid& grid, const Frame& frame,
                       const Eigen::Isometry3d& T_world_camera);
 

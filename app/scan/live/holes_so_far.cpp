@@ -1,4 +1,4 @@
-// holes_so_far.cpp: closes gaps between rays, and finds the frontier of what is left.
+// holes_so_far.cpp: closes gaps between rays, and finds the frontier of the remaining unknown space.
 #include "app/scan/live/holes_so_far.hpp"
 
 #include <algorithm>

@@ -18,11 +18,12 @@ struct NumberedHole {
 inline constexpr std::size_t kMostHolesShown = 9;
 
 /// Finds space above the floor that no ray has crossed and that is inside the scan, as find_frontier() does
-/// in the finished map, but in the grid's cells. A cell between two known ones is a gap between rays, not a
-/// hole, and less than 0.15 m2 is none. Returns the largest kMostHolesShown, largest first.
+/// in the finished map, but in the grid's cells. A cell between two known cells counts as a gap between rays,
+/// not as a hole. Leaves out holes below 0.15 m2. Returns the kMostHolesShown largest holes, largest first.
 std::vector<Hole> holes_so_far(const ExplorationGrid& grid);
 
-/// Numbers holes. One within 0.5 m of a hole that was shown before keeps its number; others get free numbers.
+/// Numbers holes. A hole within 0.5 m of a hole that was shown before gets that hole's number; others get
+/// free numbers.
 std::vector<NumberedHole> numbered(const std::vector<Hole>& holes,
                                    std::span<const NumberedHole> shown_before = {});
 

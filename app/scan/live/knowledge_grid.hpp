@@ -1,4 +1,4 @@
-// knowledge_grid.hpp: how well a running scan knows each place, in coarse cells.
+// knowledge_grid.hpp: coarse grid of how well a running scan has measured each place.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-/// How well a place is known, by the weight of its measurements.
+/// Level of knowledge of a place, by the weight of its measurements.
 enum class Knowledge : std::uint8_t {
   kNone,  ///< no measurement
   kNew,   ///< less than SurfaceConfig::min_weight: not in the map's surface
@@ -30,7 +30,7 @@ class KnowledgeGrid {
   /// @param anchor  index of the frame's anchor; the measurements move with it
   void add(const Frame& frame, std::size_t anchor, const Eigen::Isometry3d& T_anchor_camera,
            const Eigen::Isometry3d& T_world_anchor);
-  /// Moves all measurements to the anchors' current poses. Those of anchors that are gone are left out.
+  /// Moves all measurements to the anchors' current poses. Leaves out measurements of removed anchors.
   void move(const AnchorPoses& T_world_anchor);
 
   /// Returns the knowledge at every kStep_px-th pixel of the depth image, from pixel kStep_px / 2 on.

@@ -36,7 +36,7 @@ class LiveModel {
   LiveModel(const LiveModel&) = delete;
   LiveModel& operator=(const LiveModel&) = delete;
 
-  /// Hands over a frame. Returns false, and leaves it out, if the thread is busy.
+  /// Passes a frame to the thread. Returns false, and ignores the frame, if the thread is busy.
   /// @param shows_new  the frame shows places that are not known well. Other frames are fused only where the
   ///                   anchor's octree still exists
   bool offer(std::shared_ptr<const Frame> frame, std::size_t anchor, const Eigen::Isometry3d& T_anchor_camera,

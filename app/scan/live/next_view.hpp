@@ -1,4 +1,4 @@
-// next_view.hpp: the view that shows most of what a running scan has not seen, for the time that it takes.
+// next_view.hpp: finds the view that shows a running scan the most unseen surface per time.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -11,14 +11,14 @@ namespace roomradar {
 
 struct NextView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  double gain_m2 = 0.0;  ///< area of surface that it and the way there are expected to show
+  double gain_m2 = 0.0;  ///< area of unseen surface that the view and the way to it are expected to show
   double takes_s = 0.0;  ///< time to move there by hand
 };
 
 /// Tries views from the camera's position and from free places up to 1.5 m away, in directions all round. The
-/// gain of a view is the area of the border between free and unknown space that its rays meet up to 3.5 m, at
-/// its end and on the way there. Behind a border nearer than 1.3 m, surface is expected at 1.3 m. Returns the
-/// view with the most gain per time; nullopt if none has at least 0.15 m2. Takes about 150 ms.
+/// gain of a view is the area of the border between free and unknown space that rays of up to 3.5 m hit, from
+/// the view and from the way to it. Behind a border nearer than 1.3 m, surface is expected at 1.3 m. Returns
+/// the view with the most gain per time; nullopt if none has at least 0.15 m2. Takes about 150 ms.
 /// @param up_world  unit vector
 std::optional<NextView> best_next_view(const ExplorationGrid& grid, const Eigen::Isometry3d& T_world_camera,
                                        const Eigen::Vector3d& up_world);

@@ -1,4 +1,4 @@
-// scan_advice.hpp: states in words what is wrong with a running scan.
+// scan_advice.hpp: detects faults of a running scan, and states them with a remedy.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -17,13 +17,13 @@ enum class ScanFault : std::uint8_t {
   kTooFar,    ///< most of the view is too far, or has no depth
   kLost,      ///< the camera's pose is unknown
   kOneWall,   ///< too little shape in view to constrain the pose
-  kTooFast,   ///< the camera moves faster than the tracking bears
+  kTooFast,   ///< the camera moves too fast for the tracking
   kMovement,  ///< something moves in view
   kTooDark,   ///< the colour picture is dark
 };
 inline constexpr std::size_t kScanFaults = 8;
 
-/// Returns a sentence: what is wrong, and what to do.
+/// Returns a sentence that states the fault and the remedy.
 std::string_view to_sentence(ScanFault fault);
 
 /// Facts on a frame and the camera's motion that decide on faults.
@@ -32,7 +32,7 @@ struct ScanFacts {
   double near_fraction = 0.0;   ///< fraction of the pixels with depth below 0.6 m
   double far_fraction = 0.0;    ///< fraction of the pixels with depth above 4 m
   double brightness = -1.0;     ///< mean of the colour picture, 0..255; < 0: no picture
-  double moved_fraction = 0.0;  ///< fraction of the pixels that show something where space was free before
+  double moved_fraction = 0.0;  ///< fraction of the pixels that show an object in space that was free before
   TrackStatus status = TrackStatus::kTracked;
   double speed_mps = 0.0, speed_rad_s = 0.0;  ///< of the camera, smoothed; 0 if unknown
 };
@@ -40,7 +40,7 @@ struct ScanFacts {
 /// Returns the facts on a frame, without moved_fraction and speeds. Uses every 8th pixel in both directions.
 ScanFacts facts_of(const Frame& frame, const Tracking& tracking);
 
-/// Returns the camera's speed relative to the greatest that the tracking bears: 1 at kMostSpeed_mps or
+/// Returns the camera's speed relative to the max speed for tracking: 1 at kMostSpeed_mps or
 /// kMostSpeed_rad_s.
 double relative_speed(const ScanFacts& facts);
 inline constexpr double kMostSpeed_mps = 1.0, kMostSpeed_rad_s = 1.2;
@@ -51,7 +51,7 @@ class ScanAdvice {
  public:
   /// @param stamp_s  the frame's time; must not decrease
   void add(const ScanFacts& facts, double stamp_s);
-  /// Returns the most urgent fault at present, without kSilent; nullopt: none.
+  /// Returns the most urgent present fault other than kSilent; nullopt: none.
   [[nodiscard]] std::optional<ScanFault> fault() const { return fault_; }
 
   static constexpr double kLasts_s = 0.25, kStated_s = 1.5;

@@ -1,4 +1,4 @@
-// scan_resources.cpp: reads and extrapolates what is left.
+// scan_resources.cpp: reads free memory and disk, and extrapolates their use.
 #include "app/scan/live/scan_resources.hpp"
 
 #include <unistd.h>

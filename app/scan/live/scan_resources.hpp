@@ -1,4 +1,4 @@
-// scan_resources.hpp: how long a scan can go on until memory or disk run out.
+// scan_resources.hpp: estimates how long a scan can continue until memory or disk run out.
 #pragma once
 #include <cstddef>
 #include <deque>
@@ -16,7 +16,7 @@ struct ScanResources {
 };
 
 /// Returns the resources of this process now.
-/// @param max_memory_bytes  cap on its memory; 0: what the machine has free
+/// @param max_memory_bytes  cap on the process's memory; 0: the machine's free memory
 /// @param folder  an existing folder on the disk that the scan writes to
 ScanResources resources_now(double time_s, std::size_t max_memory_bytes, const std::filesystem::path& folder);
 
@@ -25,8 +25,8 @@ class ResourceForecast {
  public:
   /// Call about every second; times must not decrease.
   void add(const ScanResources& now);
-  /// Returns the time until memory or disk run out at the present rate, s; nullopt: within the first 20 s, or
-  /// neither shrinks noticeably.
+  /// Returns the time until memory or disk run out at the present rate, s. Returns nullopt within the first
+  /// 20 s, and if neither shrinks noticeably.
   [[nodiscard]] std::optional<double> left_s() const;
 
  private:

@@ -1,4 +1,4 @@
-// table_tops.cpp: cells of the level surfaces above the floor, and what is missing between them.
+// table_tops.cpp: finds the cells of the level surfaces above the floor, and the gaps between them.
 #include "app/scan/live/table_tops.hpp"
 
 #include <array>
@@ -91,8 +91,8 @@ void add_gaps(int axis, const Tops& tops, const std::vector<Vector3i>& cells,
   }
 }
 
-/// Returns true if no ray met or crossed a cell, and nothing stands on it. Of what stands there, the upper
-/// side is seen, the inside is not.
+/// Returns true if no ray met or crossed a cell, and no object stands on it. An object is recognised by its
+/// upper side; its inside is not seen.
 bool is_missing(const Vector3i& cell, const ExplorationGrid& grid_level) {
   constexpr double kHighest_m = 0.6;
   const Vector3d p_level = kCell_m * (cell.cast<double>().array() + 0.5).matrix();

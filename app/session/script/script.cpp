@@ -101,7 +101,7 @@ bool read_material(LineReader& line, BodyMaterial& material) {
   return false;
 }
 
-/// Reads what follows the mesh, in any order.
+/// Reads the options after the mesh, in any order.
 void read_add(LineReader& line, ScriptEvent& event) {
   while (!line.done()) {
     if (!event.size_m && line.take_if("size")) {

@@ -1,4 +1,4 @@
-// script_event.cpp: which actions name an object, and when an event is due.
+// script_event.cpp: tells which actions name an object, and when an event is due.
 #include "app/session/script/script_event.hpp"
 
 namespace roomradar {

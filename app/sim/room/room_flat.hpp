@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// Makes a flat of four random rooms in a ring, with a doorway between each two neighbours. The walk goes
-/// along most of an ellipse in each room, facing its middle, and through the doorways.
+/// Makes random rooms in a ring, with a doorway between each pair of neighbours. The walk goes along most of
+/// an ellipse in each room, facing its middle, and through the doorways.
 Room make_flat(std::uint64_t seed);
 
 }  // namespace roomradar

@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// What is not drawn at random in a random room.
+/// Properties of a random room that are not drawn at random.
 struct RandomRoomShape {
   std::optional<Eigen::Vector2d> half_m;  ///< half the size of the interior along x and y; unset: random
   unsigned doorways = 0;                  ///< walls with a doorway, as in add_shell()

@@ -28,7 +28,7 @@ void add_dining_table(Room& room, double top_m, const TableRoomLook& look) {
   add_chair(room, standing_at(0.42, 0.64, kRug_m, std::numbers::pi + 0.1), look.walnut, blue_cloth);
 }
 
-/// Adds what is on the table; the middle of its front stays free.
+/// Adds the objects on the table; the middle of its front stays free.
 void add_table_setting(Room& room, double top_m) {
   add_book_pile(room, standing_at(-0.56, 0.08, top_m, 0.3), 4, 40);
   add_mug(room, standing_at(-0.33, -0.24, top_m, 0.9),
@@ -45,7 +45,7 @@ void add_table_setting(Room& room, double top_m) {
       {Pattern::kPoster, {244, 242, 236}, {60, 70, 90}, 45, 0.75F});
 }
 
-/// Adds cupboard and shelf along the walls, and what is on the cupboard.
+/// Adds cupboard and shelf along the walls, and the objects on the cupboard.
 void add_wall_furniture(Room& room, const TableRoomLook& look) {
   add_cupboard(room, standing_at(-2.8 + 0.225, 0.35, 0, 0.5 * std::numbers::pi), {1.5, 0.45, 0.9}, look.oak);
   add_book_pile(room, standing_at(-2.55, -0.12, 0.9, 1.4), 3, 46);

@@ -1,4 +1,4 @@
-// surface_appearance.hpp: colour of surface points from textures and lighting, kept once computed.
+// surface_appearance.hpp: colour of surface points from cached textures and lighting.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -38,7 +38,7 @@ class SurfaceAppearance {
     std::vector<Rgb> texels;
   };
   struct Face {
-    bool is_prepared = false;  ///< nothing below is filled before
+    bool is_prepared = false;  ///< false: the members below are not filled
     float width_m = 0.0F, height_m = 0.0F;
     float texel_m = 0.0F;
     /// Mip levels, each half as wide and high as the previous one. Empty if the face is hidden.

@@ -32,7 +32,8 @@ struct RowBand {
   int begin = 0, end = 0;
   double t_s = 0.0;  ///< after the middle of the image
 };
-/// Divides an image into bands of four rows, read from top to bottom in readout_s; one band if that is 0.
+/// Divides an image into bands of four rows, read from top to bottom in readout_s; one band if readout_s is
+/// 0.
 std::vector<RowBand> row_bands(int height_px, double readout_s);
 
 /// Renders exact depth, solid and cosine along each pixel's ray, in a band of rows.

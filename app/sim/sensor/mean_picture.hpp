@@ -1,4 +1,4 @@
-// mean_picture.hpp: mean of pictures, as a sensor sees during an exposure.
+// mean_picture.hpp: mean of pictures, which simulates a sensor's exposure.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Mean of the pictures added; all have the same size.
+/// Mean of the added pictures, which must have the same size.
 class MeanPicture {
  public:
   MeanPicture(int width_px, int height_px) : sums_(width_px, height_px) {}

@@ -60,11 +60,11 @@ Intrinsics kinect_of_width(int width_px);
 
 /// Timing of the simulated sensor. Frames do not state it: their timing and colour_after_depth_s stay 0.
 struct SimTiming {
-  /// Readout time of both images, 0 to 0.05 s: each row is seen from where the camera is at its time.
+  /// Readout time of both images, 0 to 0.05 s: each row shows the view at its own time.
   double shutter_s = 0.0;
   /// Time of the colour image after the depth image, -0.1 to 0.1 s.
   double delay_s = 0.0;
-  /// Exposure of the colour image, 0 to 0.05 s: the mean of views of that time.
+  /// Exposure of the colour image, 0 to 0.05 s: the image is the mean of views within that time.
   double exposure_s = 0.0;
   friend bool operator==(const SimTiming&, const SimTiming&) = default;
 };
@@ -104,7 +104,7 @@ struct SimOptions {
 ///   seed, frames, rate, path (scan, view, swing), moving (hand, ball, person; several with commas), pace
 ///   (steady, slow, waits, leaves), noise (0: none, 1: as a Kinect), crate (0, 1: an additional crate; comes,
 ///   goes: after half of the frames), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
-///   separate, none), faults (0, 1: the true cameras differ from those the frames declare), shutter (ms:
+///   separate, none), faults (0, 1: the true cameras differ from those that frames declare), shutter (ms:
 ///   readout of depth and colour), delay (ms: colour after depth), exposure (ms: blur of colour), turn
 ///   (degrees/s: the camera swings this fast).
 /// @throws Error naming the key or value that is unknown or out of range, and the valid ones

@@ -132,7 +132,7 @@ struct SimulatedSource::State {
     std::vector<Mover> movers;
     std::optional<SurfaceAppearance> look;
     std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover index, for the solids after the room's
-    Solid crate;                               ///< one that appears or disappears, at its place
+    Solid crate;                               ///< crate that appears or disappears, at its place
     bool crate_is_there = false;
     MoverShadow shadow;
   };

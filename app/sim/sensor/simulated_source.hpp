@@ -25,9 +25,9 @@ struct SimTruth {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Frames of a simulated Kinect. A frame's pose and stamp are those of the middle of its depth image. Frame i
-/// depends on the options and i alone. Reading it again gives the same pixels. The world frame is that of the
-/// room (z up, metres, floor at z = 0). room() does not contain a crate that appears or disappears.
+/// A frame's pose and stamp are those of the middle of its depth image. Frame i depends only on the options
+/// and i. Reading it again gives the same pixels. The world frame is that of the room (z up, metres, floor at
+/// z = 0). room() does not contain a crate that appears or disappears.
 class SimulatedSource final : public FrameSource {
  public:
   /// Throws Error if the options are not valid.

@@ -16,8 +16,8 @@ struct RayHit {
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
 };
 
-/// A bounding volume hierarchy over solids. The tree stores only indices. A copy of the tree thus works with
-/// a copy of the solids. All calls must pass the unchanged solids from which the tree was built, or a copy.
+/// Stores only indices of solids. A copy of the tree thus works with a copy of the solids. All calls must
+/// pass the unchanged solids from which the tree was built, or a copy.
 class SolidTree {
  public:
   SolidTree() = default;
@@ -38,7 +38,8 @@ class SolidTree {
  private:
   struct Node {
     Eigen::AlignedBox3d bounds_world;
-    /// Index of a leaf's solid. -1 for an inner node. Its children are the next node and node `second`.
+    /// Index of a leaf's solid; -1 for an inner node. An inner node's children are the next node and node
+    /// `second`.
     int solid = -1;
     int second = -1;
   };

@@ -15,9 +15,8 @@ struct PixelHit {
   int solid = -1;
 };
 
-/// Casts rays from one camera. prepare() assigns the solids to image tiles once per frame. A ray then tests
-/// only the solids of its tile, nearest first. A ray through a point outside the image tests all solids in
-/// front of the camera.
+/// prepare() assigns the solids to image tiles once per frame. A ray then tests only the solids of its tile,
+/// nearest first. A ray through a point outside the image tests all solids in front of the camera.
 class ViewCaster {
  public:
   /// Assigns the solids to tiles. Ignores solids behind the camera. Reuses memory of earlier frames.

@@ -1,4 +1,4 @@
-// block_cache.hpp: keeps the blocks that were decompressed last.
+// block_cache.hpp: cache of the blocks of a file that were decompressed last.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -17,8 +17,9 @@ struct PackedBlock {
   Compression compression = Compression::kNone;
 };
 
-/// Up to four blocks, or as many as 64 MB hold. The messages of one frame, and the transforms around its
-/// time, are in neighbouring blocks: reading in order decompresses each block once. Not thread safe.
+/// Keeps the last four blocks, or more if they fit in 64 MB. The messages of one frame, and the transforms
+/// around its time, are in neighbouring blocks, so reading in order decompresses each block once. Not thread
+/// safe.
 class BlockCache {
  public:
   /// Returns the block `number`, decompressed unless it is cached. The reference is valid until the next

@@ -123,7 +123,7 @@ class Mcap {
     }
     for (std::uint32_t chunk = 0; chunk < chunks_.size(); ++chunk)
       if (!indexed.contains(chunk)) scan_chunk(chunk, /*messages_too=*/true);
-    // A file without its last part describes channels in its chunks only.
+    // A file without its summary describes its channels only in its chunks.
     std::optional<std::uint32_t> scanned;
     for (std::size_t i = 0; i < messages_.size(); ++i) {
       const MessageEntry entry = messages_[i];

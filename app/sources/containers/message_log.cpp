@@ -1,4 +1,4 @@
-// message_log.cpp: order and selection.
+// message_log.cpp: sorts and selects messages.
 #include "app/sources/containers/message_log.hpp"
 
 #include <algorithm>

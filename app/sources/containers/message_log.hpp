@@ -13,7 +13,8 @@ struct MessageTopic {
   std::string type;  ///< such as "sensor_msgs/Image", without the "/msg" of ROS 2
 };
 
-/// A message that has not been read. `block` and `offset` say where; their meaning is the container's.
+/// A message that has not been read. `block` and `offset` are its location; each container defines their
+/// meaning.
 struct MessageEntry {
   double stamp_s = 0.0;  ///< time of reception
   std::uint32_t topic = 0;

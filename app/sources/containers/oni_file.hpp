@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// Kind of a node: what a sensor delivers.
+/// Kind of a node, by the data that it delivers.
 enum class OniNodeKind : std::uint32_t { kDevice = 1, kDepth = 2, kImage = 3, kIr = 4 };
 
 struct OniFrame {
@@ -33,7 +33,7 @@ struct OniNode {
 /// Reads the properties of all nodes and lists their frames; skips the data. A file whose recorder was
 /// stopped is read up to its last whole record.
 /// @throws Error naming the file if it is not a .oni file of version 1.0, or a record before the data is
-/// damaged
+///         damaged
 std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file);
 
 /// Decompresses 16 bit depth of the codecs 16zT (with a table of the values that occur) and 16zP (without).

@@ -69,7 +69,7 @@ std::vector<fs::path> parts_of(const fs::path& folder) {
 MessageLog joined(std::vector<MessageLog> parts, const std::string& name) {
   const auto logs = std::make_shared<const std::vector<MessageLog>>(std::move(parts));
   MessageLog log{.name = name, .encoding = logs->front().encoding, .reads_starts = true};
-  // An entry's block says which part; the part's own block and offset are found by its number there.
+  // An entry's block is the number of its part; its `offset` is the number of the message in that part.
   for (std::uint32_t part = 0; part < logs->size(); ++part) {
     const MessageLog& each = (*logs)[part];
     log.reads_starts = log.reads_starts && each.reads_starts;

@@ -50,7 +50,7 @@ std::optional<Number> field_number(const std::map<std::string_view, std::string_
   return number_at<Number>(field->second, 0);
 }
 
-/// A record: its header, and where its data are.
+/// A record: its header, and the position of its data.
 struct Record {
   std::string header;
   std::map<std::string_view, std::string_view> fields{};  // refer to `header`
@@ -59,8 +59,8 @@ struct Record {
   std::uint32_t data_bytes = 0;
 };
 
-/// Reads the header of the record at `offset`. read(offset, count) returns at most `count` bytes. Returns
-/// null where no whole header is.
+/// Reads the header of the record at `offset`; null if it is incomplete. read(offset, count) returns at most
+/// `count` bytes.
 template <typename Read>
 std::unique_ptr<Record> record_at(std::uint64_t offset, const Read& read) {
   const std::string length = read(offset, 4);

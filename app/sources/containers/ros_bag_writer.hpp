@@ -26,8 +26,8 @@ class RosBagWriter {
 
   /// Adds a topic and returns its number.
   std::uint32_t add_topic(std::string_view name, const RosType& type);
-  /// Appends a message, encoded for ROS 1. @param time  seconds in the lower 32 bits, nanoseconds above
-  /// Throws Error if the file cannot be written.
+  /// Appends a message, encoded for ROS 1. `time` has seconds in the lower 32 bits, nanoseconds above, see
+  /// ros_time(). Throws Error if the file cannot be written.
   void write(std::uint32_t topic, std::uint64_t time, std::string_view message);
   /// Writes the last chunk and the index. Without it, the bag can be read up to its last whole chunk. Throws
   /// Error if they cannot be written.

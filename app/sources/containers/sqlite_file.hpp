@@ -12,7 +12,7 @@ struct sqlite3;
 
 namespace roomradar {
 
-/// A value of a row, as the column types of a query ask for it.
+/// A row of a query's result. Callers read each column by the type that they expect.
 class SqliteRow {
  public:
   explicit SqliteRow(void* statement) : statement_(statement) {}
@@ -36,7 +36,7 @@ class SqliteFile {
   [[nodiscard]] bool has_tables(const std::vector<std::string>& names) const;
   /// Returns true if the table has the column.
   [[nodiscard]] bool has_column(const std::string& table, const std::string& column) const;
-  /// Calls use(row) for each row of the query's result. @param values  of the query's parameters ?
+  /// Calls use(row) for each row of the query's result. `values` replace the parameters (?) of the query.
   /// Throws Error naming the file if the database is damaged or lacks a column.
   void query(const std::string& sql, const std::vector<std::int64_t>& values,
              const std::function<void(const SqliteRow&)>& use) const;

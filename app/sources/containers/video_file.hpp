@@ -19,9 +19,9 @@ class VideoFile {
 
   [[nodiscard]] int width_px() const { return width_px_; }
   [[nodiscard]] int height_px() const { return height_px_; }
-  /// Decodes frame `number`, from 0, as stored, without the rotation that the file asks for. Fast for the
-  /// next frames; others are reached from the key frame before them. Throws Error if the video has no such
-  /// frame.
+  /// Decodes frame `number`, from 0, as stored, without the rotation that the file states. Fast for
+  /// consecutive frames; for others, decoding starts at the key frame before them. Throws Error if the video
+  /// has no such frame.
   void read(std::size_t number, ColourImage& image);
 
  private:

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// Turns the world of a pose from y up, as ARKit has it, to z up.
+/// Converts a pose from ARKit's world, with y up, to a world with z up.
 inline Eigen::Isometry3d world_from_arkit_world(const Eigen::Isometry3d& T_arkitworld_camera) {
   Eigen::Isometry3d T_world_arkitworld = Eigen::Isometry3d::Identity();
   T_world_arkitworld.linear() << 1, 0, 0,  //

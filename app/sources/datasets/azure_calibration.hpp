@@ -17,7 +17,7 @@ struct AzureCalibration {
 };
 
 /// Reads a device's calibration, JSON as the Azure Kinect SDK stores it, for images of these sizes. The sizes
-/// tell the mode: which part of the sensor is read, and whether its pixels are binned.
+/// determine the mode, that is, which part of the sensor is read and whether its pixels are binned.
 /// @throws Error naming `where` if the JSON is damaged or no mode has these sizes
 /// Source: Azure Kinect Sensor SDK, modes and camera calibration.
 AzureCalibration read_azure_calibration(const std::string& json, ImageSize depth, const ImageSize* colour,

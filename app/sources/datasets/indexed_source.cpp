@@ -20,7 +20,7 @@ void require_size(const Image<Pixel>& image, const Intrinsics& camera, const cha
               ", but the recording's camera is " + size_text(camera.width_px, camera.height_px));
 }
 
-/// Marks frames whose stamp is not later than that of the last frame without fault.
+/// Marks frames whose stamp is not later than that of the last good frame.
 void mark_wrong_stamps(std::vector<IndexedFrame>& frames) {
   double last_s = -std::numeric_limits<double>::infinity();
   for (IndexedFrame& frame : frames) {

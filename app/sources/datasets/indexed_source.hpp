@@ -56,8 +56,8 @@ struct IndexedRecording {
 std::unique_ptr<FrameSource> indexed_source(IndexedRecording recording, const SourceOptions& options = {});
 
 /// Assigns colour images to depth images by their stamps, within `tolerance_s`. Sets has_colour and
-/// colour_after_depth_s of `frames`, and the fault of those whose stamp is not later than the one before.
-/// Frames with a fault are left out. @param colour_s  stamps in increasing order
+/// colour_after_depth_s of `frames`, and the fault of frames whose stamp is not later than that of the frame
+/// before. Leaves out frames with a fault. `colour_s` has stamps in increasing order.
 /// @return the number of the colour image per frame; unset where has_colour is false
 std::vector<std::optional<std::size_t>> pair_colours(const std::vector<double>& colour_s, double tolerance_s,
                                                      std::vector<IndexedFrame>& frames);

@@ -10,9 +10,9 @@ namespace roomradar {
 [[nodiscard]] bool is_klg(const std::filesystem::path& path);
 
 /// Lists the frames of a .klg file: their number, then per frame a stamp (us), the sizes of both images,
-/// depth (16 bit, mm, zlib or raw) and colour (JPEG, raw RGB or none), registered. The file states no camera:
-/// ElasticFusion takes 528 px at a width of 640, and so does this reader. A file that was cut short is read
-/// up to its last whole frame.
+/// depth (16 bit, mm, zlib or raw) and colour (JPEG, raw RGB or none), registered. The file states no camera.
+/// Like ElasticFusion, this reader assumes a focal length of 528 px at a width of 640. A file that was cut
+/// short is read up to its last whole frame.
 /// @throws Error naming the file if it is damaged
 IndexedRecording index_klg(const std::filesystem::path& path);
 

@@ -14,8 +14,8 @@
 namespace roomradar {
 
 /// Returns the files in `folder` whose name is a number >= 0, with one of the extensions, by number. Of
-/// several files of one number, the extension that is first in the list counts. Empty if there is no such
-/// folder.
+/// several files with one number, returns the one whose extension is first in the list. Empty if there is no
+/// such folder.
 std::map<std::int64_t, std::filesystem::path> numbered_files(
     const std::filesystem::path& folder, std::initializer_list<std::string_view> extensions);
 

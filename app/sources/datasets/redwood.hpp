@@ -7,14 +7,15 @@
 namespace roomradar {
 
 /// Returns true if `folder` holds a recording of Redwood or Open3D: depth, color (or image, rgb), and a
-/// trajectory
-/// (*.log) or Open3D's intrinsic.json or camera_intrinsic.json.
+/// trajectory (*.log) or Open3D's intrinsic.json or camera_intrinsic.json.
 [[nodiscard]] bool is_redwood(const std::filesystem::path& folder);
 
 /// Lists the frames of a recording of Redwood or Open3D:
-///   depth/N.png (mm), color/N.jpg (or .png), registered; N.log: per frame a line of three integers, then the
-///   4 x 4 pose, camera to world (m). Without a JSON file with the intrinsics, they are a PrimeSense's: 525
-///   px at 640.
+///   depth/N.png  mm
+///   color/N.jpg  or .png; depth is registered to it
+///   *.log        per frame a line of three integers, then the 4 x 4 pose, camera to world (m)
+///
+/// Without a JSON file with intrinsics, these are a PrimeSense's: 525 px at a width of 640.
 /// Stamps are N / 30 s.
 /// @throws Error naming the file and line if the trajectory or the intrinsics are damaged
 IndexedRecording index_redwood(const std::filesystem::path& folder);

@@ -45,7 +45,7 @@ bool names(const std::string& topic, std::initializer_list<std::string_view> wor
                      [&](std::string_view word) { return topic.find(word) != std::string::npos; });
 }
 
-/// A topic of images as its first message shows it.
+/// A topic of images, described by its first message.
 struct Candidate {
   RosStream stream;
   bool is_depth = false;

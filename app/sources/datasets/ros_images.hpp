@@ -1,4 +1,4 @@
-// ros_images.hpp: which topics of a ROS recording hold depth and colour, and their decoding.
+// ros_images.hpp: finds the topics of a ROS recording with depth and colour images, and decodes them.
 #pragma once
 #include <cstdint>
 #include <optional>

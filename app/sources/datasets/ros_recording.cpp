@@ -77,7 +77,7 @@ std::optional<Eigen::Isometry3d> realsense_T_stream_reference(const MessageLog& 
   return std::nullopt;
 }
 
-/// Where the topics and frames of two sensors are.
+/// Topics and frames of two sensors.
 struct Sensor {
   std::string topic, frame_id;
 };
@@ -93,7 +93,7 @@ std::optional<Eigen::Isometry3d> T_between(const MessageLog& log, const RosTrans
   return transforms.T_a_b(to.frame_id, from.frame_id);
 }
 
-/// The accelerometer, and what turns its readings into gravity in the depth camera's frame.
+/// The accelerometer, and the rotation of its readings to the depth camera's frame.
 struct Gravity {
   std::vector<MessageEntry> messages;
   double offset_s = 0.0;

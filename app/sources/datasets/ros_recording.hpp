@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// Topic on which roomradar writes T_world_camera as the 16 numbers of a matrix, row by row, which lose no
-/// bit.
+/// Topic on which roomradar writes T_world_camera as the 16 numbers of a matrix, row by row, without loss of
+/// bits.
 inline constexpr const char* kPoseTopic = "/roomradar/T_world_camera";
 
 /// Lists the frames of a recording of ROS: depth and colour images with their camera_info, each in its own

@@ -11,8 +11,8 @@
 
 namespace roomradar {
 
-/// Tree of coordinate frames: static transforms from the recording's first messages, and the times of those
-/// that move. Moving transforms are read around the time that is asked for.
+/// Holds the static transforms, and the times of the moving ones. Moving transforms are read around the time
+/// of a query.
 class RosTransforms {
  public:
   /// Reads all messages of tf_static and the first 500 of tf, fewer in a compressed file; damaged ones are

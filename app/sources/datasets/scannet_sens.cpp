@@ -34,7 +34,7 @@ Intrinsics sens_camera(const Matrix4& m, std::uint32_t width, std::uint32_t heig
   return {static_cast<int>(width), static_cast<int>(height), at(0), at(5), at(2), at(6)};
 }
 
-/// Where the images of a frame are in the file.
+/// Positions of a frame's images in the file.
 struct SensFrame {
   std::uint64_t colour_offset = 0, colour_bytes = 0, depth_bytes = 0;
 };

@@ -18,7 +18,8 @@ struct FrameRange {
 FrameRange parse_frame_range(std::string_view text);
 
 /// Returns a source that delivers only the frames `first` to `last` of `source`, with their original indices
-/// and stamps. Unreadable frames are counted, too. Nothing is read ahead, so sources of unknown length work.
+/// and stamps. Unreadable frames are counted, too. Does not read ahead, so sources of unknown length are
+/// accepted.
 /// @throws Error unless 0 <= first <= last, or if the range exceeds the recording. If the recording's length
 ///         is unknown, next() throws that error at the recording's end.
 std::unique_ptr<FrameSource> limit_frames(std::unique_ptr<FrameSource> source, std::int64_t first,

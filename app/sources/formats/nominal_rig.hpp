@@ -21,10 +21,10 @@ enum class NominalRig {
 };
 
 /// LiDAR of an iPhone or iPad, as ARKit's depth maps of 256 x 192 pixels. ARKit smooths the depth, so errors
-/// of neighbouring pixels are alike. On a Record3D export of a door, 0.5 to 1.5 m away, frames moved by
-/// ARKit's poses differ by 1.7 mm (10 frames apart) to 4.1 mm (50 frames apart). Chosen somewhat larger,
-/// since tracking takes the errors of pixels as independent: with half of it, 27 of the 60 frames are not
-/// tracked.
+/// of neighbouring pixels are correlated. On a Record3D export of a door, 0.5 to 1.5 m away, frames moved by
+/// ARKit's poses differ by 1.7 mm (10 frames apart) to 4.1 mm (50 frames apart). This noise is chosen
+/// somewhat larger, since tracking assumes independent errors of pixels: with half of it, 27 of the 60 frames
+/// are not tracked.
 inline constexpr DepthNoise kPhoneLidarNoise{0.002F, 0.004F, 0.0F, 0.0F, 0.0001F};
 
 /// Time of flight of an Azure Kinect or Femto: about 1 mm at 1 m and 4 mm at 3.5 m. Source: Tolgyessy, Dekan,

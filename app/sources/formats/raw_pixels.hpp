@@ -23,7 +23,7 @@ struct RawLayout {
   std::size_t row_bytes = 0;  ///< bytes from row to row; 0: rows without padding
 };
 
-/// Converts depth. @param unit_m  length of one unit, m
+/// Converts depth. `unit_m` is the length of one unit, m.
 /// @throws Error naming `where` if a side is not in 1..16384, or `bytes` are fewer than the layout needs
 void convert_depth(std::string_view bytes, const RawLayout& layout, DepthPixels pixels, double unit_m,
                    const std::string& where, DepthImage& depth_m);

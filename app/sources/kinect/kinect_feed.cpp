@@ -155,7 +155,7 @@ class KinectFeed::Work {
       config_.say(config_.name + ": sends frames faster than they are used; some are dropped from now on");
   }
 
-  /// What the device has sent, to notice when it stops.
+  /// Record of the images that the device has sent, to detect that it stopped.
   struct Watch {
     bool depth_arrived = false;
     bool tried_for_colour = false;

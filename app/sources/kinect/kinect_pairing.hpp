@@ -25,8 +25,8 @@ class KinectPairing {
   KinectPairing(const KinectFeedConfig& config, std::function<void(KinectFrame)> put)
       : config_(config), put_(std::move(put)) {}
 
-  /// Makes stamps advance by the elapsed host time across a gap. Call before the device is reopened. Its
-  /// first images may arrive while it is being opened.
+  /// Makes stamps advance by the elapsed host time across a gap. Call before the device is reopened, since
+  /// the first images may arrive during the opening.
   void restart_clock();
   /// Adds a depth image. Returns false if its size is wrong.
   /// @param pixels          640 x 480 values
@@ -54,7 +54,7 @@ class KinectPairing {
 
   double stamp_of(std::uint32_t ticks);
   void pass_over_broken();
-  /// Adds an error to the queue of depth images that wait for colour. Frames thus keep their order.
+  /// Adds an error to the queue of depth images that wait for colour, so that frames keep their order.
   void fail(std::int64_t number, const std::string& what);
   [[nodiscard]] KinectFrame broken_frame(std::int64_t number, const std::string& what) const;
   void put_broken();

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kSilence_ms = 1000;
 
-/// Returns what OpenNI2 last complained about, as the end of a sentence.
+/// Returns OpenNI2's last error message, as the end of a sentence.
 std::string last_openni_error() {
   std::string text = openni::OpenNI::getExtendedError();
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();

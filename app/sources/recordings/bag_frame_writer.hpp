@@ -12,8 +12,8 @@ namespace roomradar {
 
 /// Writes a bag with the topics that ROS drivers of depth cameras have: depth in m (32FC1), colour (rgb8),
 /// their camera_info, gravity as the acceleration of an IMU at rest, poses and the pose of the colour camera
-/// in tf. Poses are written a second time as matrices (kPoseTopic), since the quaternions of tf lose their
-/// last bits.
+/// in tf. Poses are written a second time as matrices (kPoseTopic), since conversion to the quaternions of tf
+/// loses the last bits.
 class BagFrameWriter {
  public:
   /// Throws Error if the file cannot be written.

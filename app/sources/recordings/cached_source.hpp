@@ -11,11 +11,11 @@ namespace roomradar {
 /// Max size of the cached images, uncompressed: 1,400 frames of 640 x 480. Their files take about a third.
 inline constexpr std::uintmax_t kMaxFrameCache_bytes = 3'000'000'000;
 
-/// Returns a source that delivers the frames of `source`, identical in all bits, and takes each frame from it
-/// only once. The frames are kept in a temporary folder until the returned source is destroyed. Frames beyond
-/// max_bytes, beyond the first one that cannot be written, or no longer readable in the folder, are taken
-/// from `source` again. For sources that need longer for a frame than reading it from disk takes, such as the
-/// simulated one.
+/// Returns a source that delivers the frames of `source`, identical in all bits, and reads each frame from
+/// `source` only once. Keeps the frames in a temporary folder until the returned source is destroyed. Frames
+/// beyond max_bytes, beyond the first frame that cannot be written, or no longer readable in the folder, are
+/// read from `source` again. Useful if `source` takes longer for a frame than the disk, as the simulated
+/// source does.
 /// @param source  returned as it is if it cannot seek, or if no temporary folder can be created
 std::unique_ptr<FrameSource> cache_frames(std::unique_ptr<FrameSource> source,
                                           std::uintmax_t max_bytes = kMaxFrameCache_bytes);

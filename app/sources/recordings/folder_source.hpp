@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// Opens a recording, a folder or a file, and recognises its format by its content. Those of other programs
-/// are listed in app/sources/README.md (index_foreign()). The others are folders:
+/// Opens a recording, a folder or a file, and recognises its format by its content. Formats of other programs
+/// are listed in app/sources/README.md (index_foreign()). The other formats are folders:
 ///   fakenect      INDEX.txt with d-*.pgm (raw 11 bit), r-*.ppm, a-*.dump (accelerometer)
 ///   TUM RGB-D     depth.txt, rgb.txt; optional groundtruth.txt, accelerometer.txt
 ///   7-Scenes      frame-XXXXXX.depth.png, .color.jpg, .color.png or .color.none (empty: no colour),

@@ -1,4 +1,4 @@
-// foreign_recording.cpp: the list of kinds.
+// foreign_recording.cpp: the list of kinds of recordings.
 #include "app/sources/recordings/foreign_recording.hpp"
 
 #include <array>

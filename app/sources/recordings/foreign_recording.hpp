@@ -10,9 +10,9 @@
 
 namespace roomradar {
 
-/// Returns the kind of the recording at `path`, a file or folder, such as "Record3D export". Recognised by
-/// its content; a folder with one file of these kinds counts as that file. Returns an empty string if it is
-/// of none of the kinds that index_foreign() reads.
+/// Returns the kind of the recording at `path`, a file or folder, such as "Record3D export". The kind is
+/// recognised by the content; a folder with one file of these kinds counts as that file. Returns an empty
+/// string for other kinds, which index_foreign() does not read.
 [[nodiscard]] std::string foreign_kind(const std::filesystem::path& path);
 
 /// Lists the frames of a recording of another program. Returns nullopt if foreign_kind() is empty. A

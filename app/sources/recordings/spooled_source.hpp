@@ -35,8 +35,8 @@ class SpooledSource final : public FrameSource {
   /// Caches frames in `folder`. The folder is not removed. Frames of an earlier process in the folder are
   /// delivered first. Indices and stamps of the source's frames then continue from the last of those frames.
   /// @param source      may be null if has_end(folder)
-  /// @param most_ahead  max number of unread frames. At this number, the source is not read. A live source
-  ///                    then loses frames
+  /// @param most_ahead  max number of unread frames. At this number, the source is not read, and a live
+  ///                    source loses frames
   /// @throws Error if the folder cannot be created, or its list.bin is not a spool's list
   static std::unique_ptr<SpooledSource> kept(std::unique_ptr<FrameSource> source,
                                              const std::filesystem::path& folder,

@@ -29,8 +29,7 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel);
 /// @param way_px        motion of the mouse, x right, y down
 Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, const Eigen::Vector2d& way_px);
 
-/// Converts user commands into script events. Remembers the chosen object and the object grabbed with the
-/// mouse.
+/// Remembers the chosen object and the object grabbed with the mouse.
 class Player {
  public:
   /// Returns the commands' events, without frame numbers, in order of execution before the next frame. If an

@@ -46,8 +46,8 @@ class DrawnMesh {
   bool has_colours_ = false;
 };
 
-/// Colour of a mesh without colours, and its fraction in the colours of a mesh that has some. Shading is
-/// lighter for a textured mesh, which has the room's light.
+/// Colour of a mesh without colours; it is mixed into the colours of other meshes with weight `fraction`.
+/// Shading is lighter for a textured mesh, which has the room's light.
 struct Tint {
   std::array<float, 3> rgb{};
   float fraction = 1.0F;

@@ -17,7 +17,7 @@ float px(float length) { return scale_of_screen * length; }
 Fonts apply(float scale) {
   scale_of_screen = scale;
   ImGuiStyle& style = ImGui::GetStyle();
-  style = ImGuiStyle();  // ScaleAllSizes() scales what is there
+  style = ImGuiStyle();  // ScaleAllSizes() scales the present sizes
   ImGui::StyleColorsDark();
   style.WindowRounding = 0.0F;
   style.WindowBorderSize = 0.0F;

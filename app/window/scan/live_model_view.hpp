@@ -12,13 +12,13 @@ namespace roomradar {
 /// Draws the live model. The window's OpenGL context must be current for all calls.
 class LiveModelView {
  public:
-  /// Takes the meshes that are new.
+  /// Uploads new meshes.
   void upload(const ShownScan& shown);
   void draw(const Area& area, const ShownScan& shown, const look::Fonts& fonts);
-  /// Ends following, and places the eye so that it sees a whole mesh.
+  /// Ends following, and places the eye so that the whole mesh is in view.
   void look_at(const Mesh& mesh);
 
-  /// While following, the eye stays behind the camera. A drag by the mouse ends it.
+  /// While following, the eye stays behind the camera. A drag by the mouse ends following.
   void set_following(bool follows) { follows_ = follows; }
   [[nodiscard]] bool follows() const { return follows_; }
 

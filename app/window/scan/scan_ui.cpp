@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kSilent_s = 1.5;
 constexpr double kUndo_s = 5.0;
-constexpr double kWorthSaying_s = 3600.0;  // less memory or disk than this is said
+constexpr double kWorthSaying_s = 3600.0;  // the time left is shown if it is less than this
 
 std::string text_of(const char* form, auto... values) {
   char text[160];
@@ -203,7 +203,7 @@ void ScanUi::draw_next_view(const Area& area) {
   if (!shown_.next_view) return;
   const ShownNextView& next = *shown_.next_view;
   const Eigen::Isometry3d T_camera_next = shown_.T_world_camera.inverse() * next.T_world_camera;
-  // The direction to what the next view looks at; beside the camera's axis it is the way to turn.
+  // Direction to the point that the next view looks at. Its offset from the camera's axis is the way to turn.
   const Eigen::Vector3d towards = T_camera_next * Eigen::Vector3d(0.0, 0.0, 2.0);
   Eigen::Vector2f aside = towards.head<2>().cast<float>();
   if (towards.z() <= 0.0) aside = {towards.x() < 0.0 ? -1.0F : 1.0F, 0.0F};  // behind: turn round
@@ -225,8 +225,8 @@ void ScanUi::draw_next_view(const Area& area) {
                          at(tip - look::px(34.0F) * along - look::px(24.0F) * across), kArrow);
 }
 
-/// Draws the camera's speed as a bar along the picture's lower edge; its right end is the most that the
-/// tracking bears.
+/// Draws the camera's speed as a bar along the picture's lower edge. The right end is the highest speed for
+/// tracking.
 void ScanUi::draw_speed(const Area& area) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float high = look::px(8.0F), margin = look::px(14.0F),

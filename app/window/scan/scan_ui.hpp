@@ -32,7 +32,7 @@ class ScanUi final : public WindowContent {
   ScanOutcome outcome_;
   GlTexture picture_{/*smooth=*/true}, tint_{/*smooth=*/true};
   LiveModelView model_;
-  double newest_s_ = -1.0;  ///< time at which the last frame came; < 0: none so far
+  double newest_s_ = -1.0;  ///< time at which the last frame arrived; < 0: none so far
   bool asks_to_discard_ = false, quits_ = false;
 
   [[nodiscard]] bool is_tracking() const { return stage_.name.empty() && outcome_.text.empty(); }

@@ -18,8 +18,8 @@ struct ScanWindowResult {
 };
 
 /// Opens a window, runs `work` on another thread, and shows the state that `work` publishes until the user
-/// closes the window. The window remains open after `work` has returned, and shows the outcome. If the window
-/// is closed before, `work` goes on without it, as after Ctrl-C. Call on the main thread.
+/// closes the window. The window remains open after `work` has returned, and shows the outcome. If the user
+/// closes the window earlier, `work` continues without it, as after Ctrl-C. Call on the main thread.
 ///
 /// @param title     title of the window
 /// @param ui_scale  scale of text and panes; unset: that of the monitor

@@ -1,4 +1,4 @@
-// examined_maps.hpp: pictures and measures of the listed maps, made in the background.
+// examined_maps.hpp: pictures and properties of the listed maps, computed in the background.
 #pragma once
 #include <ctime>
 #include <filesystem>
@@ -22,7 +22,7 @@ struct ExaminedMap {
 /// The window's OpenGL context must be current for all calls.
 class ExaminedMaps {
  public:
-  /// Adds a job for the next map without details, the chosen one first. Call while no job waits.
+  /// Adds a job for the next map without details; the chosen map comes first. Call only if no job waits.
   void examine_next(const StartState& state, BackgroundJobs& jobs);
   /// Returns the result for a map; null: there is none so far.
   [[nodiscard]] const ExaminedMap* find(const MapEntry& map) const;

@@ -71,7 +71,7 @@ void draw_lines(const StartDialog& dialog) {
   }
 }
 
-/// Returns the height of the lines and choices if the dialog is this wide.
+/// Returns the height of the lines and choices in a dialog of this width.
 float content_height(const StartDialog& dialog, float wrap) {
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   float height = 0.0F;

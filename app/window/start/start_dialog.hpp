@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// What the user answered.
+/// Answer of the user.
 enum class DialogAnswer { kNone, kYes, kNo, kPage, kGlb, kPly };
 
 enum class DialogKind {
@@ -36,7 +36,7 @@ struct StartDialog {
   std::string fault;                 ///< sentence on why the name was refused; empty: none
   std::vector<std::string> choices;  ///< rows of kCompare
   int choice = 0;                    ///< chosen row of kCompare
-  /// Answer of a key pressed while the name is edited; returned after the field has taken what was typed.
+  /// Answer of a key pressed while the name is edited; returned after the field has taken the typed text.
   DialogAnswer pressed = DialogAnswer::kNone;
   bool is_new = true;  ///< true: the text field takes the keyboard when it is drawn
 };

@@ -9,7 +9,7 @@ struct StartLayout {
   bool has_two_rows = false;  ///< true: the actions need two rows
 };
 
-/// Returns the panes of a start view of this size: the lists at the left, what is chosen at the right, the
+/// Returns the panes of a start view of this size: the lists at the left, the chosen entry at the right, the
 /// actions below.
 /// @param scale  scale of the screen; 1 at 96 dpi
 constexpr StartLayout start_layout(float width, float height, float scale = 1.0F) {

@@ -1,4 +1,4 @@
-// start_lists.hpp: draws the lists of sources and maps, and what is chosen.
+// start_lists.hpp: draws the lists of sources and maps, and the chosen entry.
 #pragma once
 #include "app/start/start_state.hpp"
 #include "app/window/panes/theme.hpp"

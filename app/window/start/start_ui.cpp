@@ -104,7 +104,7 @@ void StartUi::press_key(int key, int modifiers) {
   if (key == '-' || key == GLFW_KEY_KP_SUBTRACT) change_scale(-1);
 }
 
-/// Asks for what an action needs, or ends the view with the action.
+/// Opens the dialog for an action's input, or ends the view with the action.
 void StartUi::begin(StartAction action) {
   state_.message = {};
   if (const std::string reason = why_not(state_, action); !reason.empty()) return say(reason, true);
@@ -279,7 +279,7 @@ void StartUi::examine_setup() {
 
 void StartUi::change_scale(int steps) {
   constexpr std::array<double, 9> kScales = {0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0};
-  const double now = static_cast<double>(look::px(1.0F));  // may be less than what was asked for
+  const double now = static_cast<double>(look::px(1.0F));  // may be less than requested
   const auto above = std::upper_bound(kScales.begin(), kScales.end(), now + 1e-3);
   const auto from = std::lower_bound(kScales.begin(), kScales.end(), now - 1e-3);
   if (steps > 0 && above != kScales.end()) state_.settings.ui_scale = *above;

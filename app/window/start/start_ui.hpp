@@ -17,8 +17,8 @@ namespace roomradar {
 /// Draws the start view and handles its keys. All calls must come from the window's thread.
 class StartUi final : public WindowContent {
  public:
-  /// @param state   what is listed and chosen
-  /// @param choice  receives what the user decides to do
+  /// @param state   the lists and the chosen entries
+  /// @param choice  receives the user's decision
   /// @param wake    makes the window draw again; called on any thread
   StartUi(StartState& state, StartChoice& choice, const look::Fonts& fonts, std::function<void()> wake);
 

@@ -1,4 +1,4 @@
-// start_window.hpp: window of `roomradar` alone.
+// start_window.hpp: window of `roomradar start`, or of `roomradar` without arguments.
 #pragma once
 #include <memory>
 
@@ -16,7 +16,7 @@ class StartWindow {
   ///         OpenGL 3.3
   StartWindow();
 
-  /// Shows the start view until the user decides what to do; StartAction::kQuit if the window is closed.
+  /// Shows the start view until the user chooses an action; StartAction::kQuit if the window is closed.
   /// Changes lists, choice and settings in `state`.
   StartChoice show(StartState& state);
   /// Returns true if the user closed the window since show().

@@ -17,7 +17,8 @@ namespace roomradar {
 
 /// Max number of threads that may change one pool at a time.
 inline constexpr unsigned kMaxLanes = kMaxThreads;
-/// Lane of the calling thread, below kMaxLanes. Threads that change one pool at a time need different lanes.
+/// Lane of the calling thread, below kMaxLanes: number of the list of free blocks that the thread uses.
+/// Threads that change one pool at the same time need different lanes.
 inline thread_local unsigned pool_lane = 0;
 
 /// Pool of equally sized blocks that are addressed by 32-bit numbers. Blocks never move. References thus stay

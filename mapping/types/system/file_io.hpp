@@ -12,7 +12,7 @@ namespace roomradar {
 /// Reads the regular file `path`, following links. Allocates no more than the file's size.
 /// @param what  name of the expected content in messages, such as "a camera file"
 /// @throws Error naming the file if it is missing, not a regular file (a folder, a pipe), larger than
-/// `max_bytes`, or cannot be read to its end
+///         `max_bytes`, or cannot be read to its end
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::string_view what,
                                      std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 

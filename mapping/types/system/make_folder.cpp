@@ -1,4 +1,4 @@
-// make_folder.cpp: the nearest folder that exists is the one that refuses.
+// make_folder.cpp: names the nearest existing folder as the cause of a failure.
 #include "mapping/types/system/make_folder.hpp"
 
 #include <system_error>
