@@ -51,7 +51,7 @@ void add(Room& room, const Isometry3d& T_world_piece, Solid solid_piece, const M
 }
 
 void add_shell(Room& room, const Material& floor, const Material& wall, const Material& ceiling,
-               unsigned doorways) {
+               std::span<const Doorway> doorways) {
   const Vector3d low = room.interior_min_world;
   const Vector3d high = room.interior_max_world;
   const Vector3d middle = 0.5 * (low + high);
@@ -72,10 +72,14 @@ void add_shell(Room& room, const Material& floor, const Material& wall, const Ma
               {to_x - from_x, kThick_m, size.z() - from_z}),
           paint);
     };
-    if ((doorways >> number & 1U) == 0) return add_part(-0.5 * length_m, 0.5 * length_m, 0.0);
-    add_part(-0.5 * length_m, -0.5 * kDoorwayWidth_m, 0.0);
-    add_part(-0.5 * kDoorwayWidth_m, 0.5 * kDoorwayWidth_m, kDoorwayHeight_m);
-    add_part(0.5 * kDoorwayWidth_m, 0.5 * length_m, 0.0);
+    const auto door = std::find_if(doorways.begin(), doorways.end(),
+                                   [number](const Doorway& each) { return each.wall == number; });
+    if (door == doorways.end()) return add_part(-0.5 * length_m, 0.5 * length_m, 0.0);
+    const double left_m = door->centre_m - 0.5 * door->width_m,
+                 right_m = door->centre_m + 0.5 * door->width_m;
+    add_part(-0.5 * length_m, left_m, 0.0);
+    add_part(left_m, right_m, kDoorwayHeight_m);
+    add_part(right_m, 0.5 * length_m, 0.0);
   };
   add_wall(middle.x(), high.y(), 0.0, size.x() + 2 * kThick_m, 0);
   add_wall(middle.x(), low.y(), std::numbers::pi, size.x() + 2 * kThick_m, 1);

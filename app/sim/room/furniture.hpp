@@ -1,6 +1,7 @@
 // furniture.hpp: adds furniture to a simulated room. Each piece's origin is on its supporting surface.
 #pragma once
 #include <cstdint>
+#include <span>
 
 #include "app/sim/room/room.hpp"
 
@@ -17,10 +18,16 @@ void add(Room& room, const Eigen::Isometry3d& T_world_piece, Solid solid_piece, 
 inline constexpr double kDoorwayWidth_m = 1.3, kDoorwayHeight_m = 2.1;
 /// Thickness of floor, ceiling and walls, m.
 inline constexpr double kShellThickness_m = 0.1;
+/// A doorway of a room, kDoorwayHeight_m high.
+struct Doorway {
+  unsigned wall = 0;      ///< 0 to 3: the wall at +y, -y, -x or +x
+  double centre_m = 0.0;  ///< from the wall's middle, to the right as seen from inside
+  double width_m = kDoorwayWidth_m;
+};
 /// Adds floor, ceiling and four walls around the room's interior.
-/// @param doorways  bit i: wall i has a doorway in its middle; walls 0 to 3 are at +y, -y, -x and +x
+/// @param doorways  at most one per wall
 void add_shell(Room& room, const Material& floor, const Material& wall, const Material& ceiling,
-               unsigned doorways = 0);
+               std::span<const Doorway> doorways = {});
 
 /// Adds a thin framed picture to a wall. The origin of T_world_picture is the centre of the picture's back; x
 /// points to the viewer's right, z up, and -y into the room.

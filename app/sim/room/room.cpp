@@ -21,17 +21,20 @@ const std::vector<std::string>& room_names() {
 
 void require_room(std::string_view name) {
   const std::vector<std::string>& furnished = room_names();
-  if (name == kRandomRoom || name == kFlatRoom || name == kBoardRoom ||
+  if (name == kRandomRoom || name == kFlatRoom || name == kBuildingRoom || name == kBoardRoom ||
       std::find(furnished.begin(), furnished.end(), name) != furnished.end())
     return;
   std::string known;
   for (const std::string& one : furnished) known.append(one).append(", ");
-  known.append(kRandomRoom).append(", ").append(kFlatRoom).append(", ").append(kBoardRoom);
+  for (const std::string_view one : {kRandomRoom, kFlatRoom, kBuildingRoom}) known.append(one).append(", ");
+  known.append(kBoardRoom);
   throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known);
 }
 
 Room make_room(std::string_view name, bool crate, std::uint64_t seed) {
   require_room(name);
+  if (name == kBuildingRoom)
+    throw Error("the simulated building is not a single room; use it as a source, sim:building");
   Room room;
   if (name == "table") {
     room = make_table_room();

@@ -26,6 +26,25 @@ struct Lamp {
 struct WalkPoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< x and y in the world
   double yaw_rad = 0.0;  ///< azimuth of the view, counter-clockwise from +x; not wrapped along the walk
+  double floor_m = 0.0;  ///< height of the floor or step that is walked on
+};
+
+/// A vertical rectangle through which one part of a building is seen from another.
+struct PartOpening {
+  Eigen::Vector2d from_m = Eigen::Vector2d::Zero(), to_m = Eigen::Vector2d::Zero();  ///< its ends, x and y
+  double low_m = 0.0, high_m = 0.0;  ///< its lower and upper edge, z
+  int part = 0;                      ///< index of the part behind it
+};
+
+/// A box-shaped part of a building: a room, a piece of a corridor, a stairwell.
+struct RoomPart {
+  /// Its interior and its walls, up to the walls of the parts beside it.
+  Eigen::AlignedBox3d bounds_world;
+  /// Its solids: from solids_begin up to before solids_end, in Room::solids.
+  std::size_t solids_begin = 0, solids_end = 0;
+  std::vector<PartOpening> openings;
+  /// Indices of the lamps that light it.
+  std::vector<int> lamps;
 };
 
 /// A simulated room. z is up, the floor is at z = 0, units are metres. Solids may touch but not overlap. The
@@ -54,6 +73,9 @@ struct Room {
   /// Control points, about 0.7 m apart, of a closed walk through several rooms, which replaces the ellipse.
   /// Empty: the ellipse.
   std::vector<WalkPoint> walk;
+  /// Time from one point of the walk to the next, if the walk is open: it begins at the first point and ends
+  /// at the last one. 0: the walk is closed.
+  double walk_step_s = 0.0;
   /// Number of full turns of the view on the closed walk.
   int walk_turns = 0;
   /// Surface point at which a ball's path begins.
@@ -64,6 +86,8 @@ struct Room {
   Eigen::Vector3d person_from_world = Eigen::Vector3d::Zero();
   /// Floor point at which a person's path ends.
   Eigen::Vector3d person_to_world = Eigen::Vector3d::Zero();
+  /// Parts of a building, each with solids of its own. Empty: a single room.
+  std::vector<RoomPart> parts;
 };
 
 /// Returns the names of the fixed furnished rooms that make_room() accepts.
@@ -75,12 +99,14 @@ inline constexpr std::string_view kBoardRoom = "board";
 /// Another name for make_room(): a flat of four rooms in a ring, with doorways between them and furniture
 /// drawn at random from the seed.
 inline constexpr std::string_view kFlatRoom = "flat";
-/// Throws Error listing the known names if `name` is none of them.
+/// Name of a building with many rooms, which make_building() makes; make_room() does not.
+inline constexpr std::string_view kBuildingRoom = "building";
+/// Throws Error listing the known names, with kBuildingRoom, if `name` is none of them.
 void require_room(std::string_view name);
 /// Makes the room of this name.
 /// @param crate  true: adds a crate on the ball's path
 /// @param seed   selects the furniture of kRandomRoom and kFlatRoom; other rooms do not depend on it
-/// @throws Error listing the known names if `name` is none of them
+/// @throws Error listing the known names if `name` is none of them or kBuildingRoom
 Room make_room(std::string_view name, bool crate = false, std::uint64_t seed = 1);
 
 /// Size of the crate that make_room() can add.

@@ -55,12 +55,12 @@ Room make_flat(std::uint64_t seed) {
   const Vector2d pitch = kHalf_m + Vector2d::Constant(kShellThickness_m);
   const std::array<Vector2d, 4> middles{Vector2d(-pitch.x(), -pitch.y()), Vector2d(pitch.x(), -pitch.y()),
                                         pitch, Vector2d(-pitch.x(), pitch.y())};
-  // Doorways, as in add_shell(): room i leads to room i + 1 and back to room i - 1.
-  constexpr std::array<unsigned, 4> kDoorways{0b1001, 0b0101, 0b0110, 0b1010};
+  // Walls with a doorway, as in Doorway::wall: room i leads to room i + 1 and back to room i - 1.
+  constexpr unsigned kDoorways[4][2] = {{0, 3}, {0, 2}, {1, 2}, {1, 3}};
   constexpr std::uint32_t kLooks = 10'000;  // more than the materials of a room
   double yaw_rad = -kQuarter_rad;
   for (std::size_t i = 0; i < 4; ++i) {
-    Room room = make_random_room(hash_of(seed, i), {kHalf_m, kDoorways[i]});
+    Room room = make_random_room(hash_of(seed, i), {kHalf_m, {{kDoorways[i][0]}, {kDoorways[i][1]}}});
     const Eigen::Vector3d shift(middles[i].x(), middles[i].y(), 0.0);
     for (Solid& solid : room.solids) solid.T_world_solid.pretranslate(shift);
     for (Material& material : room.materials) material.seed += kLooks * static_cast<std::uint32_t>(i);

@@ -180,16 +180,16 @@ void furnish_wall(Furnishing& f, int wall) {
   }
 }
 
-void keep_doorways_free(Furnishing& f, const Vector3d& half, unsigned doorways) {
+void keep_doorways_free(Furnishing& f, const Vector3d& half, std::span<const Doorway> doorways) {
   constexpr double kDeep_m = 1.0, kAside_m = 0.1;
   const std::array<Vector3d, 4> outwards{Vector3d::UnitY(), -Vector3d::UnitY(), -Vector3d::UnitX(),
                                          Vector3d::UnitX()};
-  for (unsigned wall = 0; wall < 4; ++wall) {
-    if ((doorways >> wall & 1U) == 0) continue;
-    const Vector3d out = outwards[wall], aside = Vector3d(out.y(), out.x(), 0.0).cwiseAbs();
+  for (const Doorway& door : doorways) {
+    const Vector3d out = outwards[door.wall], right(out.y(), -out.x(), 0.0);
     const double away_m = std::abs(out.dot(half)) - 0.5 * kDeep_m;
-    const Vector3d size = kDeep_m * out.cwiseAbs() + (kDoorwayWidth_m + 2.0 * kAside_m) * aside;
-    f.kept_free.push_back(box(away_m * out + Vector3d(0, 0, 1.0), size + Vector3d(0, 0, 1.99)));
+    const Vector3d size = kDeep_m * out.cwiseAbs() + (door.width_m + 2.0 * kAside_m) * right.cwiseAbs();
+    f.kept_free.push_back(
+        box(away_m * out + door.centre_m * right + Vector3d(0, 0, 1.0), size + Vector3d(0, 0, 1.99)));
   }
 }
 

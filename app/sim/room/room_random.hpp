@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "app/sim/room/furniture.hpp"
 #include "app/sim/room/room.hpp"
 
 namespace roomradar {
@@ -11,7 +13,7 @@ namespace roomradar {
 /// Properties of a random room that are not drawn at random.
 struct RandomRoomShape {
   std::optional<Eigen::Vector2d> half_m;  ///< half the size of the interior along x and y; unset: random
-  unsigned doorways = 0;                  ///< walls with a doorway, as in add_shell()
+  std::vector<Doorway> doorways;          ///< as in add_shell()
 };
 
 /// Makes a room with a random arrangement of furniture, determined by the seed. The room's middle is at x = y

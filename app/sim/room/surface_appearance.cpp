@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/sim/room/room_parts.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -181,7 +183,8 @@ void SurfaceAppearance::prepare(std::size_t index, int face_index, Face& face) c
                     kNotLit);
 }
 
-float SurfaceAppearance::light_of(const Solid& solid, int face_index, Face& face, int column, int row) const {
+float SurfaceAppearance::light_of(std::size_t index, int face_index, Face& face, int column, int row) const {
+  const Solid& solid = solids_[index];
   float& light = face.light[static_cast<std::size_t>(row) * static_cast<std::size_t>(face.light_columns) +
                             static_cast<std::size_t>(column)];
   if (light != kNotLit) return light;
@@ -193,11 +196,13 @@ float SurfaceAppearance::light_of(const Solid& solid, int face_index, Face& face
   };
   const Vector3d p = from_face(solid, face_index, inside(column, face.light_columns, face.width_m),
                                inside(row, face.light_rows, face.height_m));
-  light = light_at(solid.T_world_solid * p, solid.T_world_solid.linear() * normal_local(solid, p), true);
+  light = light_at(solid.T_world_solid * p, solid.T_world_solid.linear() * normal_local(solid, p), true,
+                   part_of_solid(room_, index));
   return light;
 }
 
-float SurfaceAppearance::light_at(const Vector3d& p_world, const Vector3d& normal_world, bool shadows) const {
+float SurfaceAppearance::light_at(const Vector3d& p_world, const Vector3d& normal_world, bool shadows,
+                                  int part) const {
   constexpr double kSkin_m = 0.001;
   const Vector3d start = p_world + kSkin_m * normal_world;
   double open = 1.0;
@@ -211,7 +216,7 @@ float SurfaceAppearance::light_at(const Vector3d& p_world, const Vector3d& norma
   }
   // Ambient light, slightly stronger from above.
   double light = (0.28 + 0.07 * normal_world.z()) * open;
-  for (const Lamp& lamp : room_.lamps) {
+  const auto add_lamp = [&](const Lamp& lamp) {
     double seen = 0.0;
     for (const auto& [x, y, z] : kLampPoints) {
       const Vector3d lamp_world = lamp.position_world + lamp.radius_m * Vector3d(x, y, z);
@@ -222,6 +227,12 @@ float SurfaceAppearance::light_at(const Vector3d& p_world, const Vector3d& norma
       seen += facing / (squared_m2 * std::sqrt(squared_m2));
     }
     light += 0.37 * lamp.power * seen / 6.0 * (0.6 + 0.4 * open);
+  };
+  if (part < 0) {
+    for (const Lamp& lamp : room_.lamps) add_lamp(lamp);
+  } else {
+    for (const int lamp : room_.parts[static_cast<std::size_t>(part)].lamps)
+      add_lamp(room_.lamps[static_cast<std::size_t>(lamp)]);
   }
   return static_cast<float>(std::pow(light, 1.0 / kGamma));
 }
@@ -251,14 +262,15 @@ Rgb SurfaceAppearance::shade(std::size_t index, const Vector3d& p_solid, const V
 
   float light = 0.0F;
   if (face.light.empty()) {
-    light = light_at(T_world_solid * p_solid, T_world_solid.linear() * normal_solid, false);
+    const Vector3d p_world = T_world_solid * p_solid;
+    light = light_at(p_world, T_world_solid.linear() * normal_solid, false, part_at(room_, p_world));
   } else {
     const float lx = u * static_cast<float>(face.light_columns - 1),
                 ly = v * static_cast<float>(face.light_rows - 1);
     const int lx0 = std::min(static_cast<int>(lx), face.light_columns - 2),
               ly0 = std::min(static_cast<int>(ly), face.light_rows - 2);
     const float bx = lx - static_cast<float>(lx0), by = ly - static_cast<float>(ly0);
-    const auto node = [&](int dx, int dy) { return light_of(solid, face_index, face, lx0 + dx, ly0 + dy); };
+    const auto node = [&](int dx, int dy) { return light_of(index, face_index, face, lx0 + dx, ly0 + dy); };
     light =
         (1 - by) * ((1 - bx) * node(0, 0) + bx * node(1, 0)) + by * ((1 - bx) * node(0, 1) + bx * node(1, 1));
   }

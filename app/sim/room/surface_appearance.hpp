@@ -54,9 +54,10 @@ class SurfaceAppearance {
   /// Makes the textures of a face, unless it is hidden.
   void prepare(std::size_t index, int face_index, Face& face) const;
   /// Returns the brightness factor at a node of a face's grid.
-  float light_of(const Solid& solid, int face_index, Face& face, int column, int row) const;
+  float light_of(std::size_t index, int face_index, Face& face, int column, int row) const;
+  /// @param part  index of the part of a building whose lamps give light; -1: all lamps of the room do
   [[nodiscard]] float light_at(const Eigen::Vector3d& p_world, const Eigen::Vector3d& normal_world,
-                               bool shadows) const;
+                               bool shadows, int part) const;
 
   const Room& room_;
   double texel_m_;

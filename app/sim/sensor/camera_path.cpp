@@ -43,14 +43,36 @@ double loop_time_s(double length_m, double duration_s) {
   return speed_m_s <= kFastest_m_s ? duration_s / rounds : length_m / kSpeed_m_s;
 }
 
-/// Returns the point of the walk at `phase_rad`, where a full turn is the whole walk.
-WalkPoint walk_at(const CameraPath& path, double phase_rad) {
+/// Returns the weights of the four control points around a place of a uniform cubic B-spline.
+std::array<double, 4> spline_weights(double t) {
+  return {(1.0 - t) * (1.0 - t) * (1.0 - t) / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
+          (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) / 6.0, t * t * t / 6.0};
+}
+
+/// Returns the point of an open walk t_s seconds after its begin; before and after it, its ends.
+WalkPoint open_walk_at(const CameraPath& path, double t_s) {
+  const auto last = static_cast<std::int64_t>(path.walk.size()) - 1;
+  const double steps = std::clamp(t_s / path.walk_step_s, 0.0, static_cast<double>(last));
+  const double first = std::floor(steps);
+  const std::array<double, 4> weights = spline_weights(steps - first);
+  WalkPoint point;
+  for (std::int64_t i = 0; i < 4; ++i) {
+    const std::int64_t at = std::clamp<std::int64_t>(static_cast<std::int64_t>(first) + i - 1, 0, last);
+    const WalkPoint& control = path.walk[static_cast<std::size_t>(at)];
+    const double weight = weights[static_cast<std::size_t>(i)];
+    point.position_m += weight * control.position_m;
+    point.yaw_rad += weight * control.yaw_rad;
+    point.floor_m += weight * control.floor_m;
+  }
+  return point;
+}
+
+/// Returns the point of a closed walk at `phase_rad`, where a full turn is the whole walk.
+WalkPoint closed_walk_at(const CameraPath& path, double phase_rad) {
   const auto count = static_cast<std::int64_t>(path.walk.size());
   const double steps = phase_rad / kFullTurn_rad * static_cast<double>(count);
   const double first = std::floor(steps), t = steps - first;
-  const std::array<double, 4> weights{
-      (1.0 - t) * (1.0 - t) * (1.0 - t) / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-      (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) / 6.0, t * t * t / 6.0};
+  const std::array<double, 4> weights = spline_weights(t);
   WalkPoint point;
   for (std::int64_t i = 0; i < 4; ++i) {
     const std::int64_t at = static_cast<std::int64_t>(first) + i - 1;
@@ -86,6 +108,7 @@ CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, 
     path.start_rad = random.uniform(0.0, kFullTurn_rad);
     path.walk = room.walk;
     path.walk_turns = room.walk_turns;
+    path.walk_step_s = room.walk_step_s;
     const double length_m = path.walk.empty() ? ellipse_length_m(path.half_m) : walk_length_m(path.walk);
     path.loop_s = loop_time_s(length_m, duration_s) * (random.uniform() < 0.5 ? -1.0 : 1.0);
     path.target_world = {room.walk_centre_world.x(), room.walk_centre_world.y(), 0.8};
@@ -96,6 +119,10 @@ CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, 
     path.turn_sway = {{{sway(0.8 * kDegree_rad, 0.4, 0.6), sway(0.15 * kDegree_rad, 1.7, 2.0)},
                        {sway(0.8 * kDegree_rad, 0.4, 0.6), sway(0.15 * kDegree_rad, 1.7, 2.0)},
                        {sway(1.5 * kDegree_rad, 0.2, 0.3), sway(0.15 * kDegree_rad, 0.8, 1.0)}}};
+    if (path.walk_step_s > 0.0) {  // stairs and doorways leave less space
+      path.position_sway[2][0].amplitude *= 0.5;
+      path.centre_world.z() = room.walk_centre_world.z();
+    }
     return path;
   }
   if (kind == CameraPathKind::kSwing) {
@@ -144,10 +171,11 @@ double clearance_m(const Room& room, const CameraPath& path, double duration_s) 
 }  // namespace
 
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s) {
-  constexpr double kClearance_m = 0.52;  // 0.5 m plus 2 cm, more than samples can miss
+  // 0.5 m, or 0.4 m in the doorways of a walk, plus 2 cm, more than samples can miss.
+  const double clearance_wanted_m = kind == CameraPathKind::kScan && room.walk_step_s > 0.0 ? 0.42 : 0.52;
   CameraPath best;
   double best_clearance_m = -std::numeric_limits<double>::infinity();
-  for (std::uint64_t draw = 0; draw < 64 && best_clearance_m < kClearance_m; ++draw) {
+  for (std::uint64_t draw = 0; draw < 64 && best_clearance_m < clearance_wanted_m; ++draw) {
     const CameraPath path = draw_path(room, kind, seed, draw, duration_s);
     const double clear_m = clearance_m(room, path, duration_s);
     if (clear_m <= best_clearance_m) continue;
@@ -183,8 +211,11 @@ Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s) {
   Vector3d target_world = path.target_world;
   if (!path.walk.empty()) {
     constexpr double kAhead_m = 1.5;
-    const WalkPoint walker = walk_at(path, phase_rad);
+    const WalkPoint walker =
+        path.walk_step_s > 0.0 ? open_walk_at(path, t_s) : closed_walk_at(path, phase_rad);
     position_world.head<2>() = walker.position_m;
+    position_world.z() += walker.floor_m;
+    target_world.z() += walker.floor_m;
     target_world.head<2>() =
         walker.position_m + kAhead_m * Eigen::Vector2d(std::cos(walker.yaw_rad), std::sin(walker.yaw_rad));
   }

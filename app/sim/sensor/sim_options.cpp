@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "app/sim/building/building_walk.hpp"
 #include "app/sim/room/room.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -19,6 +20,7 @@ constexpr CameraPathKind kAllPaths[] = {CameraPathKind::kScan, CameraPathKind::k
 
 constexpr const char* kShutterRule = "a time in ms, 0 to 50";
 constexpr const char* kDelayRule = "a time in ms, -100 to 100";
+constexpr const char* kWalkRule = "ring, or a whole number, 0 to 9999";
 constexpr const char* kTurnRule = "degrees per second, 0 to 360";
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -48,11 +50,28 @@ Number number(std::string_view key, std::string_view value, const std::string& w
   return result;
 }
 
+void set_building_option(SimOptions& options, std::string_view key, std::string_view value) {
+  if (options.room != kBuildingRoom)
+    throw Error("sim: '" + std::string(key) +
+                "' is an option of sim:building only, not of sim:" + options.room);
+  if (key == "walk") {
+    options.walk = value == "ring" ? kRingWalk : number<int>(key, value, kWalkRule);
+    if (value != "ring" && options.walk < 0) refuse(key, value, kWalkRule);
+  } else if (key == "rooms") {
+    options.building.rooms = number<int>(key, value, "a whole number, 2 to 1000");
+  } else if (key == "floors") {
+    options.building.floors = number<int>(key, value, "a whole number, 1 to 10");
+  } else {
+    options.building.alike = number<int>(key, value, "an even number, 0 or more");
+  }
+}
+
 void set_option(SimOptions& options, std::string_view key, std::string_view value) {
   if (key == "seed") {
     options.seed = number<std::uint64_t>(key, value, "a whole number, 0 or more");
   } else if (key == "frames") {
     options.frames = number<std::int64_t>(key, value, "a whole number, 1 or more");
+    if (options.frames == 0 && options.room != kBuildingRoom) refuse(key, value, "a whole number, 1 or more");
   } else if (key == "rate") {
     options.rate_hz = number<double>(key, value, "frames per second, such as 30");
   } else if (key == "noise") {
@@ -98,12 +117,14 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
     options.timing.delay_s = 1e-3 * number<double>(key, value, kDelayRule);
   } else if (key == "exposure") {
     options.timing.exposure_s = 1e-3 * number<double>(key, value, kShutterRule);
+  } else if (key == "rooms" || key == "floors" || key == "alike" || key == "walk") {
+    set_building_option(options, key, value);
   } else if (key == "turn") {
     options.turn_dps = number<double>(key, value, kTurnRule);
   } else {
     throw Error("sim: no option is called '" + std::string(key) +
                 "'; known are: seed, frames, rate, path, moving, pace, noise, crate, faults, width, colour, "
-                "shutter, delay, exposure, turn");
+                "shutter, delay, exposure, turn; of sim:building also rooms, floors, alike, walk");
   }
 }
 
@@ -177,6 +198,7 @@ SimOptions parse_sim_spec(std::string_view spec) {
   const std::size_t question = std::min(spec.find('?'), spec.size());
   SimOptions options;
   options.room = std::string(spec.substr(0, question));
+  if (options.room == kBuildingRoom) options.frames = 0;
   if (question < spec.size())
     for (const std::string_view pair : split(spec.substr(question + 1), '&')) {
       const std::size_t equals = pair.find('=');
@@ -198,7 +220,14 @@ std::string sim_spec(const SimOptions& options) {
     separator = '&';
   };
   if (options.seed != defaults.seed) say("seed", std::to_string(options.seed));
-  if (options.frames != defaults.frames) say("frames", std::to_string(options.frames));
+  if (options.frames != (options.room == kBuildingRoom ? 0 : defaults.frames))
+    say("frames", std::to_string(options.frames));
+  if (options.building.rooms != defaults.building.rooms) say("rooms", std::to_string(options.building.rooms));
+  if (options.building.floors != defaults.building.floors)
+    say("floors", std::to_string(options.building.floors));
+  if (options.building.alike) say("alike", std::to_string(*options.building.alike));
+  if (options.walk != defaults.walk)
+    say("walk", options.walk == kRingWalk ? "ring" : std::to_string(options.walk));
   if (options.rate_hz != defaults.rate_hz) say("rate", format_number(options.rate_hz));
   if (options.path != defaults.path) say("path", std::string(to_string(options.path)));
   std::string moving;
@@ -223,7 +252,11 @@ std::string sim_spec(const SimOptions& options) {
 
 void require_valid(const SimOptions& options) {
   require_room(options.room);
-  if (options.frames < 1 || options.frames > 100'000'000)
+  require_valid(options.building);
+  if (options.walk != kRingWalk && (options.walk < 0 || options.walk > kLastWalk))
+    refuse("walk", std::to_string(options.walk), kWalkRule);
+  const bool whole_walk = options.room == kBuildingRoom && options.frames == 0;
+  if (!whole_walk && (options.frames < 1 || options.frames > 100'000'000))
     refuse("frames", std::to_string(options.frames), "a whole number, 1 to 100000000");
   if (!(options.rate_hz >= 0.1 && options.rate_hz <= 1000.0))
     refuse("rate", format_number(options.rate_hz), "frames per second, 0.1 to 1000");

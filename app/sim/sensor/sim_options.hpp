@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/sim/building/building_plan.hpp"
 #include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {
@@ -70,13 +71,18 @@ struct SimTiming {
 };
 
 struct SimOptions {
-  /// Name of the room: one of room_names(), kRandomRoom, kFlatRoom or kBoardRoom.
+  /// Name of the room: one of room_names(), kRandomRoom, kFlatRoom, kBuildingRoom or kBoardRoom.
   std::string room = "table";
-  /// Seed of the camera path, the phases of moving objects, the noise, and the furniture of a random room or
-  /// flat.
+  /// Seed of the camera path, the phases of moving objects, the noise, and the furniture of a random room,
+  /// flat or building.
   std::uint64_t seed = 1;
-  /// Number of frames, >= 1.
+  /// Number of frames, >= 1. Of the building, 0: as many as the whole walk takes; more frames than that are
+  /// not delivered.
   std::int64_t frames = 300;
+  /// Size of the building. All walks of a building of one seed and size have the same world.
+  BuildingSize building;
+  /// Walk through the building: 0 to kLastWalk, or kRingWalk. It also seeds the path's sway and the noise.
+  int walk = 0;
   /// Frames per second, > 0.
   double rate_hz = 30.0;
   CameraPathKind path = CameraPathKind::kScan;
@@ -106,7 +112,8 @@ struct SimOptions {
 ///   goes: after half of the frames), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
 ///   separate, none), faults (0, 1: the true cameras differ from those that frames declare), shutter (ms:
 ///   readout of depth and colour), delay (ms: colour after depth), exposure (ms: blur of colour), turn
-///   (degrees/s: the camera swings this fast).
+///   (degrees/s: the camera swings this fast); and for the building rooms, floors, alike (rooms that look
+///   like another one) and walk (a number or ring). The building's frames are by default its whole walk.
 /// @throws Error naming the key or value that is unknown or out of range, and the valid ones
 SimOptions parse_sim_spec(std::string_view spec);
 

@@ -6,7 +6,9 @@
 #include <functional>
 #include <future>
 
+#include "app/sim/building/building.hpp"
 #include "app/sim/room/room.hpp"
+#include "app/sim/room/room_parts.hpp"
 #include "app/sim/room/surface_appearance.hpp"
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/sensor/kinect_depth.hpp"
@@ -40,17 +42,21 @@ Rgb dimmed(Rgb colour, float factor) {
 struct SimulatedSource::State {
   explicit State(const SimOptions& chosen)
       : options(chosen),
-        room(make_room(chosen.room, chosen.crate == CrateKind::kStays, chosen.seed)),
+        noise_seed(chosen.room == kBuildingRoom
+                       ? hash_of(chosen.seed, 0x77616c6b, static_cast<std::uint64_t>(chosen.walk))
+                       : chosen.seed),
+        room(room_of(chosen)),
         room_look(room, finest_texel_m(chosen)) {
+    if (options.room == kBuildingRoom) cut_to_walk();
     const double duration_s = static_cast<double>(options.frames) / options.rate_hz;
-    path = plan_camera_path(room, options.path, options.seed, duration_s);
+    path = plan_camera_path(room, options.path, noise_seed, duration_s);
     add_turns(path, options.turn_dps);
     const Vector3d viewer_world =
-        plan_camera_path(room, CameraPathKind::kView, options.seed, duration_s).centre_world;
+        plan_camera_path(room, CameraPathKind::kView, noise_seed, duration_s).centre_world;
     std::vector<Material> materials;
     for (std::size_t i = 0; i < options.movers.size(); ++i) {
       moving.movers.push_back(
-          plan_mover(options.movers[i], room, viewer_world, options.seed, options.pace, duration_s));
+          plan_mover(options.movers[i], room, viewer_world, noise_seed, options.pace, duration_s));
       append_solids(moving.movers.back(), 0.0, solids);
       materials.insert(materials.end(), moving.movers.back().materials.begin(),
                        moving.movers.back().materials.end());
@@ -63,8 +69,7 @@ struct SimulatedSource::State {
       moving.mover_of_solid.push_back(static_cast<std::uint8_t>(options.movers.size() + 1));
     }
     moving.look.emplace(room, solids, materials, finest_texel_m(options));
-    for (const Material& material : room.materials) infrared.push_back(material.infrared);
-    for (const Material& material : materials) infrared.push_back(material.infrared);
+    for (const Material& material : materials) moving.infrared.push_back(material.infrared);
 
     colour.camera = options.depth_camera;
     if (!options.registered_colour) {
@@ -93,9 +98,47 @@ struct SimulatedSource::State {
   /// Returns 1.6 pixels' width at 1 m: cameras are hardly ever nearer.
   static double finest_texel_m(const SimOptions& options) { return 1.6 / options.depth_camera.fx_px; }
 
-  void place_solids(std::int64_t index) {
+  static Room room_of(const SimOptions& options) {
+    const bool crate = options.crate == CrateKind::kStays;
+    if (options.room != kBuildingRoom) return make_room(options.room, crate, options.seed);
+    const BuildingPlan plan = plan_building(options.seed, options.building);
+    return make_building(plan, options.walk, crate);
+  }
+
+  /// Ends the frames where the walk ends, at the latest.
+  void cut_to_walk() {
+    if (options.path != CameraPathKind::kScan) {
+      if (options.frames == 0) options.frames = SimOptions{}.frames;
+      return;
+    }
+    const double walk_s = static_cast<double>(room.walk.size() - 1) * room.walk_step_s;
+    const auto whole = static_cast<std::int64_t>(std::floor(walk_s * options.rate_hz)) + 1;
+    options.frames = options.frames == 0 ? whole : std::min(options.frames, whole);
+  }
+
+  /// Selects the solids of the room, or of the parts of the building that may be seen from the eye.
+  void choose_solids(const Vector3d& eye_world) {
+    solids.clear();
+    infrared.clear();
+    room_index.clear();
+    const auto add_range = [this](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        solids.push_back(room.solids[i]);
+        infrared.push_back(room.materials[i].infrared);
+        room_index.push_back(i);
+      }
+    };
+    if (room.parts.empty()) return add_range(0, room.solids.size());
+    for (const int part : visible_parts(room, eye_world)) {
+      const RoomPart& seen = room.parts[static_cast<std::size_t>(part)];
+      add_range(seen.solids_begin, seen.solids_end);
+    }
+  }
+
+  void place_solids(std::int64_t index, const Vector3d& eye_world) {
     const double t_s = static_cast<double>(index) / options.rate_hz;
-    solids.assign(room.solids.begin(), room.solids.end());
+    choose_solids(eye_world);
+    infrared.insert(infrared.end(), moving.infrared.begin(), moving.infrared.end());
     for (const Mover& mover : moving.movers) append_solids(mover, t_s, solids);
     if (crate_changes()) {
       const bool second_half = 2 * index >= options.frames;
@@ -103,7 +146,7 @@ struct SimulatedSource::State {
       solids.push_back(moving.crate);
       if (!moving.crate_is_there) solids.back().T_world_solid.pretranslate(Vector3d(0, 0, -kAway_m));
     }
-    moving.shadow.prepare(std::span<const Solid>(solids).subspan(room.solids.size()));
+    moving.shadow.prepare(std::span<const Solid>(solids).subspan(room_index.size()));
   }
   [[nodiscard]] bool crate_changes() const {
     return options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
@@ -132,6 +175,7 @@ struct SimulatedSource::State {
     std::vector<Mover> movers;
     std::optional<SurfaceAppearance> look;
     std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover index, for the solids after the room's
+    std::vector<float> infrared;               ///< of their materials
     Solid crate;                               ///< crate that appears or disappears, at its place
     bool crate_is_there = false;
     MoverShadow shadow;
@@ -144,15 +188,17 @@ struct SimulatedSource::State {
   };
 
   SimOptions options;
+  std::uint64_t noise_seed;  ///< of the path, the moving objects and the noise
   Room room;
   SurfaceAppearance room_look;
   CameraPath path;
   Moving moving;
-  std::vector<float> infrared;
   ColourCamera colour;
   DepthFaults depth_faults;
   std::int64_t next_index = 0;
-  std::vector<Solid> solids;  ///< the room's, then the movers', at the current frame's time
+  std::vector<Solid> solids;    ///< the room's that may be seen, then the movers', at the frame's time
+  std::vector<float> infrared;  ///< of the solids' materials
+  std::vector<std::size_t> room_index;  ///< of the room's solids in `solids`: their index in Room::solids
   Views views;
   SimTruth truth;
 };
@@ -175,7 +221,7 @@ void SimulatedSource::State::fill_truth() {
       const double crate_m = views.crate.depth_of(0, ray.x, ray.y);
       if (crate_m > 0.0 && (depth_m == 0.0F || crate_m < depth_m)) truth.revealed.pixels[i] = 255;
     }
-    const auto after_room = views.depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room.solids.size());
+    const auto after_room = views.depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room_index.size());
     if (after_room < 0) continue;
     // A crate that disappears counts as part of the room until then.
     if (options.crate == CrateKind::kGoes &&
@@ -203,14 +249,14 @@ void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView
       const double footprint_m = depth_m / (colour.camera.fx_px * cosine);
       Rgb& pixel = picture.at(x, y);
       const Eigen::Isometry3d& T_world_solid = solids[index].T_world_solid;
-      if (index < room.solids.size()) {
-        pixel = room_look.shade(index, p_solid, normal_solid, footprint_m, T_world_solid);
-        if (solids.size() > room.solids.size())
+      if (index < room_index.size()) {
+        pixel = room_look.shade(room_index[index], p_solid, normal_solid, footprint_m, T_world_solid);
+        if (solids.size() > room_index.size())
           pixel = dimmed(pixel, moving.shadow.factor(room, T_world_solid * p_solid,
                                                      T_world_solid.linear() * normal_solid));
       } else {
         pixel =
-            moving.look->shade(index - room.solids.size(), p_solid, normal_solid, footprint_m, T_world_solid);
+            moving.look->shade(index - room_index.size(), p_solid, normal_solid, footprint_m, T_world_solid);
       }
       if (noise_scale == 0.0F) continue;
       const std::uint64_t pixel_key = mixed(key + picture.index(x, y));
@@ -239,7 +285,7 @@ void SimulatedSource::State::fill_depth(std::int64_t index, const PoseAt& T_worl
       const Eigen::Isometry3d T_world_camera = T_world_camera_at(band.t_s);
       if (options.timing.shutter_s > 0.0) views.depth.prepare(solids, options.depth_camera, T_world_camera);
       measure_depth(solids, infrared, views.depth, views.depth_exact, options.depth_camera, T_world_camera,
-                    depth_faults, options.noise_scale, options.seed, index, band, views.scratch, depth_m);
+                    depth_faults, options.noise_scale, noise_seed, index, band, views.scratch, depth_m);
     }
     return;
   }
@@ -253,7 +299,7 @@ void SimulatedSource::State::fill_depth(std::int64_t index, const PoseAt& T_worl
 
 void SimulatedSource::State::fill_picture(std::int64_t index, const PoseAt& T_world_camera_at,
                                           ColourImage& picture) {
-  const std::uint64_t key = hash_of(options.seed, static_cast<std::uint64_t>(index), 0x636f6c);
+  const std::uint64_t key = hash_of(noise_seed, static_cast<std::uint64_t>(index), 0x636f6c);
   picture.resize(colour.camera.width_px, colour.camera.height_px);
   if (!is_colour_own_view()) {
     fill_colour(views.depth, views.depth_exact, key, {0, picture.height, 0.0}, picture);
@@ -279,7 +325,7 @@ void SimulatedSource::State::fill_picture(std::int64_t index, const PoseAt& T_wo
 }
 
 void SimulatedSource::State::render(std::int64_t index, const PoseAt& T_world_camera_at, Frame& frame) {
-  place_solids(index);
+  place_solids(index, T_world_camera_at(0.0).translation());
   std::future<void> picture;  // rendered beside depth
   const auto take_picture = [&] {
     picture = std::async(std::launch::async, [&] { fill_picture(index, T_world_camera_at, frame.colour); });

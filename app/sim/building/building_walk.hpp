@@ -1,0 +1,30 @@
+// building_walk.hpp: walks through a building, each one recording.
+#pragma once
+#include <vector>
+
+#include "app/sim/building/building_plan.hpp"
+#include "app/sim/room/room.hpp"
+
+namespace roomradar {
+
+/// The walk round the corridors, back to its start. Other walks are 0 to kLastWalk.
+inline constexpr int kRingWalk = -1;
+inline constexpr int kLastWalk = 9999;
+/// Time between two points of a walk, and mean height of the camera above the floor.
+inline constexpr double kWalkStep_s = 1.0, kEyeHeight_m = 1.45;
+
+/// Returns the numbers of the rooms that a walk visits, in its order; none on kRingWalk. Walks 0 to
+/// covering_walks() - 1 visit all rooms, each shares a room with the next one that is no stair walk; a stair
+/// walk leads from one floor to the next. Later walks begin anywhere.
+std::vector<int> rooms_of_walk(const BuildingPlan& plan, int walk);
+/// Returns the number of walks that together visit all rooms: about half as many as there are rooms.
+int covering_walks(const BuildingPlan& plan);
+
+/// Returns the points of a walk, one per kWalkStep_s: round each room, facing its middle, and along the
+/// corridors and stairs between them, looking to the left and right. Max speed 0.42 m/s, max turn 24
+/// degrees/s. kRingWalk goes round one or several blocks of rooms: 200 m if the building has that. Without
+/// two corridors it goes up one stairwell and down the other one; on a single floor, to the corridor's end
+/// and back.
+std::vector<WalkPoint> plan_walk(const BuildingPlan& plan, int walk);
+
+}  // namespace roomradar

@@ -1,0 +1,41 @@
+// building_walls.hpp: walls with openings, and the floor, ceiling and walls of a corridor's piece.
+#pragma once
+#include <vector>
+
+#include "app/sim/building/building_plan.hpp"
+#include "app/sim/room/room.hpp"
+
+namespace roomradar {
+
+/// An opening in a wall, from its foot up.
+struct WallOpening {
+  double from_m = 0.0, to_m = 0.0;  ///< along the wall's x axis
+  double high_m = 0.0;
+};
+
+/// Materials of a wall: a dado of height kDado_m below, paint above.
+struct WallPaint {
+  Material dado, upper;
+};
+inline constexpr double kDado_m = 1.1;
+
+/// Adds a wall of thickness kShellThickness_m. Its frame has its foot's inner edge as x axis, to the right as
+/// seen from inside, and -y into the room.
+/// @param openings  without overlap, at least kDado_m high
+void add_wall(Room& room, const Eigen::Isometry3d& T_world_wall, double from_m, double to_m, double height_m,
+              std::vector<WallOpening> openings, const WallPaint& paint);
+
+/// Returns true if there is an opening on this floor: upper floors may lack the last room.
+bool is_open_on(const BuildingPlan& plan, const PieceOpening& opening, int floor);
+
+/// Frame of a wall of a corridor's piece, as in add_wall(), with the origin at the side's middle.
+Eigen::Isometry3d T_world_side(const CorridorPiece& piece, unsigned side, int floor);
+
+/// Returns an opening in the frame of its side's wall.
+WallOpening opening_in_side(const CorridorPiece& piece, const PieceOpening& opening);
+
+/// Adds floor, ceiling and walls of a corridor's piece.
+void add_piece_shell(Room& room, const BuildingPlan& plan, const CorridorPiece& piece, int floor,
+                     const Material& ground, const Material& ceiling, const WallPaint& paint);
+
+}  // namespace roomradar
