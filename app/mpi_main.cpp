@@ -1,4 +1,5 @@
-// mpi_main.cpp: roomradar-mpi: runs the jobs of `roomradar farm` on all ranks of an MPI program.
+// mpi_main.cpp: roomradar-mpi: runs the jobs of `roomradar farm` and `roomradar building` on all ranks of an
+// MPI program.
 #include <mpi.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/building/building_command.hpp"
 #include "app/commands/farm_command.hpp"
 #include "app/farm/mpi_farm.hpp"
 #include "mapping/types/system/error.hpp"
@@ -47,11 +49,34 @@ int run_on_rank(const FarmOptions& options, int rank) {
   return 0;
 }
 
+/// Executes `building` on this rank: rank 0 decides, all do the jobs of each stage. Returns the exit status.
+int run_on_rank(const BuildingOptions& options, int rank) {
+  if (rank != 0) {
+    while (const std::optional<FarmPlan> plan = share_plan(nullptr))
+      (void)run_farm_on_ranks(*plan, roomradar_program());
+    return 0;
+  }
+  int status = 1;
+  std::exception_ptr fault;
+  try {
+    (void)roomradar_program();
+    status = run_building(options, [](const std::string& /*stage*/, const FarmPlan& plan) {
+      return run_farm_on_ranks(*share_plan(&plan), roomradar_program());
+    });
+  } catch (const std::exception&) {
+    fault = std::current_exception();
+  }
+  (void)share_plan(nullptr);  // the end
+  if (fault) std::rethrow_exception(fault);
+  return status;
+}
+
 int run_command_line(int argc, char** argv, int rank) {
   CLI::App app(
-      "roomradar-mpi: the jobs of `roomradar farm` on the ranks of an MPI program, for example\n"
+      "roomradar-mpi: the jobs of `roomradar farm` or `roomradar building` on the ranks of an MPI\n"
+      "program, for example\n"
       "  mpirun -n 8 roomradar-mpi farm rooms.txt --out results\n"
-      "  srun roomradar-mpi farm rooms.txt --out results\n"
+      "  srun roomradar-mpi building office --recordings office.txt\n"
       "Exit status: 0 done, 1 a job failed, 2 wrong usage.",
       "roomradar-mpi");
   app.set_version_flag("--version", kVersion);
@@ -59,9 +84,13 @@ int run_command_line(int argc, char** argv, int rank) {
   CLI::App& farm = *app.add_subcommand("farm", "run a list of commands as jobs; see `roomradar help farm`");
   FarmOptions options;
   add_options(farm, options);
+  CLI::App& building =
+      *app.add_subcommand("building", "make one map of a building; see `roomradar help building`");
+  BuildingOptions building_options;
+  add_options(building, building_options);
   try {
     app.parse(argc, argv);
-    if (options.processes > 0)
+    if (options.processes > 0 || building_options.processes > 0)
       throw CLI::ValidationError("--processes: the number of jobs at a time is that of the ranks");
     if (options.emit) throw CLI::ValidationError("--emit: use `roomradar farm --emit`");
   } catch (const CLI::ParseError& error) {
@@ -69,7 +98,7 @@ int run_command_line(int argc, char** argv, int rank) {
     if (rank == 0) app.exit(error);
     return is_wrong ? 2 : 0;
   }
-  return run_on_rank(options, rank);
+  return building.parsed() ? run_on_rank(building_options, rank) : run_on_rank(options, rank);
 }
 
 }  // namespace

@@ -40,14 +40,23 @@ int rank_of_this() {
 
 void rest() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
 
+/// Sends bytes from rank 0 to all. A rank that waits for them leaves its processor to others.
+void broadcast(void* bytes, std::uint64_t count) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibcast(bytes, static_cast<int>(count), MPI_BYTE, 0, MPI_COMM_WORLD, &request);
+  for (int is_done = 0;; rest()) {
+    MPI_Test(&request, &is_done, MPI_STATUS_IGNORE);
+    if (is_done != 0) return;
+  }
+}
+
 /// Sends text of any length from rank 0 to all.
 void broadcast(std::string& text) {
   std::uint64_t size = text.size();
-  MPI_Bcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+  broadcast(&size, sizeof size);
   text.resize(size);
   constexpr std::uint64_t kMost = 1U << 30U;  // MPI counts in int
-  for (std::uint64_t at = 0; at < size; at += kMost)
-    MPI_Bcast(text.data() + at, static_cast<int>(std::min(kMost, size - at)), MPI_BYTE, 0, MPI_COMM_WORLD);
+  for (std::uint64_t at = 0; at < size; at += kMost) broadcast(text.data() + at, std::min(kMost, size - at));
 }
 
 EndedJob ended(std::size_t job, const JobResult& result) {
