@@ -138,7 +138,7 @@ TEST(BuildingInfo, IsReadAsWrittenAndRefusedIfDamaged) {
   refused("tiles/-3_0_0.x", "../../etc/passwd");
   refused("tiles/-3_0_0.x", "/etc/passwd");
   refused("aaaa", "zzzz");
-  refused("\"-3_0_0\"", "\"9_0_0\"");  // out of order
+  refused("\"-3_0_0\"", "\"9_9_9\"");  // out of order
   refused("\"resolution_m\": 0.01", "\"resolution_m\": -1");
   refused("\"tiles\"", "\"other\"");
   refused("{", "");
