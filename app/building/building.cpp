@@ -214,13 +214,13 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
 
   // Tiles.
   require_all(stage("fuse", fuse_stage(work, placed_names)));
-  const auto parts_of = parts_by_tile(work, placed_names);
+  const PartsByTile parts_of = parts_by_tile(work, placed_names);
   const StageCounts tiled = stage("tile", tile_stage(work, parts_of));
   require_all(tiled);
   result.info.grid = work.grid;
   make_folder(work.folder / kTilesFolder);
   make_folder(work.folder / kRecordingsFolder);
-  for (const auto& [name, recordings] : parts_of) {
+  for (const auto& [name, parts] : parts_of) {
     const json facts =
         json::parse(read_bytes(work.job(tile_job(tile_of_name(name))) / "tile.json", "a tile's numbers"));
     if (facts.at("triangles").get<std::int64_t>() > 0)

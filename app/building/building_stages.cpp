@@ -2,6 +2,7 @@
 #include "app/building/building_stages.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -118,14 +119,12 @@ Manifest fuse_stage(const BuildingWork& work, const std::vector<std::string>& re
   return written(work, "fuse", lines);
 }
 
-Manifest tile_stage(const BuildingWork& work,
-                    const std::map<std::string, std::vector<std::string>>& parts_of) {
+Manifest tile_stage(const BuildingWork& work, const PartsByTile& parts_of) {
   Lines lines;
-  for (const auto& [tile, recordings] : parts_of) {
+  for (const auto& [tile, parts] : parts_of) {
     begin_step(lines, tile_job(tile_of_name(tile)), "tile");
     lines.word("--tile=" + tile);
-    for (const std::string& recording : recordings)
-      lines.word(fuse_job(recording) + "/parts/" + tile + ".octree");
+    for (const std::string& part : parts) lines.word(part);
     add_grid(lines, work.grid);
     lines.word("--deviation=" + format_number(work.deviation_m));
     lines.word("--out={}");
@@ -134,12 +133,20 @@ Manifest tile_stage(const BuildingWork& work,
   return written(work, "tile", lines);
 }
 
-std::map<std::string, std::vector<std::string>> parts_by_tile(const BuildingWork& work,
-                                                              const std::vector<std::string>& recordings) {
-  std::map<std::string, std::vector<std::string>> parts_of;
+PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::string>& recordings) {
+  PartsByTile parts_of;
+  std::set<std::string> with_surface;
   for (const std::string& recording : recordings)
-    for (const fs::directory_entry& file : fs::directory_iterator(work.job(fuse_job(recording)) / "parts"))
-      if (file.path().extension() == ".octree") parts_of[file.path().stem().string()].push_back(recording);
+    for (const std::string folder : {"parts", "margins"}) {
+      const std::string relative = fuse_job(recording) + "/" + folder;
+      for (const fs::directory_entry& file : fs::directory_iterator(work.jobs() / relative)) {
+        const std::string tile = file.path().stem().string();
+        if (file.path().extension() != ".octree") continue;
+        if (folder == "parts") with_surface.insert(tile);
+        parts_of[tile].push_back(relative + "/" + file.path().filename().string());
+      }
+    }
+  std::erase_if(parts_of, [&](const auto& entry) { return !with_surface.contains(entry.first); });
   return parts_of;
 }
 

@@ -38,6 +38,11 @@ inline std::string join_job(const std::string& a, const std::string& b) { return
 inline std::string tile_job(const TileIndex& tile) { return "tile-" + name_of(tile); }
 inline constexpr const char* kRetrieveJob = "pairs";  // no folder may have the name of a step
 
+/// The files to be added for each tile, by its name; relative to the folder of jobs, in order.
+using PartsByTile = std::map<std::string, std::vector<std::string>>;
+/// Finds the parts that the recordings' fuse jobs wrote, of all tiles in which at least one has surface.
+PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::string>& recordings);
+
 // Each function writes a stage's manifest to the folder of jobs and returns it. Throws Error if that fails.
 
 /// A job per recording.
@@ -49,12 +54,7 @@ Manifest join_stage(const BuildingWork& work, const std::vector<std::string>& re
                     const std::vector<RetrievedPair>& pairs);
 /// A job per recording that has a place in the building.
 Manifest fuse_stage(const BuildingWork& work, const std::vector<std::string>& recordings);
-/// A job per tile, of the parts of these recordings, in order.
-Manifest tile_stage(const BuildingWork& work,
-                    const std::map<std::string, std::vector<std::string>>& parts_of);
-
-/// Returns, by the tile's name, the recordings whose folders of parts have the tile.
-std::map<std::string, std::vector<std::string>> parts_by_tile(const BuildingWork& work,
-                                                              const std::vector<std::string>& recordings);
+/// A job per tile, of these parts.
+Manifest tile_stage(const BuildingWork& work, const PartsByTile& parts_of);
 
 }  // namespace roomradar

@@ -157,16 +157,18 @@ int run(const FuseStep& step) {
   const std::vector<TimedPose> trajectory = corrected_trajectory(submap, placed);
   const std::unique_ptr<FrameSource> source = open_source(step.source, {});
   const StaticMap map = fused(*source, submap, trajectory, step);
-  const fs::path folder = step.out / "parts";
-  make_folder(folder);
-  const std::vector<TileIndex> tiles = tiles_of(map, step.grid, kSurfaceReach_voxels);
-  for (const TileIndex& tile : tiles) {
+  constexpr int kCell_voxels = 4;  // a triangle in a tile's cube has its samples at most this far outside
+  const std::vector<TileIndex> own = tiles_of(map, step.grid, kCell_voxels);
+  const std::vector<TileIndex> all = tiles_of(map, step.grid, kSurfaceReach_voxels);
+  for (const char* folder : {"parts", "margins"}) make_folder(step.out / folder);
+  for (const TileIndex& tile : all) {
+    const bool is_own = std::binary_search(own.begin(), own.end(), tile, is_before);
     StaticMap part(step.grid.resolution_m);
     part.add_evidence(map, lowest_voxel(step.grid, tile) - VoxelIndex::Constant(kSurfaceReach_voxels),
                       step.grid.edge_voxels + 2 * kSurfaceReach_voxels);
-    part.write(folder / (name_of(tile) + ".octree"));
+    part.write(step.out / (is_own ? "parts" : "margins") / (name_of(tile) + ".octree"));
   }
-  std::printf("%s: %zu frames, parts of %zu tiles\n", submap.source.c_str(), trajectory.size(), tiles.size());
+  std::printf("%s: %zu frames, surface in %zu tiles\n", submap.source.c_str(), trajectory.size(), own.size());
   return 0;
 }
 

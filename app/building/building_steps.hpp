@@ -36,7 +36,8 @@ struct JoinStep {
 int run(const JoinStep& step);
 
 /// Fuses a recording's frames with its poses in the building, and splits the octree. Writes
-/// out/parts/TILE.octree for each tile, with a margin of kSurfaceReach_voxels.
+/// out/parts/TILE.octree for each tile in which the recording has surface, with a margin of
+/// kSurfaceReach_voxels, and out/margins/TILE.octree for each tile in whose margin only it has surface.
 struct FuseStep {
   std::string source;
   std::filesystem::path submap;  ///< folder
