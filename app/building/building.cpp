@@ -51,15 +51,15 @@ void require_all(const StageCounts& counts) {
               counts.faults.front() + "; the same command tries them again");
 }
 
-std::vector<GraphSubmap> graph_submaps(const BuildingWork& work, const std::vector<std::string>& recordings,
+std::vector<GraphSubmap> graph_submaps(const BuildingWork& work, const std::vector<SubmapName>& names,
                                        const std::vector<Submap>& submaps) {
   std::vector<GraphSubmap> graph(submaps.size());
   for (std::size_t i = 0; i < submaps.size(); ++i) {
     for (const MapKeyframe& keyframe : submaps[i].keyframes.keyframes)
       graph[i].T_submap_keyframe.push_back(keyframe.T_world_camera);
     std::error_code ignored;
-    if (fs::exists(work.placed(recordings[i]), ignored)) try {
-        graph[i].T_building_keyframe = load_placed_keyframes(work.placed(recordings[i]));
+    if (fs::exists(work.placed(names[i]), ignored)) try {
+        graph[i].T_building_keyframe = load_placed_keyframes(work.placed(names[i]));
       } catch (const Error&) {
         graph[i].T_building_keyframe.clear();  // damaged: placed once more
       }
@@ -154,14 +154,17 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
 
   // Each recording alone. Those that cannot be tracked are left out.
   const StageCounts tracked = stage("track", track_stage(work));
-  std::vector<std::string> names;
+  std::vector<SubmapName> names;
   std::vector<Submap> submaps;  // without features
   for (const ListedRecording& recording : work.recordings) {
     if (failed.contains(track_job(recording.name))) continue;
-    names.push_back(recording.name);
-    submaps.push_back(load_submap_poses(work.job(track_job(recording.name))));
+    for (const SubmapName& name : submaps_of(work, recording.name)) {
+      names.push_back(name);
+      submaps.push_back(load_submap_poses(work.jobs() / name.folder()));
+    }
   }
-  show(sentence_of(tracked, std::to_string(names.size()) + " recordings"));
+  show(sentence_of(tracked, std::to_string(work.recordings.size()) + " recordings, " +
+                                std::to_string(names.size()) + " parts"));
   if (names.empty()) require_all(tracked);
 
   // Pairs that meet.
@@ -178,7 +181,7 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   show(sentence_of(
       joined, std::to_string(pairs.size()) + " pairs may meet, " + std::to_string(joins.size()) + " joins"));
 
-  // All recordings in one world. The largest connected part is the building.
+  // All submaps in one world. The connected part with the most frames is the building.
   const BuildingGraph graph = solve_building(graph_submaps(work, names, submaps), joins);
   std::size_t at = 0;
   for (JoinedPair& pair : result.joins) {
@@ -186,21 +189,24 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
     pair.is_used = graph.is_used[at];
     pair.off_m = graph.off_m[at++];
   }
-  std::vector<std::size_t> size_of_part(graph.parts, 0);
-  for (const PlacedSubmap& placed : graph.submaps) ++size_of_part[placed.part];
+  std::vector<std::size_t> frames_of_part(graph.parts, 0);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    frames_of_part[graph.submaps[i].part] += submaps[i].trajectory.size();
   const auto building_part = static_cast<std::size_t>(
-      std::max_element(size_of_part.begin(), size_of_part.end()) - size_of_part.begin());
-  std::vector<std::string> placed_names;
+      std::max_element(frames_of_part.begin(), frames_of_part.end()) - frames_of_part.begin());
+  std::vector<SubmapName> placed_names;
   std::vector<Submap> placed_submaps;
   std::vector<std::vector<TimedPose>> trajectories;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const PlacedSubmap& placed = graph.submaps[i];
-    const bool is_placed = placed.part == building_part;
-    result.info.recordings.push_back({names[i], submaps[i].source, submaps[i].frames_read,
-                                      static_cast<std::int64_t>(submaps[i].trajectory.size()),
-                                      static_cast<std::int64_t>(submaps[i].keyframes.keyframes.size()),
-                                      is_placed});
-    if (!is_placed) continue;
+    if (result.info.recordings.empty() || result.info.recordings.back().name != names[i].recording)
+      result.info.recordings.push_back({names[i].recording, submaps[i].source, submaps[i].frames_read});
+    BuildingRecording& recording = result.info.recordings.back();
+    const auto frames = static_cast<std::int64_t>(submaps[i].trajectory.size());
+    recording.frames_tracked += frames;
+    recording.keyframes += static_cast<std::int64_t>(submaps[i].keyframes.keyframes.size());
+    if (placed.part != building_part) continue;
+    recording.frames_placed += frames;
     result.kept += placed.was_kept ? 1 : 0;
     save_placed_keyframes(placed.T_building_keyframe, work.placed(names[i]));
     placed_names.push_back(names[i]);
@@ -209,12 +215,16 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   }
   result.recorded_error = recorded_error(placed_submaps, trajectories);
   show("place: " + std::to_string(placed_names.size()) + " of " + std::to_string(names.size()) +
-       " recordings hang together, " +
-       std::to_string(std::count(graph.is_used.begin(), graph.is_used.end(), true)) + " joins agree");
+       " parts hang together, " +
+       std::to_string(std::count(graph.is_used.begin(), graph.is_used.end(), true)) + " of " +
+       std::to_string(joins.size()) + " joins agree");
 
   // Tiles.
   require_all(stage("fuse", fuse_stage(work, placed_names)));
-  const PartsByTile parts_of = parts_by_tile(work, placed_names);
+  std::vector<std::string> fused;
+  for (const SubmapName& name : placed_names)
+    if (fused.empty() || fused.back() != name.recording) fused.push_back(name.recording);
+  const PartsByTile parts_of = parts_by_tile(work, fused);
   const StageCounts tiled = stage("tile", tile_stage(work, parts_of));
   require_all(tiled);
   result.info.grid = work.grid;
@@ -228,9 +238,13 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   }
   std::sort(result.info.tiles.begin(), result.info.tiles.end(),
             [](const BuildingTile& a, const BuildingTile& b) { return is_before(a.index, b.index); });
-  for (std::size_t i = 0; i < placed_names.size(); ++i)
-    write_trajectory(work.folder / kRecordingsFolder / (placed_names[i] + ".trajectory.txt"),
-                     trajectories[i]);
+  for (const std::string& recording : fused) {
+    std::vector<TimedPose> trajectory;
+    for (std::size_t i = 0; i < placed_names.size(); ++i)
+      if (placed_names[i].recording == recording)
+        trajectory.insert(trajectory.end(), trajectories[i].begin(), trajectories[i].end());
+    write_trajectory(work.folder / kRecordingsFolder / (recording + ".trajectory.txt"), trajectory);
+  }
   write_tileset(result.info, work.folder);
   write_building(result.info, work.folder);
   delete_others(result.info, work.folder);

@@ -28,7 +28,7 @@ struct StageCounts {
 };
 
 struct JoinedPair {
-  std::string a, b;  ///< recordings
+  SubmapName a, b;
   SubmapJoin join;
   bool is_used = false;  ///< false: contradicts other joins, or was refused before
   double off_m = 0.0;    ///< from the solution
@@ -38,7 +38,7 @@ struct BuildingResult {
   BuildingInfo info;
   std::vector<StageCounts> stages;
   std::vector<JoinedPair> joins;
-  std::size_t kept = 0;  ///< recordings whose poses did not change since the last time
+  std::size_t kept = 0;  ///< submaps whose poses did not change since the last time
   /// Error of all placed frames' positions against recorded poses, after one rigid alignment of the whole;
   /// no poses if the recordings state none. The recorded poses must be in one world.
   TrajectoryError recorded_error;

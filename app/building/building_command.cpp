@@ -50,8 +50,8 @@ json stages_json(const BuildingResult& result) {
 json joins_json(const BuildingResult& result) {
   json joins = json::array();
   for (const JoinedPair& pair : result.joins)
-    joins.push_back({{"a", pair.a},
-                     {"b", pair.b},
+    joins.push_back({{"a", pair.a.name()},
+                     {"b", pair.b.name()},
                      {"outcome", describe(pair.join)},
                      {"is_joined", pair.join.status == JoinStatus::kJoined},
                      {"is_used", pair.is_used},
@@ -73,12 +73,17 @@ void print_summary(const BuildingOptions& options, const BuildingResult& result)
   }
   std::printf("%s: %zu tiles, %lld triangles, %.1f MB\n", options.folder.c_str(), result.info.tiles.size(),
               static_cast<long long>(triangles), 1e-6 * static_cast<double>(bytes));
-  for (const BuildingRecording& one : result.info.recordings)
-    if (!one.is_placed)
-      std::printf(
-          "  %s: not in it, since no other recording shows a place of this one for certain; record a "
-          "walk that joins it\n",
-          one.name.c_str());
+  for (const BuildingRecording& one : result.info.recordings) {
+    if (one.frames_placed == one.frames_tracked) continue;
+    const std::string which =
+        one.frames_placed == 0
+            ? std::string("not in it")
+            : std::to_string(one.frames_tracked - one.frames_placed) + " of its frames are not in it";
+    std::printf(
+        "  %s: %s, since no other recording shows a place of these for certain; record a walk that joins "
+        "them\n",
+        one.name.c_str(), which.c_str());
+  }
   if (result.recorded_error.poses > 0)
     std::printf("positions against the recorded ones: RMSE %.1f mm, at most %.1f mm\n",
                 1e3 * result.recorded_error.rmse_m, 1e3 * result.recorded_error.max_m);
@@ -134,7 +139,7 @@ int run_building(const BuildingOptions& options, const RunStage& run_stage) {
                           {"frames_read", one.frames_read},
                           {"frames_tracked", one.frames_tracked},
                           {"keyframes", one.keyframes},
-                          {"is_placed", one.is_placed}});
+                          {"frames_placed", one.frames_placed}});
   report.results = {{"jobs", stages_json(result)},
                     {"joins", joins_json(result)},
                     {"recordings", recordings},
@@ -160,7 +165,7 @@ int run(const BuildingOptions& options) {
     const auto waiting = static_cast<std::int64_t>(Schedule(plan).count(JobState::kWaiting));
     Progress progress(stage, waiting);
     return run_farm(
-        plan, processes, fs::read_symlink("/proc/self/exe"), Interrupt::was_pressed,
+        plan, processes, "/proc/self/exe", Interrupt::was_pressed,
         [&](const FarmState& /*state*/, std::size_t job) { progress.step(plan.manifest.jobs[job].name); });
   });
 }
@@ -202,7 +207,7 @@ void add_building_steps(CLI::App& app, std::function<int()>& work) {
   });
   add_step<FuseStep>(steps, "fuse", "fuse one recording", work, [](CLI::App& command, FuseStep& step) {
     command.add_option("SOURCE", step.source)->required();
-    command.add_option("--submap", step.submap)->required();
+    command.add_option("--submap", step.submaps)->required();
     command.add_option("--placed", step.placed)->required();
     command.add_flag_callback("--keep-ghosts", [&step] { step.remove_ghosts = false; });
     add_grid(command, step.grid);

@@ -81,22 +81,22 @@ Manifest track_stage(const BuildingWork& work) {
   return written(work, "track", lines);
 }
 
-Manifest retrieve_stage(const BuildingWork& work, const std::vector<std::string>& recordings) {
+Manifest retrieve_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps) {
   Lines lines;
   begin_step(lines, kRetrieveJob, "retrieve");
-  for (const std::string& recording : recordings) lines.word(track_job(recording));
+  for (const SubmapName& submap : submaps) lines.word(submap.folder());
   lines.word("--out={}");
   lines.end();
   return written(work, "retrieve", lines);
 }
 
-Manifest join_stage(const BuildingWork& work, const std::vector<std::string>& recordings,
+Manifest join_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps,
                     const std::vector<RetrievedPair>& pairs) {
   Lines lines;
   for (const RetrievedPair& pair : pairs) {
-    begin_step(lines, join_job(recordings[pair.a], recordings[pair.b]), "join");
-    lines.word(track_job(recordings[pair.a]));
-    lines.word(track_job(recordings[pair.b]));
+    begin_step(lines, join_job(submaps[pair.a], submaps[pair.b]), "join");
+    lines.word(submaps[pair.a].folder());
+    lines.word(submaps[pair.b].folder());
     lines.word("--keyframes=" + pair.keyframes);
     lines.word("--out={}");
     lines.end();
@@ -104,19 +104,31 @@ Manifest join_stage(const BuildingWork& work, const std::vector<std::string>& re
   return written(work, "join", lines);
 }
 
-Manifest fuse_stage(const BuildingWork& work, const std::vector<std::string>& recordings) {
+Manifest fuse_stage(const BuildingWork& work, const std::vector<SubmapName>& placed) {
+  std::map<std::string, std::vector<SubmapName>> by_recording;
+  for (const SubmapName& submap : placed) by_recording[submap.recording].push_back(submap);
   Lines lines;
-  for (const std::string& recording : recordings) {
+  for (const auto& [recording, submaps] : by_recording) {
     begin_step(lines, fuse_job(recording), "fuse");
     lines.literal(source_word(work, recording));
-    lines.word("--submap=" + track_job(recording));
-    lines.word("--placed=" + work.placed(recording).filename().string());
+    for (const SubmapName& submap : submaps) {
+      lines.word("--submap=" + submap.folder());
+      lines.word("--placed=" + work.placed(submap).filename().string());
+    }
     add_grid(lines, work.grid);
     if (work.poses == PoseOrigin::kRecorded) lines.word("--keep-ghosts");
     lines.word("--out={}");
     lines.end();
   }
   return written(work, "fuse", lines);
+}
+
+std::vector<SubmapName> submaps_of(const BuildingWork& work, const std::string& recording) {
+  std::vector<SubmapName> submaps;
+  std::error_code ignored;
+  for (SubmapName next{recording, 0}; fs::is_directory(work.jobs() / next.folder(), ignored); ++next.part)
+    submaps.push_back(next);
+  return submaps;
 }
 
 Manifest tile_stage(const BuildingWork& work, const PartsByTile& parts_of) {

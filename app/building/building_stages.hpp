@@ -14,6 +14,15 @@
 
 namespace roomradar {
 
+/// A part of a recording; see TrackStep.
+struct SubmapName {
+  std::string recording;
+  int part = 0;
+  [[nodiscard]] std::string name() const { return recording + "." + std::to_string(part); }
+  /// Folder relative to that of jobs.
+  [[nodiscard]] std::string folder() const { return "track-" + recording + "/" + std::to_string(part); }
+};
+
 /// Folders and settings of a building in the making.
 struct BuildingWork {
   std::filesystem::path folder;             ///< of the building, absolute
@@ -26,17 +35,22 @@ struct BuildingWork {
   /// Folder with a folder per job.
   [[nodiscard]] std::filesystem::path jobs() const { return folder / "work"; }
   [[nodiscard]] std::filesystem::path job(const std::string& name) const { return jobs() / name; }
-  /// File with the keyframes' poses of a recording in the building.
-  [[nodiscard]] std::filesystem::path placed(const std::string& recording) const {
-    return jobs() / ("placed-" + recording + ".bin");
+  /// File with the keyframes' poses of a submap in the building.
+  [[nodiscard]] std::filesystem::path placed(const SubmapName& submap) const {
+    return jobs() / ("placed-" + submap.name() + ".bin");
   }
 };
 
 inline std::string track_job(const std::string& recording) { return "track-" + recording; }
 inline std::string fuse_job(const std::string& recording) { return "fuse-" + recording; }
-inline std::string join_job(const std::string& a, const std::string& b) { return "join-" + a + "-" + b; }
+inline std::string join_job(const SubmapName& a, const SubmapName& b) {
+  return "join-" + a.name() + "-" + b.name();
+}
 inline std::string tile_job(const TileIndex& tile) { return "tile-" + name_of(tile); }
 inline constexpr const char* kRetrieveJob = "pairs";  // no folder may have the name of a step
+
+/// Returns the submaps of a recording that was tracked, in order of time.
+std::vector<SubmapName> submaps_of(const BuildingWork& work, const std::string& recording);
 
 /// The files to be added for each tile, by its name; relative to the folder of jobs, in order.
 using PartsByTile = std::map<std::string, std::vector<std::string>>;
@@ -47,13 +61,13 @@ PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::strin
 
 /// A job per recording.
 Manifest track_stage(const BuildingWork& work);
-/// One job, which reads the submaps of `recordings`.
-Manifest retrieve_stage(const BuildingWork& work, const std::vector<std::string>& recordings);
-/// A job per pair. RetrievedPair counts in `recordings`.
-Manifest join_stage(const BuildingWork& work, const std::vector<std::string>& recordings,
+/// One job, which reads all submaps.
+Manifest retrieve_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps);
+/// A job per pair. RetrievedPair counts in `submaps`.
+Manifest join_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps,
                     const std::vector<RetrievedPair>& pairs);
-/// A job per recording that has a place in the building.
-Manifest fuse_stage(const BuildingWork& work, const std::vector<std::string>& recordings);
+/// A job per recording, of those of its submaps that have a place in the building.
+Manifest fuse_stage(const BuildingWork& work, const std::vector<SubmapName>& placed);
 /// A job per tile, of these parts.
 Manifest tile_stage(const BuildingWork& work, const PartsByTile& parts_of);
 

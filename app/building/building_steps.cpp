@@ -99,10 +99,17 @@ int run(const TrackStep& step) {
   std::stable_sort(submap.keyframes.keyframes.begin(), submap.keyframes.keyframes.end(),
                    [](const MapKeyframe& a, const MapKeyframe& b) { return a.frame_index < b.frame_index; });
   submap.keyframes.index = {};
-  save_submap(submap, step.out);
-  std::printf("%s: %zu of %lld frames tracked, %zu keyframes\n", submap.source.c_str(),
+  constexpr std::int64_t kMaxGap = 3;
+  constexpr std::size_t kMinFrames = 10;
+  const std::vector<Submap> parts = split_at_losses(submap, kMaxGap, kMinFrames);
+  if (parts.empty()) throw Error(source->name() + ": tracking was lost again and again; move more slowly");
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    make_folder(step.out / std::to_string(i));
+    save_submap(parts[i], step.out / std::to_string(i));
+  }
+  std::printf("%s: %zu of %lld frames tracked, %zu keyframes, %zu parts\n", submap.source.c_str(),
               submap.trajectory.size(), static_cast<long long>(submap.frames_read),
-              submap.keyframes.keyframes.size());
+              submap.keyframes.keyframes.size(), parts.size());
   return 0;
 }
 
@@ -150,11 +157,20 @@ int run(const JoinStep& step) {
 
 int run(const FuseStep& step) {
   require_valid(step.grid);
-  const Submap submap = load_submap_poses(step.submap);
-  const std::vector<Eigen::Isometry3d> placed = load_placed_keyframes(step.placed);
-  if (placed.size() != submap.keyframes.keyframes.size())
-    throw Error(step.placed.string() + ": has poses of another recording");
-  const std::vector<TimedPose> trajectory = corrected_trajectory(submap, placed);
+  if (step.submaps.size() != step.placed.size()) throw Error("as many files of poses as submaps are needed");
+  Submap submap;  // of all parts
+  std::vector<TimedPose> trajectory;
+  for (std::size_t i = 0; i < step.submaps.size(); ++i) {
+    const Submap part = load_submap_poses(step.submaps[i]);
+    const std::vector<Eigen::Isometry3d> placed = load_placed_keyframes(step.placed[i]);
+    if (placed.size() != part.keyframes.keyframes.size())
+      throw Error(step.placed[i].string() + ": has poses of another recording");
+    const std::vector<TimedPose> corrected = corrected_trajectory(part, placed);
+    trajectory.insert(trajectory.end(), corrected.begin(), corrected.end());
+    submap.source = part.source;
+    submap.frames_read = part.frames_read;
+    submap.timing = part.timing;
+  }
   const std::unique_ptr<FrameSource> source = open_source(step.source, {});
   const StaticMap map = fused(*source, submap, trajectory, step);
   constexpr int kCell_voxels = 4;  // a triangle in a tile's cube has its samples at most this far outside

@@ -12,7 +12,8 @@
 
 namespace roomradar {
 
-/// Tracks the camera of one recording. Writes the submap to `out`.
+/// Tracks the camera of one recording. Writes a submap to out/0; where tracking was lost on the way, the rest
+/// to out/1 and so on.
 struct TrackStep {
   std::string source;
   PoseOrigin poses = PoseOrigin::kTracked;
@@ -35,13 +36,13 @@ struct JoinStep {
 };
 int run(const JoinStep& step);
 
-/// Fuses a recording's frames with its poses in the building, and splits the octree. Writes
+/// Fuses a recording's frames with their poses in the building, and splits the octree. Writes
 /// out/parts/TILE.octree for each tile in which the recording has surface, with a margin of
 /// kSurfaceReach_voxels, and out/margins/TILE.octree for each tile in whose margin only it has surface.
 struct FuseStep {
   std::string source;
-  std::filesystem::path submap;  ///< folder
-  std::filesystem::path placed;  ///< file; see save_placed_keyframes()
+  std::vector<std::filesystem::path> submaps;  ///< folders
+  std::vector<std::filesystem::path> placed;   ///< a file per submap; see save_placed_keyframes()
   TileGrid grid;
   bool remove_ghosts = true;
   std::filesystem::path out;

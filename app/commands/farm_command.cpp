@@ -119,7 +119,7 @@ int run(const FarmOptions& options) {
   const Interrupt interrupt;
   Interrupt::say("roomradar: the running jobs are ended; the same command goes on with them later\n");
   const int status = run_planned(options, plan, [&](const WatchFarm& watch) {
-    return run_farm(plan, processes, this_program(), Interrupt::was_pressed, watch);
+    return run_farm(plan, processes, "/proc/self/exe", Interrupt::was_pressed, watch);
   });
   if (Interrupt::was_pressed())
     throw Error(options.out + ": stopped by Ctrl-C; the same command does the rest");

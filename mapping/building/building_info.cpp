@@ -68,10 +68,10 @@ BuildingInfo info_of(const json& value) {
   info.grid.edge_voxels = value.at("tile_edge_voxels").get<int>();
   require_valid(info.grid);
   for (const json& one : value.at("recordings"))
-    info.recordings.push_back({one.at("name").get<std::string>(), one.at("source").get<std::string>(),
-                               one.at("frames_read").get<std::int64_t>(),
-                               one.at("frames_tracked").get<std::int64_t>(),
-                               one.at("keyframes").get<std::int64_t>(), one.at("is_placed").get<bool>()});
+    info.recordings.push_back(
+        {one.at("name").get<std::string>(), one.at("source").get<std::string>(),
+         one.at("frames_read").get<std::int64_t>(), one.at("frames_tracked").get<std::int64_t>(),
+         one.at("keyframes").get<std::int64_t>(), one.at("frames_placed").get<std::int64_t>()});
   for (const json& one : value.at("tiles")) info.tiles.push_back(tile_of(one));
   const auto is_unordered = [](const BuildingTile& a, const BuildingTile& b) {
     return !is_before(a.index, b.index);
@@ -112,7 +112,7 @@ void write_building(const BuildingInfo& info, const fs::path& folder) {
                                    {"frames_read", one.frames_read},
                                    {"frames_tracked", one.frames_tracked},
                                    {"keyframes", one.keyframes},
-                                   {"is_placed", one.is_placed}});
+                                   {"frames_placed", one.frames_placed}});
   for (const BuildingTile& tile : info.tiles)
     value["tiles"].push_back({{"name", name_of(tile.index)},
                               {"triangles", tile.triangles},

@@ -32,9 +32,9 @@ struct BuildingRecording {
   std::string name;
   std::string source;
   std::int64_t frames_read = 0, frames_tracked = 0, keyframes = 0;
-  /// False: no other recording shows a place of this one, so its place in the building is not known and it is
-  /// not in the tiles.
-  bool is_placed = true;
+  /// Number of tracked frames whose place in the building is known. Only these are in the tiles. Others are
+  /// of a recording, or of a part of one after tracking was lost, that shows no place of another for certain.
+  std::int64_t frames_placed = 0;
 };
 
 /// What building.json holds.

@@ -5,15 +5,22 @@
 #include <map>
 
 #include "mapping/localization/place_matching.hpp"
+#include "mapping/odometry/keyframe_graph.hpp"
 
 namespace roomradar {
 
 void KeyframeRetrieval::add(const Submap& submap) {
-  const std::size_t b = first_of_.size(), first = database_.keyframes.size();
+  const auto& keyframes = submap.keyframes.keyframes;
   std::vector<MapKeyframe> added;
-  for (const MapKeyframe& keyframe : submap.keyframes.keyframes) {
+  std::vector<std::size_t> index_of;  // of the added keyframes, in the submap
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    const auto step = [&] {
+      return view_distance(keyframes[index_of.back()].T_world_camera.inverse() * keyframes[k].T_world_camera);
+    };
+    if (!added.empty() && step() < config_.min_step) continue;
     MapKeyframe& kept = added.emplace_back();
-    kept.descriptors = keyframe.descriptors;
+    index_of.push_back(k);
+    kept.descriptors = keyframes[k].descriptors;
     kept.descriptors.resize(std::min(kept.descriptors.size(), FeatureIndex::kIndexedFeatures));
     kept.descriptors.shrink_to_fit();
   }
@@ -21,11 +28,11 @@ void KeyframeRetrieval::add(const Submap& submap) {
     std::map<std::size_t, std::size_t> count_in;  // by submap
     for (const std::size_t i : most_alike(added[j], database_, config_.candidates, config_.min_matches)) {
       const std::size_t a = submap_of_[i];
-      if (++count_in[a] <= config_.per_submap) found_.push_back({a, b, i - first_of_[a], j});
+      if (++count_in[a] <= config_.per_submap) found_.push_back({a, submaps_, keyframe_of_[i], index_of[j]});
     }
   }
-  first_of_.push_back(first);
-  submap_of_.resize(first + added.size(), b);
+  submap_of_.resize(submap_of_.size() + added.size(), submaps_++);
+  keyframe_of_.insert(keyframe_of_.end(), index_of.begin(), index_of.end());
   std::move(added.begin(), added.end(), std::back_inserter(database_.keyframes));
   update_index(database_);
 }

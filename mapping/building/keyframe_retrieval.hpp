@@ -15,10 +15,11 @@ struct CandidatePair {
 };
 
 struct RetrievalConfig {
-  std::size_t candidates = 8;  ///< keyframes of other submaps that are considered for each keyframe
-  int min_matches = 15;        ///< min number of features that match
-  std::size_t per_submap = 2;  ///< of the candidates, max number in the same submap
-  std::size_t min_pairs = 2;   ///< min number of keyframe pairs of a pair of submaps
+  std::size_t candidates = 24;  ///< keyframes of other submaps that are considered for each keyframe
+  double min_step = 0.25;       ///< min view_distance() of the keyframes of a submap that are compared
+  int min_matches = 15;         ///< min number of features that match
+  std::size_t per_submap = 2;   ///< of the candidates, max number in the same submap
+  std::size_t min_pairs = 2;    ///< min number of keyframe pairs of a pair of submaps
 };
 
 /// Finds similar keyframes of different submaps, by an index of their features. Submaps are added one after
@@ -40,9 +41,10 @@ class KeyframeRetrieval {
     auto operator<=>(const Found&) const = default;
   };
   RetrievalConfig config_;
-  KeyframeDatabase database_;           ///< of all submaps, with descriptors only
-  std::vector<std::size_t> submap_of_;  ///< by keyframe of the database
-  std::vector<std::size_t> first_of_;   ///< by submap: its first keyframe in the database
+  KeyframeDatabase database_;             ///< of all submaps, with descriptors only
+  std::vector<std::size_t> keyframe_of_;  ///< by keyframe of the database: its index in the submap
+  std::vector<std::size_t> submap_of_;    ///< by keyframe of the database
+  std::size_t submaps_ = 0;
   std::vector<Found> found_;
 };
 

@@ -2,6 +2,7 @@
 #include "mapping/building/submap.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/storage/binary_file.hpp"
@@ -99,6 +100,29 @@ Submap load_submap(const std::filesystem::path& folder) {
     throw Error((folder / kKeyframesFile).string() + ": does not belong to the submap beside it");
   submap.keyframes = std::move(read);
   return submap;
+}
+
+std::vector<Submap> split_at_losses(const Submap& submap, std::int64_t max_gap, std::size_t min_frames) {
+  std::vector<Submap> parts;
+  for (const TimedPose& frame : submap.trajectory) {
+    if (parts.empty() || frame.frame_index - parts.back().trajectory.back().frame_index > max_gap + 1)
+      parts.push_back({submap.source, submap.frames_read, submap.timing, {}, {}, {}});
+    parts.back().trajectory.push_back(frame);
+  }
+  for (Submap& part : parts) {
+    const auto is_within = [&](const auto& item) {
+      return item.frame_index >= part.trajectory.front().frame_index &&
+             item.frame_index <= part.trajectory.back().frame_index;
+    };
+    std::copy_if(submap.recorded.begin(), submap.recorded.end(), std::back_inserter(part.recorded),
+                 is_within);
+    std::copy_if(submap.keyframes.keyframes.begin(), submap.keyframes.keyframes.end(),
+                 std::back_inserter(part.keyframes.keyframes), is_within);
+  }
+  std::erase_if(parts, [&](const Submap& part) {
+    return part.trajectory.size() < min_frames || part.keyframes.keyframes.empty();
+  });
+  return parts;
 }
 
 std::vector<TimedPose> corrected_trajectory(const Submap& submap,

@@ -32,6 +32,11 @@ Submap load_submap(const std::filesystem::path& folder);
 /// Reads only submap.bin. Keyframes then have a frame index and a pose, but no features and no depth.
 Submap load_submap_poses(const std::filesystem::path& folder);
 
+/// Splits a submap where tracking was lost for more than `max_gap` frames: where the camera was found again
+/// is not certain enough for a building, whose rooms may look alike. Parts of fewer than min_frames frames,
+/// or without a keyframe, are left out.
+std::vector<Submap> split_at_losses(const Submap& submap, std::int64_t max_gap, std::size_t min_frames);
+
 /// Moves the poses of all frames with the keyframes' poses: a frame between two keyframes gets the mean of
 /// their corrections, weighted by the number of frames to each.
 /// @param T_world_keyframe  one new pose per keyframe of the submap

@@ -12,8 +12,8 @@ namespace roomradar {
 /// Integer coordinates of a tile.
 using TileIndex = Eigen::Vector3i;
 
-/// A grid of cubes on the octree's voxels. Tile `index` begins at voxel index * edge_voxels, less a quarter of
-/// the edge along z: the floor, at z = 0, would otherwise be cut along its whole length.
+/// A grid of cubes on the octree's voxels. Tile `index` begins at voxel index * edge_voxels, less a quarter
+/// of the edge along z: the floor, at z = 0, would otherwise be cut along its whole length.
 struct TileGrid {
   double resolution_m = 0.01;  ///< edge of a voxel
   int edge_voxels = 512;       ///< a power of two, 64 to 4,096

@@ -26,23 +26,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A recording with the true poses of its keyframes.
+/// A submap with the true poses of its keyframes.
 struct Truth {
-  std::string name;
+  SubmapName name;
   Submap submap;
   std::vector<Eigen::Isometry3d> T_world_keyframe;
 };
 
-std::vector<Truth> truths_of(const BuildingInfo& info, const fs::path& work) {
+std::vector<Truth> truths_of(const BuildingInfo& info, const BuildingWork& work) {
   std::vector<Truth> truths;
-  for (const BuildingRecording& recording : info.recordings) {
-    Truth truth{recording.name, load_submap_poses(work / track_job(recording.name)), {}};
-    std::map<std::int64_t, Eigen::Isometry3d> T_of;
-    for (const TimedPose& pose : truth.submap.recorded) T_of[pose.frame_index] = pose.T_world_camera;
-    for (const MapKeyframe& keyframe : truth.submap.keyframes.keyframes)
-      truth.T_world_keyframe.push_back(T_of.at(keyframe.frame_index));
-    truths.push_back(std::move(truth));
-  }
+  for (const BuildingRecording& recording : info.recordings)
+    for (const SubmapName& name : submaps_of(work, recording.name)) {
+      Truth truth{name, load_submap_poses(work.jobs() / name.folder()), {}};
+      std::map<std::int64_t, Eigen::Isometry3d> T_of;
+      for (const TimedPose& pose : truth.submap.recorded) T_of[pose.frame_index] = pose.T_world_camera;
+      for (const MapKeyframe& keyframe : truth.submap.keyframes.keyframes)
+        truth.T_world_keyframe.push_back(T_of.at(keyframe.frame_index));
+      truths.push_back(std::move(truth));
+    }
   return truths;
 }
 
@@ -76,11 +77,11 @@ double error_m(const SubmapJoin& join, const Truth& a, const Truth& b) {
   return errors[errors.size() / 2];
 }
 
-Joins judge_joins(const std::vector<Truth>& truths, const nlohmann::json& report, const fs::path& work) {
+Joins judge_joins(const std::vector<Truth>& truths, const nlohmann::json& report, const BuildingWork& work) {
   constexpr double kWrong_m = 0.3;
   constexpr int kMeet = 5;  // views
   std::map<std::string, std::size_t> index;
-  for (std::size_t i = 0; i < truths.size(); ++i) index[truths[i].name] = i;
+  for (std::size_t i = 0; i < truths.size(); ++i) index[truths[i].name.name()] = i;
   Joins joins;
   std::set<std::pair<std::size_t, std::size_t>> found;
   std::map<std::pair<std::string, std::string>, std::size_t> next;  // join of the pair
@@ -89,13 +90,13 @@ Joins judge_joins(const std::vector<Truth>& truths, const nlohmann::json& report
     const std::size_t number = next[pair]++;
     if (!row.at("is_joined").get<bool>()) continue;
     const Truth &a = truths[index.at(pair.first)], &b = truths[index.at(pair.second)];
-    const SubmapJoin join = load_joins(work / join_job(a.name, b.name) / "joins.bin").at(number);
+    const SubmapJoin join = load_joins(work.job(join_job(a.name, b.name)) / "joins.bin").at(number);
     const bool is_wrong = error_m(join, a, b) > kWrong_m, is_used = row.at("is_used").get<bool>();
     if (is_wrong) {
       ++(is_used ? joins.wrong : joins.refused_wrong);
       if (is_used)
-        std::printf("wrong: %s %s, off %.2f m: %s\n", a.name.c_str(), b.name.c_str(), error_m(join, a, b),
-                    describe(join).c_str());
+        std::printf("wrong: %s %s, off %.2f m: %s\n", a.name.name().c_str(), b.name.name().c_str(),
+                    error_m(join, a, b), describe(join).c_str());
     } else {
       joins.refused_right += is_used ? 0 : 1;
       if (is_used) found.insert(std::minmax(index.at(pair.first), index.at(pair.second)));
@@ -109,7 +110,8 @@ Joins judge_joins(const std::vector<Truth>& truths, const nlohmann::json& report
       if (found.contains({i, j}))
         ++joins.found;
       else
-        std::printf("missed: %s %s, %d views\n", truths[i].name.c_str(), truths[j].name.c_str(), views);
+        std::printf("missed: %s %s, %d views\n", truths[i].name.name().c_str(), truths[j].name.name().c_str(),
+                    views);
     }
   return joins;
 }
@@ -152,34 +154,43 @@ Seams judge_seams(const BuildingInfo& info, const fs::path& folder) {
 
 static int judge(const fs::path& folder, const fs::path& report_file, const std::string& json_file) {
   const BuildingInfo info = read_building(folder);
-  const fs::path work = folder / "work";
+  BuildingWork work;
+  work.folder = folder;
   std::ifstream in(report_file);
   const nlohmann::json report = nlohmann::json::parse(in);
   const std::vector<Truth> truths = truths_of(info, work);
   const Joins joins = judge_joins(truths, report, work);
   const Seams seams = judge_seams(info, folder);
   std::int64_t frames = 0, tracked = 0, placed = 0;
+  for (const BuildingRecording& recording : info.recordings) {
+    frames += recording.frames_read;
+    tracked += recording.frames_tracked;
+    placed += recording.frames_placed;
+  }
   std::vector<double> ate_m;
-  for (std::size_t i = 0; i < truths.size(); ++i) {
-    frames += info.recordings[i].frames_read;
-    tracked += info.recordings[i].frames_tracked;
-    placed += info.recordings[i].is_placed ? 1 : 0;
-    ate_m.push_back(absolute_trajectory_error(truths[i].submap.trajectory, truths[i].submap.recorded).rmse_m);
+  for (const Truth& truth : truths) {
+    const TrajectoryError alone = absolute_trajectory_error(truth.submap.trajectory, truth.submap.recorded);
+    ate_m.push_back(alone.rmse_m);
+    std::printf("%s: %zu frames, alone RMSE %.1f mm, at most %.1f mm\n", truth.name.name().c_str(),
+                truth.submap.trajectory.size(), 1e3 * alone.rmse_m, 1e3 * alone.max_m);
   }
   std::sort(ate_m.begin(), ate_m.end());
   std::printf(
-      "%zu recordings, %lld placed, %lld of %lld frames tracked; each alone: RMSE median %.1f mm, worst %.1f "
-      "mm\n",
-      truths.size(), static_cast<long long>(placed), static_cast<long long>(tracked),
-      static_cast<long long>(frames), 1e3 * ate_m[ate_m.size() / 2], 1e3 * ate_m.back());
+      "%zu recordings in %zu parts; of %lld frames %lld tracked, %lld placed; parts alone: RMSE median %.1f "
+      "mm, "
+      "worst %.1f mm\n",
+      info.recordings.size(), truths.size(), static_cast<long long>(frames), static_cast<long long>(tracked),
+      static_cast<long long>(placed), 1e3 * ate_m[ate_m.size() / 2], 1e3 * ate_m.back());
   std::printf(
       "joins: %d pairs share views, %d of them joined; %d wrong joins used; refused: %d wrong, %d right\n",
       joins.meeting, joins.found, joins.wrong, joins.refused_wrong, joins.refused_right);
   std::printf("building: RMSE %.1f mm\n", 1e3 * report.value("ate_rmse_m", -1.0));
   std::printf("%zu tiles, %zu triangles; seams: %zu shared vertices, %zu edges, %zu of them open\n",
               info.tiles.size(), seams.triangles, seams.shared_vertices, seams.edges, seams.open);
-  test::write_rows(json_file, nlohmann::json::array({{{"recordings", truths.size()},
-                                                      {"placed", placed},
+  test::write_rows(json_file, nlohmann::json::array({{{"recordings", info.recordings.size()},
+                                                      {"parts", truths.size()},
+                                                      {"frames", frames},
+                                                      {"frames_placed", placed},
                                                       {"meeting", joins.meeting},
                                                       {"found", joins.found},
                                                       {"wrong", joins.wrong},

@@ -63,7 +63,7 @@ TEST(BuildingStages, SourcesAreRelativeToTheJobsAndBracesStay) {
 
 BuildingInfo building_of(const std::vector<TileIndex>& tiles) {
   BuildingInfo info;
-  info.recordings = {{"a", "sim:table", 10, 9, 3, true}};
+  info.recordings = {{"a", "sim:table", 10, 9, 3, 9}};
   for (const TileIndex& index : tiles) {
     BuildingTile tile;
     tile.index = index;
