@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -175,7 +176,11 @@ int run(const FuseStep& step) {
   const StaticMap map = fused(*source, submap, trajectory, step);
   constexpr int kCell_voxels = 4;  // a triangle in a tile's cube has its samples at most this far outside
   const std::vector<TileIndex> own = tiles_of(map, step.grid, kCell_voxels);
-  const std::vector<TileIndex> all = tiles_of(map, step.grid, kSurfaceReach_voxels);
+  const std::vector<TileIndex> near = tiles_of(map, step.grid, kSurfaceReach_voxels);
+  const std::vector<TileIndex> observed = observed_tiles(map, step.grid);
+  std::vector<TileIndex> all;
+  std::set_union(near.begin(), near.end(), observed.begin(), observed.end(), std::back_inserter(all),
+                 is_before);
   for (const char* folder : {"parts", "margins"}) make_folder(step.out / folder);
   for (const TileIndex& tile : all) {
     const bool is_own = std::binary_search(own.begin(), own.end(), tile, is_before);

@@ -38,7 +38,8 @@ int run(const JoinStep& step);
 
 /// Fuses a recording's frames with their poses in the building, and splits the octree. Writes
 /// out/parts/TILE.octree for each tile in which the recording has surface, with a margin of
-/// kSurfaceReach_voxels, and out/margins/TILE.octree for each tile in whose margin only it has surface.
+/// kSurfaceReach_voxels, and out/margins/TILE.octree for each other tile in whose margin it has surface or
+/// that it saw through.
 struct FuseStep {
   std::string source;
   std::vector<std::filesystem::path> submaps;  ///< folders

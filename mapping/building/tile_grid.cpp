@@ -39,24 +39,52 @@ bool is_before(const TileIndex& a, const TileIndex& b) {
   return std::tuple(a.z(), a.y(), a.x()) < std::tuple(b.z(), b.y(), b.x());
 }
 
+namespace {
+
+/// Set of tiles, in order.
+class TileSet {
+ public:
+  explicit TileSet(const TileGrid& grid) : grid_(grid) {}
+  /// Adds all tiles that have a voxel of a cube.
+  void add(const VoxelIndex& lowest, int edge_voxels) {
+    const VoxelIndex first = lowest - lowest_voxel(grid_, TileIndex::Zero());
+    const auto tile = [&](int voxels) -> TileIndex {
+      return (first.array() + voxels).unaryExpr([&](int v) { return floor_div(v, grid_.edge_voxels); });
+    };
+    const TileIndex low = tile(0), high = tile(edge_voxels - 1);
+    if (low == high && low == last_) return;
+    last_ = low;
+    for (int z = low.z(); z <= high.z(); ++z)
+      for (int y = low.y(); y <= high.y(); ++y)
+        for (int x = low.x(); x <= high.x(); ++x) tiles_.insert({x, y, z});
+  }
+  [[nodiscard]] std::vector<TileIndex> take() const { return {tiles_.begin(), tiles_.end()}; }
+
+ private:
+  const TileGrid& grid_;
+  std::set<TileIndex, decltype(&is_before)> tiles_{&is_before};
+  TileIndex last_ = TileIndex::Constant(INT_MAX);  // the last tile that was added alone
+};
+
+}  // namespace
+
 std::vector<TileIndex> tiles_of(const StaticMap& map, const TileGrid& grid, int margin_voxels) {
-  std::set<TileIndex, decltype(&is_before)> tiles(&is_before);
+  TileSet tiles(grid);
   VoxelIndex last_block = VoxelIndex::Constant(INT_MAX);
   map.visit_samples([&](const SurfaceSample& sample) {
     constexpr int kBlock = 4;  // the samples of a block come one after the other
     const VoxelIndex block = sample.voxel.unaryExpr([](int v) { return floor_div(v, kBlock); });
     if (block == last_block) return;
     last_block = block;
-    const VoxelIndex first = kBlock * block - lowest_voxel(grid, TileIndex::Zero());
-    const auto tile = [&](int voxels) -> TileIndex {
-      return (first.array() + voxels).unaryExpr([&](int v) { return floor_div(v, grid.edge_voxels); });
-    };
-    const TileIndex low = tile(-margin_voxels), high = tile(kBlock - 1 + margin_voxels);
-    for (int z = low.z(); z <= high.z(); ++z)
-      for (int y = low.y(); y <= high.y(); ++y)
-        for (int x = low.x(); x <= high.x(); ++x) tiles.insert({x, y, z});
+    tiles.add(kBlock * block - VoxelIndex::Constant(margin_voxels), kBlock + 2 * margin_voxels);
   });
-  return {tiles.begin(), tiles.end()};
+  return tiles.take();
+}
+
+std::vector<TileIndex> observed_tiles(const StaticMap& map, const TileGrid& grid) {
+  TileSet tiles(grid);
+  map.visit_leaves([&](const MapLeaf& leaf) { tiles.add(leaf.lowest_voxel, leaf.edge_voxels); });
+  return tiles.take();
 }
 
 std::string name_of(const TileIndex& tile) {

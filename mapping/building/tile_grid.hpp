@@ -34,6 +34,9 @@ TileIndex tile_at(const TileGrid& grid, const Eigen::Vector3d& p_world);
 /// x.
 std::vector<TileIndex> tiles_of(const StaticMap& map, const TileGrid& grid, int margin_voxels);
 
+/// Returns the tiles that have a free or occupied voxel, in the same order.
+std::vector<TileIndex> observed_tiles(const StaticMap& map, const TileGrid& grid);
+
 /// Orders tiles by z, then y, then x.
 bool is_before(const TileIndex& a, const TileIndex& b);
 

@@ -169,5 +169,23 @@ TEST(Submap, FramesMoveWithTheKeyframesAroundThem) {
   EXPECT_TRUE(corrected_trajectory(submap, {}).empty()) << "poses of another recording";
 }
 
+TEST(Submap, IsSplitWhereTrackingWasLost) {
+  Submap submap;
+  submap.frames_read = 60;
+  for (const int i : {0, 1, 2, 3, 4, 8, 9, 10, 30, 31, 32, 33, 34, 35, 50})
+    submap.trajectory.push_back({i, 0.0, Eigen::Isometry3d::Identity()});
+  submap.recorded = submap.trajectory;
+  for (const int i : {0, 9, 33, 50}) submap.keyframes.keyframes.emplace_back().frame_index = i;
+  const std::vector<Submap> parts = split_at_losses(submap, 3, 3);
+  ASSERT_EQ(parts.size(), 2U) << "three lost frames are bridged; one frame is no part";
+  EXPECT_EQ(parts[0].trajectory.size(), 8U);
+  EXPECT_EQ(parts[0].keyframes.keyframes.size(), 2U);
+  EXPECT_EQ(parts[1].trajectory.front().frame_index, 30);
+  EXPECT_EQ(parts[1].recorded.size(), 6U);
+  EXPECT_EQ(parts[1].keyframes.keyframes.front().frame_index, 33);
+  EXPECT_EQ(parts[1].frames_read, 60);
+  EXPECT_TRUE(split_at_losses({}, 3, 3).empty());
+}
+
 }  // namespace
 }  // namespace roomradar::submap_join_test
