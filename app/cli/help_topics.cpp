@@ -85,9 +85,10 @@ constexpr std::string_view kSources =
   openni:N         an Xtion, PrimeSense or other device of OpenNI2, numbered from 0
   sim:ROOM[?KEY=VALUE&...]
                    a simulated Kinect in the room table, shelf, wall, random, flat (four
-                   rooms) or board. Keys:
-                     seed=N      the camera's path, the noise, the furniture of `random` and `flat` (1)
-                     frames=N    number of frames (300)
+                   rooms), building (2 to 1000 rooms) or board. Keys:
+                     seed=N      the camera's path, the noise, the furniture of `random`, `flat`
+                                 and `building` (1)
+                     frames=N    number of frames (300; of `building` its whole walk, or less)
                      rate=HZ     frames per second (30)
                      path=KIND   scan (round the room), view (looking at its focus), swing (a board) (scan)
                      moving=LIST hand, ball, person, with commas between them (none)
@@ -101,6 +102,13 @@ constexpr std::string_view kSources =
                      delay=MS    time of the colour image after the depth image (0)
                      exposure=MS motion blur of the colour image (0)
                      turn=DPS    the camera swings at this many degrees per second, too (0)
+                   Further keys of `building`, whose walks share one world:
+                     rooms=N     rooms, 2 to 1000, along corridors (10)
+                     floors=N    floors, 1 to 10, joined by stairs (2)
+                     alike=N     rooms that look like another one, an even number (a fifth)
+                     walk=WORD   0 to 9999: a walk through 2 to 4 neighbouring rooms, sharing one
+                                 with the next walk; walks up to half the number of rooms visit all.
+                                 ring: round the corridors, back to the start (0)
 
 Quote a source that contains ? or &: 'sim:table?seed=3&frames=100'.
 )";

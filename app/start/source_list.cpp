@@ -53,7 +53,9 @@ SourceEntry describe_simulated(const std::string& spec) {
   try {
     SimOptions options = parse_sim_spec(spec);
     if (spec == "sim:" + options.room) entry.name = "Simulated room: " + options.room;
-    entry.detail = "simulated Kinect, " + frames_text(static_cast<std::size_t>(options.frames));
+    entry.detail =
+        "simulated Kinect, " +
+        (options.frames == 0 ? "a whole walk" : frames_text(static_cast<std::size_t>(options.frames)));
     options.path = CameraPathKind::kView;
     entry.play_source = sim_spec(options);
   } catch (const Error& error) {
@@ -108,7 +110,7 @@ std::vector<SourceEntry> list_recordings(const fs::path& folder) {
 std::vector<SourceEntry> list_simulated_rooms() {
   std::vector<SourceEntry> entries;
   for (const std::string& room : room_names()) entries.push_back(describe_simulated("sim:" + room));
-  for (const std::string_view room : {kRandomRoom, kFlatRoom})
+  for (const std::string_view room : {kRandomRoom, kFlatRoom, kBuildingRoom})
     entries.push_back(describe_simulated("sim:" + std::string(room)));
   return entries;
 }

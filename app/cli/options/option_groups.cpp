@@ -76,9 +76,10 @@ std::vector<CommandHelp> command_helps() {
        "  roomradar record kinect:0 recordings/kitchen\n"
        "  roomradar record 'sim:table?frames=100' recordings/table --format 7scenes\n"},
       {"simulate",
-       {{"Options", {"--room", "--frames", "--path", "--moving", "--seed", "--format"}}},
+       {{"Options", {"--room", "--frames", "--path", "--moving", "--walks", "--seed", "--format"}}},
        "  roomradar simulate recordings/table --room table --frames 600\n"
-       "  roomradar simulate recordings/hand --path view --moving hand,ball\n"},
+       "  roomradar simulate recordings/hand --path view --moving hand,ball\n"
+       "  roomradar simulate recordings/office --room 'building?rooms=40&width=320' --walks 0:19\n"},
       {"calibrate",
        {{"Everyday options", {"--out", "--square", "--columns", "--rows", "--plot"}},
         {"Source and report", {"--frames", "--report"}}},

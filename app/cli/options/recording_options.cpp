@@ -20,14 +20,21 @@ void add_options(CLI::App& command, RecordOptions& options) {
 void add_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("DIR", options.folder, "folder to write; must be empty or not exist (required)")
       ->required();
-  command.add_option("--room", options.room, "table, shelf, wall, random, flat or board (default: table)")
+  command
+      .add_option(
+          "--room", options.room,
+          "table, shelf, wall, random, flat, building or board, also with keys as after sim:, such as\n"
+          "'building?rooms=40&width=320' (default: table)")
       ->type_name("NAME");
   command
       .add_option(
           "--seed", options.seed,
-          "seed of the camera's path, the noise and the furniture of a random room or flat (default: 1)")
+          "seed of the camera's path, the noise and the furniture of a random room, flat or building\n"
+          "(default: 1)")
       ->type_name("N");
-  command.add_option("--frames", options.frames, "number of frames (default: 300)")
+  command
+      .add_option("--frames", options.frames,
+                  "number of frames (default: 300; of the building its whole walk)")
       ->check(whole_within(1, 1'000'000))
       ->type_name("N");
   command
@@ -40,6 +47,9 @@ void add_options(CLI::App& command, SimulateOptions& options) {
       .add_option("--moving", options.moving,
                   "moving things, separated by commas: hand, ball, person (default: none)")
       ->type_name("LIST");
+  add_range_option(command, "--walks", options.walks,
+                   "walks A to B of the building, inclusive, each in a folder DIR/walk-NNNN, and their list\n"
+                   "DIR/recordings.txt (default: one recording)");
   add_format_option(command, options.format);
 }
 

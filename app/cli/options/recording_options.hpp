@@ -30,14 +30,16 @@ struct RecordOptions {
 struct SimulateOptions {
   /// Folder to write.
   std::string folder;
-  /// Name of the room, see make_room().
+  /// Room as after `sim:`, with or without keys.
   std::string room = "table";
-  /// Seed of the camera path, the noise and a random room's furniture.
-  std::uint64_t seed = 1;
-  /// Number of frames.
-  std::int64_t frames = 300;
-  /// Name of the camera path: scan, view or swing.
-  std::string path = "scan";
+  /// Seed of the camera path, the noise and a random room's furniture; unset: see SimOptions.
+  std::optional<std::uint64_t> seed;
+  /// Number of frames; unset: see parse_sim_spec().
+  std::optional<std::int64_t> frames;
+  /// Name of the camera path: scan, view or swing; empty: see SimOptions.
+  std::string path;
+  /// Walks of the building to record, each in a folder of its own; unset: one recording.
+  std::optional<FrameRange> walks;
   /// Moving objects, such as "hand,ball,person"; empty: none.
   std::string moving;
   /// Format of the recording.

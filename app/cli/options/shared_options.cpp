@@ -26,9 +26,9 @@ void add_range_option(CLI::App& command, const std::string& name, std::optional<
   command
       .add_option_function<std::string>(
           name,
-          [&range](const std::string& text) {
+          [&range, name](const std::string& text) {
             try {
-              range = parse_frame_range(text);
+              range = parse_frame_range(text, name.substr(2));
             } catch (const Error& error) {
               throw CLI::ValidationError(error.what());
             }

@@ -71,25 +71,31 @@ void add_walls(Room& room, const Isometry3d& T_world_stairs, int storey, double 
            -kStairwellLength_m - kShellThickness_m, kShellThickness_m, height_m, {}, own(4));
 }
 
-/// Adds pictures beside a storey's flights and over its half landing.
-void add_pictures(Room& room, const Isometry3d& T_world_stairs, double floor_m, std::uint32_t look) {
-  constexpr double kEye_m = 1.5, kHalfStorey_m = 0.5 * kStoreyHeight_m, kHalfTurn_rad = std::numbers::pi;
+/// Adds pictures beside a storey's flights and landings, lower than eyes, as the camera looks down.
+void add_pictures(Room& room, const Isometry3d& T_world_stairs, double floor_m, bool is_top,
+                  std::uint32_t look) {
+  constexpr double kEye_m = 1.2, kHalfStorey_m = 0.5 * kStoreyHeight_m, kHalfTurn_rad = std::numbers::pi;
   const auto hang = [&](const Isometry3d& T_stairs_picture, double width_m, double height_m,
                         std::uint32_t number) {
     add_picture(room, T_world_stairs * T_stairs_picture, width_m, height_m, picture_of(look + number),
                 frame_of(look + number));
   };
-  const double middle_x = 0.5 * kStairwellLength_m;
+  const auto hang_at_sides = [&](double x, double right_z, double left_z, std::uint32_t number) {
+    hang(standing_at(x, -kHalfWidth_m, right_z, kHalfTurn_rad), 0.7, 0.5, number);
+    hang(standing_at(x, kHalfWidth_m, left_z), 0.7, 0.5, number + 1);
+  };
+  hang_at_sides(0.5 * kLanding_m, floor_m + kEye_m, floor_m + kEye_m, 0);
+  if (is_top) return;
+  hang_at_sides(kStairwellLength_m - 0.5 * kLanding_m, floor_m + kHalfStorey_m + kEye_m,
+                floor_m + kHalfStorey_m + kEye_m, 2);
   for (const double aside_m : {-0.9, 0.9}) {
-    const std::uint32_t number = aside_m > 0.0 ? 1 : 0;
+    const std::uint32_t number = aside_m > 0.0 ? 7 : 4;
     const double risen_m = 0.5 * kHalfStorey_m + aside_m * kRiser_m / kTread_m;
-    hang(standing_at(middle_x + aside_m, -kHalfWidth_m, floor_m + risen_m + kEye_m, kHalfTurn_rad), 0.7, 0.5,
-         number);
-    hang(standing_at(middle_x - aside_m, kHalfWidth_m, floor_m + kHalfStorey_m + risen_m + kEye_m), 0.7, 0.5,
-         2 + number);
-    hang(standing_at(kStairwellLength_m, 0.7 * aside_m, floor_m + kHalfStorey_m + 1.4,
+    hang_at_sides(0.5 * kStairwellLength_m + aside_m, floor_m + risen_m + kEye_m,
+                  floor_m + kStoreyHeight_m - risen_m + kEye_m, number);
+    hang(standing_at(kStairwellLength_m, 0.7 * aside_m, floor_m + kHalfStorey_m + 1.15,
                      -0.5 * std::numbers::pi),
-         0.8, 0.6, 4 + number);
+         0.9, 0.8, number + 2);
   }
 }
 
@@ -118,9 +124,13 @@ void add_stairwell(Room& room, const BuildingPlan& plan, const PlannedStairs& st
     add_walls(room, T_world_stairs, storey, is_top ? kTopStorey_m : kStoreyHeight_m, is_top,
               wall_paint(hash_of(plan.seed, 0x73746169, own_look), own_look));
     room.lamps.push_back({T_world_stairs * Vector3d(0.5 * kLanding_m, 0, floor_m + 2.5), 1.0F, 0.2});
-    if (storey > 0)
+    if (storey > 0) {  // a landing, and the doorway's floor between the walls above and below
+      add_box(room, T_world_stairs, {0.0, -kHalfWidth_m, floor_m - 0.2}, {kLanding_m, kHalfWidth_m, floor_m},
+              stone);
       add_box(room, T_world_stairs, {-kShellThickness_m, -kHalfWidth_m, floor_m - kShellThickness_m},
-              {kLanding_m, kHalfWidth_m, floor_m}, stone);
+              {0.0, kHalfWidth_m, floor_m}, stone);
+    }
+    add_pictures(room, T_world_stairs, floor_m, is_top, own_look);
     // Beside the door.
     const Isometry3d T_stairs_sign =
         standing_at(0, 0.5 * (0.5 * kStairDoorWidth_m + kHalfWidth_m), floor_m + 1.6, 0.5 * std::numbers::pi);
@@ -136,7 +146,6 @@ void add_stairwell(Room& room, const BuildingPlan& plan, const PlannedStairs& st
     add_flight(room, T_world_stairs, half_m, true, stone, rail);
     add_box(room, T_world_stairs, {kFlightEnd_m, -kHalfWidth_m, half_m - 0.2},
             {kStairwellLength_m, kHalfWidth_m, half_m}, stone);
-    add_pictures(room, T_world_stairs, floor_m, own_look);
     room.lamps.push_back(
         {T_world_stairs * Vector3d(kStairwellLength_m - 0.5 * kLanding_m, 0, half_m + 2.3), 1.2F, 0.2});
   }

@@ -27,4 +27,11 @@ float MoverShadow::factor(const Room& room, const Eigen::Vector3d& p_world,
   return 1.0F - kDarkest * static_cast<float>(blocked) / static_cast<float>(std::size(kLampPoints));
 }
 
+Rgb dimmed(Rgb colour, float factor) {
+  const auto dim = [factor](std::uint8_t of) {
+    return static_cast<std::uint8_t>(static_cast<float>(of) * factor);
+  };
+  return factor < 1.0F ? Rgb{dim(colour.r), dim(colour.g), dim(colour.b)} : colour;
+}
+
 }  // namespace roomradar

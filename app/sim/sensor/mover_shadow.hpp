@@ -22,4 +22,7 @@ class MoverShadow {
   SolidTree tree_;
 };
 
+/// Returns the colour with each channel multiplied by the factor, <= 1.
+Rgb dimmed(Rgb colour, float factor);
+
 }  // namespace roomradar

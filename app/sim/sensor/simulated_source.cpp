@@ -6,15 +6,14 @@
 #include <functional>
 #include <future>
 
-#include "app/sim/building/building.hpp"
 #include "app/sim/room/room.hpp"
-#include "app/sim/room/room_parts.hpp"
 #include "app/sim/room/surface_appearance.hpp"
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/sensor/kinect_depth.hpp"
 #include "app/sim/sensor/mean_picture.hpp"
 #include "app/sim/sensor/mover_shadow.hpp"
 #include "app/sim/sensor/movers.hpp"
+#include "app/sim/sensor/simulated_room.hpp"
 #include "app/sim/solids/view_caster.hpp"
 #include "mapping/types/system/counter_random.hpp"
 
@@ -30,24 +29,16 @@ constexpr double kColourFocal = 525.0 / 585.0;
 constexpr double kAway_m = 100.0;
 
 using PoseAt = std::function<Eigen::Isometry3d(double)>;  // s after the middle of the depth image
-Rgb dimmed(Rgb colour, float factor) {
-  const auto dim = [factor](std::uint8_t of) {
-    return static_cast<std::uint8_t>(static_cast<float>(of) * factor);
-  };
-  return factor < 1.0F ? Rgb{dim(colour.r), dim(colour.g), dim(colour.b)} : colour;
-}
 
 }  // namespace
 
 struct SimulatedSource::State {
   explicit State(const SimOptions& chosen)
       : options(chosen),
-        noise_seed(chosen.room == kBuildingRoom
-                       ? hash_of(chosen.seed, 0x77616c6b, static_cast<std::uint64_t>(chosen.walk))
-                       : chosen.seed),
+        noise_seed(path_seed(chosen)),
         room(room_of(chosen)),
         room_look(room, finest_texel_m(chosen)) {
-    if (options.room == kBuildingRoom) cut_to_walk();
+    options.frames = frames_of(options, room);
     const double duration_s = static_cast<double>(options.frames) / options.rate_hz;
     path = plan_camera_path(room, options.path, noise_seed, duration_s);
     add_turns(path, options.turn_dps);
@@ -98,46 +89,9 @@ struct SimulatedSource::State {
   /// Returns 1.6 pixels' width at 1 m: cameras are hardly ever nearer.
   static double finest_texel_m(const SimOptions& options) { return 1.6 / options.depth_camera.fx_px; }
 
-  static Room room_of(const SimOptions& options) {
-    const bool crate = options.crate == CrateKind::kStays;
-    if (options.room != kBuildingRoom) return make_room(options.room, crate, options.seed);
-    const BuildingPlan plan = plan_building(options.seed, options.building);
-    return make_building(plan, options.walk, crate);
-  }
-
-  /// Ends the frames where the walk ends, at the latest.
-  void cut_to_walk() {
-    if (options.path != CameraPathKind::kScan) {
-      if (options.frames == 0) options.frames = SimOptions{}.frames;
-      return;
-    }
-    const double walk_s = static_cast<double>(room.walk.size() - 1) * room.walk_step_s;
-    const auto whole = static_cast<std::int64_t>(std::floor(walk_s * options.rate_hz)) + 1;
-    options.frames = options.frames == 0 ? whole : std::min(options.frames, whole);
-  }
-
-  /// Selects the solids of the room, or of the parts of the building that may be seen from the eye.
-  void choose_solids(const Vector3d& eye_world) {
-    solids.clear();
-    infrared.clear();
-    room_index.clear();
-    const auto add_range = [this](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        solids.push_back(room.solids[i]);
-        infrared.push_back(room.materials[i].infrared);
-        room_index.push_back(i);
-      }
-    };
-    if (room.parts.empty()) return add_range(0, room.solids.size());
-    for (const int part : visible_parts(room, eye_world)) {
-      const RoomPart& seen = room.parts[static_cast<std::size_t>(part)];
-      add_range(seen.solids_begin, seen.solids_end);
-    }
-  }
-
   void place_solids(std::int64_t index, const Vector3d& eye_world) {
     const double t_s = static_cast<double>(index) / options.rate_hz;
-    choose_solids(eye_world);
+    room_index = visible_solids(room, eye_world, solids, infrared);
     infrared.insert(infrared.end(), moving.infrared.begin(), moving.infrared.end());
     for (const Mover& mover : moving.movers) append_solids(mover, t_s, solids);
     if (crate_changes()) {

@@ -72,15 +72,16 @@ class FrameRangeSource final : public FrameSource {
 
 }  // namespace
 
-FrameRange parse_frame_range(std::string_view text) {
+FrameRange parse_frame_range(std::string_view text, std::string_view of) {
   const std::size_t colon = text.find(':');
   if (colon != std::string_view::npos) {
     const auto first = parse_whole_number(text.substr(0, colon));
     const auto last = parse_whole_number(text.substr(colon + 1));
     if (first && last && *first >= 0 && *first <= *last) return {*first, *last};
   }
-  throw Error("frames '" + std::string(text) +
-              "': must be A:B with whole numbers 0 <= A <= B, both included, as in 400:499 for 100 frames");
+  throw Error(std::string(of) + " '" + std::string(text) +
+              "': must be A:B with whole numbers 0 <= A <= B, both included, as in 400:499 for 100 " +
+              std::string(of));
 }
 
 std::unique_ptr<FrameSource> limit_frames(std::unique_ptr<FrameSource> source, std::int64_t first,

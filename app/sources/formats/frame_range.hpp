@@ -15,7 +15,8 @@ struct FrameRange {
 };
 
 /// Parses "A:B", two integers with 0 <= A <= B. Throws Error, with `text` and an example, for any other text.
-FrameRange parse_frame_range(std::string_view text);
+/// @param of  plural name of the things counted, for the error message
+FrameRange parse_frame_range(std::string_view text, std::string_view of = "frames");
 
 /// Returns a source that delivers only the frames `first` to `last` of `source`, with their original indices
 /// and stamps. Unreadable frames are counted, too. Does not read ahead, so sources of unknown length are

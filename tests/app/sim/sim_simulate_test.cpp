@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
@@ -84,6 +85,49 @@ INSTANTIATE_TEST_SUITE_P(EachFormat, SimulateTo,
                            const std::string name(to_string(format.param));
                            return name == "7scenes" ? "SevenScenes" : name;
                          });
+
+TEST(Simulate, WalksOfTheBuildingAreRecordedAndListed) {
+  const fs::path folder = fs::path(testing::TempDir()) / ("simulate_walks_" + std::to_string(::getpid()));
+  const SimOptions options = parse_sim_spec("sim:building?rooms=4&width=64&frames=3&rate=1");
+  std::set<std::string> names;
+  simulate_walks(folder, options, 1, 2, RecordingFormat::kTum,
+                 [&](const std::string& name, std::int64_t, std::int64_t total) {
+                   names.insert(name);
+                   EXPECT_EQ(total, 3);
+                 });
+  EXPECT_EQ(names, (std::set<std::string>{"walk-0001", "walk-0002"}));
+  std::ifstream list(folder / "recordings.txt");
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(list, line);) lines.push_back(line);
+  EXPECT_EQ(lines, (std::vector<std::string>{"walk-0001: walk-0001", "walk-0002: walk-0002"}));
+  for (const int walk : {1, 2}) {
+    const fs::path one = folder / ("walk-000" + std::to_string(walk));
+    SimOptions its_options = options;
+    its_options.walk = walk;
+    SimulatedSource again(its_options);
+    Frame frame, expected;
+    const auto recorded = open_folder(one.string(), {});
+    ASSERT_EQ(recorded->next(frame).status, ReadStatus::kFrame);
+    ASSERT_EQ(again.next(expected).status, ReadStatus::kFrame);
+    EXPECT_EQ(frame.colour.pixels, expected.colour.pixels);
+    EXPECT_EQ(read_trajectory(one / "truth" / "trajectory.txt").size(), 3U);
+    // The mesh has what is seen, in the frame of the poses.
+    const Mesh mesh = read_mesh(one / "truth" / "room.ply");
+    EXPECT_GT(mesh.triangles.size(), 1000U);
+    for (std::size_t i = 0; i < mesh.vertices.size(); i += 97)
+      EXPECT_NEAR(signed_distance_m(again.room(), mesh.origin + mesh.vertices[i].cast<double>()), 0.0, 1e-5);
+    std::ifstream json(one / "truth" / "sim.json");
+    const std::string text((std::istreambuf_iterator<char>(json)), {});
+    EXPECT_NE(text.find("\"walk\": " + std::to_string(walk)), std::string::npos);
+    EXPECT_NE(text.find("\"walk_rooms\""), std::string::npos);
+  }
+  EXPECT_THROW(simulate_walks(folder, options, 0, 0, RecordingFormat::kTum), Error) << "not empty";
+  fs::remove_all(folder);
+  EXPECT_THROW(simulate_walks(folder, parse_sim_spec("sim:table"), 0, 0, RecordingFormat::kTum), Error);
+  EXPECT_THROW(simulate_walks(folder, options, 0, 10'000, RecordingFormat::kTum), Error);
+  EXPECT_THROW(simulate_walks(folder, options, 2, 1, RecordingFormat::kTum), Error);
+  EXPECT_FALSE(fs::exists(folder));
+}
 
 TEST(Simulate, AFolderThatHoldsSomethingIsLeftAlone) {
   const fs::path folder = fs::path(testing::TempDir()) / ("simulate_full_" + std::to_string(::getpid()));

@@ -1,6 +1,7 @@
 // sim_options_test.cpp: the sim: form of a source: its options, and the error messages for invalid ones.
 #include <gtest/gtest.h>
 
+#include "app/sim/building/building_walk.hpp"
 #include "app/sim/sensor/sim_options.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -28,8 +29,18 @@ TEST(SimSpec, ComesBackFromItsOptions) {
        {"sim:table", "sim:wall?seed=12", "sim:shelf?seed=3&frames=90&path=view&moving=hand,person&noise=0.5",
         "sim:table?rate=15&width=160&colour=separate", "sim:table?moving=person&pace=leaves",
         "sim:table?shutter=30&delay=-40&exposure=20&turn=90", "sim:table?crate=1", "sim:table?crate=comes",
-        "sim:table?crate=goes"})
+        "sim:table?crate=goes", "sim:building",
+        "sim:building?seed=2&frames=300&rooms=40&floors=3&alike=4&walk=12", "sim:building?walk=ring&rate=15"})
     EXPECT_EQ(sim_spec(parse_sim_spec(spec)), spec);
+}
+
+TEST(SimSpec, TheBuildingHasKeysOfItsOwnAndByDefaultTheFramesOfItsWalk) {
+  const SimOptions options = parse_sim_spec("sim:building?rooms=30&floors=3&alike=6&walk=7");
+  EXPECT_EQ(options.building, (BuildingSize{30, 3, 6}));
+  EXPECT_EQ(options.walk, 7);
+  EXPECT_EQ(options.frames, 0);
+  EXPECT_EQ(parse_sim_spec("sim:building?walk=ring&frames=5").walk, kRingWalk);
+  EXPECT_EQ(parse_sim_spec("sim:table").frames, 300);
 }
 
 TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
@@ -70,6 +81,21 @@ TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
       {"sim:table?exposure=-1", "0 to 50"},
       {"sim:table?turn=361", "0 to 360"},
       {"sim:table?colour=red", "registered, separate or none"},
+      {"sim:table?rooms=4", "of sim:building only"},
+      {"sim:table?walk=0", "of sim:building only"},
+      {"sim:attic", "building"},
+      {"sim:building?rooms=1", "2 to 1000"},
+      {"sim:building?rooms=1001", "2 to 1000"},
+      {"sim:building?rooms=ten", "2 to 1000"},
+      {"sim:building?floors=11", "1 to 10"},
+      {"sim:building?floors=0", "1 to 10"},
+      {"sim:building?rooms=3&floors=4", "at most the number of rooms, 3"},
+      {"sim:building?alike=3", "even number, 0 to 10"},
+      {"sim:building?alike=99999999999", "even number"},
+      {"sim:building?walk=-1", "ring, or a whole number, 0 to 9999"},
+      {"sim:building?walk=10000", "ring, or a whole number, 0 to 9999"},
+      {"sim:building?walk=up", "ring, or a whole number, 0 to 9999"},
+      {"sim:building?frames=-1", "frames"},
   };
   for (const auto& [spec, part] : cases)
     EXPECT_NE(message(spec).find(part), std::string::npos) << spec << ": " << message(spec);

@@ -1,0 +1,29 @@
+// simulated_room.hpp: the room or building of a simulation, and the part of it that a camera may see.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "app/sim/room/room.hpp"
+#include "app/sim/sensor/sim_options.hpp"
+
+namespace roomradar {
+
+/// Makes the room that the options describe.
+Room room_of(const SimOptions& options);
+
+/// Returns the number of frames: of an open walk at most those of the walk, and all of them if
+/// SimOptions::frames is 0.
+std::int64_t frames_of(const SimOptions& options, const Room& room);
+
+/// Returns the seed of the camera's sway, the moving objects and the noise. It differs between the walks of a
+/// building.
+std::uint64_t path_seed(const SimOptions& options);
+
+/// Selects the solids of a single room, or those of the parts of a building that may be seen from the eye.
+/// @param solids    out: these solids
+/// @param infrared  out: Material::infrared of each
+/// @return their indices in Room::solids, ascending
+std::vector<std::size_t> visible_solids(const Room& room, const Eigen::Vector3d& eye_world,
+                                        std::vector<Solid>& solids, std::vector<float>& infrared);
+
+}  // namespace roomradar
