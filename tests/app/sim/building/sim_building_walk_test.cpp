@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SimBuildingWalk,
                                   std::to_string(each.param.floors);
                          });
 
-TEST(SimBuildingWalks, HangTogetherThroughSharedRooms) {
+TEST(SimBuildingWalks, AreConnectedThroughSharedRooms) {
   for (const BuildingSize& size : {BuildingSize{10, 2, {}}, BuildingSize{40, 2, {}}, BuildingSize{300, 4, {}},
                                    BuildingSize{1000, 2, {}}}) {
     const BuildingPlan plan = plan_building(4, size);
