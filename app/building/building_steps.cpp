@@ -15,6 +15,7 @@
 #include "mapping/building/submap_join.hpp"
 #include "mapping/building/tile_surface.hpp"
 #include "mapping/deskewed_source.hpp"
+#include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/prescan_passes.hpp"
 #include "mapping/storage/binary_file.hpp"
@@ -69,6 +70,14 @@ StaticMap fused(FrameSource& source, const Submap& submap, const std::vector<Tim
                 std::to_string(static_cast<int>(work.reach_m)) + " m of the building's origin?");
   if (step.remove_ghosts) run_ghost_removal(work, pass);
   return std::move(pass.octree);
+}
+
+/// Writes the submap's keyframes at their poses in the building.
+void write_placed_keyframes(const FuseStep& step, const std::vector<Eigen::Isometry3d>& T_building_keyframe) {
+  KeyframeDatabase database = load_submap(step.submap).keyframes;
+  for (std::size_t i = 0; i < database.keyframes.size(); ++i)
+    database.keyframes[i].T_world_camera = T_building_keyframe[i];
+  write_keyframe_database(database, step.out / kPlacedKeyframesFile);
 }
 
 }  // namespace
@@ -154,6 +163,7 @@ int run(const FuseStep& step) {
   const std::vector<Eigen::Isometry3d> placed = load_placed_keyframes(step.placed);
   if (placed.size() != submap.keyframes.keyframes.size())
     throw Error(step.placed.string() + ": has poses of another recording");
+  write_placed_keyframes(step, placed);
   const std::vector<TimedPose> trajectory = corrected_trajectory(submap, placed);
   const std::unique_ptr<FrameSource> source = open_source(step.source, {});
   const StaticMap map = fused(*source, submap, trajectory, step);

@@ -36,7 +36,8 @@ struct JoinStep {
 int run(const JoinStep& step);
 
 /// Fuses a recording's frames with its poses in the building, and splits the octree. Writes
-/// out/parts/TILE.octree for each tile, with a margin of kSurfaceReach_voxels.
+/// out/parts/TILE.octree for each tile, with a margin of kSurfaceReach_voxels, and out/keyframes.bin with the
+/// recording's keyframes at their poses in the building; see write_keyframe_database().
 struct FuseStep {
   std::string source;
   std::filesystem::path submap;  ///< folder
@@ -46,6 +47,7 @@ struct FuseStep {
   std::filesystem::path out;
 };
 int run(const FuseStep& step);
+inline constexpr const char* kPlacedKeyframesFile = "keyframes.bin";
 
 /// Adds the parts of one tile, and extracts its surface. Writes out/tile.octree (the tile's cube), tile.mesh
 /// and tile.glb, or nothing but out/tile.json if the tile has no surface of its own.

@@ -35,6 +35,9 @@ struct BuildingRecording {
   /// False: no other recording shows a place of this one, so its place in the building is not known and it is
   /// not in the tiles.
   bool is_placed = true;
+  /// Keyframes with their poses in the building; see write_keyframe_database(). Without a name if the
+  /// recording is not placed, or the building was made by an earlier version.
+  ContentFile keyframe_file{};
 };
 
 /// What building.json holds.
@@ -46,7 +49,8 @@ struct BuildingInfo {
 
 inline constexpr const char* kBuildingFile = "building.json";
 inline constexpr const char* kTilesFolder = "tiles";
-inline constexpr const char* kRecordingsFolder = "recordings";  ///< a submap per recording, in the building
+/// Holds each recording's trajectory and keyframes in the building.
+inline constexpr const char* kRecordingsFolder = "recordings";
 
 /// Returns true if the folder holds a building.
 bool is_building(const std::filesystem::path& folder);
