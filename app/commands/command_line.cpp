@@ -30,6 +30,7 @@
 #include "app/commands/simulate_command.hpp"
 #include "app/commands/start_command.hpp"
 #include "app/commands/trade_command.hpp"
+#include "app/serve/serve_command.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -171,6 +172,12 @@ void add_commands(CLI::App& app, std::function<int()>& work) {
       "saves octree and surface in tiles, also as tileset.json with .glb for viewers of 3D Tiles",
       work);
   add_building_steps(app, work);
+  add_command<ServeOptions>(
+      app, "serve",
+      "serve maps over HTTP until Ctrl-C:\n"
+      "GET /maps, /maps/NAME, /maps/NAME/tileset.json and tiles; POST /maps/NAME/locate or /locate with a\n"
+      "depth and a colour image answers with the camera's pose; `roomradar help serve` has the formats",
+      work);
   add_command<RecordOptions>(app, "record", "write a source's frames as a recording", work);
   add_command<CalibrateOptions>(
       app, "calibrate",
