@@ -184,8 +184,8 @@ struct MapServer::State {
   }
 
   /// Reads the body, also of a refused request, so that the client reads the answer. Keeps it only if `keep`.
-  static Answer read_body(const httplib::Request& request, const httplib::ContentReader& read, bool keep,
-                          std::string& body) {
+  static Answer read_body(const httplib::Request& request, const httplib::Response& response,
+                          const httplib::ContentReader& read, bool keep, std::string& body) {
     const Answer too_large =
         error_answer(413, "a request has at most " + std::to_string(kMaxLocateBody_bytes) + " bytes");
     std::size_t bytes = 0;
@@ -198,17 +198,19 @@ struct MapServer::State {
     if (request.is_multipart_form_data()) {
       keep = false;
       (void)read([](const httplib::MultipartFormData&) { return true; }, take);
-      return error_answer(415, "send the body as application/octet-stream; see `roomradar help serve`");
+      return error_answer(415, "send the body as application/octet-stream; see `roomradar help http`");
     }
     if (read(take)) return {};
-    return bytes > kMaxLocateBody_bytes ? too_large : error_answer(400, "the request ended early");
+    const bool is_too_large =
+        bytes > kMaxLocateBody_bytes || response.status == too_large.status;  // as stated
+    return is_too_large ? too_large : error_answer(400, "the request ended early");
   }
 
   void answer_locating(const httplib::Request& request, httplib::Response& response,
                        const httplib::ContentReader& read) {
     const Answer refused = refusal(request);
     std::string body;
-    Answer answer = read_body(request, read, refused.status == 200, body);
+    Answer answer = read_body(request, response, read, refused.status == 200, body);
     if (refused.status != 200) answer = refused;
     if (answer.status == 200) {
       if (places.take()) {

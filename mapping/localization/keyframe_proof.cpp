@@ -31,10 +31,13 @@ KeyframeProof prove_with_features(const SourcePoints& live, const MapKeyframe& k
   constexpr double kMaxCorrection_m = 0.12, kMaxCorrection_rad = 0.12, kMinOverlap = 0.2;
   ViewPyramid preview;
   make_preview_pyramid(keyframe, view, preview);
-  const TargetView target = target_of(preview, view);
+  TargetView target = target_of(preview, view);
   const Tracking t = align(live, target, match.T_a_b, {.coarsest_level = 1, .gate_m = 0.15F});
-  KeyframeProof proof{
-      .T_keyframe_camera = t.T_world_camera, .agreement = t.inlier_fraction, .overlap = t.overlap};
+  KeyframeProof proof;
+  proof.T_keyframe_camera = t.T_world_camera;
+  proof.agreement = t.inlier_fraction;
+  proof.overlap = t.overlap;
+  proof.target = std::move(target);
   const Eigen::Isometry3d correction = match.T_a_b.inverse() * t.T_world_camera;
   proof.holds = has_pose(t) && t.overlap > kMinOverlap && t.inlier_fraction >= min_depth_agreement &&
                 correction.translation().norm() < kMaxCorrection_m &&
@@ -55,24 +58,16 @@ const KeyframeWitness& best_of(std::span<const KeyframeWitness> witnesses) {
 }
 
 Eigen::Isometry3d joint_pose(std::span<const KeyframeWitness> witnesses, const KeyframeWitness& best,
-                             const SourcePoints& live, const KeyframeDatabase& keyframe_database,
-                             const ViewConfig& view) {
+                             const SourcePoints& live, const KeyframeDatabase& keyframe_database) {
   constexpr double kAgree_m = 0.15, kAgree_rad = 0.1;
   const Eigen::Isometry3d T_world_best = pose_by(best, keyframe_database);
-  std::vector<TargetView> targets;
+  std::vector<PosedReference> posed;
   for (const KeyframeWitness& witness : witnesses) {
     const Eigen::Isometry3d gap = T_world_best.inverse() * pose_by(witness, keyframe_database);
     if (gap.translation().norm() > kAgree_m || rotation_rad(gap) > kAgree_rad) continue;
-    const MapKeyframe& keyframe = keyframe_database.keyframes[witness.keyframe];
-    ViewPyramid preview;
-    make_preview_pyramid(keyframe, view, preview);
-    targets.push_back(target_of(preview, view));
-    targets.back().T_world_view = keyframe.T_world_camera;
+    posed.push_back({&witness.proof.target, keyframe_database.keyframes[witness.keyframe].T_world_camera});
   }
-  if (targets.size() < 2) return T_world_best;
-  std::vector<PosedReference> posed;
-  posed.reserve(targets.size());
-  for (const TargetView& target : targets) posed.push_back({&target, target.T_world_view});
+  if (posed.size() < 2) return T_world_best;
   const Tracking refined = align(live, posed, T_world_best, {.coarsest_level = 1});
   return has_pose(refined) ? refined.T_world_camera : T_world_best;
 }

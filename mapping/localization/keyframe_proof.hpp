@@ -22,6 +22,7 @@ struct KeyframeProof {
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
   double agreement = 0.0;  ///< fraction of the common pixels whose depths agree
   double overlap = 0.0;    ///< fraction of the frame's points that the keyframe sees, too
+  TargetView target;       ///< the keyframe's preview, posed at the identity; for joint_pose()
 };
 
 /// Refines a pose from features with the keyframe's depth. The refined pose must agree with the depth and
@@ -45,7 +46,6 @@ const KeyframeWitness& best_of(std::span<const KeyframeWitness> witnesses);
 /// Returns the best witness's pose in the world, refined over the depth of all witnesses that agree with it,
 /// because each keyframe's pose has an error.
 Eigen::Isometry3d joint_pose(std::span<const KeyframeWitness> witnesses, const KeyframeWitness& best,
-                             const SourcePoints& live, const KeyframeDatabase& keyframe_database,
-                             const ViewConfig& view);
+                             const SourcePoints& live, const KeyframeDatabase& keyframe_database);
 
 }  // namespace roomradar

@@ -16,8 +16,9 @@ namespace {
 constexpr int kMinFeatureMatches = 8;
 constexpr std::size_t kMinPoints = 200;
 constexpr double kSamePose_m = 0.3, kSamePose_rad = 0.3;
-constexpr double kElsewhere_m = 3.0;  // about a room's width
-constexpr double kRivalPart = 0.5;    // of the best pose's inliers
+constexpr double kElsewhere_m = 3.0;   // about a room's width
+constexpr std::size_t kWitnesses = 3;  // more cost time and hardly improve the pose
+constexpr double kRivalPart = 0.5;     // of the best pose's inliers
 
 /// A frame, prepared for comparison with keyframes.
 struct Query {
@@ -26,19 +27,28 @@ struct Query {
   ViewConfig view;
 };
 
-/// Proves the frame's pose by the keyframes most similar to it. Sets `was_matched` if one has enough inliers.
+/// Proves the frame's pose by the keyframes most similar to it, until kWitnesses agree with the first.
+/// @param min_inliers  of features, in a keyframe
+/// @param was_matched  set if a keyframe has as many
 std::vector<KeyframeWitness> witnesses_of(const Query& query, const KeyframeDatabase& database,
-                                          const RelocaliseConfig& config,
+                                          const RelocaliseConfig& config, int min_inliers,
                                           const std::function<bool(std::size_t)>& accept, bool& was_matched) {
   std::vector<KeyframeWitness> witnesses;
+  std::size_t agreeing = 0;
   const auto most = static_cast<std::size_t>(std::max(config.candidates, 0));
   for (const std::size_t i : most_alike(query.features, database, most, kMinFeatureMatches, accept)) {
     const KeyframeMatch match = match_keyframes(database.keyframes[i], query.features);
-    if (match.inliers < config.min_feature_inliers) continue;
+    if (match.inliers < min_inliers) continue;
     was_matched = true;
-    const KeyframeProof proof = prove_with_features(query.points, database.keyframes[i], match,
-                                                    config.min_depth_agreement, query.view);
-    if (proof.holds) witnesses.push_back({i, match.inliers, proof});
+    KeyframeProof proof = prove_with_features(query.points, database.keyframes[i], match,
+                                              config.min_depth_agreement, query.view);
+    if (!proof.holds) continue;
+    witnesses.push_back({i, match.inliers, std::move(proof)});
+    agreeing += is_near(pose_by(witnesses.back(), database), pose_by(witnesses.front(), database),
+                        kSamePose_m, kSamePose_rad)
+                    ? 1
+                    : 0;
+    if (agreeing == kWitnesses) break;
   }
   return witnesses;
 }
@@ -99,7 +109,7 @@ RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyf
 
   bool was_matched = false;
   const std::vector<KeyframeWitness> witnesses =
-      witnesses_of(query, keyframe_database, config, {}, was_matched);
+      witnesses_of(query, keyframe_database, config, config.min_feature_inliers, {}, was_matched);
   if (witnesses.empty()) return ended(was_matched ? PlaceStatus::kNotVerified : PlaceStatus::kNoMatch);
   const KeyframeWitness& best = best_of(witnesses);
   place.keyframe = static_cast<std::int64_t>(best.keyframe);
@@ -112,13 +122,15 @@ RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyf
     const Eigen::Vector3d& p_world = keyframe_database.keyframes[keyframe].T_world_camera.translation();
     return (p_world - T_world_best.translation()).norm() > kElsewhere_m;
   };
+  const int min_rival_inliers =
+      std::max(config.min_feature_inliers, static_cast<int>(kRivalPart * place.feature_inliers));
   bool ignored = false;
   const std::vector<KeyframeWitness> elsewhere =
-      witnesses_of(query, keyframe_database, config, is_elsewhere, ignored);
+      witnesses_of(query, keyframe_database, config, min_rival_inliers, is_elsewhere, ignored);
   place.rival_inliers = std::max(rival_inliers(witnesses, T_world_best, keyframe_database),
                                  rival_inliers(elsewhere, T_world_best, keyframe_database));
   if (place.rival_inliers >= kRivalPart * place.feature_inliers) return ended(PlaceStatus::kAmbiguous);
-  place.T_world_camera = joint_pose(witnesses, best, query.points, keyframe_database, query.view);
+  place.T_world_camera = joint_pose(witnesses, best, query.points, keyframe_database);
   return ended(PlaceStatus::kFound);
 }
 

@@ -24,8 +24,8 @@ KeyframeProof prove_with_depth(const SourcePoints& live, const TargetView& live_
   KeyframeProof proof;
   ViewPyramid preview;
   make_preview_pyramid(place, view, preview);
-  const TargetView reference = target_of(preview, view);
-  const Tracking there = align(live, reference, Eigen::Isometry3d::Identity(), wide);
+  proof.target = target_of(preview, view);
+  const Tracking there = align(live, proof.target, Eigen::Isometry3d::Identity(), wide);
   proof.T_keyframe_camera = there.T_world_camera;
   proof.agreement = there.inlier_fraction;
   if (!there || there.overlap < kMinOverlap || there.inlier_fraction < kMinAgreement) return proof;
@@ -117,23 +117,22 @@ Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_d
       const KeyframeMatch match = match_keyframes(keyframe_database.keyframes[i], here);
       if (match.inliers < config.min_feature_inliers) continue;
       none.status = RelocalisationStatus::kNotVerified;
-      const KeyframeProof proof =
+      KeyframeProof proof =
           prove_with_features(live, keyframe_database.keyframes[i], match, config.min_depth_agreement, view);
-      if (proof.holds) witnesses.push_back({i, match.inliers, proof});
+      if (proof.holds) witnesses.push_back({i, match.inliers, std::move(proof)});
     }
   } else {
     constexpr std::size_t kMostByDepth = 40;  // each takes some milliseconds
     const TargetView live_reference = target_of(pyramid, view);
     for (const std::size_t i : nearest_in_depth(frame, keyframe_database, kMostByDepth)) {
-      const KeyframeProof proof =
-          prove_with_depth(live, live_reference, keyframe_database.keyframes[i], view);
-      if (proof.holds) witnesses.push_back({i, 0, proof});
+      KeyframeProof proof = prove_with_depth(live, live_reference, keyframe_database.keyframes[i], view);
+      if (proof.holds) witnesses.push_back({i, 0, std::move(proof)});
     }
   }
   if (witnesses.empty()) return none;
   const KeyframeWitness& best = best_of(witnesses);
   return {.status = RelocalisationStatus::kFound,
-          .T_world_camera = joint_pose(witnesses, best, live, keyframe_database, view),
+          .T_world_camera = joint_pose(witnesses, best, live, keyframe_database),
           .keyframe = static_cast<std::int64_t>(best.keyframe),
           .feature_inliers = best.feature_inliers,
           .depth_agreement = best.proof.agreement};
