@@ -38,7 +38,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"app/cli/options"},
     {"app/cli"},
     {"app/window/link", "app/scan", "app/start", "app/building", "app/evaluation/fallthrough", "app/python"},
-    {"app/window/panes", "app/run", "app/evaluation/trade"},
+    {"app/window/panes", "app/run", "app/serve", "app/evaluation/trade"},
     {"app/window"},
     {"app/window/scan", "app/window/start"},
     {"app/commands"},

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/building/tileset.hpp"
+#include "mapping/building/submap_join_file.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -17,6 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+
+constexpr std::size_t kHashDigits = 16;  // of the SHA-256, in names of files
+constexpr const char* kKeyframeExtension = ".keyframes";
 
 /// Plans and runs a stage. Counts its jobs.
 StageCounts run_counted(const BuildingWork& work, const std::string& stage, Manifest manifest,
@@ -85,16 +89,19 @@ TrajectoryError recorded_error(const std::vector<Submap>& submaps,
   return absolute_trajectory_error(estimate, recorded);
 }
 
-/// Puts a file of a job into the building under a name with its hash. An equal file that is there stays.
-ContentFile adopt(const fs::path& from, const fs::path& folder, const std::string& stem,
+/// Puts a file of a job into the building under a name with its hash. A file of that name and size that is
+/// there stays.
+/// @param stem  folder in the building, and the name's begin
+ContentFile adopt(const fs::path& from, const fs::path& folder, const fs::path& stem,
                   const std::string& extension) {
   ContentFile file;
   file.sha256 = sha256_of_file(from);
   file.bytes = fs::file_size(from);
-  file.name = std::string(kTilesFolder) + "/" + stem + "." + file.sha256.substr(0, 16) + extension;
+  file.name = stem.generic_string() + "." + file.sha256.substr(0, kHashDigits) + extension;
   const fs::path to = folder / file.name;
   std::error_code fault;
-  if (fs::exists(to, fault)) return file;
+  if (fs::exists(to, fault) && fs::file_size(to) == file.bytes) return file;
+  fs::remove(to, fault);
   fs::create_hard_link(from, to, fault);
   if (fault) fs::copy_file(from, to, fs::copy_options::overwrite_existing);
   return file;
@@ -111,21 +118,34 @@ BuildingTile adopted_tile(const BuildingWork& work, const std::string& name, con
   tile.triangles = facts.at("triangles").get<std::int64_t>();
   tile.surface_world = {vector("surface_min_m"), vector("surface_max_m")};
   tile.mesh_origin = vector("mesh_origin_m");
-  tile.octree = adopt(job / "tile.octree", work.folder, name, ".octree");
-  tile.mesh = adopt(job / "tile.mesh", work.folder, name, ".mesh");
-  tile.glb = adopt(job / "tile.glb", work.folder, name, ".glb");
+  const fs::path stem = fs::path(kTilesFolder) / name;
+  tile.octree = adopt(job / "tile.octree", work.folder, stem, ".octree");
+  tile.mesh = adopt(job / "tile.mesh", work.folder, stem, ".mesh");
+  tile.glb = adopt(job / "tile.glb", work.folder, stem, ".glb");
   return tile;
 }
 
-/// Deletes files of tiles that are not part of the building any more.
+/// Returns whether the file has the name that adopt() gives to a recording's keyframes.
+bool is_keyframe_file(const fs::path& path) {
+  const std::string hash = path.stem().extension().string();  // with its dot
+  return path.extension() == kKeyframeExtension && hash.size() == kHashDigits + 1 &&
+         hash.find_first_not_of("0123456789abcdef", 1) == std::string::npos;
+}
+
+/// Deletes files of tiles and keyframes that are not part of the building any more. Other files in the folder
+/// of recordings stay.
 void delete_others(const BuildingInfo& info, const fs::path& folder) {
   std::set<std::string> used;
   for (const BuildingTile& tile : info.tiles)
-    for (const ContentFile* file : {&tile.octree, &tile.mesh, &tile.glb})
-      used.insert(fs::path(file->name).filename().string());
+    for (const ContentFile* file : {&tile.octree, &tile.mesh, &tile.glb}) used.insert(file->name);
+  for (const BuildingRecording& recording : info.recordings) used.insert(recording.keyframe_file.name);
   std::vector<fs::path> others;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder / kTilesFolder))
-    if (!used.contains(entry.path().filename().string())) others.push_back(entry.path());
+  for (const char* part : {kTilesFolder, kRecordingsFolder})
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder / part)) {
+      const fs::path name = fs::path(part) / entry.path().filename();
+      if ((part == kTilesFolder || is_keyframe_file(name)) && !used.contains(name.generic_string()))
+        others.push_back(entry.path());
+    }
   for (const fs::path& other : others) {
     std::error_code ignored;
     fs::remove(other, ignored);
@@ -238,6 +258,10 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   }
   std::sort(result.info.tiles.begin(), result.info.tiles.end(),
             [](const BuildingTile& a, const BuildingTile& b) { return is_before(a.index, b.index); });
+  for (BuildingRecording& recording : result.info.recordings)
+    if (recording.frames_placed > 0)
+      recording.keyframe_file = adopt(work.job(fuse_job(recording.name)) / kPlacedKeyframesFile, work.folder,
+                                      fs::path(kRecordingsFolder) / recording.name, kKeyframeExtension);
   for (const std::string& recording : fused) {
     std::vector<TimedPose> trajectory;
     for (std::size_t i = 0; i < placed_names.size(); ++i)

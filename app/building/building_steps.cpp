@@ -14,8 +14,10 @@
 #include "mapping/building/building_info.hpp"
 #include "mapping/building/keyframe_retrieval.hpp"
 #include "mapping/building/submap_join.hpp"
+#include "mapping/building/submap_join_file.hpp"
 #include "mapping/building/tile_surface.hpp"
 #include "mapping/deskewed_source.hpp"
+#include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/prescan_passes.hpp"
 #include "mapping/storage/binary_file.hpp"
@@ -70,6 +72,20 @@ StaticMap fused(FrameSource& source, const Submap& submap, const std::vector<Tim
                 std::to_string(static_cast<int>(work.reach_m)) + " m of the building's origin?");
   if (step.remove_ghosts) run_ghost_removal(work, pass);
   return std::move(pass.octree);
+}
+
+/// Writes the submaps' keyframes at their poses in the building.
+void write_placed_keyframes(const FuseStep& step) {
+  KeyframeDatabase database;
+  for (std::size_t i = 0; i < step.submaps.size(); ++i) {
+    const std::vector<Eigen::Isometry3d> placed = load_placed_keyframes(step.placed[i]);
+    KeyframeDatabase part = load_submap(step.submaps[i]).keyframes;
+    for (std::size_t k = 0; k < part.keyframes.size(); ++k) {
+      part.keyframes[k].T_world_camera = placed.at(k);
+      database.keyframes.push_back(std::move(part.keyframes[k]));
+    }
+  }
+  write_keyframe_database(database, step.out / kPlacedKeyframesFile);
 }
 
 }  // namespace
@@ -172,6 +188,7 @@ int run(const FuseStep& step) {
     submap.frames_read = part.frames_read;
     submap.timing = part.timing;
   }
+  write_placed_keyframes(step);
   const std::unique_ptr<FrameSource> source = open_source(step.source, {});
   const StaticMap map = fused(*source, submap, trajectory, step);
   constexpr int kCell_voxels = 4;  // a triangle in a tile's cube has its samples at most this far outside

@@ -40,6 +40,8 @@ int run(const JoinStep& step);
 /// out/parts/TILE.octree for each tile in which the recording has surface, with a margin of
 /// kSurfaceReach_voxels, and out/margins/TILE.octree for each other tile in whose margin it has surface or
 /// that it saw through.
+/// Also writes out/keyframes.bin with the recording's placed keyframes at their poses in the building; see
+/// write_keyframe_database().
 struct FuseStep {
   std::string source;
   std::vector<std::filesystem::path> submaps;  ///< folders
@@ -49,6 +51,7 @@ struct FuseStep {
   std::filesystem::path out;
 };
 int run(const FuseStep& step);
+inline constexpr const char* kPlacedKeyframesFile = "keyframes.bin";
 
 /// Adds the parts of one tile, and extracts its surface. Writes out/tile.octree (the tile's cube), tile.mesh
 /// and tile.glb, or nothing but out/tile.json if the tile has no surface of its own.

@@ -42,7 +42,7 @@ Node leaf_of(const BuildingTile& tile, double deviation_m) {
 
 }  // namespace
 
-void write_tileset(const BuildingInfo& info, const std::filesystem::path& folder) {
+std::string tileset_text(const BuildingInfo& info) {
   constexpr double kDeviation_m = 0.002;
   std::map<TileIndex, Node, decltype(&is_before)> level(&is_before);
   TileIndex lowest = TileIndex::Zero();  // indices from 0 on, which meet in one node when halved
@@ -74,8 +74,12 @@ void write_tileset(const BuildingInfo& info, const std::filesystem::path& folder
   else
     tileset["root"] = std::move(level.begin()->second.value);
   tileset["root"]["refine"] = "ADD";
-  AtomicFile file(folder / "tileset.json");
-  file.stream() << tileset.dump(1) << "\n";
+  return tileset.dump(1) + "\n";
+}
+
+void write_tileset(const BuildingInfo& info, const std::filesystem::path& folder) {
+  AtomicFile file(folder / kTilesetFile);
+  file.stream() << tileset_text(info);
   file.commit();
 }
 

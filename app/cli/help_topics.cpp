@@ -161,12 +161,53 @@ Environment:
 Exit status: 0: done. 1: the work failed; standard error says what, where and what to do. 2: wrong usage.
 )";
 
-constexpr std::array<HelpTopic, 6> kTopics = {{
+constexpr std::string_view kHttp =
+    R"(Requests to `roomradar serve MAP...`; NAME is the name of a map's folder. Each connection has one request.
+
+  GET /health                        {"status": "ok"}
+  GET /maps                          names and kinds (building, room) of the maps
+  GET /maps/NAME                     facts, as `roomradar map info --json`: files, extents, floors
+  GET /maps/NAME/tileset.json        a building for viewers of 3D Tiles 1.1; its tiles are below tiles/
+  GET /maps/NAME/tiles/FILE          .glb, .mesh or .octree of a tile; only files that the facts list
+  GET /maps/NAME/mesh.ply            surface of a room; also texture.jpg
+  POST /maps/NAME/locate             pose of a camera in this map
+  POST /locate                       the same in all maps; refused if two of them fit
+
+An answer has an ETag: a request with it in If-None-Match is answered 304 if nothing changed. Files can be read in
+parts (Range, one part). Faults are {"error": "sentence"}. A map that is replaced on disk is taken up at the next
+request.
+
+The body of a request to locate is one line of JSON, then the bytes of both images, 8 MB at most:
+
+  {"camera": {"depth": {"width_px": 640, "height_px": 480, "fx_px": 585, "fy_px": 585, "cx_px": 320, "cy_px": 240}},
+   "depth_bytes": 183042, "colour_bytes": 90211, "depth_units_per_m": 1000}      # in one line
+  depth: grey PNG of 16 bit, 0 is not measured; colour: JPEG or PNG
+
+"camera" is as in camera.json; "colour" and "T_colour_depth" are needed if the colour image has a view of its own.
+In Python, without other packages:
+
+  head = json.dumps({"camera": camera, "depth_bytes": len(depth), "colour_bytes": len(colour)})
+  request = urllib.request.Request(url, head.encode() + b"\n" + depth + colour,
+                                   {"Content-Type": "application/octet-stream"})
+  print(json.load(urllib.request.urlopen(request)))
+
+The answer has "found", "map", "pose" (position_m and quaternion_xyzw of the depth camera in the map's world; the
+camera has x right, y down, z forward), "feature_inliers" and "rival_inliers" (features that agree with the pose,
+and with another one), "depth_agreement" and "overlap" (0 to 1), "tiles" within 5 m, and "geopose": an OGC GeoPose
+with --anchor, otherwise "local". If "found" is false, "reason" and "sentence" say why: no depth, no colour, no
+match, not verified, or ambiguous (two places fit equally well; rooms that look alike are refused, not guessed).
+
+Without a token the server answers on this machine only. For others: --listen 0.0.0.0:8080 --allow-remote
+--token-file FILE, and a proxy with TLS in front, which also limits how slowly a client may send.
+)";
+
+constexpr std::array<HelpTopic, 7> kTopics = {{
     {"script", "events of `run --script`: add, drop, throw, ... at a frame or a time", kScript},
     {"models", "which files can be objects, their axes, units and textures", kModels},
     {"sources", "recordings, devices and sim:ROOM with all keys", kSources},
     {"units", "metres, frames of reference, the radar's R, M and L", kUnits},
     {"calibrate", "how to calibrate a device, step by step", kCalibrate},
+    {"http", "requests to `roomradar serve` and its answers", kHttp},
     {"files", "what the program writes, environment, exit status", kFiles},
 }};
 

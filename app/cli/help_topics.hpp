@@ -11,7 +11,7 @@ struct HelpTopic {
   std::string_view text;     ///< plain text with lines of at most 100 characters; ends with a newline
 };
 
-/// Returns all topics: script, models, sources, units, calibrate, files.
+/// Returns all topics: script, models, sources, units, calibrate, http, files.
 std::span<const HelpTopic> help_topics();
 
 }  // namespace roomradar

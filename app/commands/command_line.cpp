@@ -30,6 +30,7 @@
 #include "app/commands/simulate_command.hpp"
 #include "app/commands/start_command.hpp"
 #include "app/commands/trade_command.hpp"
+#include "app/serve/serve_command.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -48,7 +49,7 @@ constexpr const char* kFirstSteps =
     "  roomradar prescan kinect:0 --map maps/kitchen       # or a recording, or 'sim:table'\n"
     "  roomradar run kinect:0 --map maps/kitchen --window\n"
     "`roomradar COMMAND --help` explains a command, `roomradar help TOPIC` a topic: script, models,\n"
-    "sources, units, calibrate, files. `source <(roomradar --completion bash)` completes commands and\n"
+    "sources, units, calibrate, http, files. `source <(roomradar --completion bash)` completes commands and\n"
     "options in this shell (zsh: --completion zsh).\n";
 
 /// Completes the options of `roomradar run`, which may come from a recorded session.
@@ -119,7 +120,7 @@ void add_map_commands(CLI::App& app, std::function<int()>& work) {
 /// Adds `help [COMMAND | TOPIC]`.
 void add_help_command(CLI::App& app) {
   CLI::App& help = *app.add_subcommand(
-      "help", "explain a command, or a topic: script, models, sources, units, calibrate, files");
+      "help", "explain a command, or a topic: script, models, sources, units, calibrate, http, files");
   const auto words = std::make_shared<std::vector<std::string>>();
   help.add_option("WORD", *words, "command or topic (default: the list of commands)");
   help.callback([&app, words] {
@@ -171,6 +172,12 @@ void add_commands(CLI::App& app, std::function<int()>& work) {
       "saves octree and surface in tiles, also as tileset.json with .glb for viewers of 3D Tiles",
       work);
   add_building_steps(app, work);
+  add_command<ServeOptions>(
+      app, "serve",
+      "serve maps over HTTP until Ctrl-C:\n"
+      "GET /maps, /maps/NAME, /maps/NAME/tileset.json and tiles; POST /maps/NAME/locate or /locate with a\n"
+      "depth and a colour image answers with the camera's pose; `roomradar help http` has the formats",
+      work);
   add_command<RecordOptions>(app, "record", "write a source's frames as a recording", work);
   add_command<CalibrateOptions>(
       app, "calibrate",

@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "app/building/building_map_commands.hpp"
 #include "app/cli/report.hpp"
 #include "app/page/map_page.hpp"
+#include "mapping/building/building_info.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -64,6 +66,7 @@ void export_page(const MapExportOptions& options) {
 }  // namespace
 
 int run(const MapInfoOptions& options) {
+  if (is_building(options.map)) return run_on_building(options);
   const MapInfo info = load_map_info(options.map);
   const std::vector<LevelSurface> surfaces = level_surfaces(load_map_mesh(options.map));
   if (options.json)
@@ -74,6 +77,7 @@ int run(const MapInfoOptions& options) {
 }
 
 int run(const MapVerifyOptions& options) {
+  if (is_building(options.map)) return run_on_building(options);
   const std::vector<std::string> faults = verify_map(options.map);
   for (const std::string& fault : faults) std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   if (!faults.empty()) return 1;
@@ -82,6 +86,7 @@ int run(const MapVerifyOptions& options) {
 }
 
 int run(const MapExportOptions& options) {
+  if (is_building(options.map)) return run_on_building(options);
   if (is_page(options.path)) {
     if (options.unknown)
       throw Error(options.path + ": --unknown writes a mesh; give a .ply, .obj, .stl or .glb file");

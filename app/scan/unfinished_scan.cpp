@@ -66,6 +66,11 @@ bool is_to_extend(bool resume, const fs::path& folder, const fs::path& map) {
   if (!resume) return false;
   if (is_unfinished(folder)) return identity_of(folder)["into"] != kNewMap;
   if (fs::exists(map / "map.json")) return true;
+  if (fs::exists(map / "building.json"))
+    throw Error(
+        map.string() +
+        ": is the map of a building; `roomradar building` adds recordings to it, and prescan takes the "
+        "map of one room");
   throw Error(map.string() + ": there is nothing to resume: no map, and no interrupted scan (" +
               folder.string() + "); leave out --resume to begin a new map");
 }

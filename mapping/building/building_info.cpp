@@ -67,11 +67,14 @@ BuildingInfo info_of(const json& value) {
   info.grid.resolution_m = value.at("resolution_m").get<double>();
   info.grid.edge_voxels = value.at("tile_edge_voxels").get<int>();
   require_valid(info.grid);
-  for (const json& one : value.at("recordings"))
+  for (const json& one : value.at("recordings")) {
     info.recordings.push_back(
         {one.at("name").get<std::string>(), one.at("source").get<std::string>(),
          one.at("frames_read").get<std::int64_t>(), one.at("frames_tracked").get<std::int64_t>(),
          one.at("keyframes").get<std::int64_t>(), one.at("frames_placed").get<std::int64_t>()});
+    if (one.contains("keyframe_file"))
+      info.recordings.back().keyframe_file = content_file_of(one.at("keyframe_file"));
+  }
   for (const json& one : value.at("tiles")) info.tiles.push_back(tile_of(one));
   const auto is_unordered = [](const BuildingTile& a, const BuildingTile& b) {
     return !is_before(a.index, b.index);
@@ -106,13 +109,16 @@ void write_building(const BuildingInfo& info, const fs::path& folder) {
                 {"tile_edge_voxels", info.grid.edge_voxels},
                 {"recordings", json::array()},
                 {"tiles", json::array()}};
-  for (const BuildingRecording& one : info.recordings)
+  for (const BuildingRecording& one : info.recordings) {
     value["recordings"].push_back({{"name", one.name},
                                    {"source", one.source},
                                    {"frames_read", one.frames_read},
                                    {"frames_tracked", one.frames_tracked},
                                    {"keyframes", one.keyframes},
                                    {"frames_placed", one.frames_placed}});
+    if (!one.keyframe_file.name.empty())
+      value["recordings"].back()["keyframe_file"] = to_json(one.keyframe_file);
+  }
   for (const BuildingTile& tile : info.tiles)
     value["tiles"].push_back({{"name", name_of(tile.index)},
                               {"triangles", tile.triangles},

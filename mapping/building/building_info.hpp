@@ -35,6 +35,9 @@ struct BuildingRecording {
   /// Number of tracked frames whose place in the building is known. Only these are in the tiles. Others are
   /// of a recording, or of a part of one after tracking was lost, that shows no place of another for certain.
   std::int64_t frames_placed = 0;
+  /// Placed keyframes with their poses in the building; see write_keyframe_database(). Without a name if none
+  /// is placed, or the building was made by an earlier version.
+  ContentFile keyframe_file{};
 };
 
 /// What building.json holds.
@@ -46,7 +49,8 @@ struct BuildingInfo {
 
 inline constexpr const char* kBuildingFile = "building.json";
 inline constexpr const char* kTilesFolder = "tiles";
-inline constexpr const char* kRecordingsFolder = "recordings";  ///< a submap per recording, in the building
+/// Holds each recording's trajectory and keyframes in the building.
+inline constexpr const char* kRecordingsFolder = "recordings";
 
 /// Returns true if the folder holds a building.
 bool is_building(const std::filesystem::path& folder);

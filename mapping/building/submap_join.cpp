@@ -12,9 +12,6 @@
 #include "mapping/alignment/view.hpp"
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
-#include "mapping/storage/binary_file.hpp"
-#include "mapping/types/serialize.hpp"
-#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
@@ -249,35 +246,7 @@ SubmapJoin judged(const Submap& a, const Submap& b, const std::vector<Vote>& agr
   return join;
 }
 
-constexpr std::string_view kJoinsMagic = "RRJOINED";
-constexpr std::uint32_t kJoinsVersion = 1;
-
 }  // namespace
-
-template <typename Archive>
-static void serialize(Archive& archive, KeyframeLink& link) {
-  auto a = static_cast<std::uint64_t>(link.a), b = static_cast<std::uint64_t>(link.b);
-  serialize(archive, a);
-  serialize(archive, b);
-  serialize(archive, link.T_a_b);
-  serialize(archive, link.information);
-  if constexpr (Archive::kReads) {
-    if (!link.information.allFinite()) archive.fail("is damaged: a link's information is no number");
-    link.a = a;
-    link.b = b;
-  }
-}
-
-template <typename Archive>
-static void serialize(Archive& archive, SubmapJoin& join) {
-  serialize(archive, join.status, JoinStatus::kLooksDifferent);
-  serialize(archive, join.links);
-  serialize(archive, join.T_a_b);
-  serialize(archive, join.agreeing);
-  serialize(archive, join.expected);
-  serialize(archive, join.recognised);
-  serialize(archive, join.agreement);
-}
 
 std::string describe(const SubmapJoin& join) {
   std::array<char, 200> text{};
@@ -317,22 +286,6 @@ std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,
     std::erase_if(votes, [&](const Vote& vote) { return agree(vote, chosen, b); });
   }
   if (joins.empty()) joins.emplace_back();
-  return joins;
-}
-
-void save_joins(const std::vector<SubmapJoin>& joins, const std::filesystem::path& path) {
-  ByteWriter out;
-  std::vector<SubmapJoin> copy = joins;
-  serialize(out, copy);
-  write_binary(path, kJoinsMagic, kJoinsVersion, out.bytes());
-}
-
-std::vector<SubmapJoin> load_joins(const std::filesystem::path& path) {
-  const std::string bytes = read_binary(path, kJoinsMagic, kJoinsVersion);
-  ByteReader in(bytes, path.string());
-  std::vector<SubmapJoin> joins;
-  serialize(in, joins);
-  in.require_end();
   return joins;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
@@ -63,10 +62,5 @@ struct JoinConfig {
 std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,
                                      std::span<const std::pair<std::size_t, std::size_t>> keyframes,
                                      const JoinConfig& config = {});
-
-/// Writes the outcome of comparing two submaps. Throws Error if the file cannot be written.
-void save_joins(const std::vector<SubmapJoin>& joins, const std::filesystem::path& path);
-/// Reads it. Throws Error naming the file and the fault if it is missing, damaged or of another version.
-std::vector<SubmapJoin> load_joins(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -9,62 +9,24 @@
 #include <vector>
 
 #include "mapping/alignment/align.hpp"
+#include "mapping/localization/keyframe_proof.hpp"
 #include "mapping/localization/place_matching.hpp"
 
 namespace roomradar {
 namespace {
 
-void make_preview_pyramid(const MapKeyframe& place, const ViewConfig& view, ViewPyramid& pyramid) {
-  DepthImage depth_m(place.preview_camera.width_px, place.preview_camera.height_px);
-  std::transform(place.preview_depth_mm.pixels.begin(), place.preview_depth_mm.pixels.end(),
-                 depth_m.pixels.begin(), [](std::uint16_t mm) { return 0.001F * static_cast<float>(mm); });
-  make_pyramid(depth_m, place.preview_camera, view, pyramid);
-}
-
-/// Makes the preview a reference, posed at the identity.
-TargetView reference_of(const ViewPyramid& preview, const ViewConfig& view) {
-  TargetView reference;
-  make_target_view(preview, Eigen::Isometry3d::Identity(), view, reference);
-  return reference;
-}
-
-struct Proof {
-  bool holds = false;
-  Eigen::Isometry3d T_place_camera = Eigen::Isometry3d::Identity();
-  double agreement = 0.0;
-};
-
-double angle_rad(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
-
-/// Refines a feature-based pose with the keyframe's depth. The refined pose must agree with the depth and
-/// with the features.
-Proof prove_with_features(const SourcePoints& live, const MapKeyframe& place, const KeyframeMatch& match,
-                          const RelocaliseConfig& config, const ViewConfig& view) {
-  constexpr double kMaxCorrection_m = 0.12, kMaxCorrection_rad = 0.12;
-  ViewPyramid preview;
-  make_preview_pyramid(place, view, preview);
-  const TargetView reference = reference_of(preview, view);
-  const Tracking t = align(live, reference, match.T_a_b, {.coarsest_level = 1, .gate_m = 0.15F});
-  Proof proof{.T_place_camera = t.T_world_camera, .agreement = t.inlier_fraction};
-  const Eigen::Isometry3d correction = match.T_a_b.inverse() * t.T_world_camera;
-  proof.holds = has_pose(t) && t.overlap > 0.2 && t.inlier_fraction >= config.min_depth_agreement &&
-                correction.translation().norm() < kMaxCorrection_m &&
-                angle_rad(correction) < kMaxCorrection_rad;
-  return proof;
-}
-
 /// Verifies a keyframe without features. Alignment starts at the keyframe's pose, must constrain all
 /// directions, overlap well, and agree with the reverse alignment.
-Proof prove_with_depth(const SourcePoints& live, const TargetView& live_reference, const MapKeyframe& place,
-                       const ViewConfig& view) {
+KeyframeProof prove_with_depth(const SourcePoints& live, const TargetView& live_reference,
+                               const MapKeyframe& place, const ViewConfig& view) {
   constexpr double kMinAgreement = 0.85, kMinOverlap = 0.6, kMaxGap_m = 0.03, kMaxGap_rad = 0.03;
   const AlignConfig wide{.coarsest_level = 2, .iterations = 12, .gate_m = 0.3F, .intensity_sigma = 0.0F};
-  Proof proof;
+  KeyframeProof proof;
   ViewPyramid preview;
   make_preview_pyramid(place, view, preview);
-  const TargetView reference = reference_of(preview, view);
-  const Tracking there = align(live, reference, Eigen::Isometry3d::Identity(), wide);
-  proof.T_place_camera = there.T_world_camera;
+  proof.target = target_of(preview, view);
+  const Tracking there = align(live, proof.target, Eigen::Isometry3d::Identity(), wide);
+  proof.T_keyframe_camera = there.T_world_camera;
   proof.agreement = there.inlier_fraction;
   if (!there || there.overlap < kMinOverlap || there.inlier_fraction < kMinAgreement) return proof;
   SourcePoints place_live;
@@ -72,7 +34,7 @@ Proof prove_with_depth(const SourcePoints& live, const TargetView& live_referenc
   const Tracking back = align(place_live, live_reference, there.T_world_camera.inverse(), wide);
   const Eigen::Isometry3d gap = there.T_world_camera * back.T_world_camera;
   proof.holds = back && back.inlier_fraction >= kMinAgreement && gap.translation().norm() < kMaxGap_m &&
-                angle_rad(gap) < kMaxGap_rad;
+                Eigen::AngleAxisd(gap.linear()).angle() < kMaxGap_rad;
   return proof;
 }
 
@@ -105,49 +67,6 @@ std::vector<std::size_t> nearest_in_depth(const Frame& frame, const KeyframeData
   std::vector<std::size_t> nearest;
   std::transform(unlike.begin(), end, std::back_inserter(nearest), [](const auto& of) { return of.second; });
   return nearest;
-}
-
-/// Keyframe that verified the frame's pose.
-struct Witness {
-  std::size_t position = 0;  ///< index in places.keyframes
-  int feature_inliers = 0;
-  Proof proof;
-};
-
-/// Returns the best witness's pose, refined over the depth of all witnesses that agree with it, because each
-/// keyframe's pose has an error.
-Relocalisation answer(const std::vector<Witness>& witnesses, const SourcePoints& live,
-                      const KeyframeDatabase& keyframe_database, const ViewConfig& view) {
-  constexpr double kAgree_m = 0.15, kAgree_rad = 0.1;
-  const Witness& best =
-      *std::max_element(witnesses.begin(), witnesses.end(), [](const Witness& a, const Witness& b) {
-        return std::pair(a.feature_inliers, a.proof.agreement) <
-               std::pair(b.feature_inliers, b.proof.agreement);
-      });
-  Relocalisation found{
-      .status = RelocalisationStatus::kFound,
-      .T_world_camera = keyframe_database.keyframes[best.position].T_world_camera * best.proof.T_place_camera,
-      .keyframe = static_cast<std::int64_t>(best.position),
-      .feature_inliers = best.feature_inliers,
-      .depth_agreement = best.proof.agreement};
-  std::vector<TargetView> references;
-  for (const Witness& witness : witnesses) {
-    const MapKeyframe& place = keyframe_database.keyframes[witness.position];
-    const Eigen::Isometry3d gap =
-        found.T_world_camera.inverse() * place.T_world_camera * witness.proof.T_place_camera;
-    if (gap.translation().norm() > kAgree_m || angle_rad(gap) > kAgree_rad) continue;
-    ViewPyramid preview;
-    make_preview_pyramid(place, view, preview);
-    references.push_back(reference_of(preview, view));
-    references.back().T_world_view = place.T_world_camera;
-  }
-  if (references.size() < 2) return found;
-  std::vector<PosedReference> posed;
-  posed.reserve(references.size());
-  for (const TargetView& reference : references) posed.push_back({&reference, reference.T_world_view});
-  const Tracking refined = align(live, posed, found.T_world_camera, {.coarsest_level = 1});
-  if (has_pose(refined)) found.T_world_camera = refined.T_world_camera;
-  return found;
 }
 
 }  // namespace
@@ -186,7 +105,7 @@ Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_d
     return none;
   }
 
-  std::vector<Witness> witnesses;
+  std::vector<KeyframeWitness> witnesses;
   const bool remembered_by_features =
       std::any_of(keyframe_database.keyframes.begin(), keyframe_database.keyframes.end(),
                   [](const MapKeyframe& place) { return !place.descriptors.empty(); });
@@ -198,18 +117,25 @@ Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_d
       const KeyframeMatch match = match_keyframes(keyframe_database.keyframes[i], here);
       if (match.inliers < config.min_feature_inliers) continue;
       none.status = RelocalisationStatus::kNotVerified;
-      const Proof proof = prove_with_features(live, keyframe_database.keyframes[i], match, config, view);
-      if (proof.holds) witnesses.push_back({i, match.inliers, proof});
+      KeyframeProof proof =
+          prove_with_features(live, keyframe_database.keyframes[i], match, config.min_depth_agreement, view);
+      if (proof.holds) witnesses.push_back({i, match.inliers, std::move(proof)});
     }
   } else {
     constexpr std::size_t kMostByDepth = 40;  // each takes some milliseconds
-    const TargetView live_reference = reference_of(pyramid, view);
+    const TargetView live_reference = target_of(pyramid, view);
     for (const std::size_t i : nearest_in_depth(frame, keyframe_database, kMostByDepth)) {
-      const Proof proof = prove_with_depth(live, live_reference, keyframe_database.keyframes[i], view);
-      if (proof.holds) witnesses.push_back({i, 0, proof});
+      KeyframeProof proof = prove_with_depth(live, live_reference, keyframe_database.keyframes[i], view);
+      if (proof.holds) witnesses.push_back({i, 0, std::move(proof)});
     }
   }
-  return witnesses.empty() ? none : answer(witnesses, live, keyframe_database, view);
+  if (witnesses.empty()) return none;
+  const KeyframeWitness& best = best_of(witnesses);
+  return {.status = RelocalisationStatus::kFound,
+          .T_world_camera = joint_pose(witnesses, best, live, keyframe_database),
+          .keyframe = static_cast<std::int64_t>(best.keyframe),
+          .feature_inliers = best.feature_inliers,
+          .depth_agreement = best.proof.agreement};
 }
 
 }  // namespace roomradar

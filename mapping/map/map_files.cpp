@@ -30,6 +30,9 @@ void require_replaceable(const fs::path& folder) {
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status))
     refuse(folder, "exists and is not a folder; choose another name for the map");
+  if (fs::exists(folder / "building.json", fault))
+    refuse(folder,
+           "is the map of a building; a room's map takes its own folder, so choose another name for the map");
   bool empty = true;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
     empty = false;

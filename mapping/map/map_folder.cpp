@@ -159,6 +159,8 @@ MapInfo read_info(const fs::path& folder) {
     fail(folder, "there is no such map folder; make one with `roomradar prescan`");
   const fs::path path = folder / kMapInfoFile;
   const fs::file_status status = fs::symlink_status(path, fault);
+  if (!fs::exists(status) && fs::exists(folder / "building.json", fault))
+    fail(folder, "is the map of a building; this takes the map of one room, made with `roomradar prescan`");
   if (!fs::exists(status)) fail(path, "is missing, so the folder is no map");
   if (!fs::is_regular_file(status))
     fail(path, "is not a plain file, but a link or a folder; a map contains only plain files");

@@ -10,7 +10,7 @@ namespace roomradar {
 namespace {
 
 void add_map_argument(CLI::App& command, std::string& map) {
-  command.add_option("DIR", map, "folder of the map (required)")->required();
+  command.add_option("DIR", map, "folder of the map of a room or a building (required)")->required();
 }
 
 }  // namespace
@@ -28,7 +28,9 @@ void add_options(CLI::App& command, MapExportOptions& options) {
       .add_option(
           "FILE", options.path,
           "file to write, by extension: .html (page for a browser: the room to turn, walk in and measure),\n"
-          ".glb .obj (mesh with texture), .ply .stl (mesh), .ot .bt (octree) (required)")
+          ".glb .obj (mesh with texture), .ply .stl (mesh), .ot .bt (octree), .png (of a building: a plan "
+          "of\n"
+          "each floor) (required)")
       ->required();
   command.add_flag("--unknown", options.unknown,
                    "write the border of unknown space instead of the room's mesh (default: off)");

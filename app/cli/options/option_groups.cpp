@@ -96,6 +96,12 @@ std::vector<CommandHelp> command_helps() {
          {"--map", "--reference", "--poses", "--frames", "--calibration", "--cell", "--picture"}}},
        "  roomradar fallthrough --scenarios 100 --html fallthrough.html\n"
        "  roomradar fallthrough RECORDING --map maps/kitchen --picture floor.png\n"},
+      {"serve",
+       {{"Options", {"--listen", "--anchor", "--verbose"}},
+        {"Other machines", {"--allow-remote", "--token-file"}}},
+       "  roomradar serve maps/kitchen buildings/museum\n"
+       "  roomradar serve buildings/museum --anchor 48.137,11.575,520,90 --listen 127.0.0.1:9000\n"
+       "  roomradar serve buildings/museum --listen 0.0.0.0:8080 --allow-remote --token-file token\n"},
       {"farm",
        {{"Options", {"--out", "--processes", "--job", "--emit", "--report"}}},
        "  roomradar farm rooms.txt --out results\n"

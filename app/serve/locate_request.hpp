@@ -1,0 +1,26 @@
+// locate_request.hpp: the body of a request to locate a camera.
+#pragma once
+#include <cstddef>
+#include <string_view>
+
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+inline constexpr std::size_t kMaxLocateBody_bytes = 8'000'000;
+inline constexpr std::size_t kMaxLocateHeader_bytes = 16'384;
+inline constexpr long kMaxLocatePixels = 2'500'000;  ///< per image; 1,920 x 1,080 has 2.1 million
+
+/// Parses a request's body: one line of JSON, then the bytes of both images.
+///
+///     {"camera": {"depth": {"width_px": 640, ...}, "colour": {...}, "T_colour_depth": [...]},
+///      "depth_bytes": 183042, "colour_bytes": 90211, "depth_units_per_m": 1000}\n
+///     depth: grey PNG of 16 bit, 0: no measurement; colour: JPEG or PNG
+///
+/// `camera` has the fields of camera.json; see read_camera_file(). Without `colour` and `T_colour_depth`
+/// there, the colour image has the depth image's size and view. `depth_units_per_m` may be missing: 1000, mm.
+/// The body is not trusted: lengths, the images' sizes and the cameras are checked before pixels are decoded.
+/// @throws Error with a sentence for the client
+Frame parse_locate_request(std::string_view body);
+
+}  // namespace roomradar

@@ -1,0 +1,114 @@
+// serve_command.cpp: refuses unsafe starts, then serves until Ctrl-C.
+#include "app/serve/serve_command.hpp"
+
+#include <malloc.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "app/cli/interrupt.hpp"
+#include "app/serve/map_server.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+MapCatalogue catalogue_of(const ServeOptions& options) {
+  MapCatalogue catalogue;
+  std::set<std::string> names;
+  for (const std::string& folder : options.maps) {
+    catalogue.maps.push_back(std::make_unique<ServedMap>(folder));
+    if (!names.insert(catalogue.maps.back()->name()).second)
+      throw Error(folder + ": another map has the name " + catalogue.maps.back()->name() +
+                  "; maps are served by their folders' names");
+    (void)catalogue.maps.back()
+        ->current()
+        ->keyframes();  // a fault is told now, and the first frame does not wait
+  }
+  if (!options.anchor.empty()) {
+    if (options.maps.size() > 1)
+      throw Error("--anchor is of one map; serve each map with a server of its own");
+    catalogue.anchor = parse_geo_anchor(options.anchor);
+  }
+  return catalogue;
+}
+
+MapServerConfig config_of(const ServeOptions& options) {
+  MapServerConfig config;
+  config.address = parse_listen_address(options.listen);
+  config.verbose = options.verbose;
+  if (!options.token_file.empty()) config.token = read_token(options.token_file);
+  if (is_loopback(config.address)) return config;
+  if (!options.allow_remote)
+    throw Error("--listen " + options.listen +
+                ": other machines could read the maps; add --allow-remote and --token-file if that is meant");
+  if (config.token.empty())
+    throw Error("--listen " + options.listen +
+                ": needs --token-file, since other machines reach this address");
+  return config;
+}
+
+}  // namespace
+
+void add_options(CLI::App& command, ServeOptions& options) {
+  command.add_option("MAP", options.maps, "folders of buildings and of rooms' maps (required)")->required();
+  command
+      .add_option("--listen", options.listen,
+                  "address and port; port 0 takes a free one and prints it (default: 127.0.0.1:8080)")
+      ->type_name("ADDRESS:PORT");
+  command.add_flag("--allow-remote", options.allow_remote,
+                   "allow an address that other machines reach; needs --token-file. The connection is not\n"
+                   "encrypted: put a proxy with TLS in front of it (default: off)");
+  command
+      .add_option("--token-file", options.token_file,
+                  "file with the token that each request must have (default: no token)")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--anchor", options.anchor,
+          "place of the map's origin on the earth, for answers as GeoPose: degrees, degrees, m above the\n"
+          "ellipsoid, and the direction of +y in degrees clockwise from north (default: none)")
+      ->type_name("LAT,LON,HEIGHT,HEADING");
+  command.add_flag("--verbose", options.verbose, "print a line per request to stderr (default: off)");
+}
+
+int run(const ServeOptions& options) {
+  // Threads are there for requests. Many arenas would keep memory of past ones.
+  cv::setNumThreads(1);
+  ::mallopt(M_ARENA_MAX, 2);
+  MapServerConfig config = config_of(options);
+  const std::string host = config.address.host.find(':') == std::string::npos
+                               ? config.address.host
+                               : "[" + config.address.host + "]";
+  MapServer server(std::move(config), catalogue_of(options));
+  const Interrupt interrupt;
+  Interrupt::say("roomradar: requests that have begun are answered, then the server ends\n");
+  std::exception_ptr fault;
+  std::atomic<bool> has_ended = false;
+  std::thread serving([&] {
+    try {
+      server.run();
+    } catch (...) {
+      fault = std::current_exception();
+    }
+    has_ended = true;
+  });
+  std::printf("listening on http://%s:%d\n", host.c_str(), server.port());
+  std::fflush(stdout);
+  while (!has_ended && !Interrupt::was_pressed()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const bool was_asked = Interrupt::was_pressed();
+  server.stop();
+  serving.join();
+  if (fault && !was_asked) std::rethrow_exception(fault);
+  return 0;
+}
+
+}  // namespace roomradar

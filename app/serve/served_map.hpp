@@ -1,0 +1,83 @@
+// served_map.hpp: one map as it is served, taken up again when it was replaced on disk.
+#pragma once
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/building/building_info.hpp"
+#include "mapping/localization/keyframe_database.hpp"
+
+namespace roomradar {
+
+/// A tile, and the space it covers.
+struct ServedTile {
+  std::string name;
+  Eigen::AlignedBox3d box_world;  ///< of its surface, m
+  std::string glb;                ///< path below the map, such as tiles/0_0_0.1234.glb
+};
+
+/// A map at one moment. Does not change; a map that was replaced on disk is another object.
+class MapSnapshot {
+ public:
+  /// Reads the map's description. Throws Error naming the file and the fault.
+  explicit MapSnapshot(std::filesystem::path folder);
+
+  /// JSON text of all that `roomradar map info --json` says.
+  [[nodiscard]] const std::string& info_text() const { return info_text_; }
+  /// Text of tileset.json; empty for the map of a room.
+  [[nodiscard]] const std::string& tileset_text() const { return tileset_text_; }
+  /// "building" or "room".
+  [[nodiscard]] const std::string& kind() const { return kind_; }
+  [[nodiscard]] const std::vector<ServedTile>& tiles() const { return tiles_; }
+  /// The files that may be served, by their path below the map. No other file ever is.
+  [[nodiscard]] const std::map<std::string, ContentFile>& files() const { return files_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+  /// The keyframes, read at the first call, without what recognise_place() does not need. Thread safe. Throws
+  /// Error if they are missing or damaged.
+  [[nodiscard]] const KeyframeDatabase& keyframes() const;
+
+ private:
+  void read_building_map();
+  void read_room_map();
+
+  std::filesystem::path folder_;
+  std::string kind_, info_text_, tileset_text_;
+  std::vector<ServedTile> tiles_;
+  std::map<std::string, ContentFile> files_;
+  std::optional<BuildingInfo> building_;
+  std::string room_keyframes_sha256_;
+  mutable std::mutex keyframes_mutex_;
+  mutable std::unique_ptr<const KeyframeDatabase> keyframes_;
+};
+
+/// A map under its name. Thread safe.
+class ServedMap {
+ public:
+  /// Reads the map. Throws Error naming the file and the fault, or if the folder's name is none for an
+  /// address.
+  explicit ServedMap(const std::filesystem::path& folder);
+
+  /// Name in addresses: the folder's name.
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// Returns the map as it is on disk. Reads it again if building.json or map.json was replaced since the
+  /// last call. Throws Error if the new one cannot be read.
+  [[nodiscard]] std::shared_ptr<const MapSnapshot> current();
+
+ private:
+  /// Changes whenever the describing file is replaced.
+  [[nodiscard]] std::string state_on_disk() const;
+
+  std::filesystem::path folder_;
+  std::string name_;
+  std::mutex mutex_;
+  std::string state_;
+  std::shared_ptr<const MapSnapshot> snapshot_;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,98 @@
+// building_map.cpp: reads tile by tile, and adds each to the whole.
+#include "mapping/building/building_map.hpp"
+
+#include <array>
+#include <bit>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <unordered_map>
+
+#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A position in the world, bit for bit.
+using Position = std::array<std::uint64_t, 3>;
+
+struct PositionHash {
+  std::size_t operator()(const Position& p) const {
+    std::uint64_t hash = 0;
+    for (const std::uint64_t part : p) hash = (hash ^ part) * 0x9E3779B97F4A7C15ULL;  // Fibonacci hashing
+    return static_cast<std::size_t>(hash ^ (hash >> 32));
+  }
+};
+
+Position position_of(const Eigen::Vector3d& p_world) {
+  return {std::bit_cast<std::uint64_t>(p_world.x() + 0.0), std::bit_cast<std::uint64_t>(p_world.y() + 0.0),
+          std::bit_cast<std::uint64_t>(p_world.z() + 0.0)};  // + 0.0: -0 equals 0
+}
+
+using VertexAt = std::unordered_map<Position, std::uint32_t, PositionHash>;
+
+void add_tile(const Mesh& tile, VertexAt& vertex_at, Mesh& whole) {
+  std::vector<std::uint32_t> index_in_whole(tile.vertices.size());
+  const auto first_own = static_cast<std::uint32_t>(whole.vertices.size());
+  for (std::size_t i = 0; i < tile.vertices.size(); ++i) {
+    const Eigen::Vector3d p_world = tile.origin + tile.vertices[i].cast<double>();
+    const auto [at, is_new] =
+        vertex_at.try_emplace(position_of(p_world), static_cast<std::uint32_t>(whole.vertices.size()));
+    index_in_whole[i] = at->second;
+    if (!is_new && at->second < first_own) continue;
+    // Two vertices of one tile at the same position stay two.
+    index_in_whole[i] = static_cast<std::uint32_t>(whole.vertices.size());
+    whole.vertices.emplace_back((p_world - whole.origin).cast<float>());
+    if (!tile.normals.empty()) whole.normals.push_back(tile.normals[i]);
+    if (!tile.colours.empty()) whole.colours.push_back(tile.colours[i]);
+  }
+  for (const Triangle& t : tile.triangles)
+    whole.triangles.push_back({index_in_whole[t[0]], index_in_whole[t[1]], index_in_whole[t[2]]});
+}
+
+}  // namespace
+
+Mesh load_building_mesh(const BuildingInfo& info, const fs::path& folder) {
+  Mesh whole;
+  VertexAt vertex_at;
+  bool have_normals = true, have_colours = true;
+  for (const BuildingTile& tile : info.tiles) {
+    const Mesh mesh = read_tile_mesh(folder / tile.mesh.name);
+    if (whole.vertices.empty()) whole.origin = mesh.origin;
+    if (whole.vertices.size() + mesh.vertices.size() > std::numeric_limits<std::uint32_t>::max())
+      throw Error(folder.string() + ": has too many vertices for one mesh; export single tiles instead");
+    have_normals = have_normals && !mesh.normals.empty();
+    have_colours = have_colours && !mesh.colours.empty();
+    add_tile(mesh, vertex_at, whole);
+  }
+  if (!have_normals) whole.normals.clear();
+  if (!have_colours) whole.colours.clear();
+  return whole;
+}
+
+StaticMap load_building_octree(const BuildingInfo& info, const fs::path& folder) {
+  StaticMap whole(info.grid.resolution_m);
+  for (const BuildingTile& tile : info.tiles)
+    whole.add_evidence(StaticMap::read(folder / tile.octree.name, whole.config()));
+  return whole;
+}
+
+KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const fs::path& folder) {
+  KeyframeDatabase whole;
+  for (const BuildingRecording& recording : info.recordings) {
+    if (recording.keyframe_file.name.empty()) continue;
+    std::vector<MapKeyframe> own = read_keyframe_database(folder / recording.keyframe_file.name).keyframes;
+    whole.keyframes.insert(whole.keyframes.end(), std::make_move_iterator(own.begin()),
+                           std::make_move_iterator(own.end()));
+  }
+  if (whole.keyframes.empty())
+    throw Error(folder.string() +
+                ": has no keyframes; run `roomradar building` once more with the same recordings");
+  update_index(whole);
+  return whole;
+}
+
+}  // namespace roomradar

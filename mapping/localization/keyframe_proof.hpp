@@ -1,0 +1,51 @@
+// keyframe_proof.hpp: proves a frame's pose relative to a keyframe by the depth of both.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <span>
+
+#include "mapping/alignment/align.hpp"
+#include "mapping/alignment/view.hpp"
+#include "mapping/localization/keyframe_database.hpp"
+#include "mapping/localization/place_matching.hpp"
+
+namespace roomradar {
+
+/// Makes the pyramid of a keyframe's preview.
+void make_preview_pyramid(const MapKeyframe& keyframe, const ViewConfig& view, ViewPyramid& pyramid);
+
+/// Makes the preview a target of align(), posed at the identity.
+TargetView target_of(const ViewPyramid& preview, const ViewConfig& view);
+
+struct KeyframeProof {
+  bool holds = false;
+  Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
+  double agreement = 0.0;  ///< fraction of the common pixels whose depths agree
+  double overlap = 0.0;    ///< fraction of the frame's points that the keyframe sees, too
+  TargetView target;       ///< the keyframe's preview, posed at the identity; for joint_pose()
+};
+
+/// Refines a pose from features with the keyframe's depth. The refined pose must agree with the depth and
+/// with the features.
+KeyframeProof prove_with_features(const SourcePoints& live, const MapKeyframe& keyframe,
+                                  const KeyframeMatch& match, double min_depth_agreement,
+                                  const ViewConfig& view);
+
+/// A keyframe that proves the frame's pose.
+struct KeyframeWitness {
+  std::size_t keyframe = 0;  ///< index in the database
+  int feature_inliers = 0;
+  KeyframeProof proof;
+};
+/// Returns the frame's pose in the world by one witness.
+Eigen::Isometry3d pose_by(const KeyframeWitness& witness, const KeyframeDatabase& keyframe_database);
+
+/// Returns the witness with the most inliers, then the highest agreement. `witnesses` must not be empty.
+const KeyframeWitness& best_of(std::span<const KeyframeWitness> witnesses);
+
+/// Returns the best witness's pose in the world, refined over the depth of all witnesses that agree with it,
+/// because each keyframe's pose has an error.
+Eigen::Isometry3d joint_pose(std::span<const KeyframeWitness> witnesses, const KeyframeWitness& best,
+                             const SourcePoints& live, const KeyframeDatabase& keyframe_database);
+
+}  // namespace roomradar

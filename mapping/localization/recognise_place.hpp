@@ -1,0 +1,43 @@
+// recognise_place.hpp: finds the place of a single frame in a large map, and refuses if two places fit.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <string_view>
+
+#include "mapping/localization/keyframe_database.hpp"
+#include "mapping/localization/relocalise.hpp"
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+enum class PlaceStatus {
+  kFound,        ///< keyframes agree with the frame in features and depth, all at one pose
+  kNoKeyframes,  ///< the database is empty
+  kNoDepth,      ///< the frame has almost no valid depth
+  kNoColour,     ///< the frame has no colour image, or almost no features
+  kNoMatch,      ///< no keyframe has enough of the frame's features
+  kNotVerified,  ///< features match, but the depth disagrees
+  kAmbiguous,    ///< keyframes at another pose fit about as well
+};
+std::string_view to_string(PlaceStatus status);
+
+struct [[nodiscard]] RecognisedPlace {
+  PlaceStatus status = PlaceStatus::kNoMatch;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< valid only if found
+  std::int64_t keyframe = -1;    ///< index of the best keyframe in the database; -1: none
+  int feature_inliers = 0;       ///< features that agree with the pose, in the best keyframe
+  int rival_inliers = 0;         ///< features that agree with another pose; 0: none is proved
+  double depth_agreement = 0.0;  ///< fraction of the pixels seen from both whose depths agree
+  double overlap = 0.0;          ///< fraction of the frame's depth that the best keyframe sees
+  explicit operator bool() const { return status == PlaceStatus::kFound; }
+};
+
+/// Localises a frame with colour, as relocalise() does, and then looks for a rival: a pose farther than 0.3 m
+/// or 0.3 rad away, proved by features and depth, with at least half of the inliers. Keyframes more than 3 m
+/// from the pose are searched for rivals of their own, since those of one of two equal rooms may fill the
+/// first candidates. Time does not grow with the database if its index is complete. Deterministic. Does not
+/// throw, even for corrupt frames. Thread safe.
+RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyframe_database,
+                                const RelocaliseConfig& config = {});
+
+}  // namespace roomradar
