@@ -15,9 +15,9 @@ hashes() { (cd "$work/$1" && find . -type f ! -path './work/*' | sort | xargs sh
 value() { python3 -c "import json,sys; r=json.load(open('$work/$1.json')); print($2)"; }
 
 for seed in 1 2 5; do
-  echo "table-$seed: sim:table?seed=$seed&frames=50&rate=3&width=160"
+  echo "table-$seed: sim:table?seed=$seed&frames=80&rate=8&width=160"
 done > "$work/list.txt"
-echo "elsewhere: sim:shelf?frames=20&rate=3&width=160" >> "$work/list.txt"
+echo "elsewhere: sim:shelf?frames=30&rate=8&width=160" >> "$work/list.txt"
 
 echo "== one building of three recordings; the fourth shows another room"
 alone whole
