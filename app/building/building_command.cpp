@@ -102,7 +102,7 @@ void add_options(CLI::App& command, BuildingOptions& options) {
       ->type_name("LIST");
   command
       .add_option("--resolution", options.grid.resolution_m, "edge of the smallest voxels, m (default: 0.01)")
-      ->check(CLI::Range(0.001, 1.0))
+      ->check(within(0.001, 1.0, "metres"))
       ->type_name("M");
   command
       .add_option("--tile-edge", options.grid.edge_voxels,
@@ -111,9 +111,12 @@ void add_options(CLI::App& command, BuildingOptions& options) {
   command
       .add_option("--deviation", options.deviation_m,
                   "how far simplification may move the surface, m (default: 0.002)")
-      ->check(CLI::Range(0.0, 0.1))
+      ->check(within(0.0, 0.1, "metres"))
       ->type_name("M");
-  add_poses_option(command, options.poses, "whose camera poses to use");
+  add_poses_option(
+      command, options.poses,
+      "estimate the camera poses (tracked), or use those of the recordings, which must be in one\n"
+      "world (recorded) (default: tracked)");
   command.add_option("--processes", options.processes, "jobs at a time (default: one per processor)")
       ->check(whole_within(1, 4096))
       ->type_name("N");

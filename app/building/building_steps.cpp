@@ -18,6 +18,7 @@
 #include "mapping/building/tile_surface.hpp"
 #include "mapping/deskewed_source.hpp"
 #include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/map/level_surfaces.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/prescan_passes.hpp"
 #include "mapping/storage/binary_file.hpp"
@@ -74,6 +75,15 @@ StaticMap fused(FrameSource& source, const Submap& submap, const std::vector<Tim
   return std::move(pass.octree);
 }
 
+/// Moves a submap's world: its origin comes to the floor below the first camera, if a floor is measured.
+void put_origin_on_floor(Submap& submap) {
+  const Eigen::Vector3d first = submap.trajectory.front().T_world_camera.translation();
+  const double floor_m = floor_height_m(submap.keyframes, Eigen::Vector3d::UnitZ()).value_or(first.z());
+  const Eigen::Isometry3d T_new_old(Eigen::Translation3d(-first.x(), -first.y(), -floor_m));
+  for (TimedPose& frame : submap.trajectory) frame.T_world_camera = T_new_old * frame.T_world_camera;
+  transform(submap.keyframes, T_new_old);
+}
+
 /// Writes the submaps' keyframes at their poses in the building.
 void write_placed_keyframes(const FuseStep& step) {
   KeyframeDatabase database;
@@ -118,9 +128,10 @@ int run(const TrackStep& step) {
   submap.keyframes.index = {};
   constexpr std::int64_t kMaxGap = 3;
   constexpr std::size_t kMinFrames = 10;
-  const std::vector<Submap> parts = split_at_losses(submap, kMaxGap, kMinFrames);
+  std::vector<Submap> parts = split_at_losses(submap, kMaxGap, kMinFrames);
   if (parts.empty()) throw Error(source->name() + ": tracking was lost again and again; move more slowly");
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (step.poses == PoseOrigin::kTracked) put_origin_on_floor(parts[i]);
     make_folder(step.out / std::to_string(i));
     save_submap(parts[i], step.out / std::to_string(i));
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/cli/help_topics.hpp"
+#include "app/cli/options/command_tree.hpp"
 #include "app/cli/options/option_groups.hpp"
 #include "mapping/types/system/version.hpp"
 
@@ -64,7 +65,7 @@ std::string options_of(const CLI::App& command) {
 
 std::string command_section(const CLI::App& command, const std::string& name) {
   std::string text = ".SS " + escaped(name) + "\n" + escaped(command.get_description()) + "\n";
-  const auto parts = command.get_subcommands([](const CLI::App*) { return true; });
+  const std::vector<const CLI::App*> parts = commands_of(command);
   if (!parts.empty()) {
     for (const CLI::App* part : parts) text += command_section(*part, name + " " + part->get_name());
     return text;
@@ -88,8 +89,7 @@ std::string manual_page(const CLI::App& app) {
       ".SH SYNOPSIS\n.B roomradar\n.I command\n[\n.I arguments\n]\n.SH DESCRIPTION\n" +
       escaped(app.get_description()) +
       "\nResults go to standard output, progress and messages to standard error.\n.SH COMMANDS\n";
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    page += command_section(*command, command->get_name());
+  for (const CLI::App* command : commands_of(app)) page += command_section(*command, command->get_name());
   for (const HelpTopic& topic : help_topics()) page += topic_section(topic);
   return page + std::string(kSeeAlso);
 }
