@@ -234,7 +234,10 @@ SubmapJoin judged(const Submap& a, const Submap& b, const std::vector<Vote>& agr
   join.recognised = test.recognised;
   const auto common = static_cast<double>(test.same + test.through);
   join.agreement = common > 0.0 ? static_cast<double>(test.same) / common : 0.0;
-  if (join.agreement < config.min_agreement) {
+  if (common <= 0.0) {
+    join.status =
+        JoinStatus::kNotRecognised;  // no keyframes have nearly the same view: nothing to prove it by
+  } else if (join.agreement < config.min_agreement) {
     join.status = JoinStatus::kContradicted;
   } else if (test.expected - test.recognised > std::max(1.0, config.max_different * test.expected)) {
     join.status = JoinStatus::kLooksDifferent;
