@@ -26,7 +26,7 @@ json box_json(const Eigen::AlignedBox3d& box) {
            {middle.x(), middle.y(), middle.z(), half.x(), 0.0, 0.0, 0.0, half.y(), 0.0, 0.0, 0.0, half.z()}}};
 }
 
-Node leaf_of(const BuildingTile& tile, double deviation_m) {
+Node leaf_of(const BuildingTile& tile) {
   const Eigen::Vector3d& t = tile.mesh_origin;
   // Column by column. The file has y up, as glTF requires; viewers turn it to z up.
   const json transform = {1.0, 0.0, 0.0, 0.0, 0.0,   1.0,   0.0,   0.0,
@@ -36,18 +36,17 @@ Node leaf_of(const BuildingTile& tile, double deviation_m) {
            {"geometricError", 0.0},
            {"transform", transform},
            {"content", {{"uri", tile.glb.name}}},
-           {"extras", {{"tile", name_of(tile.index)}, {"deviation_m", deviation_m}}}},
+           {"extras", {{"tile", name_of(tile.index)}}}},
           tile.surface_world};
 }
 
 }  // namespace
 
 std::string tileset_text(const BuildingInfo& info) {
-  constexpr double kDeviation_m = 0.002;
   std::map<TileIndex, Node, decltype(&is_before)> level(&is_before);
   TileIndex lowest = TileIndex::Zero();  // indices from 0 on, which meet in one node when halved
   for (const BuildingTile& tile : info.tiles) lowest = lowest.cwiseMin(tile.index);
-  for (const BuildingTile& tile : info.tiles) level.emplace(tile.index - lowest, leaf_of(tile, kDeviation_m));
+  for (const BuildingTile& tile : info.tiles) level.emplace(tile.index - lowest, leaf_of(tile));
   double edge = edge_m(info.grid);
   while (level.size() > 1) {
     std::map<TileIndex, Node, decltype(&is_before)> above(&is_before);
