@@ -33,13 +33,6 @@ void serialize(Archive& archive, PrescanCounts& counts) {
 }
 
 template <typename Archive>
-void serialize(Archive& archive, TimedPose& pose) {
-  serialize(archive, pose.frame_index);
-  serialize(archive, pose.stamp_s);
-  serialize(archive, pose.T_world_camera);
-}
-
-template <typename Archive>
 void serialize(Archive& archive, TrackedFrame& frame) {
   serialize(archive, frame.frame_index);
   serialize(archive, frame.stamp_s);

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/building/tileset.hpp"
+#include "app/farm/content_hashes.hpp"
 #include "mapping/building/submap_join_file.hpp"
-#include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/make_folder.hpp"
@@ -71,20 +72,25 @@ std::vector<GraphSubmap> graph_submaps(const BuildingWork& work, const std::vect
   return graph;
 }
 
-TrajectoryError recorded_error(const std::vector<Submap>& submaps,
-                               const std::vector<std::vector<TimedPose>>& trajectories) {
+/// Poses of a recording's placed frames in the building, and those that it states.
+struct PlacedFrames {
+  std::vector<TimedPose> trajectory, recorded;
+};
+
+TrajectoryError recorded_error(const std::map<std::string, PlacedFrames>& placed) {
   std::vector<TimedPose> estimate, recorded;
   constexpr std::int64_t kApart = 1'000'000'000;  // frame numbers of two recordings do not meet
-  for (std::size_t i = 0; i < submaps.size(); ++i) {
-    const auto offset = static_cast<std::int64_t>(i) * kApart;
-    for (TimedPose pose : trajectories[i]) {
+  std::int64_t offset = 0;
+  const auto append = [&offset](const std::vector<TimedPose>& from, std::vector<TimedPose>& to) {
+    for (TimedPose pose : from) {
       pose.frame_index += offset;
-      estimate.push_back(pose);
+      to.push_back(pose);
     }
-    for (TimedPose pose : submaps[i].recorded) {
-      pose.frame_index += offset;
-      recorded.push_back(pose);
-    }
+  };
+  for (const auto& [name, frames] : placed) {
+    append(frames.trajectory, estimate);
+    append(frames.recorded, recorded);
+    offset += kApart;
   }
   return absolute_trajectory_error(estimate, recorded);
 }
@@ -93,9 +99,9 @@ TrajectoryError recorded_error(const std::vector<Submap>& submaps,
 /// there stays.
 /// @param stem  folder in the building, and the name's begin
 ContentFile adopt(const fs::path& from, const fs::path& folder, const fs::path& stem,
-                  const std::string& extension) {
+                  const std::string& extension, ContentHashes& hashes) {
   ContentFile file;
-  file.sha256 = sha256_of_file(from);
+  file.sha256 = hashes.of(from);
   file.bytes = fs::file_size(from);
   file.name = stem.generic_string() + "." + file.sha256.substr(0, kHashDigits) + extension;
   const fs::path to = folder / file.name;
@@ -107,7 +113,8 @@ ContentFile adopt(const fs::path& from, const fs::path& folder, const fs::path& 
   return file;
 }
 
-BuildingTile adopted_tile(const BuildingWork& work, const std::string& name, const json& facts) {
+BuildingTile adopted_tile(const BuildingWork& work, const std::string& name, const json& facts,
+                          ContentHashes& hashes) {
   const fs::path job = work.job(tile_job(tile_of_name(name)));
   const auto vector = [&](const char* key) {
     const json& value = facts.at(key);
@@ -119,9 +126,9 @@ BuildingTile adopted_tile(const BuildingWork& work, const std::string& name, con
   tile.surface_world = {vector("surface_min_m"), vector("surface_max_m")};
   tile.mesh_origin = vector("mesh_origin_m");
   const fs::path stem = fs::path(kTilesFolder) / name;
-  tile.octree = adopt(job / "tile.octree", work.folder, stem, ".octree");
-  tile.mesh = adopt(job / "tile.mesh", work.folder, stem, ".mesh");
-  tile.glb = adopt(job / "tile.glb", work.folder, stem, ".glb");
+  tile.octree = adopt(job / "tile.octree", work.folder, stem, ".octree", hashes);
+  tile.mesh = adopt(job / "tile.mesh", work.folder, stem, ".mesh", hashes);
+  tile.glb = adopt(job / "tile.glb", work.folder, stem, ".glb", hashes);
   return tile;
 }
 
@@ -215,8 +222,7 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   const auto building_part = static_cast<std::size_t>(
       std::max_element(frames_of_part.begin(), frames_of_part.end()) - frames_of_part.begin());
   std::vector<SubmapName> placed_names;
-  std::vector<Submap> placed_submaps;
-  std::vector<std::vector<TimedPose>> trajectories;
+  std::map<std::string, PlacedFrames> placed_frames;  // by recording
   for (std::size_t i = 0; i < names.size(); ++i) {
     const PlacedSubmap& placed = graph.submaps[i];
     if (result.info.recordings.empty() || result.info.recordings.back().name != names[i].recording)
@@ -230,10 +236,12 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
     result.kept += placed.was_kept ? 1 : 0;
     save_placed_keyframes(placed.T_building_keyframe, work.placed(names[i]));
     placed_names.push_back(names[i]);
-    trajectories.push_back(corrected_trajectory(submaps[i], placed.T_building_keyframe));
-    placed_submaps.push_back(submaps[i]);
+    PlacedFrames& all = placed_frames[names[i].recording];
+    const std::vector<TimedPose> own = corrected_trajectory(submaps[i], placed.T_building_keyframe);
+    all.trajectory.insert(all.trajectory.end(), own.begin(), own.end());
+    all.recorded.insert(all.recorded.end(), submaps[i].recorded.begin(), submaps[i].recorded.end());
   }
-  result.recorded_error = recorded_error(placed_submaps, trajectories);
+  result.recorded_error = recorded_error(placed_frames);
   show("place: " + std::to_string(placed_names.size()) + " of " + std::to_string(names.size()) +
        " parts hang together, " +
        std::to_string(std::count(graph.is_used.begin(), graph.is_used.end(), true)) + " of " +
@@ -242,33 +250,30 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   // Tiles.
   require_all(stage("fuse", fuse_stage(work, placed_names)));
   std::vector<std::string> fused;
-  for (const SubmapName& name : placed_names)
-    if (fused.empty() || fused.back() != name.recording) fused.push_back(name.recording);
+  for (const auto& [recording, frames] : placed_frames) fused.push_back(recording);
   const PartsByTile parts_of = parts_by_tile(work, fused);
   const StageCounts tiled = stage("tile", tile_stage(work, parts_of));
   require_all(tiled);
   result.info.grid = work.grid;
   make_folder(work.folder / kTilesFolder);
   make_folder(work.folder / kRecordingsFolder);
+  ContentHashes hashes(work.jobs() / "results.sha256");
   for (const auto& [name, parts] : parts_of) {
     const json facts =
         json::parse(read_bytes(work.job(tile_job(tile_of_name(name))) / "tile.json", "a tile's numbers"));
     if (facts.at("triangles").get<std::int64_t>() > 0)
-      result.info.tiles.push_back(adopted_tile(work, name, facts));
+      result.info.tiles.push_back(adopted_tile(work, name, facts, hashes));
   }
   std::sort(result.info.tiles.begin(), result.info.tiles.end(),
             [](const BuildingTile& a, const BuildingTile& b) { return is_before(a.index, b.index); });
   for (BuildingRecording& recording : result.info.recordings)
     if (recording.frames_placed > 0)
-      recording.keyframe_file = adopt(work.job(fuse_job(recording.name)) / kPlacedKeyframesFile, work.folder,
-                                      fs::path(kRecordingsFolder) / recording.name, kKeyframeExtension);
-  for (const std::string& recording : fused) {
-    std::vector<TimedPose> trajectory;
-    for (std::size_t i = 0; i < placed_names.size(); ++i)
-      if (placed_names[i].recording == recording)
-        trajectory.insert(trajectory.end(), trajectories[i].begin(), trajectories[i].end());
-    write_trajectory(work.folder / kRecordingsFolder / (recording + ".trajectory.txt"), trajectory);
-  }
+      recording.keyframe_file =
+          adopt(work.job(fuse_job(recording.name)) / kPlacedKeyframesFile, work.folder,
+                fs::path(kRecordingsFolder) / recording.name, kKeyframeExtension, hashes);
+  hashes.save();
+  for (const auto& [recording, frames] : placed_frames)
+    write_trajectory(work.folder / kRecordingsFolder / (recording + ".trajectory.txt"), frames.trajectory);
   write_tileset(result.info, work.folder);
   write_building(result.info, work.folder);
   delete_others(result.info, work.folder);

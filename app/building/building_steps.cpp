@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -82,20 +81,6 @@ void put_origin_on_floor(Submap& submap) {
   const Eigen::Isometry3d T_new_old(Eigen::Translation3d(-first.x(), -first.y(), -floor_m));
   for (TimedPose& frame : submap.trajectory) frame.T_world_camera = T_new_old * frame.T_world_camera;
   transform(submap.keyframes, T_new_old);
-}
-
-/// Writes the submaps' keyframes at their poses in the building.
-void write_placed_keyframes(const FuseStep& step) {
-  KeyframeDatabase database;
-  for (std::size_t i = 0; i < step.submaps.size(); ++i) {
-    const std::vector<Eigen::Isometry3d> placed = load_placed_keyframes(step.placed[i]);
-    KeyframeDatabase part = load_submap(step.submaps[i]).keyframes;
-    for (std::size_t k = 0; k < part.keyframes.size(); ++k) {
-      part.keyframes[k].T_world_camera = placed.at(k);
-      database.keyframes.push_back(std::move(part.keyframes[k]));
-    }
-  }
-  write_keyframe_database(database, step.out / kPlacedKeyframesFile);
 }
 
 }  // namespace
@@ -188,18 +173,24 @@ int run(const FuseStep& step) {
   if (step.submaps.size() != step.placed.size()) throw Error("as many files of poses as submaps are needed");
   Submap submap;  // of all parts
   std::vector<TimedPose> trajectory;
+  KeyframeDatabase keyframes;
   for (std::size_t i = 0; i < step.submaps.size(); ++i) {
-    const Submap part = load_submap_poses(step.submaps[i]);
+    Submap part = load_submap(step.submaps[i]);
     const std::vector<Eigen::Isometry3d> placed = load_placed_keyframes(step.placed[i]);
     if (placed.size() != part.keyframes.keyframes.size())
       throw Error(step.placed[i].string() + ": has poses of another recording");
     const std::vector<TimedPose> corrected = corrected_trajectory(part, placed);
     trajectory.insert(trajectory.end(), corrected.begin(), corrected.end());
+    for (std::size_t k = 0; k < placed.size(); ++k) {
+      part.keyframes.keyframes[k].T_world_camera = placed[k];
+      keyframes.keyframes.push_back(std::move(part.keyframes.keyframes[k]));
+    }
     submap.source = part.source;
     submap.frames_read = part.frames_read;
     submap.timing = part.timing;
   }
-  write_placed_keyframes(step);
+  write_keyframe_database(keyframes, step.out / kPlacedKeyframesFile);
+  keyframes = {};  // their memory is needed for fusion
   const std::unique_ptr<FrameSource> source = open_source(step.source, {});
   const StaticMap map = fused(*source, submap, trajectory, step);
   constexpr int kCell_voxels = 4;  // a triangle in a tile's cube has its samples at most this far outside

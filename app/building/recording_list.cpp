@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
 
 #include "app/farm/manifest.hpp"
 #include "mapping/types/system/error.hpp"
@@ -12,13 +13,6 @@ namespace roomradar {
 namespace {
 
 constexpr std::uintmax_t kLargestList_bytes = 64U << 20U;
-constexpr const char* kBlanks = " \t\r";
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  return first == std::string::npos ? std::string()
-                                    : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 }  // namespace
 
@@ -27,11 +21,12 @@ std::vector<ListedRecording> read_recording_list(const std::filesystem::path& pa
   std::vector<ListedRecording> recordings;
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
-    line = trimmed(line);
-    if (line.empty() || line.front() == '#') continue;
-    const std::size_t colon = line.find(':');
-    ListedRecording recording{trimmed(line.substr(0, colon)),
-                              colon == std::string::npos ? std::string() : trimmed(line.substr(colon + 1))};
+    const std::string_view text = trimmed(line);
+    if (text.empty() || text.front() == '#') continue;
+    const std::size_t colon = text.find(':');
+    ListedRecording recording{
+        std::string(trimmed(text.substr(0, colon))),
+        std::string(colon == std::string_view::npos ? std::string_view() : trimmed(text.substr(colon + 1)))};
     if (!is_job_name(recording.name) || recording.source.empty())
       throw Error(path.string() + ", line " + std::to_string(number) +
                   ": must be a name, a colon and a recording, such as `hall: recordings/hall`; a name has "

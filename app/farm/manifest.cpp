@@ -52,12 +52,6 @@ std::optional<std::vector<std::string>> words_of(std::string_view text) {
   return words;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
 /// Splits "NAME (cost NUMBER)" into both.
 void read_head(std::string_view head, Job& job, const std::filesystem::path& path) {
   const std::size_t bracket = head.find('(');
@@ -129,6 +123,12 @@ void refuse_circles(const Manifest& manifest) {
 }
 
 }  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
 
 bool is_job_name(std::string_view name) {
   return !name.empty() && name.size() <= kLongestName && name.front() != '.' && name.front() != '-' &&

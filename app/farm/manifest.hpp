@@ -45,6 +45,9 @@ Manifest parse_manifest(const std::string& text, const std::filesystem::path& pa
 /// Returns true if a job may have this name: 1 to 100 letters, digits, - _ . that begin with neither . nor -.
 bool is_job_name(std::string_view name);
 
+/// Returns the text without blanks, tabs and carriage returns at both ends.
+std::string_view trimmed(std::string_view text);
+
 /// A part of a word: text, or a placeholder.
 struct WordPart {
   bool is_folder = false;  ///< a placeholder: `text` is a job's name, empty for the job itself

@@ -18,13 +18,6 @@ constexpr const char* kSubmapFile = "submap.bin";
 constexpr const char* kKeyframesFile = "keyframes.bin";
 
 template <typename Archive>
-void serialize(Archive& archive, TimedPose& pose) {
-  serialize(archive, pose.frame_index);
-  serialize(archive, pose.stamp_s);
-  serialize(archive, pose.T_world_camera);
-}
-
-template <typename Archive>
 void serialize_poses(Archive& archive, std::vector<TimedPose>& poses) {
   std::uint64_t count = poses.size();
   serialize(archive, count);
@@ -55,16 +48,15 @@ void serialize(Archive& archive, Submap& submap) {
   }
 }
 
-/// Returns the pose `part` of the way from a to b.
-Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double part) {
+}  // namespace
+
+Eigen::Isometry3d pose_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double part) {
   Eigen::Isometry3d mean = Eigen::Isometry3d::Identity();
   mean.linear() =
       Eigen::Quaterniond(a.linear()).slerp(part, Eigen::Quaterniond(b.linear())).toRotationMatrix();
   mean.translation() = (1.0 - part) * a.translation() + part * b.translation();
   return mean;
 }
-
-}  // namespace
 
 void save_submap(const Submap& submap, const std::filesystem::path& folder) {
   ByteWriter out;
@@ -142,7 +134,7 @@ std::vector<TimedPose> corrected_trajectory(const Submap& submap,
     } else {
       const auto before = static_cast<double>(frame.frame_index - keyframes[next - 1].frame_index);
       const auto span = static_cast<double>(keyframes[next].frame_index - keyframes[next - 1].frame_index);
-      T_world_camera = between(moved_with(next - 1), moved_with(next), before / span);
+      T_world_camera = pose_between(moved_with(next - 1), moved_with(next), before / span);
     }
     corrected.push_back({frame.frame_index, frame.stamp_s, T_world_camera});
   }

@@ -37,6 +37,9 @@ Submap load_submap_poses(const std::filesystem::path& folder);
 /// or without a keyframe, are left out.
 std::vector<Submap> split_at_losses(const Submap& submap, std::int64_t max_gap, std::size_t min_frames);
 
+/// Returns the pose `part` (0 to 1) of the way from a to b, linear in position and slerp in rotation.
+Eigen::Isometry3d pose_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double part);
+
 /// Moves the poses of all frames with the keyframes' poses: a frame between two keyframes gets the mean of
 /// their corrections, weighted by the number of frames to each.
 /// @param T_world_keyframe  one new pose per keyframe of the submap

@@ -5,12 +5,11 @@
 #include <array>
 #include <cstdio>
 #include <map>
-#include <memory>
-#include <set>
 
 #include "mapping/alignment/align.hpp"
 #include "mapping/alignment/view.hpp"
 #include "mapping/localization/place_matching.hpp"
+#include "mapping/localization/pose_hypothesis.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 
 namespace roomradar {
@@ -47,8 +46,7 @@ bool agree(const Vote& vote, const Vote& other, const Submap& b) {
   const Eigen::Isometry3d& T_b_camera = b.keyframes.keyframes[vote.b].T_world_camera;
   const double apart_m =
       (T_b_camera.translation() - b.keyframes.keyframes[other.b].T_world_camera.translation()).norm();
-  const Eigen::Isometry3d gap = (vote.T_a_b * T_b_camera).inverse() * other.T_a_b * T_b_camera;
-  return gap.translation().norm() < kNear_m + kDrift * apart_m && angle_rad(gap) < kNear_rad;
+  return is_near(vote.T_a_b * T_b_camera, other.T_a_b * T_b_camera, kNear_m + kDrift * apart_m, kNear_rad);
 }
 
 /// Returns the votes that agree with one of them; of each keyframe of b, only the vote with most inliers.
@@ -136,9 +134,7 @@ void test_keyframe(const Submap& a, const MapKeyframe& view, const Eigen::Isomet
     if (std::min(view.descriptors.size(), other->descriptors.size()) < kDescribed) continue;
     is_expected = true;
     const KeyframeMatch match = match_keyframes(*other, view);
-    const Eigen::Isometry3d gap = match.T_a_b.inverse() * T_other_view;
-    is_recognised =
-        match.inliers >= kInliers && gap.translation().norm() < 0.25 + drift_m && angle_rad(gap) < 0.15;
+    is_recognised = match.inliers >= kInliers && is_near(match.T_a_b, T_other_view, 0.25 + drift_m, 0.15);
   }
   test.same += same;
   test.through += through;
@@ -203,12 +199,7 @@ void add_links(const Submap& a, const Submap& b, const Vote& vote, std::vector<K
       angle_rad(gap) > kMaxGap_rad || std::min(b_in_a.inlier_fraction, a_in_b.inlier_fraction) < kMinInliers)
     return;
   // The mean of both directions, with the features' information where depth does not constrain it.
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
-  const Eigen::Isometry3d T_back = a_in_b.T_world_camera.inverse();
-  T_a_b.linear() = Eigen::Quaterniond(b_in_a.T_world_camera.linear())
-                       .slerp(0.5, Eigen::Quaterniond(T_back.linear()))
-                       .toRotationMatrix();
-  T_a_b.translation() = 0.5 * (b_in_a.T_world_camera.translation() + T_back.translation());
+  const Eigen::Isometry3d T_a_b = pose_between(b_in_a.T_world_camera, a_in_b.T_world_camera.inverse(), 0.5);
   constexpr double kSigma_m = 0.01, kSigma_rad = 0.01;
   Vector6d information;
   information << Eigen::Vector3d::Constant(1.0 / (kSigma_m * kSigma_m)),

@@ -16,6 +16,7 @@
 #include "mapping/types/frame.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/trajectory.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
@@ -147,6 +148,14 @@ void serialize(Archive& archive, SensorTiming& timing) {
   for (double* time_s : {&timing.depth_readout_s, &timing.colour_readout_s, &timing.colour_delay_s})
     serialize(archive, *time_s);
 }
+
+template <typename Archive>
+void serialize(Archive& archive, TimedPose& pose) {
+  serialize(archive, pose.frame_index);
+  serialize(archive, pose.stamp_s);
+  serialize(archive, pose.T_world_camera);
+}
+
 template <typename Archive, typename Value>
 void serialize(Archive& archive, std::optional<Value>& value) {
   bool there = value.has_value();
