@@ -89,7 +89,7 @@ over 1
 [[ -d $work/closed.unfinished ]] || fail "nothing to resume is left"
 if command -v fakenect > /dev/null; then
   echo "== a Kinect's driver, with fakenect in the device's place"
-  "$program" record 'sim:table?seed=3&frames=60&rate=10' "$work/kinect" --format fakenect > "$work/log" 2>&1 || fail record
+  "$program" record 'sim:table?seed=3&frames=170&rate=5&pace=slow' "$work/kinect" --format fakenect > "$work/log" 2>&1 || fail record
   FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" prescan kinect:0 --map "$work/live" --resolution 0.03 --window \
     > "$work/log" 2>&1 &
   shown=$!
@@ -108,11 +108,10 @@ if command -v fakenect > /dev/null; then
   is_titled() { [[ $(xdotool getwindowname "$window" 2> /dev/null) == "$1"* ]]; }
   scans_again() { is_titled "roomradar scan - " && [[ $(grep -c '^track' "$work/log") -gt $1 ]]; }
   # fakenect goes on where the program has closed it, so the recording is long enough for all parts.
-  "$program" record 'sim:table?seed=3&frames=400&rate=10' "$work/long" --format fakenect > "$work/log" 2>&1 || fail record
-  FAKENECT_LOOP=0 fakenect "$work/long" "$program" prescan kinect:0 --map "$work/more" --resolution 0.03 --window \
+  FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" prescan kinect:0 --map "$work/more" --resolution 0.03 --window \
     > "$work/log" 2>&1 &
   shown=$!
-  until_true has_tracked 30
+  until_true has_tracked 15
   until_true has_focus
   window=$(xdotool search --onlyvisible --name '^roomradar scan - ')
   xdotool key Return

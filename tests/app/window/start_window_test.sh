@@ -142,23 +142,22 @@ settled_shot default-settings
 keys ctrl+q
 over 0
 
-for size in 640x480 1280x960 3840x2160; do
+for look in '640x480 2' '1280x960 1' '3840x2160 2'; do
+  read -r size scale <<< "$look"
+  echo "== $size, scale $scale"
   screen "$size"
-  for scale in 1 2; do
-    echo "== $size, scale $scale"
-    start maps/kitchen --ui-scale "$scale"
-    id=$(window '^roomradar$')
-    xdotool windowmove "$id" 0 0
-    xdotool windowsize "$id" "${size%x*}" "${size#*x}"
-    sleep 2
-    settled_shot "$size-$scale-maps"
-    keys Tab
-    settled_shot "$size-$scale-sources"
-    keys s
-    settled_shot "$size-$scale-scan"
-    keys Escape ctrl+q
-    over 0
-  done
+  start maps/kitchen --ui-scale "$scale"
+  id=$(window '^roomradar$')
+  xdotool windowmove "$id" 0 0
+  xdotool windowsize "$id" "${size%x*}" "${size#*x}"
+  sleep 2
+  settled_shot "$size-maps"
+  keys Tab
+  settled_shot "$size-sources"
+  keys s
+  settled_shot "$size-scan"
+  keys Escape ctrl+q
+  over 0
 done
 
 echo "== alone: on a terminal with a display the view opens, else the first commands are printed"
