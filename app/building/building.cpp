@@ -196,11 +196,11 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
 
   // Pairs that meet.
   require_all(stage("retrieve", retrieve_stage(work, names)));
-  const std::vector<RetrievedPair> pairs = read_pairs(work.job(kRetrieveJob) / "pairs.json", names.size());
+  const std::vector<CandidatePair> pairs = read_pairs(work.job(kRetrieveJob) / "pairs.json", names.size());
   const StageCounts joined = stage("join", join_stage(work, names, pairs));
   require_all(joined);
   std::vector<GraphJoin> joins;
-  for (const RetrievedPair& pair : pairs)
+  for (const CandidatePair& pair : pairs)
     for (SubmapJoin& join : load_joins(work.job(join_job(names[pair.a], names[pair.b])) / "joins.bin")) {
       result.joins.push_back({names[pair.a], names[pair.b], join});
       if (join.status == JoinStatus::kJoined) joins.push_back({pair.a, pair.b, std::move(join)});

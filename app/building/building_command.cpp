@@ -206,7 +206,6 @@ void add_building_steps(CLI::App& app, std::function<int()>& work) {
   add_step<JoinStep>(steps, "join", "compare two recordings", work, [](CLI::App& command, JoinStep& step) {
     command.add_option("A", step.a)->required();
     command.add_option("B", step.b)->required();
-    command.add_option("--keyframes", step.keyframes)->required();
   });
   add_step<FuseStep>(steps, "fuse", "fuse one recording", work, [](CLI::App& command, FuseStep& step) {
     command.add_option("SOURCE", step.source)->required();

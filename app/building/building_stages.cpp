@@ -91,13 +91,12 @@ Manifest retrieve_stage(const BuildingWork& work, const std::vector<SubmapName>&
 }
 
 Manifest join_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps,
-                    const std::vector<RetrievedPair>& pairs) {
+                    const std::vector<CandidatePair>& pairs) {
   Lines lines;
-  for (const RetrievedPair& pair : pairs) {
+  for (const CandidatePair& pair : pairs) {
     begin_step(lines, join_job(submaps[pair.a], submaps[pair.b]), "join");
     lines.word(submaps[pair.a].folder());
     lines.word(submaps[pair.b].folder());
-    lines.word("--keyframes=" + pair.keyframes);
     lines.word("--out={}");
     lines.end();
   }

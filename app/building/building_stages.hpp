@@ -63,9 +63,9 @@ PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::strin
 Manifest track_stage(const BuildingWork& work);
 /// One job, which reads all submaps.
 Manifest retrieve_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps);
-/// A job per pair. RetrievedPair counts in `submaps`.
+/// A job per pair. CandidatePair counts in `submaps`.
 Manifest join_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps,
-                    const std::vector<RetrievedPair>& pairs);
+                    const std::vector<CandidatePair>& pairs);
 /// A job per recording, of those of its submaps that have a place in the building.
 Manifest fuse_stage(const BuildingWork& work, const std::vector<SubmapName>& placed);
 /// A job per tile, of these parts.

@@ -35,25 +35,6 @@ using nlohmann::json;
 constexpr std::string_view kPlacedMagic = "RRPLACED";
 constexpr std::uint32_t kPlacedVersion = 1;
 
-/// Parses "I:J,I:J".
-std::vector<std::pair<std::size_t, std::size_t>> keyframe_pairs(const std::string& text, std::size_t count_a,
-                                                                std::size_t count_b) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size()), colon = text.find(':', at);
-    const auto number = [&](std::size_t from, std::size_t to, std::size_t count) {
-      const auto value = from < to && to <= end ? parse_number(text.substr(from, to - from)) : std::nullopt;
-      if (!value || *value < 0.0 || *value != std::floor(*value) || *value >= static_cast<double>(count))
-        throw Error("'" + text.substr(at, end - at) + "' is no pair of keyframes of the two recordings");
-      return static_cast<std::size_t>(*value);
-    };
-    const std::size_t a = number(at, colon, count_a);
-    pairs.emplace_back(a, number(colon + 1, end, count_b));
-    at = end + 1;
-  }
-  return pairs;
-}
-
 /// Fuses the frames and removes ghosts, as prescan() does.
 StaticMap fused(FrameSource& source, const Submap& submap, const std::vector<TimedPose>& trajectory,
                 const FuseStep& step) {
@@ -130,28 +111,24 @@ int run(const RetrieveStep& step) {
   KeyframeRetrieval retrieval;
   for (const fs::path& folder : step.submaps) retrieval.add(load_submap(folder));
   json pairs = json::array();
-  for (const CandidatePair& pair : retrieval.pairs()) {
-    std::string keyframes;
-    for (const auto& [i, j] : pair.keyframes)
-      keyframes += (keyframes.empty() ? "" : ",") + std::to_string(i) + ":" + std::to_string(j);
-    pairs.push_back({{"a", pair.a}, {"b", pair.b}, {"keyframes", keyframes}});
-  }
+  for (const CandidatePair& pair : retrieval.pairs())
+    pairs.push_back({{"a", pair.a}, {"b", pair.b}, {"similar", pair.similar}});
   write_bytes(step.out / "pairs.json", pairs.dump(1) + "\n");
   std::printf("%zu keyframes of %zu recordings: %zu pairs of recordings may meet\n", retrieval.keyframes(),
               step.submaps.size(), pairs.size());
   return 0;
 }
 
-std::vector<RetrievedPair> read_pairs(const fs::path& file, std::size_t submaps) {
-  std::vector<RetrievedPair> pairs;
+std::vector<CandidatePair> read_pairs(const fs::path& file, std::size_t submaps) {
+  std::vector<CandidatePair> pairs;
   try {
     for (const json& one : json::parse(read_bytes(file, "pairs of recordings")))
       pairs.push_back({one.at("a").get<std::size_t>(), one.at("b").get<std::size_t>(),
-                       one.at("keyframes").get<std::string>()});
+                       one.at("similar").get<std::size_t>()});
   } catch (const json::exception& fault) {
     throw Error(file.string() + ": is damaged: " + fault.what());
   }
-  for (const RetrievedPair& pair : pairs)
+  for (const CandidatePair& pair : pairs)
     if (pair.a >= pair.b || pair.b >= submaps)
       throw Error(file.string() + ": is damaged: no such recordings");
   return pairs;
@@ -159,9 +136,7 @@ std::vector<RetrievedPair> read_pairs(const fs::path& file, std::size_t submaps)
 
 int run(const JoinStep& step) {
   const Submap a = load_submap(step.a), b = load_submap(step.b);
-  const auto keyframes =
-      keyframe_pairs(step.keyframes, a.keyframes.keyframes.size(), b.keyframes.keyframes.size());
-  const std::vector<SubmapJoin> joins = join_submaps(a, b, keyframes);
+  const std::vector<SubmapJoin> joins = join_submaps(a, b, similar_keyframes(a, b));
   save_joins(joins, step.out / "joins.bin");
   for (const SubmapJoin& join : joins)
     std::printf("%s and %s: %s\n", a.source.c_str(), b.source.c_str(), describe(join).c_str());

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "mapping/building/keyframe_retrieval.hpp"
 #include "mapping/building/tile_grid.hpp"
 #include "mapping/types/pose_origin.hpp"
 
@@ -28,10 +29,10 @@ struct RetrieveStep {
 };
 int run(const RetrieveStep& step);
 
-/// Compares two submaps at pairs of keyframes. Writes out/joins.bin; see load_joins().
+/// Compares two submaps. Writes out/joins.bin; see load_joins(). Depends on nothing but the two, so the
+/// other recordings may change.
 struct JoinStep {
   std::filesystem::path a, b;  ///< folders of submaps
-  std::string keyframes;       ///< pairs of keyframes "I:J,I:J"
   std::filesystem::path out;
 };
 int run(const JoinStep& step);
@@ -64,13 +65,9 @@ struct TileStep {
 };
 int run(const TileStep& step);
 
-/// Two submaps, by position in RetrieveStep::submaps, and pairs of their keyframes.
-struct RetrievedPair {
-  std::size_t a = 0, b = 0;
-  std::string keyframes;  ///< as in JoinStep
-};
-/// Reads pairs.json. Throws Error naming the file and the fault if it is missing or damaged.
-std::vector<RetrievedPair> read_pairs(const std::filesystem::path& file, std::size_t submaps);
+/// Reads pairs.json; submaps count as in RetrieveStep::submaps. Throws Error naming the file and the fault if
+/// it is missing or damaged.
+std::vector<CandidatePair> read_pairs(const std::filesystem::path& file, std::size_t submaps);
 
 /// Writes a submap's keyframe poses in the building. Throws Error if the file cannot be written.
 void save_placed_keyframes(const std::vector<Eigen::Isometry3d>& T_building_keyframe,

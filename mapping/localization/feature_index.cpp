@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <numeric>
 #include <utility>
 
 #include "mapping/types/system/counter_random.hpp"
@@ -18,6 +20,8 @@ constexpr unsigned kBucketBits = 16;  // select the bucket; the others are store
 constexpr std::size_t kBuckets = 1U << kBucketBits;
 constexpr unsigned kKeyframeBits = 24;  // of an entry; the other bits are those of the hash
 static_assert(kBits - kBucketBits + kKeyframeBits <= 32);
+constexpr std::uint32_t kKeyframeMask = (1U << kKeyframeBits) - 1;
+constexpr std::size_t kMinSorted = 250 * kTables * FeatureIndex::kIndexedFeatures;  // entries
 
 using TableBits = std::array<std::array<std::uint8_t, kBits>, kTables>;
 
@@ -44,17 +48,24 @@ std::uint32_t hash_in(const std::array<std::uint8_t, kBits>& bits, const Descrip
   return hash;
 }
 
-/// Calls visit(bucket, rest of the hash) for each indexed descriptor and table.
+/// Calls visit(table, hash) for each indexed descriptor and table.
 template <typename Visit>
 void for_each_hash(std::span<const Descriptor> descriptors, const Visit& visit) {
   static const TableBits bits = draw_bits();
   const std::size_t count = std::min(descriptors.size(), FeatureIndex::kIndexedFeatures);
   for (unsigned table = 0; table < kTables; ++table)
-    for (const Descriptor& descriptor : descriptors.first(count)) {
-      const std::uint32_t hash = hash_in(bits[table], descriptor);
-      visit(table * kBuckets + (hash & (kBuckets - 1)), hash >> kBucketBits);
-    }
+    for (const Descriptor& descriptor : descriptors.first(count))
+      visit(table, hash_in(bits[table], descriptor));
 }
+
+/// A bucket among those of all tables, and the hash bits that it does not imply.
+struct BucketOf {
+  BucketOf(unsigned table, std::uint32_t hash, unsigned bucket_bits)
+      : bucket((static_cast<std::size_t>(table) << bucket_bits) + (hash & ((1U << bucket_bits) - 1))),
+        rest(hash >> bucket_bits) {}
+  std::size_t bucket;
+  std::uint32_t rest;
+};
 
 }  // namespace
 
@@ -64,23 +75,72 @@ void FeatureIndex::add(std::span<const Descriptor> descriptors) {
   first_.resize(kTables * kBuckets, 0);
   if (entries_.empty()) entries_.emplace_back();
   if (keyframes_ < kMaxKeyframes)
-    for_each_hash(descriptors, [this](std::size_t bucket, std::uint32_t rest) {
-      const std::uint32_t number = rest << kKeyframeBits | static_cast<std::uint32_t>(keyframes_);
+    for_each_hash(descriptors, [this](unsigned table, std::uint32_t hash) {
+      const BucketOf at(table, hash, kBucketBits);
+      const std::uint32_t number = at.rest << kKeyframeBits | static_cast<std::uint32_t>(keyframes_);
       entries_.push_back(
-          {number, std::exchange(first_[bucket], static_cast<std::uint32_t>(entries_.size()))});
+          {number, std::exchange(first_[at.bucket], static_cast<std::uint32_t>(entries_.size()))});
     });
   ++keyframes_;
+  if (entries_.size() > std::max(kMinSorted, sorted_.size() / 4)) sort_lists();
+}
+
+void FeatureIndex::sort_lists() {
+  const std::size_t count = sorted_.size() + entries_.size() - 1;
+  // Four entries a bucket and more, so that begin_ is small beside sorted_.
+  const unsigned bits =
+      std::clamp(static_cast<unsigned>(std::bit_width(count / kTables / 8)), kBucketBits, kBits);
+
+  const auto for_each_entry = [this](const auto& visit) {  // visit(table, hash, keyframe)
+    const auto visit_entry = [&](std::size_t bucket, unsigned bucket_bits, std::uint32_t rest_and_keyframe) {
+      const auto in_table = static_cast<std::uint32_t>(bucket & ((std::size_t{1} << bucket_bits) - 1));
+      visit(static_cast<unsigned>(bucket >> bucket_bits),
+            rest_and_keyframe >> kKeyframeBits << bucket_bits | in_table, rest_and_keyframe & kKeyframeMask);
+    };
+    for (std::size_t bucket = 0; bucket + 1 < begin_.size(); ++bucket)
+      for (std::uint32_t at = begin_[bucket]; at < begin_[bucket + 1]; ++at)
+        visit_entry(bucket, sorted_bucket_bits_, sorted_[at]);
+    for (std::size_t bucket = 0; bucket < first_.size(); ++bucket)
+      for (std::uint32_t at = first_[bucket]; at != 0; at = entries_[at].next)
+        visit_entry(bucket, kBucketBits, entries_[at].rest_and_keyframe);
+  };
+
+  std::vector<std::uint32_t> begin((std::size_t{kTables} << bits) + 1, 0);
+  for_each_entry([&](unsigned table, std::uint32_t hash, std::uint32_t) {
+    ++begin[BucketOf(table, hash, bits).bucket + 1];
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> sorted(count);
+  for_each_entry([&](unsigned table, std::uint32_t hash, std::uint32_t keyframe) {
+    const BucketOf at(table, hash, bits);
+    sorted[begin[at.bucket]++] = at.rest << kKeyframeBits | keyframe;
+  });
+  // Each bucket's begin has moved to the next one's.
+  std::shift_right(begin.begin(), begin.end(), 1);
+  begin.front() = 0;
+
+  sorted_bucket_bits_ = bits;
+  begin_ = std::move(begin);
+  sorted_ = std::move(sorted);
+  std::fill(first_.begin(), first_.end(), 0);
+  entries_ = std::vector<Entry>(1);
 }
 
 std::vector<std::size_t> FeatureIndex::candidates(std::span<const Descriptor> query, std::size_t count,
                                                   const std::function<bool(std::size_t)>& accept) const {
   if (keyframes_ == 0) return {};
   std::vector<std::uint32_t> collisions(std::min(keyframes_, kMaxKeyframes), 0);
-  for_each_hash(query, [&](std::size_t bucket, std::uint32_t rest) {
-    for (std::uint32_t at = first_[bucket]; at != 0; at = entries_[at].next) {
-      const std::uint32_t entry = entries_[at].rest_and_keyframe;
-      if (entry >> kKeyframeBits == rest) ++collisions[entry & ((1U << kKeyframeBits) - 1)];
+  for_each_hash(query, [&](unsigned table, std::uint32_t hash) {
+    const auto compare = [&](std::uint32_t rest, std::uint32_t rest_and_keyframe) {
+      if (rest_and_keyframe >> kKeyframeBits == rest) ++collisions[rest_and_keyframe & kKeyframeMask];
+    };
+    if (!sorted_.empty()) {
+      const BucketOf at(table, hash, sorted_bucket_bits_);
+      for (std::uint32_t i = begin_[at.bucket]; i < begin_[at.bucket + 1]; ++i) compare(at.rest, sorted_[i]);
     }
+    const BucketOf at(table, hash, kBucketBits);
+    for (std::uint32_t i = first_[at.bucket]; i != 0; i = entries_[i].next)
+      compare(at.rest, entries_[i].rest_and_keyframe);
   });
   std::vector<std::pair<std::uint32_t, std::size_t>> found;  // sorts by count, then the older first
   for (std::size_t i = 0; i < collisions.size(); ++i)

@@ -61,6 +61,11 @@ std::vector<std::pair<std::size_t, std::size_t>> matches(Descriptors from, Descr
   return pairs;
 }
 
+Descriptors strongest_of(const MapKeyframe& keyframe) {
+  const Descriptors all = keyframe.descriptors;
+  return all.first(std::min(FeatureIndex::kIndexedFeatures, all.size()));
+}
+
 /// Computes the best rigid motion of the chosen pairs' b onto a.
 Eigen::Isometry3d rigid_motion(const std::vector<PointPair>& pairs, const std::vector<std::size_t>& chosen) {
   Eigen::Matrix3Xd a(3, static_cast<Eigen::Index>(chosen.size())), b = a;
@@ -99,13 +104,16 @@ bool is_usable_triple(const std::vector<PointPair>& pairs, const std::vector<std
 std::vector<std::size_t> most_alike(const MapKeyframe& place, const KeyframeDatabase& keyframe_database,
                                     std::size_t count, int min_matches,
                                     const std::function<bool(std::size_t)>& accept) {
-  const auto strongest_of = [](const MapKeyframe& of) {
-    return Descriptors(of.descriptors).first(std::min(FeatureIndex::kIndexedFeatures, of.descriptors.size()));
-  };
   std::vector<std::size_t> candidates =
       keyframe_database.index.candidates(strongest_of(place), 40 + 2 * count, accept);
   for (std::size_t i = keyframe_database.index.size(); i < keyframe_database.keyframes.size(); ++i)
     if (!accept || accept(i)) candidates.push_back(i);
+  return most_alike_of(candidates, place, keyframe_database, count, min_matches);
+}
+
+std::vector<std::size_t> most_alike_of(const std::vector<std::size_t>& candidates, const MapKeyframe& place,
+                                       const KeyframeDatabase& keyframe_database, std::size_t count,
+                                       int min_matches) {
   std::vector<std::pair<int, std::size_t>> votes;
   for (const std::size_t i : candidates) {
     const int found =

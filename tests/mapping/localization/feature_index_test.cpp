@@ -65,6 +65,26 @@ TEST(FeatureIndex, OfNothingFindsNothing) {
   EXPECT_TRUE(index.candidates(view, 0, {}).empty());
 }
 
+// The entries of older keyframes are sorted; it must not show.
+TEST(FeatureIndex, OfThousandsCountsAsOneOfFew) {
+  constexpr std::size_t kMany = 1200, kFirst = 900, kEnd = 1190;  // sorted now and then
+  std::mt19937 random(7);
+  FeatureIndex of_all, of_few;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    const std::vector<Descriptor> view = drawn(300, random);
+    of_all.add(view);
+    if (i >= kFirst && i < kEnd) of_few.add(view);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const std::vector<Descriptor> query = drawn(300, random);
+    const auto expected = of_few.candidates(query, 50, {});
+    auto found = of_all.candidates(query, 50, [](std::size_t one) { return one >= kFirst && one < kEnd; });
+    ASSERT_EQ(expected.size(), 50U);  // unlike features collide now and then
+    for (std::size_t& one : found) one -= kFirst;
+    EXPECT_EQ(found, expected);
+  }
+}
+
 // The database's index may be behind its keyframes, which are then compared one by one.
 TEST(FeatureIndex, WhatIsMostAlikeIsTheSameWithAndWithoutIt) {
   std::mt19937 random(6);
