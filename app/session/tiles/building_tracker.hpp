@@ -1,0 +1,41 @@
+// building_tracker.hpp: localises the camera in a building, and loads the tiles round it.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <utility>
+
+#include "app/session/tiles/tile_window.hpp"
+#include "mapping/localization/locator.hpp"
+#include "mapping/localization/recognise_place.hpp"
+
+namespace roomradar {
+
+/// Follows the camera as locate() does, but searches the building by recognise_place() instead of patches and
+/// shapes, whose cost grows with the building. A recognised place is used once its tiles are loaded and the
+/// frame, aligned with their surface, stays at that place. A place that looks like another is refused.
+class BuildingTracker {
+ public:
+  /// Throws Error if the config is invalid. `context` must outlive the tracker.
+  BuildingTracker(GlContext& context, TileWindowConfig config) : tiles_(context, std::move(config)) {}
+
+  /// Call before each frame. Returns true if the loaded surfaces have changed.
+  bool begin_frame(double stamp_s) { return tiles_.begin_frame(stamp_s); }
+  /// Localises a frame, and chooses the tiles for its pose or for the place that it shows.
+  /// @param keyframe_database  of the whole building, with a complete index; patches are not used
+  /// @param dynamic_mask, expected_depth  as in locate()
+  Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+                  const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth);
+
+  [[nodiscard]] const TileWindow& tiles() const { return tiles_; }
+  /// Returns a sentence for each tile that could not be read since the last call.
+  std::vector<std::string> take_faults() { return tiles_.take_faults(); }
+  /// Numbers of untracked frames whose place was recognised, or refused because another fits as well.
+  [[nodiscard]] std::int64_t recognised() const { return recognised_; }
+  [[nodiscard]] std::int64_t ambiguous() const { return ambiguous_; }
+
+ private:
+  TileWindow tiles_;
+  std::int64_t recognised_ = 0, ambiguous_ = 0;
+};
+
+}  // namespace roomradar

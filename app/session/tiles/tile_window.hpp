@@ -1,0 +1,125 @@
+// tile_window.hpp: the tiles of a building that are loaded round the camera, taken up between two frames.
+#pragma once
+#include <Eigen/Geometry>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/objects/shape.hpp"
+#include "app/session/tiles/tile_choice.hpp"
+#include "app/session/tiles/tile_loading.hpp"
+#include "mapping/building/building_info.hpp"
+#include "mapping/types/system/stage_times.hpp"
+#include "radar/gl/gl_context.hpp"
+
+namespace roomradar {
+
+struct TileWindowConfig {
+  std::filesystem::path folder;  ///< of the building
+  BuildingInfo building;
+  TileChoiceConfig choice;
+  /// Tiles nearer to the camera than this are needed to localise it, m.
+  double near_m = 4.0;
+  /// The process's memory that the choice of tiles aims to stay below, in bytes; 0: no limit.
+  std::size_t max_process_bytes = 0;
+  /// Time from the request for a tile to the first frame that uses it, s. Frames that need a tile within
+  /// near_m use it as soon as it is loaded.
+  double apply_after_s = 0.5;
+  /// true: the frame in which a tile is due waits for the worker thread. Results are then reproducible.
+  /// false: frames do not wait. A tile may then take effect earlier or later.
+  bool wait = true;
+};
+
+/// A tile in use.
+struct SessionTile {
+  std::size_t index;  ///< in the building's tiles
+  Shape shape;
+  UnknownSurface unknown;  ///< without mesh
+  TriangleTree unknown_tree;
+
+  SessionTile(GlContext& context, std::size_t its_index) : index(its_index), shape(context) {}
+};
+
+struct TileCounts {
+  std::int64_t loaded = 0, dropped = 0;
+  std::int64_t frames_over_33_ms = 0;  ///< frames to which taking up and dropping tiles added more than 33 ms
+  /// Stages: `frame`, the time that taking up or dropping tiles added to a frame; `blocked`, the time for
+  /// which a frame waited for the worker thread; `late`, the time for which a tile within near_m of the
+  /// camera was not in use, one value per tile loaded.
+  StageTimes times;
+};
+
+/// Loads tiles on a worker thread, one after the other, nearest first. A frame takes up at most one tile. A
+/// tile whose file is missing or damaged is left out for good, with a fault. Not thread safe: call all
+/// functions on the constructing thread, whose GL context is used.
+class TileWindow {
+ public:
+  /// Throws Error if a config is invalid. `context` must outlive the window.
+  TileWindow(GlContext& context, TileWindowConfig config);
+  ~TileWindow();
+  TileWindow(const TileWindow&) = delete;
+  TileWindow& operator=(const TileWindow&) = delete;
+
+  /// Call before each frame. Drops tiles that are no longer chosen, and takes up a tile that is due. Returns
+  /// true if the surfaces have changed.
+  bool begin_frame(double stamp_s);
+  /// Call with the camera's position, or with that of a place where it may be. Chooses the tiles, also for
+  /// the way that the camera goes, and begins to load them.
+  void follow(const Eigen::Vector3d& position_world);
+
+  /// Returns true if the tiles that a camera at this position needs are loaded, as far as memory allows. No
+  /// tile may be chosen there: false.
+  [[nodiscard]] bool is_ready_at(const Eigen::Vector3d& position_world) const;
+  /// Returns true if all tiles of the building whose cubes intersect the box are loaded.
+  [[nodiscard]] bool is_loaded(const Eigen::AlignedBox3d& box_world) const;
+  /// Returns true if the point is in unknown space that counts, or not in a loaded tile.
+  [[nodiscard]] bool is_unknown_at(const Eigen::Vector3d& p_world) const;
+
+  [[nodiscard]] const std::vector<std::unique_ptr<SessionTile>>& tiles() const { return tiles_; }
+  [[nodiscard]] const TileWindowConfig& config() const { return config_; }
+  /// By tile of the building.
+  [[nodiscard]] const std::vector<bool>& loaded() const { return is_loaded_; }
+  [[nodiscard]] const TileCounts& counts() const { return counts_; }
+  /// Returns a sentence for each tile that could not be read since the last call.
+  std::vector<std::string> take_faults() { return std::exchange(faults_, {}); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  struct Loading {
+    std::size_t tile;
+    double due_s;
+    std::future<LoadedTile> done;
+  };
+
+  GlContext& context_;
+  TileWindowConfig config_;
+  std::vector<std::unique_ptr<SessionTile>> tiles_;
+  std::vector<bool> is_loaded_, has_failed_;                    ///< by tile of the building
+  std::vector<std::optional<Clock::time_point>> needed_since_;  ///< by tile: since when it is missed
+  std::vector<std::size_t> chosen_;                             ///< nearest first
+  std::optional<Loading> loading_;
+  std::optional<Eigen::Vector3d> position_world_;
+  double position_stamp_s_ = 0.0, stamp_s_ = 0.0;
+  Eigen::Vector3d velocity_world_mps_ = Eigen::Vector3d::Zero();
+  std::vector<std::string> faults_;
+  TileCounts counts_;
+
+  bool drop_unchosen();
+  bool take_up_due();
+  void take_up(std::size_t tile, LoadedTile loaded);
+  void load_next();
+  void limit_memory();
+  [[nodiscard]] bool is_near(std::size_t tile, const Eigen::Vector3d& position_world) const;
+  [[nodiscard]] std::vector<std::size_t> chosen_at(const Eigen::Vector3d& position_world,
+                                                   const Eigen::Vector3d& velocity_world_mps) const;
+};
+
+}  // namespace roomradar
