@@ -12,7 +12,7 @@ namespace roomradar {
 namespace {
 
 constexpr double kMB = 1e6;
-constexpr double kKeyframesPart = 1.0 / 3.0;  // of the memory limit
+constexpr double kKeyframesPart = 0.2;  // of the memory limit
 
 void require_possible_in_building(const RunOptions& options, const Script& script) {
   const auto refuse = [&](const std::string& option, const char* why) {
@@ -39,11 +39,12 @@ OpenedBuilding open_building(const RunOptions& options, const Script& script) {
   opened.tiles.max_process_bytes = static_cast<std::size_t>(kMB * options.max_memory_mb);
   const BuildingInfo& building = opened.tiles.building;
   if (building.tiles.empty()) throw Error(options.map + ": has no tiles; was any recording placed?");
-  if (options.max_memory_mb > 0.0) mmap_large_allocations();
+  mmap_large_allocations();  // tiles come and go: their memory goes back to the system
 
   const double keyframes_mb = kKeyframesPart * options.max_memory_mb;
   opened.map.keyframe_database =
       load_building_keyframes(building, options.map, static_cast<std::size_t>(kMB * keyframes_mb));
+  release_unused_memory();
   MapInfo& info = opened.map.info;
   info.source = options.map;
   info.up_source = "building";

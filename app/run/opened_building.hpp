@@ -12,7 +12,7 @@ struct OpenedBuilding {
   TileWindowConfig tiles;
 };
 
-/// Opens the building of options.map. With options.max_memory_mb, keyframes take at most a third of it.
+/// Opens the building of options.map. With options.max_memory_mb, keyframes take at most a fifth of it.
 /// Throws Error naming the file and the fault if a file is missing or damaged. Throws Error with a sentence
 /// if the run's options or its script ask for something that is done in the map of a room only: committed
 /// changes, recorded poses.

@@ -202,8 +202,9 @@ const Frame& Session::with_depth_reduced(const Frame& frame) {
 Tracking Session::locate_camera(const Frame& frame) {
   if (config_.poses == PoseOrigin::kRecorded) {
     if (!frame.T_world_camera) return {};
-    return {.status = TrackStatus::kTracked,
-            .T_world_camera = map_.info.T_world_recorded * *frame.T_world_camera};
+    const Eigen::Isometry3d T_world_camera = map_.info.T_world_recorded * *frame.T_world_camera;
+    if (building_) building_->follow(T_world_camera.translation());
+    return {.status = TrackStatus::kTracked, .T_world_camera = T_world_camera};
   }
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
     return scene_.render_expected(frame.depth_camera, T_world_camera).depth_m;

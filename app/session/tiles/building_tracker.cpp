@@ -4,6 +4,14 @@
 namespace roomradar {
 namespace {
 
+/// Makes the camera lost, without an attempt to resume at its last pose.
+void forget_pose(Locator& locator) {
+  locator.T_world_camera.reset();
+  locator.T_world_lost.reset();
+  locator.T_last_now.setIdentity();
+  locator.unverified_frames = locator.recheck_cooldown_frames = 0;
+}
+
 /// Aligns the frame with the loaded surface, from a recognised pose. Returns no pose if the depth contradicts
 /// that pose.
 Tracking begin_at(Locator& locator, const Frame& frame, const Eigen::Isometry3d& T_world_place,
@@ -21,42 +29,59 @@ Tracking begin_at(Locator& locator, const Frame& frame, const Eigen::Isometry3d&
         agreement.farther_part() < kMaxFarther)
       return tracking;
   }
-  locator.T_world_camera.reset();
-  locator.T_world_lost.reset();
+  forget_pose(locator);
   return {};
-}
-
-/// Returns true for some of the frames whose depth contradicts the tracked pose.
-bool is_recheck_due(const Locator& locator) {
-  constexpr int kPatience_frames = 3, kEvery_frames = 10;
-  return locator.unverified_frames % kEvery_frames == kPatience_frames;
 }
 
 }  // namespace
 
+/// Counts consecutive frames with a doubtful pose. It is doubtful if depth leaves it unconstrained, or looks
+/// through surfaces; a hand in front of the camera does neither.
+void BuildingTracker::count_doubt(const Frame& frame, const Tracking& tracking,
+                                  const DepthImage& expected_m) {
+  constexpr double kMaxFarther = 0.05;
+  farther_part_ = depth_agreement_of(frame.depth_m, expected_m).farther_part();
+  const bool is_doubtful = tracking.status == TrackStatus::kDegenerate || farther_part_ > kMaxFarther;
+  doubtful_frames_ = is_doubtful ? doubtful_frames_ + 1 : 0;
+}
+
+bool BuildingTracker::is_recheck_due() const {
+  constexpr int kPatience_frames = 3, kEvery_frames = 5;
+  return doubtful_frames_ % kEvery_frames == kPatience_frames;
+}
+
 Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
                                  const KeyframeDatabase& keyframe_database, const MaskImage& dynamic_mask,
                                  const ExpectedDepth& expected_depth) {
-  constexpr double kElsewhere_m = 0.5, kElsewhere_rad = 0.5;  // then the tracked pose is wrong
+  constexpr double kElsewhere_m = 0.25, kElsewhere_rad = 0.15;  // then the tracked pose is wrong
+  constexpr double kRefuted = 0.1;  // part of the depth that looks through surfaces
   // Without keyframes, the camera is followed, also after a short loss, but not searched.
   Tracking tracking = roomradar::locate(locator, frame, KeyframeDatabase{}, dynamic_mask, expected_depth);
-  if (!has_pose(tracking) || is_recheck_due(locator)) {
+  if (has_pose(tracking)) count_doubt(frame, tracking, expected_depth(tracking.T_world_camera));
+  const std::optional<Eigen::Isometry3d> T_world_last_place = std::exchange(T_world_place_, std::nullopt);
+  if (!has_pose(tracking) || is_recheck_due()) {
     const RecognisedPlace place = recognise_place(frame, keyframe_database, locator.relocalise);
     if (place.status == PlaceStatus::kAmbiguous) ++ambiguous_;
     if (place) ++recognised_;
-    const bool is_elsewhere =
-        place && !(has_pose(tracking) &&
-                   is_near(place.T_world_camera, tracking.T_world_camera, kElsewhere_m, kElsewhere_rad));
-    if (is_elsewhere) {
-      const Eigen::Vector3d& p_world = place.T_world_camera.translation();
-      locator.T_world_camera.reset();
-      locator.unverified_frames = 0;
-      tracking = tiles_.is_ready_at(p_world) ? begin_at(locator, frame, place.T_world_camera, expected_depth)
-                                             : Tracking{};
-      if (!has_pose(tracking)) tiles_.follow(p_world);
+    const bool is_same = has_pose(tracking) && place &&
+                         is_near(place.T_world_camera, tracking.T_world_camera, kElsewhere_m, kElsewhere_rad);
+    if (has_pose(tracking) && !is_same && (place || farther_part_ > kRefuted)) {
+      tracking = {};
+      forget_pose(locator);
+    }
+    if (place && !has_pose(tracking)) {
+      T_world_place_ = place.T_world_camera;
+      doubtful_frames_ = 0;
+      if (tiles_.is_ready_at(place.T_world_camera.translation()))
+        tracking = begin_at(locator, frame, place.T_world_camera, expected_depth);
+      if (has_pose(tracking) && T_world_last_place)
+        locator.T_last_now = T_world_last_place->inverse() * tracking.T_world_camera;
     }
   }
-  if (has_pose(tracking)) tiles_.follow(tracking.T_world_camera.translation());
+  if (has_pose(tracking))
+    tiles_.follow(tracking.T_world_camera.translation());
+  else if (T_world_place_)
+    tiles_.follow(T_world_place_->translation());
   return tracking;
 }
 

@@ -2,7 +2,10 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "app/session/tiles/tile_window.hpp"
 #include "mapping/localization/locator.hpp"
@@ -12,7 +15,9 @@ namespace roomradar {
 
 /// Follows the camera as locate() does, but searches the building by recognise_place() instead of patches and
 /// shapes, whose cost grows with the building. A recognised place is used once its tiles are loaded and the
-/// frame, aligned with their surface, stays at that place. A place that looks like another is refused.
+/// frame, aligned with their surface, stays at that place. A place that looks like another is refused. A
+/// tracked pose that is doubtful for 3 frames, and after each 5 further ones, is compared with the place
+/// that the frame shows.
 class BuildingTracker {
  public:
   /// Throws Error if the config is invalid. `context` must outlive the tracker.
@@ -26,6 +31,9 @@ class BuildingTracker {
   Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                   const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth);
 
+  /// Chooses the tiles for a frame that is not localised by locate(), because its pose is known.
+  void follow(const Eigen::Vector3d& position_world) { tiles_.follow(position_world); }
+
   [[nodiscard]] const TileWindow& tiles() const { return tiles_; }
   /// Returns a sentence for each tile that could not be read since the last call.
   std::vector<std::string> take_faults() { return tiles_.take_faults(); }
@@ -36,6 +44,13 @@ class BuildingTracker {
  private:
   TileWindow tiles_;
   std::int64_t recognised_ = 0, ambiguous_ = 0;
+  int doubtful_frames_ = 0;
+  double farther_part_ = 0.0;  ///< part of the last tracked frame's depth that looks through surfaces
+  std::optional<Eigen::Isometry3d>
+      T_world_place_;  ///< place recognised in the last frame, if it was untracked
+
+  void count_doubt(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m);
+  [[nodiscard]] bool is_recheck_due() const;
 };
 
 }  // namespace roomradar

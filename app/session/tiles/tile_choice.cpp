@@ -10,14 +10,13 @@
 namespace roomradar {
 namespace {
 
-// Measured with tiles of 10,000 to 330,000 triangles. Of a triangle: tree, renderer's copy, pieces of the
-// rasteriser.
-constexpr double kTriangleBytes = 60.0;
-constexpr double kUnknownPart = 0.5;  // triangles of the border of unknown space per triangle
-constexpr double kUnknownGridBytes = 2.5e6;
-constexpr double kOctreeExpansion = 6.0;  // octree in memory, relative to its file
+// Measured with tiles of 10,000 to 330,000 triangles.
+constexpr double kTriangleBytes = 120.0;        // tree, renderer's copy, the rasteriser's pieces
+constexpr double kUnknownTriangleBytes = 15.0;  // border of unknown space, per triangle of the surface
+constexpr double kUnknownGridBytes = 3e6;
+constexpr double kOctreeExpansion = 4.0;  // octree in memory, relative to its file
 constexpr double kUnknownLoadingBytes = 25e6;
-constexpr double kMeshExpansion = 4.0;  // mesh file, mesh and tree under construction
+constexpr double kMeshExpansion = 2.0;  // mesh and file while it is read
 
 }  // namespace
 
@@ -30,7 +29,7 @@ void require_valid(const TileChoiceConfig& config) {
 
 std::size_t tile_bytes(const BuildingTile& tile, bool has_unknown) {
   const auto triangles = static_cast<double>(std::max<std::int64_t>(tile.triangles, 0));
-  const double unknown = has_unknown ? kUnknownPart * triangles * kTriangleBytes + kUnknownGridBytes : 0.0;
+  const double unknown = has_unknown ? triangles * kUnknownTriangleBytes + kUnknownGridBytes : 0.0;
   return static_cast<std::size_t>(triangles * kTriangleBytes + unknown);
 }
 

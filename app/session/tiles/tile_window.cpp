@@ -16,14 +16,14 @@ namespace {
 
 constexpr int kMostDropped = 2;  // tiles per frame: freeing a large one takes 2 ms
 constexpr double kOverrun_ms = 33.0;
-constexpr std::size_t kReserve_bytes = 40'000'000;  // images and buffers that frames still allocate
+constexpr std::size_t kReserve_bytes = 30'000'000;  // images and buffers that frames still allocate
 
 /// Loads a tile at low priority: frames go first.
 LoadedTile load_aside(const TileWindowConfig& config, std::size_t tile) {
   constexpr int kNice = 10;
   static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));  // this thread only
   LoadedTile loaded = load_tile(config.building, config.folder, tile, config.choice.has_unknown);
-  if (config.max_process_bytes > 0) release_unused_memory();
+  release_unused_memory();
   return loaded;
 }
 
