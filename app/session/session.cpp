@@ -119,6 +119,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   if (map_updater_ && map_updater_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
   if (building_ && times.timed("tiles", [&] { return building_->begin_frame(whole.stamp_s); }))
     scene_.room_changed();
+  while (building_ && building_->has_fault()) objects_.notify(building_->take_fault());
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate)
     return pass_unlocated(whole, tracking.status);
@@ -211,7 +212,6 @@ Tracking Session::locate_camera(const Frame& frame) {
   };
   const MaskImage& moved = scene_.previous_dynamic_mask(frame.depth_camera);
   if (!building_) return locate(locator_, frame, map_.keyframe_database, moved, expected_depth);
-  for (std::string& fault : building_->take_faults()) objects_.notify(std::move(fault));
   return building_->locate(locator_, frame, map_.keyframe_database, moved, expected_depth);
 }
 

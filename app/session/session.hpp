@@ -101,8 +101,7 @@ class Session {
   std::vector<ObjectNotice> take_notices() { return objects_.take_notices(); }
   /// Returns the changes committed to the room so far.
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
-  /// Returns the tracker of a building; null for the map of a room.
-  [[nodiscard]] const BuildingTracker* building() const { return building_.get(); }
+  [[nodiscard]] const BuildingTracker* building() const { return building_.get(); }  ///< null: a room
   /// Waits for a running commit. Afterwards the octree may be read.
   void finish_commits();
 

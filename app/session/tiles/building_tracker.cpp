@@ -35,26 +35,27 @@ Tracking begin_at(Locator& locator, const Frame& frame, const Eigen::Isometry3d&
 
 }  // namespace
 
-/// Counts consecutive frames with a doubtful pose. It is doubtful if depth leaves it unconstrained, or looks
-/// through surfaces; a hand in front of the camera does neither.
 void BuildingTracker::count_doubt(const Frame& frame, const Tracking& tracking,
                                   const DepthImage& expected_m) {
-  constexpr double kMaxFarther = 0.05;
-  farther_part_ = depth_agreement_of(frame.depth_m, expected_m).farther_part();
-  const bool is_doubtful = tracking.status == TrackStatus::kDegenerate || farther_part_ > kMaxFarther;
-  doubtful_frames_ = is_doubtful ? doubtful_frames_ + 1 : 0;
+  // A hand in front of the camera covers less than half of the image, and nothing is seen through a surface.
+  constexpr double kMaxFarther = 0.05, kMinAlike = 0.5, kRefutedFarther = 0.1, kRefutedAlike = 0.4;
+  const DepthAgreement agreement = depth_agreement_of(frame.depth_m, expected_m);
+  const double farther = agreement.farther_part(), alike = agreement.alike_part();
+  is_contradicted_ = farther > kMaxFarther || alike < kMinAlike;
+  is_refuted_ = farther > kRefutedFarther || alike < kRefutedAlike;
+  doubtful_frames_ =
+      is_contradicted_ || tracking.status == TrackStatus::kDegenerate ? doubtful_frames_ + 1 : 0;
 }
 
 bool BuildingTracker::is_recheck_due() const {
   constexpr int kPatience_frames = 3, kEvery_frames = 5;
-  return doubtful_frames_ % kEvery_frames == kPatience_frames;
+  return (doubtful_frames_ == 1 && is_contradicted_) || doubtful_frames_ % kEvery_frames == kPatience_frames;
 }
 
 Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
                                  const KeyframeDatabase& keyframe_database, const MaskImage& dynamic_mask,
                                  const ExpectedDepth& expected_depth) {
   constexpr double kElsewhere_m = 0.25, kElsewhere_rad = 0.15;  // then the tracked pose is wrong
-  constexpr double kRefuted = 0.1;  // part of the depth that looks through surfaces
   // Without keyframes, the camera is followed, also after a short loss, but not searched.
   Tracking tracking = roomradar::locate(locator, frame, KeyframeDatabase{}, dynamic_mask, expected_depth);
   if (has_pose(tracking)) count_doubt(frame, tracking, expected_depth(tracking.T_world_camera));
@@ -65,7 +66,7 @@ Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
     if (place) ++recognised_;
     const bool is_same = has_pose(tracking) && place &&
                          is_near(place.T_world_camera, tracking.T_world_camera, kElsewhere_m, kElsewhere_rad);
-    if (has_pose(tracking) && !is_same && (place || farther_part_ > kRefuted)) {
+    if (has_pose(tracking) && !is_same && (place || is_refuted_)) {
       tracking = {};
       forget_pose(locator);
     }

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "app/session/tiles/tile_window.hpp"
 #include "mapping/localization/locator.hpp"
@@ -16,8 +15,8 @@ namespace roomradar {
 /// Follows the camera as locate() does, but searches the building by recognise_place() instead of patches and
 /// shapes, whose cost grows with the building. A recognised place is used once its tiles are loaded and the
 /// frame, aligned with their surface, stays at that place. A place that looks like another is refused. A
-/// tracked pose that is doubtful for 3 frames, and after each 5 further ones, is compared with the place
-/// that the frame shows.
+/// tracked pose that is doubtful is compared with the place that the frame shows: at once if the depth
+/// contradicts the pose, else after 3 frames, then every 5 frames.
 class BuildingTracker {
  public:
   /// Throws Error if the config is invalid. `context` must outlive the tracker.
@@ -35,8 +34,9 @@ class BuildingTracker {
   void follow(const Eigen::Vector3d& position_world) { tiles_.follow(position_world); }
 
   [[nodiscard]] const TileWindow& tiles() const { return tiles_; }
-  /// Returns a sentence for each tile that could not be read since the last call.
-  std::vector<std::string> take_faults() { return tiles_.take_faults(); }
+  /// Returns true if a tile could not be read, and take_fault() has not yet returned why.
+  [[nodiscard]] bool has_fault() const { return tiles_.has_fault(); }
+  std::string take_fault() { return tiles_.take_fault(); }
   /// Numbers of untracked frames whose place was recognised, or refused because another fits as well.
   [[nodiscard]] std::int64_t recognised() const { return recognised_; }
   [[nodiscard]] std::int64_t ambiguous() const { return ambiguous_; }
@@ -45,10 +45,12 @@ class BuildingTracker {
   TileWindow tiles_;
   std::int64_t recognised_ = 0, ambiguous_ = 0;
   int doubtful_frames_ = 0;
-  double farther_part_ = 0.0;  ///< part of the last tracked frame's depth that looks through surfaces
+  bool is_contradicted_ = false;  ///< depth does not agree well with the last tracked pose
+  bool is_refuted_ = false;       ///< it agrees so badly that the pose is given up if no place is recognised
   std::optional<Eigen::Isometry3d>
       T_world_place_;  ///< place recognised in the last frame, if it was untracked
 
+  /// Counts consecutive frames with a doubtful pose: contradicted, or not constrained by depth.
   void count_doubt(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m);
   [[nodiscard]] bool is_recheck_due() const;
 };

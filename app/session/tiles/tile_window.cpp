@@ -158,8 +158,8 @@ bool TileWindow::take_up_due() {
     take_up(tile, done.get());
   } catch (const Error& fault) {
     has_failed_[tile] = true;
-    faults_.push_back(std::string(fault.what()) +
-                      "; this part of the building is left out, and objects in it do not move");
+    fault_ =
+        std::string(fault.what()) + "; this part of the building is left out, and objects in it do not move";
     return false;
   }
   return true;

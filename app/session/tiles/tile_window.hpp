@@ -87,8 +87,9 @@ class TileWindow {
   /// By tile of the building.
   [[nodiscard]] const std::vector<bool>& loaded() const { return is_loaded_; }
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
-  /// Returns a sentence for each tile that could not be read since the last call.
-  std::vector<std::string> take_faults() { return std::exchange(faults_, {}); }
+  /// Returns true if a tile could not be read, and take_fault() has not yet returned why.
+  [[nodiscard]] bool has_fault() const { return !fault_.empty(); }
+  std::string take_fault() { return std::exchange(fault_, {}); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -109,7 +110,7 @@ class TileWindow {
   std::optional<Eigen::Vector3d> position_world_;
   double position_stamp_s_ = 0.0, stamp_s_ = 0.0;
   Eigen::Vector3d velocity_world_mps_ = Eigen::Vector3d::Zero();
-  std::vector<std::string> faults_;
+  std::string fault_;  ///< of the last tile; a frame takes up one tile
   TileCounts counts_;
 
   bool drop_unchosen();
