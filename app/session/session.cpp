@@ -204,7 +204,7 @@ Tracking Session::locate_camera(const Frame& frame) {
   if (config_.poses == PoseOrigin::kRecorded) {
     if (!frame.T_world_camera) return {};
     const Eigen::Isometry3d T_world_camera = map_.info.T_world_recorded * *frame.T_world_camera;
-    if (building_) building_->follow(T_world_camera.translation());
+    if (building_) building_->follow(frame, T_world_camera);
     return {.status = TrackStatus::kTracked, .T_world_camera = T_world_camera};
   }
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {

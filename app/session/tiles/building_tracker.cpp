@@ -73,16 +73,16 @@ Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
     if (place && !has_pose(tracking)) {
       T_world_place_ = place.T_world_camera;
       doubtful_frames_ = 0;
-      if (tiles_.is_ready_at(place.T_world_camera.translation()))
+      if (tiles_.is_ready_for(frame, place.T_world_camera))
         tracking = begin_at(locator, frame, place.T_world_camera, expected_depth);
       if (has_pose(tracking) && T_world_last_place)
         locator.T_last_now = T_world_last_place->inverse() * tracking.T_world_camera;
     }
   }
   if (has_pose(tracking))
-    tiles_.follow(tracking.T_world_camera.translation());
+    tiles_.follow(frame, tracking.T_world_camera);
   else if (T_world_place_)
-    tiles_.follow(T_world_place_->translation());
+    tiles_.follow(frame, *T_world_place_);
   return tracking;
 }
 

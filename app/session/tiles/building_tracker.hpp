@@ -31,7 +31,9 @@ class BuildingTracker {
                   const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth);
 
   /// Chooses the tiles for a frame that is not localised by locate(), because its pose is known.
-  void follow(const Eigen::Vector3d& position_world) { tiles_.follow(position_world); }
+  void follow(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+    tiles_.follow(frame, T_world_camera);
+  }
 
   [[nodiscard]] const TileWindow& tiles() const { return tiles_; }
   /// Returns true if a tile could not be read, and take_fault() has not yet returned why.

@@ -46,13 +46,34 @@ double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position
                   tile.surface_world.exteriorDistance(ahead_world));
 }
 
+std::vector<std::size_t> tiles_with(const BuildingInfo& building,
+                                    std::span<const Eigen::Vector3d> points_world) {
+  constexpr double kMinPart = 0.05;
+  std::vector<std::pair<int, std::size_t>> holding;
+  for (std::size_t i = 0; i < building.tiles.size(); ++i) {
+    const Eigen::AlignedBox3d cube = box_of(building.grid, building.tiles[i].index);
+    const auto held = static_cast<int>(std::count_if(points_world.begin(), points_world.end(),
+                                                     [&](const auto& p) { return cube.contains(p); }));
+    if (held > 0 && held >= kMinPart * static_cast<double>(points_world.size()))
+      holding.emplace_back(-held, i);
+  }
+  std::sort(holding.begin(), holding.end());
+  std::vector<std::size_t> tiles;
+  for (const auto& [negative, i] : holding) tiles.push_back(i);
+  return tiles;
+}
+
 std::vector<std::size_t> choose_tiles(const BuildingInfo& building, const Eigen::Vector3d& position_world,
                                       const Eigen::Vector3d& velocity_world_mps,
+                                      std::span<const std::size_t> in_view,
                                       const std::vector<bool>& is_loaded, const TileChoiceConfig& config) {
+  constexpr double kInView_m = -1e6;  // nearer than all others
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t i = 0; i < building.tiles.size(); ++i) {
     double distance_m = tile_distance_m(building.tiles[i], position_world, velocity_world_mps, config);
     if (is_loaded[i]) distance_m -= config.keep_m;
+    const auto seen = std::find(in_view.begin(), in_view.end(), i);
+    if (seen != in_view.end()) distance_m = kInView_m + static_cast<double>(seen - in_view.begin());
     if (distance_m < config.reach_m) near.emplace_back(distance_m, i);
   }
   std::sort(near.begin(), near.end());

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "mapping/building/building_info.hpp"
@@ -28,12 +29,19 @@ std::size_t loading_bytes(const BuildingTile& tile, bool has_unknown);
 double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position_world,
                        const Eigen::Vector3d& velocity_world_mps, const TileChoiceConfig& config);
 
-/// Returns the indices of the chosen tiles in `building.tiles`, nearest first. Loaded tiles count as keep_m
-/// nearer than they are, so a camera that moves to and fro between two tiles does not exchange them. With
-/// max_bytes, the list ends before the first tile that does not fit. It may then be empty.
+/// Returns the tiles that hold at least 5 % of the points, those with the most points first.
+std::vector<std::size_t> tiles_with(const BuildingInfo& building,
+                                    std::span<const Eigen::Vector3d> points_world);
+
+/// Returns the indices of the chosen tiles in `building.tiles`: those in view first, then nearest first.
+/// Loaded tiles count as keep_m nearer than they are, so a camera that moves to and fro between two tiles
+/// does not exchange them. With max_bytes, the list ends before the first tile that does not fit. It may then
+/// be empty.
+/// @param in_view    tiles that are chosen wherever the camera is
 /// @param is_loaded  by tile
 std::vector<std::size_t> choose_tiles(const BuildingInfo& building, const Eigen::Vector3d& position_world,
                                       const Eigen::Vector3d& velocity_world_mps,
+                                      std::span<const std::size_t> in_view,
                                       const std::vector<bool>& is_loaded, const TileChoiceConfig& config);
 
 }  // namespace roomradar

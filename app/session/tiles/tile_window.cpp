@@ -33,14 +33,12 @@ TileWindow::TileWindow(GlContext& context, TileWindowConfig config)
     : context_(context), config_(std::move(config)) {
   require_valid(config_.choice);
   const ConfigCheck require{"tiles"};
-  require(config_.near_m > 0.0 && config_.near_m <= config_.choice.reach_m, "near_m", config_.near_m,
-          "in 0..reach_m");
   require(config_.apply_after_s >= 0.0 && config_.apply_after_s <= 60.0, "apply_after_s",
           config_.apply_after_s, "in 0..60 s");
   const std::size_t count = config_.building.tiles.size();
   is_loaded_.assign(count, false);
   has_failed_.assign(count, false);
-  needed_since_.resize(count);
+  missed_since_.resize(count);
 }
 
 TileWindow::~TileWindow() {
@@ -55,7 +53,20 @@ bool TileWindow::begin_frame(double stamp_s) {
   return has_dropped || has_taken;
 }
 
-void TileWindow::follow(const Eigen::Vector3d& position_world) {
+void TileWindow::follow(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  set_velocity(T_world_camera.translation());
+  limit_memory();
+  const std::vector<std::size_t> in_view = in_view_of(frame, T_world_camera);
+  chosen_ = chosen_at(T_world_camera.translation(), in_view);
+  std::vector<std::optional<Clock::time_point>> missed_before(missed_since_.size());
+  missed_before.swap(missed_since_);
+  for (const std::size_t tile : in_view)
+    if (!is_loaded_[tile] && !has_failed_[tile])
+      missed_since_[tile] = missed_before[tile].value_or(Clock::now());
+  load_next();
+}
+
+void TileWindow::set_velocity(const Eigen::Vector3d& position_world) {
   constexpr double kMost_mps = 3.0;  // faster motion is a jump, which predicts nothing
   constexpr double kSmoothing_s = 0.5;
   const double dt_s = stamp_s_ - position_stamp_s_;
@@ -67,14 +78,6 @@ void TileWindow::follow(const Eigen::Vector3d& position_world) {
   }
   position_world_ = position_world;
   position_stamp_s_ = stamp_s_;
-  limit_memory();
-  chosen_ = chosen_at(position_world, velocity_world_mps_);
-  std::vector<std::optional<Clock::time_point>> needed_before(needed_since_.size());
-  needed_before.swap(needed_since_);
-  for (const std::size_t tile : chosen_)
-    if (!is_loaded_[tile] && is_near(tile, position_world))
-      needed_since_[tile] = needed_before[tile].value_or(Clock::now());
-  load_next();
 }
 
 /// Sets the choice's memory: the limit less what the process takes without tiles. Later calls only lower it,
@@ -91,23 +94,37 @@ void TileWindow::limit_memory() {
   }
 }
 
+std::vector<std::size_t> TileWindow::in_view_of(const Frame& frame,
+                                                const Eigen::Isometry3d& T_world_camera) const {
+  constexpr int kAcross = 24;  // points per row and column
+  std::vector<Eigen::Vector3d> points_world;
+  for (int row = 0; row < kAcross; ++row)
+    for (int column = 0; column < kAcross; ++column) {
+      const int x = (2 * column + 1) * frame.depth_m.width / (2 * kAcross);
+      const int y = (2 * row + 1) * frame.depth_m.height / (2 * kAcross);
+      if (frame.depth_m.pixels.empty() || !(frame.depth_m.at(x, y) > 0.0F)) continue;
+      points_world.push_back(T_world_camera * back_project(frame.depth_camera, x, y,
+                                                           static_cast<double>(frame.depth_m.at(x, y))));
+    }
+  return tiles_with(config_.building, points_world);
+}
+
 std::vector<std::size_t> TileWindow::chosen_at(const Eigen::Vector3d& position_world,
-                                               const Eigen::Vector3d& velocity_world_mps) const {
-  std::vector<std::size_t> chosen =
-      choose_tiles(config_.building, position_world, velocity_world_mps, is_loaded_, config_.choice);
+                                               std::span<const std::size_t> in_view) const {
+  std::vector<std::size_t> chosen = choose_tiles(config_.building, position_world, velocity_world_mps_,
+                                                 in_view, is_loaded_, config_.choice);
   std::erase_if(chosen, [&](std::size_t tile) { return has_failed_[tile]; });
   return chosen;
 }
 
-bool TileWindow::is_near(std::size_t tile, const Eigen::Vector3d& position_world) const {
-  return config_.building.tiles[tile].surface_world.exteriorDistance(position_world) < config_.near_m;
-}
-
-bool TileWindow::is_ready_at(const Eigen::Vector3d& position_world) const {
-  const std::vector<std::size_t> chosen = chosen_at(position_world, Eigen::Vector3d::Zero());
-  return !chosen.empty() && std::all_of(chosen.begin(), chosen.end(), [&](std::size_t tile) {
-    return is_loaded_[tile] || !is_near(tile, position_world);
+bool TileWindow::is_ready_for(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const {
+  std::vector<std::size_t> needed = in_view_of(frame, T_world_camera);
+  const std::vector<std::size_t> chosen = chosen_at(T_world_camera.translation(), needed);
+  std::erase_if(needed, [&](std::size_t tile) {
+    return std::find(chosen.begin(), chosen.end(), tile) == chosen.end();
   });
+  return !needed.empty() &&
+         std::all_of(needed.begin(), needed.end(), [&](std::size_t tile) { return is_loaded_[tile]; });
 }
 
 bool TileWindow::is_loaded(const Eigen::AlignedBox3d& box_world) const {
@@ -144,7 +161,7 @@ bool TileWindow::drop_unchosen() {
 
 bool TileWindow::take_up_due() {
   if (!loading_) return false;
-  const bool is_urgent = needed_since_[loading_->tile].has_value();
+  const bool is_urgent = missed_since_[loading_->tile].has_value();
   if (config_.wait && !is_urgent && stamp_s_ < loading_->due_s) return false;
   if (!config_.wait && loading_->done.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return false;
@@ -174,7 +191,7 @@ void TileWindow::take_up(std::size_t tile, LoadedTile loaded) {
   tiles_.push_back(std::move(taken));
   is_loaded_[tile] = true;
   ++counts_.loaded;
-  const auto since = std::exchange(needed_since_[tile], std::nullopt);
+  const auto since = std::exchange(missed_since_[tile], std::nullopt);
   counts_.times.add_ms("late", since ? ms_since(*since) : 0.0);
   const double frame_ms = ms_since(begun);
   counts_.times.add_ms("frame", frame_ms);

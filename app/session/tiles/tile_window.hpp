@@ -8,6 +8,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "app/session/tiles/tile_choice.hpp"
 #include "app/session/tiles/tile_loading.hpp"
 #include "mapping/building/building_info.hpp"
+#include "mapping/types/frame.hpp"
 #include "mapping/types/system/stage_times.hpp"
 #include "radar/gl/gl_context.hpp"
 
@@ -25,12 +27,10 @@ struct TileWindowConfig {
   std::filesystem::path folder;  ///< of the building
   BuildingInfo building;
   TileChoiceConfig choice;
-  /// Tiles nearer to the camera than this are needed to localise it, m.
-  double near_m = 4.0;
   /// The process's memory that the choice of tiles aims to stay below, in bytes; 0: no limit.
   std::size_t max_process_bytes = 0;
-  /// Time from the request for a tile to the first frame that uses it, s. Frames that need a tile within
-  /// near_m use it as soon as it is loaded.
+  /// Time from the request for a tile to the first frame that uses it, s. A tile in view is used as soon as
+  /// it is loaded.
   double apply_after_s = 0.5;
   /// true: the frame in which a tile is due waits for the worker thread. Results are then reproducible.
   /// false: frames do not wait. A tile may then take effect earlier or later.
@@ -70,13 +70,13 @@ class TileWindow {
   /// Call before each frame. Drops tiles that are no longer chosen, and takes up a tile that is due. Returns
   /// true if the surfaces have changed.
   bool begin_frame(double stamp_s);
-  /// Call with the camera's position, or with that of a place where it may be. Chooses the tiles, also for
-  /// the way that the camera goes, and begins to load them.
-  void follow(const Eigen::Vector3d& position_world);
+  /// Call with the camera's pose, or with that of a place where it may be. Chooses the tiles that hold the
+  /// frame's surfaces, those near the camera, and those on its way, and begins to load them.
+  void follow(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Returns true if the tiles that a camera at this position needs are loaded, as far as memory allows. No
-  /// tile may be chosen there: false.
-  [[nodiscard]] bool is_ready_at(const Eigen::Vector3d& position_world) const;
+  /// Returns true if the tiles that hold the surfaces of a frame at this pose are loaded, as far as memory
+  /// allows. False if none of them can be loaded.
+  [[nodiscard]] bool is_ready_for(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const;
   /// Returns true if all tiles of the building whose cubes intersect the box are loaded.
   [[nodiscard]] bool is_loaded(const Eigen::AlignedBox3d& box_world) const;
   /// Returns true if the point is in unknown space that counts, or not in a loaded tile.
@@ -103,9 +103,10 @@ class TileWindow {
   GlContext& context_;
   TileWindowConfig config_;
   std::vector<std::unique_ptr<SessionTile>> tiles_;
-  std::vector<bool> is_loaded_, has_failed_;                    ///< by tile of the building
-  std::vector<std::optional<Clock::time_point>> needed_since_;  ///< by tile: since when it is missed
-  std::vector<std::size_t> chosen_;                             ///< nearest first
+  std::vector<bool> is_loaded_, has_failed_;  ///< by tile of the building
+  std::vector<std::optional<Clock::time_point>>
+      missed_since_;                 ///< by tile, while it is in view but not in use
+  std::vector<std::size_t> chosen_;  ///< nearest first
   std::optional<Loading> loading_;
   std::optional<Eigen::Vector3d> position_world_;
   double position_stamp_s_ = 0.0, stamp_s_ = 0.0;
@@ -118,9 +119,11 @@ class TileWindow {
   void take_up(std::size_t tile, LoadedTile loaded);
   void load_next();
   void limit_memory();
-  [[nodiscard]] bool is_near(std::size_t tile, const Eigen::Vector3d& position_world) const;
+  void set_velocity(const Eigen::Vector3d& position_world);
+  [[nodiscard]] std::vector<std::size_t> in_view_of(const Frame& frame,
+                                                    const Eigen::Isometry3d& T_world_camera) const;
   [[nodiscard]] std::vector<std::size_t> chosen_at(const Eigen::Vector3d& position_world,
-                                                   const Eigen::Vector3d& velocity_world_mps) const;
+                                                   std::span<const std::size_t> in_view) const;
 };
 
 }  // namespace roomradar

@@ -39,7 +39,7 @@ Chosen chosen_from(const BuildingInfo& info, const Vector3d& position, const Cho
                    const TileChoiceConfig& config, const Vector3d& velocity = kStill) {
   std::vector<bool> is_loaded(info.tiles.size(), false);
   for (const std::size_t tile : loaded) is_loaded[tile] = true;
-  return choose_tiles(info, position, velocity, is_loaded, config);
+  return choose_tiles(info, position, velocity, {}, is_loaded, config);
 }
 
 TEST(TileChoice, TakesTheTilesWithinReachNearestFirst) {
@@ -82,6 +82,21 @@ TEST(TileChoice, StaysWithinTheMemoryAlsoWhileATileIsLoaded) {
   }
   // Loaded tiles need no memory for loading: all five stay.
   EXPECT_EQ(chosen_from(info, in_tile(10), {8, 9, 10, 11, 12}, {.max_bytes = 5 * tile}).size(), 5U);
+}
+
+TEST(TileChoice, TilesInViewComeFirst) {
+  const BuildingInfo info = corridor();
+  std::vector<Vector3d> points(6, in_tile(12));
+  points.insert(points.end(), 93, in_tile(13));
+  points.push_back(in_tile(15));
+  const Chosen in_view = tiles_with(info, points);
+  EXPECT_EQ(in_view, (Chosen{13, 12})) << "one point of 100 does not count";
+  EXPECT_TRUE(tiles_with(info, {}).empty());
+  const std::vector<bool> none(info.tiles.size(), false);
+  EXPECT_EQ(choose_tiles(info, in_tile(10), kStill, in_view, none, {.reach_m = 3.0}),
+            (Chosen{13, 12, 10, 9, 11}));
+  const std::size_t two = 2 * tile_bytes(info.tiles[0], true) + loading_bytes(info.tiles[0], true);
+  EXPECT_EQ(choose_tiles(info, in_tile(10), kStill, in_view, none, {.max_bytes = two}), in_view);
 }
 
 TEST(TileChoice, RefusesConfigsOutOfRange) {
