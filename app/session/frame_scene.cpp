@@ -39,10 +39,12 @@ const ExpectedView& FrameScene::render_expected(const Intrinsics& camera,
   return expected_;
 }
 
-void FrameScene::add_room(std::vector<MeshInstance>& drawn) const {
+void FrameScene::add_room(std::vector<MeshInstance>& drawn) {
   if (tiles_ == nullptr) return drawn.push_back({&room_.drawn, Eigen::Isometry3d::Identity()});
-  for (const auto& tile : tiles_->tiles())
+  for (const auto& tile : tiles_->tiles()) {
+    if (tile->pieces) depth_pass_.set_pieces(tile->shape.drawn, *std::exchange(tile->pieces, std::nullopt));
     drawn.push_back({&tile->shape.drawn, Eigen::Isometry3d::Identity()});
+  }
 }
 
 void FrameScene::hide_unloaded(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,

@@ -139,7 +139,7 @@ class FrameScene {
   std::vector<MeshInstance> drawn_;                ///< buffer
   std::vector<Eigen::AlignedBox3d> hidden_world_;  ///< buffer: bounds of tiles that are not loaded
 
-  void add_room(std::vector<MeshInstance>& drawn) const;
+  void add_room(std::vector<MeshInstance>& drawn);
   void hide_unloaded(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 };
 

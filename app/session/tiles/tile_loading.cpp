@@ -53,6 +53,9 @@ LoadedTile load_tile(const BuildingInfo& building, const std::filesystem::path& 
     border = {};
   }
   loaded.tree.build_by_place(loaded.mesh);
+  cut_into_pieces(loaded.tree.vertices(), loaded.tree.triangles(), loaded.pieces);
+  loaded.pieces.chunked = {};
+  loaded.pieces.places = {};
   return loaded;
 }
 

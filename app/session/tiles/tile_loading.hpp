@@ -6,6 +6,7 @@
 #include "mapping/building/building_info.hpp"
 #include "mapping/surface/unknown_surface.hpp"
 #include "mapping/types/mesh.hpp"
+#include "radar/depth/raster_mesh.hpp"
 #include "radar/geometry/triangle_tree.hpp"
 
 namespace roomradar {
@@ -13,6 +14,7 @@ namespace roomradar {
 struct LoadedTile {
   Mesh mesh;               ///< surface in the world, without normals and colours
   TriangleTree tree;       ///< of `mesh`
+  RasterMesh pieces;       ///< of `tree`
   UnknownSurface unknown;  ///< border of unknown space within the tile; its mesh_world is empty
   TriangleTree unknown_tree;
 };

@@ -185,6 +185,7 @@ bool TileWindow::take_up_due() {
 void TileWindow::take_up(std::size_t tile, LoadedTile loaded) {
   const auto begun = Clock::now();
   auto taken = std::make_unique<SessionTile>(context_, tile);
+  taken->pieces = std::move(loaded.pieces);
   taken->unknown = std::move(loaded.unknown);
   taken->unknown_tree = std::move(loaded.unknown_tree);
   taken->shape.set(loaded.mesh, std::move(loaded.tree));

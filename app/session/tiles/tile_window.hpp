@@ -41,7 +41,8 @@ struct TileWindowConfig {
 struct SessionTile {
   std::size_t index;  ///< in the building's tiles
   Shape shape;
-  UnknownSurface unknown;  ///< without mesh
+  std::optional<RasterMesh> pieces;  ///< of `shape`, until a renderer takes them
+  UnknownSurface unknown;            ///< without mesh
   TriangleTree unknown_tree;
 
   SessionTile(GlContext& context, std::size_t its_index) : index(its_index), shape(context) {}
