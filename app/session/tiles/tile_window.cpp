@@ -20,7 +20,7 @@ constexpr std::size_t kReserve_bytes = 30'000'000;  // images and buffers that f
 
 /// Loads a tile at low priority: frames go first.
 LoadedTile load_aside(const TileWindowConfig& config, std::size_t tile) {
-  constexpr int kNice = 10;
+  constexpr int kNice = 5;
   static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));  // this thread only
   LoadedTile loaded = load_tile(config.building, config.folder, tile, config.choice.has_unknown);
   release_unused_memory();

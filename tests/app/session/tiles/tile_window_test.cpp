@@ -179,7 +179,8 @@ TEST(TileWindow, NothingCountsAsMovedWhereNoTileIsLoaded) {
     EXPECT_LT(loaded_tiles(*run.session).size(), tiles.building.tiles.size());
   }
   ASSERT_GT(valid, 0U);
-  EXPECT_LT(static_cast<double>(moved), 0.002 * static_cast<double>(valid));
+  EXPECT_LT(static_cast<double>(moved),
+            0.001 * static_cast<double>(valid));  // 0.0021 of them without the rule
 }
 
 TEST(TileWindow, IsLocatedInBothRoomsAlsoAfterAJump) {
