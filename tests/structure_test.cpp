@@ -32,6 +32,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"mapping", "mapping/building", "app/sim/scenarios", "app/sim", "app/physics", "app/physics/placement", "app/render",
      "app/media", "app/page", "app/farm"},
     {"app/objects", "app/evaluation", "app/evaluation/pareto", "app/scan/live"},
+    {"app/session/tiles"},
     {"app/session"},
     {"app/session/script", "app/c_api"},
     {"app/c_api/godot"},

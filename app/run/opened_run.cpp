@@ -48,6 +48,7 @@ nlohmann::json settings_of(const RunOptions& options) {
   settings.update(to_json(options.quality));
   if (!options.preset.empty()) settings["preset"] = options.preset;
   if (!options.presets.empty()) settings["presets"] = options.presets;
+  if (options.max_memory_mb > 0.0) settings["max_memory_mb"] = options.max_memory_mb;
   if (options.budget_ms) settings["budget_ms"] = *options.budget_ms;
   if (options.commit_after_s) settings["adopt_s"] = *options.commit_after_s;
   if (!options.calibration.empty()) settings["calibration"] = options.calibration;
@@ -84,7 +85,7 @@ Script script_of(const RunOptions& options) {
 }
 
 void require_can_save_map(const RunOptions& options, const Script& script) {
-  if (options.save_map.empty()) return;
+  if (options.save_map.empty() || is_building(options.map)) return;  // a building refuses it, see open_map()
   if (!options.commit_after_s && !has(script, Action::kCommit))
     throw Error(
         "--save-map " + options.save_map +
@@ -160,12 +161,15 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
     config.watch = [budget = run.budget.get()](FramePart part, const FrameLoad& load) {
       return budget->before(part, load);
     };
+  config.tiles = run.tiles;
+  // A live run does not wait, unless it is recorded and must be reproducible.
+  const bool waits = !run.is_live || !options.record_session.empty();
+  if (config.tiles) config.tiles->wait = waits;
   if (options.commit_after_s || has(run.script, Action::kCommit)) {
     config.map_updates.emplace();
     config.map_updates->after_s = options.commit_after_s;
     config.map_updates->surface = surface_config_of(run.map.info);
-    // A live run does not wait, unless it is recorded and must be reproducible.
-    config.map_updates->wait = !run.is_live || !options.record_session.empty();
+    config.map_updates->wait = waits;
   }
   return config;
 }
@@ -173,7 +177,7 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
 void make_unknown_solid(Session& session, StageTimes& times) {
   const auto start = std::chrono::steady_clock::now();
   session.make_unknown_solid(times);
-  if (session.unknown()->memory_bytes > 0)  // not from the map's folder
+  if (session.unknown() != nullptr && session.unknown()->memory_bytes > 0)  // not from the map's folder
     std::fprintf(
         stderr,
         "unknown space: the map was saved without its border; %zu triangles, extracted in %.1f s with "
@@ -269,6 +273,20 @@ void play_frames(OpenedRun& run, std::unique_ptr<FrameSource> frames) {
   run.source = ended_by_interrupt(std::move(played));
 }
 
+void open_map(OpenedRun& run) {
+  const RunOptions& options = run.options;
+  if (!is_building(options.map)) {
+    if (options.max_memory_mb > 0.0)
+      throw Error("--max-memory: " + options.map +
+                  " is the map of a room, which is loaded as a whole; the option is for buildings");
+    run.map = load_map(options.map);
+    return;
+  }
+  OpenedBuilding building = open_building(options, run.script);
+  run.map = std::move(building.map);
+  run.tiles = std::move(building.tiles);
+}
+
 }  // namespace
 
 std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) {
@@ -288,7 +306,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   require_one_quality(options, run.script);
   if (!options.record_session.empty()) require_can_become_session(options.record_session);
   std::future<ObjectParts> first_object = first_object_of(run.script);
-  run.map = load_map(options.map);
+  open_map(run);
   if (!options.save_map.empty()) (void)*run.map.texture;  // is carried over when the map is saved
   say_if_up_is_not_known(run.map.info, options.map);
   const bool has_picture = makes_picture(options, link != nullptr);

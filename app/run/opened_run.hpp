@@ -10,6 +10,7 @@
 #include "app/media/video_writer.hpp"
 #include "app/run/frame_stream.hpp"
 #include "app/run/growing_file.hpp"
+#include "app/run/opened_building.hpp"
 #include "app/run/run_budget.hpp"
 #include "app/run/run_results.hpp"
 #include "app/session/script/script.hpp"
@@ -27,6 +28,8 @@ struct OpenedRun {
   Report report;
   Script script;
   SavedMap map;
+  /// Set if the map is a building.
+  std::optional<TileWindowConfig> tiles;
   bool is_live = false;
   /// Set with --record-session.
   std::optional<SessionRecorder> recorder;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
 #include <numbers>
 
 #include "app/cli/report.hpp"
@@ -39,6 +40,23 @@ nlohmann::json scan_from(const VirtualObject& object, const Session& session) {
   const auto from =
       viewpoint_of_support(object, session.scene_without(&object), camera_position_world(session));
   return from ? to_json(*from) : nlohmann::json(nullptr);
+}
+
+/// Returns the counts and times of a building's tiles.
+nlohmann::json tile_results(const BuildingTracker& building) {
+  const TileCounts& counts = building.tiles().counts();
+  std::map<std::string, StageSummary> times = counts.times.summaries();
+  const auto p95_and_max = [&times](const char* stage) -> nlohmann::json {
+    return {{"p95", times[stage].p95_ms}, {"max", times[stage].max_ms}};
+  };
+  return {{"tiles_loaded", counts.loaded},
+          {"tiles_dropped", counts.dropped},
+          {"tile_wait_ms", p95_and_max("late")},
+          {"tile_frame_ms", p95_and_max("frame")},
+          {"tile_blocked_ms", p95_and_max("blocked")},
+          {"tile_frames_over_33_ms", counts.frames_over_33_ms},
+          {"places_recognised", building.recognised()},
+          {"places_ambiguous", building.ambiguous()}};
 }
 
 }  // namespace
@@ -101,6 +119,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"objects", objects},
       {"adopted", committed_changes},
   };
+  if (session.building() != nullptr) results.update(tile_results(*session.building()));
   if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;
   return results;
 }

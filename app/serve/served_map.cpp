@@ -77,8 +77,8 @@ const KeyframeDatabase& MapSnapshot::keyframes() const {
       throw Error(path.string() + ": is not that of map.json; the map was replaced, or is damaged");
     database = read_keyframe_database(path);
     update_index(database);
+    drop_patches(database);
   }
-  drop_patches(database);
   keyframes_ = std::make_unique<const KeyframeDatabase>(std::move(database));
   return *keyframes_;
 }

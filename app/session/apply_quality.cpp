@@ -29,4 +29,11 @@ void apply(const RunQuality& quality, SessionConfig& config) {
   config.picture_every_n_frames = quality.picture_every_n_frames;
 }
 
+FrameLoad load_of(std::span<const std::unique_ptr<VirtualObject>> objects, double dynamic_fraction) {
+  FrameLoad load{.dynamic_fraction = dynamic_fraction};
+  for (const auto& object : objects)
+    if (object->in_room) ++(object->body.asleep ? load.resting : load.moving);
+  return load;
+}
+
 }  // namespace roomradar

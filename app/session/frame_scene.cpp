@@ -1,8 +1,9 @@
 // frame_scene.cpp: expected depth, dynamic pixels and their mesh, frame by frame.
 #include "app/session/frame_scene.hpp"
 
-#include <array>
 #include <utility>
+
+#include "app/session/tiles/unloaded_space.hpp"
 
 namespace roomradar {
 namespace {
@@ -27,13 +28,32 @@ FrameScene::FrameScene(GlContext& context, const Shape& room, const FrameSceneCo
 const ExpectedView& FrameScene::render_expected(const Intrinsics& camera,
                                                 const Eigen::Isometry3d& T_world_camera) {
   if (expected_.camera == camera && is_same_view(expected_.T_world_camera, T_world_camera)) return expected_;
-  const MeshInstance room{&room_.drawn, Eigen::Isometry3d::Identity()};
-  expected_.triangles = depth_pass_.render({&room, 1}, camera, T_world_camera, expected_.depth_m);
+  drawn_.clear();
+  add_room(drawn_);
+  expected_.triangles = depth_pass_.render(drawn_, camera, T_world_camera, expected_.depth_m);
+  if (tiles_ != nullptr) hide_unloaded(camera, T_world_camera, expected_.depth_m);
   ++room_drawn_.views;
   room_drawn_.triangles += expected_.triangles;
   expected_.camera = camera;
   expected_.T_world_camera = T_world_camera;
   return expected_;
+}
+
+void FrameScene::add_room(std::vector<MeshInstance>& drawn) {
+  if (tiles_ == nullptr) return drawn.push_back({&room_.drawn, Eigen::Isometry3d::Identity()});
+  for (const auto& tile : tiles_->tiles()) {
+    if (tile->pieces) depth_pass_.set_pieces(tile->shape.drawn, *std::exchange(tile->pieces, std::nullopt));
+    drawn.push_back({&tile->shape.drawn, Eigen::Isometry3d::Identity()});
+  }
+}
+
+void FrameScene::hide_unloaded(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                               DepthImage& depth_m) {
+  hidden_world_.clear();
+  const std::vector<BuildingTile>& listed = tiles_->config().building.tiles;
+  for (std::size_t i = 0; i < listed.size(); ++i)
+    if (!tiles_->loaded()[i]) hidden_world_.push_back(listed[i].surface_world);
+  hide_behind(hidden_world_, camera, T_world_camera, depth_m);
 }
 
 void FrameScene::set_surfaces(SurfacePolicy surfaces) {
@@ -84,21 +104,28 @@ void FrameScene::mesh_all_pixels(const Frame& frame, const Eigen::Isometry3d& T_
 
 std::vector<SceneTree> FrameScene::surfaces() const {
   std::vector<SceneTree> surfaces;
-  if (config_.surfaces == SurfacePolicy::kMap)
-    surfaces.push_back({{&room_.touched, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic});
-  surfaces.push_back({{&moved_.touched, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic});
-  if (!inferred_.empty())
-    surfaces.push_back({{&inferred_, Eigen::Isometry3d::Identity()}, SurfaceKind::kInferredBack});
-  if (config_.surfaces == SurfacePolicy::kMap && unknown_ != nullptr)
-    surfaces.push_back({{unknown_, Eigen::Isometry3d::Identity()}, SurfaceKind::kUnknownFrontier});
+  const bool has_map = config_.surfaces == SurfacePolicy::kMap;
+  const auto add = [&](const TriangleTree& tree, SurfaceKind kind) {
+    surfaces.push_back({{&tree, Eigen::Isometry3d::Identity()}, kind});
+  };
+  if (has_map && tiles_ == nullptr) add(room_.touched, SurfaceKind::kStatic);
+  if (has_map && tiles_ != nullptr)
+    for (const auto& tile : tiles_->tiles()) add(tile->shape.touched, SurfaceKind::kStatic);
+  add(moved_.touched, SurfaceKind::kDynamic);
+  if (!inferred_.empty()) add(inferred_, SurfaceKind::kInferredBack);
+  if (!has_map || unknown_ == nullptr) return surfaces;
+  if (tiles_ == nullptr)
+    add(*unknown_, SurfaceKind::kUnknownFrontier);
+  else
+    for (const auto& tile : tiles_->tiles()) add(tile->unknown_tree, SurfaceKind::kUnknownFrontier);
   return surfaces;
 }
 
 void FrameScene::render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                                  const PixelRect& rect, DepthImage& depth_m) {
-  std::array<MeshInstance, 2> drawn{MeshInstance{&moved_.drawn}};
-  if (config_.surfaces == SurfacePolicy::kMap) drawn[1].mesh = &room_.drawn;
-  depth_pass_.render(drawn, camera, T_world_camera, rect, depth_m);
+  drawn_.assign(1, MeshInstance{&moved_.drawn, Eigen::Isometry3d::Identity()});
+  if (config_.surfaces == SurfacePolicy::kMap) add_room(drawn_);
+  depth_pass_.render(drawn_, camera, T_world_camera, rect, depth_m);
 }
 
 }  // namespace roomradar

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/objects/shape.hpp"
+#include "app/session/tiles/tile_window.hpp"
 #include "dynamic/foreground/foreground.hpp"
 #include "dynamic/surface/depth_mesh.hpp"
 #include "dynamic/surface/dynamic_surface.hpp"
@@ -70,6 +71,9 @@ class FrameScene {
   void set_surfaces(SurfacePolicy surfaces);
   /// Replaces the frontier of unknown space; null: unknown space is free.
   void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
+  /// Replaces the room by the tiles of a building, and the frontier of unknown space, unless it is null, by
+  /// those of the tiles. `tiles` must outlive the scene.
+  void set_tiles(const TileWindow* tiles) { tiles_ = tiles; }
   /// Discards the expected depth. Call after the room's mesh has changed.
   void room_changed() { expected_.camera = {}; }
   /// Returns the previous frame's mask of dynamic pixels, resized to the image size of `camera` by nearest
@@ -119,6 +123,7 @@ class FrameScene {
   FrameSceneConfig config_;
   const Shape& room_;
   const TriangleTree* unknown_;
+  const TileWindow* tiles_ = nullptr;
   Shape moved_;
   DepthPass depth_pass_;
 
@@ -130,7 +135,12 @@ class FrameScene {
   DynamicSurfaceScratch dynamic_scratch_;
   DynamicSurface dynamic_world_;
   std::vector<Eigen::Vector3d> points_world_, last_points_world_;
-  TriangleTree inferred_;  ///< inferred backs; can be touched, but are never drawn
+  TriangleTree inferred_;                          ///< inferred backs; can be touched, but are never drawn
+  std::vector<MeshInstance> drawn_;                ///< buffer
+  std::vector<Eigen::AlignedBox3d> hidden_world_;  ///< buffer: bounds of tiles that are not loaded
+
+  void add_room(std::vector<MeshInstance>& drawn);
+  void hide_unloaded(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 };
 
 }  // namespace roomradar

@@ -168,7 +168,7 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
   std::vector<DueObject> due;
   for (std::size_t index = 0; index < objects_.size(); ++index) {
     VirtualObject* const object = objects_[index].get();
-    if (!object->in_room) continue;
+    if (!object->in_room || (!object->carried_to_world && !is_loaded_round(room_, *object))) continue;
     object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // longer gaps are stalls
     if (!object->carried_to_world && !is_turn_to_move(index, frame_number, config_)) continue;
     if (object->stuck && object->waited_s < kStuckLooksAfter_s) continue;

@@ -68,12 +68,13 @@ class ObjectSet {
                        const ExpectedView& expected, const FrameForeground& foreground,
                        std::int64_t frame_number);
 
-  /// Advances each object due in this frame by the time since it was last advanced. Stage timed: radar.
-  /// @param dt_s  time since the previous frame
+  /// Advances the objects due in this frame, dt_s after the previous one. Stage timed: radar.
   ContactCounts move(double dt_s, std::int64_t frame_number, StageTimes& times);
   /// Calls end_departure() for all objects and returns the results. Places an object on top of others that
   /// have taken its place, as place() does. Call after move().
   std::vector<Departure> end_departures();
+  /// Adds a notice that is a whole sentence.
+  void notify(std::string sentence) { notices_.push_back({"", std::move(sentence)}); }
   /// Returns the notices created since the last call.
   std::vector<ObjectNotice> take_notices() { return std::exchange(notices_, {}); }
   /// Returns the max penetration depth of an object into the room or another object along gravity, m, >= 0.

@@ -15,7 +15,8 @@ namespace roomradar {
 Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
     : map_(map),
       config_(config),
-      room_{.shape = Shape(context_)},
+      building_(config.tiles ? std::make_unique<BuildingTracker>(context_, *config.tiles) : nullptr),
+      room_{.shape = Shape(context_), .tiles = building_ ? &building_->tiles() : nullptr},
       scene_(context_, room_.shape, config.scene),
       objects_(context_, scene_, room_, config_),
       composer_(context_, scene_, objects_.all(), config_) {
@@ -25,8 +26,9 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   room_.shape.set(map.mesh, MeshUsage::kStatic);
   room_.lowest_known_m = lowest_known_m(map);
   room_.extent_m = extent_m(map);
+  scene_.set_tiles(room_.tiles);
   if (!config.map_updates) return;
-  if (octree == nullptr) throw Error("adopt: the session was given no octree to change");
+  if (octree == nullptr || building_) throw Error("adopt: the session was given no octree to change");
   if (config.scene.surfaces != SurfacePolicy::kMap)
     throw Error(std::string("adopt: with --surfaces ") + std::string(to_string(config.scene.surfaces)) +
                 " the map is not used, so no change can be adopted; use --surfaces map");
@@ -38,15 +40,14 @@ void Session::make_unknown_solid(StageTimes& times) {
     throw Error(
         "unknown space can be solid only with the map's surfaces: the others do not know which space was "
         "observed");
+  if (room_.tiles && !room_.tiles->config().choice.has_unknown)
+    throw Error("unknown solid: the tiles were loaded without it; begin the run with --unknown solid");
   times.timed("unknown", [&] {
-    if (!room_.unknown) {
+    if (!room_.unknown && !room_.tiles) {
       if (map_updater_ && (last_stamp_s_ || !map_updater_->committed_changes().empty()))
         throw Error(
             "unknown solid: changes are being adopted into the map; begin the run with --unknown solid");
-      room_.unknown = *map_.unknown
-                          ? *map_.unknown
-                          : std::make_shared<const UnknownSurface>(unknown_surface(map_.octree, map_.mesh));
-      room_.unknown_tree.build_by_place(room_.unknown->mesh_world);
+      set_unknown(room_, map_);
       if (map_updater_) map_updater_->keep_up_unknown();
     }
     room_.unknown_is_solid = true;
@@ -98,7 +99,8 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
   bad.status = FrameStatus::kBadFrame;
   if (bad.fault = fault_of(frame); !bad.fault.empty()) return bad;
   FrameResult result = times.timed("frame", [&] { return pass_through(frame, times); });
-  if (config_.watch) static_cast<void>(config_.watch(FramePart::kDone, load()));
+  if (config_.watch)
+    static_cast<void>(config_.watch(FramePart::kDone, load_of(objects_.all(), moved_fraction_)));
   schedule_.take_all([&](const RunQuality& quality) { set_quality(quality); });  // of parts not reached
   if (config_.measure_penetration && result.status == FrameStatus::kDone)
     result.deepest_penetration_m = objects_.penetration_m();
@@ -115,6 +117,9 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   begin(FramePart::kLocate);
   const Frame& frame = times.timed("reduce", [&]() -> const Frame& { return with_depth_reduced(whole); });
   if (map_updater_ && map_updater_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
+  if (building_ && times.timed("tiles", [&] { return building_->begin_frame(whole.stamp_s); }))
+    scene_.room_changed();
+  while (building_ && building_->has_fault()) objects_.notify(building_->take_fault());
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate)
     return pass_unlocated(whole, tracking.status);
@@ -182,14 +187,8 @@ double Session::seconds_since_last(double stamp_s) {
 void Session::begin(FramePart part) {
   if (const std::optional<RunQuality> due = schedule_.take(part)) set_quality(*due);
   if (!config_.watch) return;
-  if (const std::optional<RunQuality> quality = config_.watch(part, load())) set_quality(*quality);
-}
-
-FrameLoad Session::load() const {
-  FrameLoad load{.dynamic_fraction = moved_fraction_};
-  for (const auto& object : objects_.all())
-    if (object->in_room) ++(object->body.asleep ? load.resting : load.moving);
-  return load;
+  if (const std::optional<RunQuality> quality = config_.watch(part, load_of(objects_.all(), moved_fraction_)))
+    set_quality(*quality);
 }
 
 const Frame& Session::with_depth_reduced(const Frame& frame) {
@@ -204,23 +203,20 @@ const Frame& Session::with_depth_reduced(const Frame& frame) {
 Tracking Session::locate_camera(const Frame& frame) {
   if (config_.poses == PoseOrigin::kRecorded) {
     if (!frame.T_world_camera) return {};
-    return {.status = TrackStatus::kTracked,
-            .T_world_camera = map_.info.T_world_recorded * *frame.T_world_camera};
+    const Eigen::Isometry3d T_world_camera = map_.info.T_world_recorded * *frame.T_world_camera;
+    if (building_) building_->follow(frame, T_world_camera);
+    return {.status = TrackStatus::kTracked, .T_world_camera = T_world_camera};
   }
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
     return scene_.render_expected(frame.depth_camera, T_world_camera).depth_m;
   };
-  return locate(locator_, frame, map_.keyframe_database, scene_.previous_dynamic_mask(frame.depth_camera),
-                expected_depth);
+  const MaskImage& moved = scene_.previous_dynamic_mask(frame.depth_camera);
+  if (!building_) return locate(locator_, frame, map_.keyframe_database, moved, expected_depth);
+  return building_->locate(locator_, frame, map_.keyframe_database, moved, expected_depth);
 }
 
 void Session::renew_room() {
-  ChangedRoom& room = map_updater_->room();
-  room_.shape.set(room.mesh, std::move(room.tree));
-  if (room_.unknown) {  // kept up to date since it was made solid for the first time
-    room_.unknown = std::make_shared<const UnknownSurface>(std::move(room.unknown));
-    room_.unknown_tree = std::move(room.unknown_tree);
-  }
+  take_over(room_, map_updater_->room());
   scene_.room_changed();
   objects_.room_changed();
 }

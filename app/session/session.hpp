@@ -16,6 +16,7 @@
 #include "app/session/quality_schedule.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
+#include "app/session/tiles/building_tracker.hpp"
 #include "mapping/localization/locator.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/stage_times.hpp"
@@ -34,9 +35,9 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Processes one frame, from sensor data to picture. Stages timed: reduce adopt locate expected foreground
-  /// changes mesh place physics radar compose frame. Stage contact is the time from the call until all
-  /// objects have been advanced.
+  /// Processes one frame, from sensor data to picture. Stages timed: reduce adopt tiles locate expected
+  /// foreground changes mesh place physics radar compose frame. Stage contact is the time from the call until
+  /// all objects have been advanced.
   FrameResult step(const Frame& frame, StageTimes& times);
 
   /// Adds an object, outside the room until placed. Throws Error if the name is taken or the mesh is invalid.
@@ -80,7 +81,8 @@ class Session {
 
   /// From now on, objects cannot enter space that the map's scan has not observed. Objects that are in
   /// unobserved space can leave it. Stage timed: unknown. Throws Error unless the surface policy is kMap.
-  /// With config().map_updates, throws Error if the first call comes after the first frame.
+  /// With config().map_updates, throws Error if the first call comes after the first frame. With
+  /// config().tiles, throws Error if these lack unknown space.
   void make_unknown_solid(StageTimes& times);
   /// From now on, objects can enter unknown space.
   void make_unknown_free();
@@ -99,6 +101,7 @@ class Session {
   std::vector<ObjectNotice> take_notices() { return objects_.take_notices(); }
   /// Returns the changes committed to the room so far.
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
+  [[nodiscard]] const BuildingTracker* building() const { return building_.get(); }  ///< null: a room
   /// Waits for a running commit. Afterwards the octree may be read.
   void finish_commits();
 
@@ -132,6 +135,7 @@ class Session {
   const SavedMap& map_;
   SessionConfig config_;
   GlContext context_;
+  std::unique_ptr<BuildingTracker> building_;  ///< null unless config.tiles is set
   SessionRoom room_;
   FrameScene scene_;
   std::unique_ptr<MapUpdater> map_updater_;  ///< null unless config.map_updates is set
@@ -149,7 +153,6 @@ class Session {
   double seconds_since_last(double stamp_s);
   /// Begins a part of the frame: applies the quality scheduled for it, and calls config.watch.
   void begin(FramePart part);
-  [[nodiscard]] FrameLoad load() const;
   /// Returns true in every n-th localised frame.
   [[nodiscard]] bool is_due_every(int n_frames) const { return frames_ % n_frames == 0; }
   /// Returns `frame`, or reduced_ if the depth stride is not 1.

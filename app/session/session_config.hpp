@@ -9,6 +9,7 @@
 #include "app/render/compose.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/map_updater.hpp"
+#include "app/session/tiles/tile_window.hpp"
 #include "mapping/types/pose_origin.hpp"
 #include "radar/exact/cyber_radar.hpp"
 
@@ -21,6 +22,8 @@ struct SessionConfig {
   PhysicsConfig physics;
   ComposeConfig picture;
   std::optional<MapUpdateConfig> map_updates;  ///< unset: the room does not change during the session
+  /// Tiles of a building, whose surfaces replace those of the map; unset: the map is that of a room.
+  std::optional<TileWindowConfig> tiles;
   /// The settings from here to picture_every_n_frames trade accuracy for time. Users set them with
   /// RunQuality.
   int depth_stride = 1;         ///< 1, 2 or 4: factor by which depth images are reduced (reduce_depth)

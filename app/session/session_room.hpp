@@ -4,6 +4,8 @@
 
 #include "app/objects/shape.hpp"
 #include "app/objects/virtual_object.hpp"
+#include "app/session/map_updater.hpp"
+#include "app/session/tiles/tile_window.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/surface/unknown_surface.hpp"
 #include "radar/geometry/triangle_tree.hpp"
@@ -18,7 +20,19 @@ struct SessionRoom {
   std::shared_ptr<const UnknownSurface> unknown{};
   TriangleTree unknown_tree{};
   bool unknown_is_solid = false;  ///< effective only with SurfacePolicy::kMap
+  /// Tiles of a building, whose surfaces and borders replace `shape` and `unknown`. Null in the map of a
+  /// room.
+  const TileWindow* tiles = nullptr;
 };
+
+/// Returns true if the surfaces near the object are loaded, which is always so in the map of a room. Other
+/// objects stay where they are.
+bool is_loaded_round(const SessionRoom& room, const VirtualObject& object);
+
+/// Sets the frontier of unknown space: the map's, which is extracted if it was not saved.
+void set_unknown(SessionRoom& room, const SavedMap& map);
+/// Replaces the surface, and the frontier of unknown space if it is set, by those of a committed change.
+void take_over(SessionRoom& room, ChangedRoom& changed);
 
 /// Returns true if unknown space is solid and a vertex or triangle centroid of the object is in it.
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object);

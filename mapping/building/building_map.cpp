@@ -1,14 +1,17 @@
 // building_map.cpp: reads tile by tile, and adds each to the whole.
 #include "mapping/building/building_map.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <unordered_map>
 
 #include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -80,11 +83,58 @@ StaticMap load_building_octree(const BuildingInfo& info, const fs::path& folder)
   return whole;
 }
 
-KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const fs::path& folder) {
+std::size_t keyframe_bytes(const MapKeyframe& keyframe) {
+  constexpr std::size_t kIndexed = 128;  // bytes per indexed descriptor: 16 tables of 8 bytes
+  return sizeof(MapKeyframe) + keyframe.descriptors.size() * sizeof(Descriptor) +
+         keyframe.points_camera.size() * sizeof(Eigen::Vector3f) +
+         keyframe.preview_depth_mm.pixels.size() * sizeof(std::uint16_t) +
+         std::min(keyframe.descriptors.size(), FeatureIndex::kIndexedFeatures) * kIndexed;
+}
+
+namespace {
+
+/// Drops patches and spare memory.
+void reduce(MapKeyframe& keyframe) {
+  keyframe.patches = {};
+  keyframe.descriptors.shrink_to_fit();
+  keyframe.points_camera.shrink_to_fit();
+}
+
+std::size_t bytes_of(const std::vector<MapKeyframe>& keyframes) {
+  std::size_t bytes = 0;
+  for (const MapKeyframe& keyframe : keyframes) bytes += keyframe_bytes(keyframe);
+  return bytes;
+}
+
+/// Leaves out keyframes whose view_distance() from the last one that is kept is small, until the rest has at
+/// most max_bytes.
+void thin_out(std::vector<MapKeyframe>& keyframes, std::size_t max_bytes) {
+  for (double step = 0.05; keyframes.size() > 1 && bytes_of(keyframes) > max_bytes; step *= 1.25) {
+    std::optional<Eigen::Isometry3d> T_last_world;
+    std::erase_if(keyframes, [&](const MapKeyframe& keyframe) {
+      if (T_last_world && view_distance(*T_last_world * keyframe.T_world_camera) < step) return true;
+      T_last_world = keyframe.T_world_camera.inverse();
+      return false;
+    });
+  }
+}
+
+}  // namespace
+
+KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const fs::path& folder,
+                                         std::size_t max_bytes) {
   KeyframeDatabase whole;
+  double file_bytes = 0.0;
+  for (const BuildingRecording& recording : info.recordings)
+    file_bytes += static_cast<double>(recording.keyframe_file.bytes);
   for (const BuildingRecording& recording : info.recordings) {
     if (recording.keyframe_file.name.empty()) continue;
     std::vector<MapKeyframe> own = read_keyframe_database(folder / recording.keyframe_file.name).keyframes;
+    for (MapKeyframe& keyframe : own) reduce(keyframe);
+    if (max_bytes > 0)
+      thin_out(own,
+               static_cast<std::size_t>(static_cast<double>(max_bytes) *
+                                        static_cast<double>(recording.keyframe_file.bytes) / file_bytes));
     whole.keyframes.insert(whole.keyframes.end(), std::make_move_iterator(own.begin()),
                            std::make_move_iterator(own.end()));
   }

@@ -1,5 +1,6 @@
 // building_map.hpp: a building's tiles as one mesh or one octree, and its keyframes as one database.
 #pragma once
+#include <cstddef>
 #include <filesystem>
 
 #include "mapping/building/building_info.hpp"
@@ -19,7 +20,15 @@ Mesh load_building_mesh(const BuildingInfo& info, const std::filesystem::path& f
 StaticMap load_building_octree(const BuildingInfo& info, const std::filesystem::path& folder);
 
 /// Returns the keyframes of all placed recordings at their poses in the building, with an index of their
-/// features. Throws Error if the building has none, as buildings made by an earlier version do.
-KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const std::filesystem::path& folder);
+/// features and without patches: as recognise_place() needs them. Throws Error if the building has none, as
+/// buildings made by an earlier version do.
+/// @param max_bytes  max memory of the result; 0: no limit. Keyframes whose view is similar to that of one
+///                   before them are left out until the rest fits
+KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const std::filesystem::path& folder,
+                                         std::size_t max_bytes = 0);
+
+/// Returns the memory of a keyframe with its share of the index, in bytes. A frame of 640 x 480 pixels with
+/// 800 features has 112,000.
+std::size_t keyframe_bytes(const MapKeyframe& keyframe);
 
 }  // namespace roomradar

@@ -29,7 +29,7 @@ struct Known {
 
 // Bounds of the known space plus a margin, aligned to multiples of `lattice` cells.
 CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world, int margin, int lattice,
-                    int& cell_voxels) {
+                    double max_cells, int& cell_voxels) {
   const auto voxel = [&](const Eigen::Vector3d& p) -> Vector3i {
     return (p / map.resolution_m()).array().round().cast<int>();
   };
@@ -43,7 +43,7 @@ CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world
     grid.first_cell = low.unaryExpr([&](int v) { return lattice * block_of(v, -margin); });
     grid.size =
         high.unaryExpr([&](int v) { return lattice * (block_of(v - 1, margin) + 1); }) - grid.first_cell;
-    if (grid.size.cast<double>().prod() <= kMaxUnknownCells) return grid;
+    if (grid.size.cast<double>().prod() <= max_cells) return grid;
   }
 }
 
@@ -53,7 +53,7 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
   const int margin = std::max(config.least_voxels, config.cube_voxels);
   Known known;
   int edge = 1;
-  known.grid = grid_round(map, known_world, margin, config.cube_voxels, edge);
+  known.grid = grid_round(map, known_world, margin, config.cube_voxels, config.max_cells, edge);
   known.free = BitGrid(known.grid.size, false);
   known.unknown = BitGrid(known.grid.size, true);
   map.visit_leaves([&](const MapLeaf& leaf) {
@@ -139,6 +139,8 @@ void require_valid(const UnknownSurfaceConfig& config) {
   require(is_in_1_to_16(config.rim_voxels), "rim_voxels", config.rim_voxels, "in 1..16");
   require(config.pocket_voxels >= 0 && config.pocket_voxels <= 1'000'000'000, "pocket_voxels",
           config.pocket_voxels, "in 0..10^9");
+  require(config.max_cells >= 1e5 && config.max_cells <= kMaxUnknownCells, "max_cells", config.max_cells,
+          "in 10^5..2*10^8");
   require(config.rim_voxels >= 3 * (config.cube_voxels - 1), "rim_voxels", config.rim_voxels,
           "at least 3 * (cube_voxels - 1), or some cubes of unknown voxels are out of reach");
 }

@@ -9,6 +9,8 @@
 
 namespace roomradar {
 
+inline constexpr double kMaxUnknownCells = 2e8;  ///< max cells of the grid: 25 MB of bits
+
 struct UnknownSurfaceConfig {
   /// Edge of a cube, voxels, 1 to 16. Unknown space counts only where the cube fits into it. Objects can pass
   /// through thinner unknown space (gaps between rays, slivers beside depth edges, single voxels). The search
@@ -25,16 +27,17 @@ struct UnknownSurfaceConfig {
   /// within cube_voxels steps. Smaller such components do not count. Rays passed them on all sides, and only
   /// depth was missing, as in front of a dark object.
   int pocket_voxels = 1000;
+  /// Max number of cells of the grid, 100,000 to kMaxUnknownCells. Cells are one voxel each, or larger if the
+  /// map would have more.
+  double max_cells = kMaxUnknownCells;
 };
 
 /// Throws Error naming field, value and rule if a setting is out of range.
 void require_valid(const UnknownSurfaceConfig& config);
 
-inline constexpr double kMaxUnknownCells = 2e8;  ///< max cells of the grid: 25 MB of bits
-
 struct UnknownSurface {
   Mesh mesh_world;  ///< no colours, no normals; triangles face away from unknown space
-  CellGrid grid;    ///< cells of one voxel each, or larger if the map exceeds kMaxUnknownCells
+  CellGrid grid;    ///< cells of one voxel each, or larger, see max_cells
   BitGrid unknown;  ///< cells of unknown space that counts; all space outside the grid is unknown, too
   std::size_t memory_bytes = 0;  ///< approximate temporary memory of the extraction, without the mesh
 };

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
@@ -56,6 +57,12 @@ class DepthPass {
   /// @return number of triangles passed to the renderer
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
+
+  /// Hands over the pieces of a mesh that is new, see DepthRaster::set_pieces(). Not needed, and without
+  /// effect if OpenGL renders.
+  void set_pieces(const GpuMesh& mesh, RasterMesh pieces) {
+    if (raster_) raster_->set_pieces(mesh, std::move(pieces));
+  }
 
   /// Renders only a rectangle of the image. Pixels of `depth_m` outside it are unchanged. If depth_m does not
   /// have the camera's size, it is first resized and set to 0. Chunks of meshes (contiguous ranges of

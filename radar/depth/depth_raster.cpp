@@ -2,6 +2,7 @@
 #include "radar/depth/depth_raster.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace roomradar {
 namespace {
@@ -34,7 +35,7 @@ void cut(const Side& side, Polygon& polygon) {
 
 }  // namespace
 
-const RasterMesh& DepthRaster::pieces_of(const GpuMesh& mesh) {
+DepthRaster::KnownMesh& DepthRaster::known_mesh(const GpuMesh& mesh) {
   constexpr std::size_t kKept = 8;  // meshes; the one drawn least recently is replaced
   const auto is_same = [&](const auto& known) { return known->mesh == &mesh; };
   auto found = std::find_if(known_.begin(), known_.end(), is_same);
@@ -49,8 +50,19 @@ const RasterMesh& DepthRaster::pieces_of(const GpuMesh& mesh) {
       found = oldest;
     }
   }
-  KnownMesh& known = **found;
-  known.last_drawn = drawings_;
+  (*found)->last_drawn = drawings_;
+  return **found;
+}
+
+void DepthRaster::set_pieces(const GpuMesh& mesh, RasterMesh pieces) {
+  KnownMesh& known = known_mesh(mesh);
+  known.pieces = std::move(pieces);
+  known.mesh = &mesh;
+  known.revision = mesh.revision();
+}
+
+const RasterMesh& DepthRaster::pieces_of(const GpuMesh& mesh) {
+  KnownMesh& known = known_mesh(mesh);
   if (known.mesh != &mesh || known.revision != mesh.revision()) {
     cut_into_pieces(mesh.vertices(), mesh.triangles(), known.pieces);
     known.mesh = &mesh;

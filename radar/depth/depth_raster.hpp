@@ -32,6 +32,10 @@ class DepthRaster {
                      const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, double near_m,
                      bool cull_back_faces, DepthImage& depth_m);
 
+  /// Takes the pieces of a mesh, which cut_into_pieces() has made of its vertices and triangles, on any thread.
+  /// Without this call they are made when the mesh is first drawn, which delays that frame.
+  void set_pieces(const GpuMesh& mesh, RasterMesh pieces);
+
  private:
   /// Matrix from local points to (u * depth, v * depth, depth).
   using Projection = Eigen::Matrix<double, 3, 4>;
@@ -73,6 +77,8 @@ class DepthRaster {
   double near_m_ = 0.0;
   bool cull_back_faces_ = false;
 
+  /// Returns the entry of a mesh, or one to be filled.
+  KnownMesh& known_mesh(const GpuMesh& mesh);
   const RasterMesh& pieces_of(const GpuMesh& mesh);
   std::size_t find_visible(std::span<const MeshInstance> scene, const Intrinsics& camera,
                            const Eigen::Isometry3d& T_world_camera, const PixelRect& rect);

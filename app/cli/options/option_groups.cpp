@@ -48,7 +48,7 @@ std::vector<CommandHelp> command_helps() {
          {"--trajectory", "--stream", "--pictures", "--pictures-stride", "--record-session", "--frames-csv",
           "--verbose"}},
         {"Accuracy and time",
-         {"--budget-ms", "--preset", "--presets", "--depth-stride", "--tracking-px",
+         {"--budget-ms", "--max-memory", "--preset", "--presets", "--depth-stride", "--tracking-px",
           "--mesh-tolerance-sigmas", "--fine-mesh", "--radar", "--radar-px", "--physics-step", "--move-every",
           "--object-error", "--soft-edges", "--shadows", "--shadow-every", "--picture-every"}}},
        "  roomradar run kinect:0 --map maps/kitchen --window\n"

@@ -17,7 +17,8 @@ void add_input_options(CLI::App& command, RunOptions& options) {
       ",\nor the folder of a recorded session, replayed with its own settings unless given here");
   command
       .add_option("--map", options.map,
-                  "folder of the saved map; not modified (required unless SOURCE is a recorded session)")
+                  "folder of the saved map of a room, or of a building, of which only the tiles round the\n"
+                  "camera are loaded; not modified (required unless SOURCE is a recorded session)")
       ->type_name("DIR");
   add_poses_option(command, options.poses,
                    "localise the camera in the map (tracked), or use the recording's poses (recorded)\n"
@@ -114,6 +115,12 @@ void add_effort_options(CLI::App& command, RunOptions& options) {
           "accuracy, with a message (default: no limit)")
       ->check(within(1.0, 10000.0, "milliseconds"))
       ->type_name("MS");
+  command
+      .add_option("--max-memory", options.max_memory_mb,
+                  "in a building: load fewer tiles, and fewer keyframes for finding the camera, so that the\n"
+                  "process stays below this many megabytes (default: no limit)")
+      ->check(within(1.0, 1e7, "megabytes"))
+      ->type_name("MB");
   add_preset_options(command, options.preset, options.presets);
   command
       .add_option("--frames-csv", options.frames_csv,

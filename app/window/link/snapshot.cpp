@@ -22,6 +22,23 @@ Mesh mesh_of(const TriangleTree& tree) {
   return mesh;
 }
 
+/// Adds a tree's triangles to a mesh with an origin of its own.
+void add_to(Mesh& mesh, const TriangleTree& tree) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const Eigen::Vector3f shift_m = (tree.origin() - mesh.origin).cast<float>();
+  for (const Eigen::Vector3f& vertex : tree.vertices()) mesh.vertices.emplace_back(vertex + shift_m);
+  for (const Triangle& t : tree.triangles())
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+/// Returns the surfaces of the loaded tiles, for display.
+Mesh mesh_of(const TileWindow& window) {
+  Mesh mesh;
+  if (!window.tiles().empty()) mesh.origin = window.tiles().front()->shape.touched.origin();
+  for (const auto& tile : window.tiles()) add_to(mesh, tile->shape.touched);
+  return mesh;
+}
+
 }  // namespace
 
 ShownRoom shown_room(const SavedMap& map) {
@@ -65,6 +82,11 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
     // Changed by a commit: the texture belongs to the saved surface.
     room_ = std::make_shared<const ShownRoom>(ShownRoom{.mesh = mesh_of(room)});
   room_revision_ = room.revision();
+  if (session.building() != nullptr && wanted.models) {
+    const TileCounts& counts = session.building()->tiles().counts();
+    if (std::exchange(tile_changes_, counts.loaded + counts.dropped) != counts.loaded + counts.dropped)
+      room_ = std::make_shared<const ShownRoom>(ShownRoom{.mesh = mesh_of(session.building()->tiles())});
+  }
   shown.room = room_;
   shown.seen_world = wanted.models ? session.scene().dynamic_world().seen_world : Mesh{};
   shown.inferred_world = wanted.models ? session.scene().dynamic_world().inferred_world : Mesh{};

@@ -32,6 +32,7 @@ class SnapshotMaker {
 
  private:
   std::shared_ptr<const ShownRoom> room_;
+  std::int64_t tile_changes_ = 0;    ///< tiles loaded and dropped before room_ was made; of a building
   std::uint64_t room_revision_ = 0;  ///< revision of the session's room in room_; 0: none
   std::map<std::shared_ptr<const ObjectModel>, std::shared_ptr<const Mesh>> object_meshes_;
   /// Number of samples per stage before this frame.

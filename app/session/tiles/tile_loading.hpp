@@ -1,0 +1,32 @@
+// tile_loading.hpp: reads one tile of a building and builds what a session needs of it, on any thread.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+
+#include "mapping/building/building_info.hpp"
+#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/types/mesh.hpp"
+#include "radar/depth/raster_mesh.hpp"
+#include "radar/geometry/triangle_tree.hpp"
+
+namespace roomradar {
+
+struct LoadedTile {
+  Mesh mesh;               ///< surface in the world, without normals and colours
+  TriangleTree tree;       ///< of `mesh`
+  RasterMesh pieces;       ///< of `tree`
+  UnknownSurface unknown;  ///< border of unknown space within the tile; its mesh_world is empty
+  TriangleTree unknown_tree;
+};
+
+/// Reads a tile. The border of unknown space is extracted from the tile's octree alone, in cells of about 2
+/// cm. On faces of the cube behind which there is another tile, the border is left open: the other tile has
+/// it where its own space is unknown.
+///
+/// Thread safe. Throws Error naming the file and the fault if a file is missing or damaged.
+/// @param tile         index in building.tiles
+/// @param has_unknown  false: the border of unknown space is left empty, and the octree is not read
+LoadedTile load_tile(const BuildingInfo& building, const std::filesystem::path& folder, std::size_t tile,
+                     bool has_unknown);
+
+}  // namespace roomradar

@@ -1,0 +1,130 @@
+// tile_window.hpp: the tiles of a building that are loaded round the camera, taken up between two frames.
+#pragma once
+#include <Eigen/Geometry>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/objects/shape.hpp"
+#include "app/session/tiles/tile_choice.hpp"
+#include "app/session/tiles/tile_loading.hpp"
+#include "mapping/building/building_info.hpp"
+#include "mapping/types/frame.hpp"
+#include "mapping/types/system/stage_times.hpp"
+#include "radar/gl/gl_context.hpp"
+
+namespace roomradar {
+
+struct TileWindowConfig {
+  std::filesystem::path folder;  ///< of the building
+  BuildingInfo building;
+  TileChoiceConfig choice;
+  /// The process's memory that the choice of tiles aims to stay below, in bytes; 0: no limit.
+  std::size_t max_process_bytes = 0;
+  /// Time from the request for a tile to the first frame that uses it, s. A tile in view is used as soon as
+  /// it is loaded.
+  double apply_after_s = 0.5;
+  /// true: the frame in which a tile is due waits for the worker thread. Results are then reproducible.
+  /// false: frames do not wait. A tile may then take effect earlier or later.
+  bool wait = true;
+};
+
+/// A tile in use.
+struct SessionTile {
+  std::size_t index;  ///< in the building's tiles
+  Shape shape;
+  std::optional<RasterMesh> pieces;  ///< of `shape`, until a renderer takes them
+  UnknownSurface unknown;            ///< without mesh
+  TriangleTree unknown_tree;
+
+  SessionTile(GlContext& context, std::size_t its_index) : index(its_index), shape(context) {}
+};
+
+struct TileCounts {
+  std::int64_t loaded = 0, dropped = 0;
+  std::int64_t frames_over_33_ms = 0;  ///< frames to which taking up a tile added more than 33 ms
+  /// Stages: `frame`, the time that taking up or dropping tiles added to a frame; `blocked`, the time for
+  /// which a frame waited for the worker thread; `late`, the time for which a tile within near_m of the
+  /// camera was not in use, one value per tile loaded.
+  StageTimes times;
+};
+
+/// Loads tiles on a worker thread, one after the other, nearest first. A frame takes up at most one tile. A
+/// tile whose file is missing or damaged is left out for good, with a fault. Not thread safe: call all
+/// functions on the constructing thread, whose GL context is used.
+class TileWindow {
+ public:
+  /// Throws Error if a config is invalid. `context` must outlive the window.
+  TileWindow(GlContext& context, TileWindowConfig config);
+  ~TileWindow();
+  TileWindow(const TileWindow&) = delete;
+  TileWindow& operator=(const TileWindow&) = delete;
+
+  /// Call before each frame. Drops tiles that are no longer chosen, and takes up a tile that is due. Returns
+  /// true if the surfaces have changed.
+  bool begin_frame(double stamp_s);
+  /// Call with the camera's pose, or with that of a place where it may be. Chooses the tiles that hold the
+  /// frame's surfaces, those near the camera, and those on its way, and begins to load them.
+  void follow(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+
+  /// Returns true if the tiles that hold the surfaces of a frame at this pose are loaded, as far as memory
+  /// allows. False if none of them can be loaded.
+  [[nodiscard]] bool is_ready_for(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const;
+  /// Returns true if all tiles of the building whose cubes intersect the box are loaded.
+  [[nodiscard]] bool is_loaded(const Eigen::AlignedBox3d& box_world) const;
+  /// Returns true if the point is in unknown space that counts, or not in a loaded tile.
+  [[nodiscard]] bool is_unknown_at(const Eigen::Vector3d& p_world) const;
+
+  [[nodiscard]] const std::vector<std::unique_ptr<SessionTile>>& tiles() const { return tiles_; }
+  [[nodiscard]] const TileWindowConfig& config() const { return config_; }
+  /// By tile of the building.
+  [[nodiscard]] const std::vector<bool>& loaded() const { return is_loaded_; }
+  [[nodiscard]] const TileCounts& counts() const { return counts_; }
+  /// Returns true if a tile could not be read, and take_fault() has not yet returned why.
+  [[nodiscard]] bool has_fault() const { return !fault_.empty(); }
+  std::string take_fault() { return std::exchange(fault_, {}); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  struct Loading {
+    std::size_t tile;
+    double due_s;
+    std::future<LoadedTile> done;
+  };
+
+  GlContext& context_;
+  TileWindowConfig config_;
+  std::vector<std::unique_ptr<SessionTile>> tiles_;
+  std::vector<bool> is_loaded_, has_failed_;  ///< by tile of the building
+  std::vector<std::optional<Clock::time_point>>
+      missed_since_;                 ///< by tile, while it is in view but not in use
+  std::vector<std::size_t> chosen_;  ///< nearest first
+  std::optional<Loading> loading_;
+  std::optional<Eigen::Vector3d> position_world_;
+  double position_stamp_s_ = 0.0, stamp_s_ = 0.0;
+  Eigen::Vector3d velocity_world_mps_ = Eigen::Vector3d::Zero();
+  std::string fault_;  ///< of the last tile; a frame takes up one tile
+  TileCounts counts_;
+
+  bool drop_unchosen();
+  bool take_up_due();
+  void take_up(std::size_t tile, LoadedTile loaded);
+  void load_next();
+  void limit_memory();
+  void set_velocity(const Eigen::Vector3d& position_world);
+  [[nodiscard]] std::vector<std::size_t> in_view_of(const Frame& frame,
+                                                    const Eigen::Isometry3d& T_world_camera) const;
+  [[nodiscard]] std::vector<std::size_t> chosen_at(const Eigen::Vector3d& position_world,
+                                                   std::span<const std::size_t> in_view) const;
+};
+
+}  // namespace roomradar
