@@ -112,6 +112,7 @@ void complete_options(const CLI::App& command, TradeOptions& options) {
   if ((command.count("--setting") > 0) != (command.count("--rows") > 0))
     throw CLI::ValidationError("--setting and --rows are used only together");
   if (command.count("--setting") > 0) {
+    if (options.setting.empty()) throw CLI::ValidationError("--setting: is empty; the default is: default");
     if (command.count("--only") == 0) throw CLI::RequiredError("--only, with --setting,");
     refuse_given(command,
                  {"--settings", "--seed", "--time", "--csv", "--html", "--presets", "--report", "--jobs",

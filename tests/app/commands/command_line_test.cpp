@@ -537,7 +537,8 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   expect_fault(roomradar("trade --only both"), 2, "prescan");
   expect_fault(roomradar("trade --rooms none"), 2, "--rooms none: leaves nothing");
   expect_fault(roomradar("trade --processes 2"), 2, "--processes: used only with --jobs");
-  expect_fault(roomradar("trade --jobs " + path("j") + " --presets " + path("p.json")), 2, "leave out --jobs");
+  expect_fault(roomradar("trade --jobs " + path("j") + " --presets " + path("p.json")), 2,
+               "leave out --jobs");
   const std::string one = "trade --only prescan --rows " + path("r.json");
   expect_fault(roomradar(one), 2, "--setting and --rows");
   expect_fault(roomradar(one + " --setting default --seed 2"), 2, "--seed: used only for a sweep");
