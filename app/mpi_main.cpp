@@ -44,7 +44,7 @@ int run_on_rank(const FarmOptions& options, int rank) {
   const auto run_jobs = [&](const WatchFarm& watch) {
     return run_farm_on_ranks(*plan, roomradar_program(), watch);
   };
-  if (rank == 0) return run_planned(options, *plan, run_jobs);
+  if (rank == 0) return exit_status(run_planned(options, *plan, run_jobs));
   (void)run_jobs({});
   return 0;
 }

@@ -117,9 +117,7 @@ void add_options(CLI::App& command, BuildingOptions& options) {
       command, options.poses,
       "estimate the camera poses (tracked), or use those of the recordings, which must be in one\n"
       "world (recorded) (default: tracked)");
-  command.add_option("--processes", options.processes, "jobs at a time (default: one per processor)")
-      ->check(whole_within(1, 4096))
-      ->type_name("N");
+  add_processes_option(command, options.processes);
   add_report_option(command, options.report);
 }
 

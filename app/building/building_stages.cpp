@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <set>
 
-#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/make_folder.hpp"
@@ -18,19 +17,9 @@ namespace fs = std::filesystem;
 class Lines {
  public:
   void begin(const std::string& job) { text_ += job + ":"; }
-  void word(const std::string& word) {
-    const char quote = word.find('\'') == std::string::npos ? '\'' : '"';
-    if (word.find(quote) != std::string::npos || word.find('\n') != std::string::npos)
-      throw Error("'" + word +
-                  "': a name with both kinds of quotes, or a line end, cannot be handed to a job");
-    text_ += std::string(" ") + quote + word + quote;
-  }
+  void word(const std::string& word) { text_ += " " + quoted_word(word); }
   /// A word that may have { or }.
-  void literal(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) escaped += c == '{' || c == '}' ? std::string(2, c) : std::string(1, c);
-    word(escaped);
-  }
+  void literal(const std::string& text) { text_ += " " + quoted_literal(text); }
   void end() { text_ += "\n"; }
   [[nodiscard]] const std::string& text() const { return text_; }
 

@@ -26,7 +26,6 @@
 #include "app/evaluation/fallthrough/trial_pictures.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
@@ -164,7 +163,8 @@ void publish(const FallthroughOptions& options, const std::vector<ScenarioRow>& 
       std::to_string(done) +
       (done < numbers.end - numbers.begin ? " of " + std::to_string(numbers.end - numbers.begin) : "") +
       " scenarios, seed " + std::to_string(options.seed) + ", " + std::to_string(in_use.rooms.size()) +
-      " rooms, " + in_use.context.renderer();
+      " rooms, " + in_use.context.renderer() +
+      (options.jobs.empty() ? "" : "; frame times of jobs that ran beside others: not to be compared");
   std::printf("%s\n%s", about.c_str(), table_of(totals, done).c_str());
   report.renderer = in_use.context.renderer();
   report.results["scenarios"] = done;
@@ -183,22 +183,19 @@ void publish(const FallthroughOptions& options, const std::vector<ScenarioRow>& 
   faults.throw_first();
 }
 
-/// Lets jobs run the scenarios, and publishes their results. Returns the exit status.
+/// Lets jobs run the scenarios, and publishes their results. Returns the exit status: 1 if a job failed.
 int run_jobs(const FallthroughOptions& options, Report& report) {
-  make_folder(options.jobs);
-  FarmOptions farm;
-  farm.out = options.jobs;
-  farm.manifest = (std::filesystem::path(options.jobs) / "jobs.txt").string();
-  write_bytes(farm.manifest, scenario_manifest(options));
-  const int status = report.times.timed("jobs", [&] { return run(farm); });
-  const std::vector<ScenarioRow> rows = joined_rows(options);
+  const JobFaults failed = report.times.timed(
+      "jobs", [&] { return run_split(options.jobs, scenario_manifest(options), {}, options.processes); });
+  const std::vector<ScenarioRow> rows = joined_rows(options, failed);
   if (rows.empty()) throw Error(options.jobs + ": no job has results; the messages above say why");
   RoomScan scan;
   scan.maps = maps_of_jobs(options.jobs).string();
   const auto in_use = rooms_of(options, scan, 1);
+  report.results["failed_jobs"] = failed;
   DeferredErrors faults;
   publish(options, rows, *in_use, report, faults);
-  return status;
+  return failed.empty() ? 0 : 1;
 }
 
 }  // namespace

@@ -14,6 +14,8 @@
 #include "app/farm/farm.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
 namespace {
@@ -49,22 +51,25 @@ nlohmann::json rows_of(const FarmPlan& plan, const FarmState& state) {
     if (const auto found = state.results.find(i); found != state.results.end()) {
       const JobResult& result = found->second;
       row.update({{"wall_s", result.wall_s}, {"cpu_s", result.cpu_s}, {"peak_rss_mb", result.peak_mb}});
-      if (!result.is_done) row["fault"] = result.fault;
     }
+    if (const std::string fault = fault_of(plan, state, i); !fault.empty()) row["fault"] = fault;
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
-/// Prints a line per state, and the first faults.
-void print_state(const FarmPlan& plan, const FarmState& state) {
+/// Prints the first faults, and how many jobs ended how.
+/// @param wanted  names of jobs of which it is also said why they were skipped
+void print_state(const FarmPlan& plan, const FarmState& state, const std::vector<std::string>& wanted) {
   constexpr int kMostFaults = 10;
   int faults = 0;
-  for (const auto& [job, result] : state.results) {
-    if (result.is_done || ++faults > kMostFaults) continue;
-    const std::string& name = plan.manifest.jobs[job].name;
-    std::fprintf(stderr, "roomradar: %s: %s; see %s\n", name.c_str(), result.fault.c_str(),
-                 (plan.out / (name + ".log")).c_str());
+  for (std::size_t i = 0; i < plan.jobs.size(); ++i) {
+    const std::string& name = plan.manifest.jobs[i].name;
+    const bool has_failed = state.schedule.state(i) == JobState::kFailed && state.results.contains(i);
+    const bool is_said = has_failed || (state.schedule.state(i) == JobState::kSkipped &&
+                                        std::find(wanted.begin(), wanted.end(), name) != wanted.end());
+    if (!is_said || ++faults > kMostFaults) continue;
+    std::fprintf(stderr, "roomradar: %s: %s\n", name.c_str(), fault_of(plan, state, i).c_str());
   }
   if (faults > kMostFaults) std::fprintf(stderr, "roomradar: and %d more\n", faults - kMostFaults);
   const Schedule& schedule = state.schedule;
@@ -83,12 +88,12 @@ FarmPlan plan_of(const FarmOptions& options) {
   return plan_farm(std::move(manifest), options.out, wanted);
 }
 
-int run_planned(const FarmOptions& options, const FarmPlan& plan, const RunJobs& run_jobs) {
+FarmState run_planned(const FarmOptions& options, const FarmPlan& plan, const RunJobs& run_jobs) {
   Report report;
   report.command = "farm";
   report.source = options.manifest;
   const auto waiting = static_cast<std::int64_t>(Schedule(plan).count(JobState::kWaiting));
-  const FarmState state = report.times.timed("jobs", [&] {
+  FarmState state = report.times.timed("jobs", [&] {
     Progress progress("jobs", waiting);
     return run_jobs([&](const FarmState& now, std::size_t job) {
       const std::size_t failed = now.schedule.count(JobState::kFailed);
@@ -96,12 +101,35 @@ int run_planned(const FarmOptions& options, const FarmPlan& plan, const RunJobs&
                     (failed > 0 ? "; " + std::to_string(failed) + " failed" : ""));
     });
   });
-  print_state(plan, state);
+  print_state(plan, state, options.jobs);
   report.settings = {{"out", options.out}};
   report.results["jobs"] = rows_of(plan, state);
   for (const JobState one : {JobState::kDone, JobState::kPresent, JobState::kFailed, JobState::kSkipped})
     report.results["jobs_" + std::string(to_string(one))] = state.schedule.count(one);
   write_report(report, options.report);
+  return state;
+}
+
+namespace {
+
+/// Runs a plan on this machine, until it is done or Ctrl-C is pressed, which throws Error.
+FarmState run_here(const FarmOptions& options, const FarmPlan& plan) {
+  const int processes = options.processes > 0
+                            ? options.processes
+                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const Interrupt interrupt;
+  Interrupt::say("roomradar: the running jobs are ended; the same command goes on with them later\n");
+  FarmState state = run_planned(options, plan, [&](const WatchFarm& watch) {
+    return run_farm(plan, processes, "/proc/self/exe", Interrupt::was_pressed, watch);
+  });
+  if (Interrupt::was_pressed())
+    throw Error(options.out + ": stopped by Ctrl-C; the same command does the rest");
+  return state;
+}
+
+}  // namespace
+
+int exit_status(const FarmState& state) {
   return state.schedule.count(JobState::kFailed) + state.schedule.count(JobState::kSkipped) > 0 ? 1 : 0;
 }
 
@@ -113,17 +141,26 @@ int run(const FarmOptions& options) {
     std::fputs(batch_script(plan, *options.emit, this_program()).c_str(), stdout);
     return 0;
   }
-  const int processes = options.processes > 0
-                            ? options.processes
-                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const Interrupt interrupt;
-  Interrupt::say("roomradar: the running jobs are ended; the same command goes on with them later\n");
-  const int status = run_planned(options, plan, [&](const WatchFarm& watch) {
-    return run_farm(plan, processes, "/proc/self/exe", Interrupt::was_pressed, watch);
-  });
-  if (Interrupt::was_pressed())
-    throw Error(options.out + ": stopped by Ctrl-C; the same command does the rest");
-  return status;
+  return exit_status(run_here(options, plan));
+}
+
+JobFaults run_split(const std::string& folder, const std::string& manifest,
+                    const std::vector<std::string>& jobs, int processes) {
+  FarmOptions options;
+  options.manifest = (std::filesystem::path(folder) / "jobs.txt").string();
+  options.out = folder;
+  options.processes = processes;
+  options.jobs = jobs;
+  require_contents_outside_maps(folder);
+  make_folder(folder);
+  write_bytes(options.manifest, manifest);
+  const FarmPlan plan = plan_of(options);
+  const FarmState state = run_here(options, plan);
+  JobFaults faults;
+  for (std::size_t i = 0; i < plan.jobs.size(); ++i)
+    if (std::string fault = fault_of(plan, state, i); !fault.empty())
+      faults.emplace(plan.manifest.jobs[i].name, std::move(fault));
+  return faults;
 }
 
 }  // namespace roomradar

@@ -1,6 +1,9 @@
 // farm_command.hpp: roomradar farm: runs a list of commands as jobs.
 #pragma once
 #include <functional>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "app/cli/options/farm_options.hpp"
 #include "app/farm/farm.hpp"
@@ -15,7 +18,20 @@ FarmPlan plan_of(const FarmOptions& options);
 
 /// Function that runs the jobs of a plan, and calls the given function after each.
 using RunJobs = std::function<FarmState(const WatchFarm&)>;
-/// Runs a plan with progress on stderr, prints and reports how it ended. Returns the exit status.
-int run_planned(const FarmOptions& options, const FarmPlan& plan, const RunJobs& run_jobs);
+/// Runs a plan with progress on stderr, prints and reports how it ended.
+FarmState run_planned(const FarmOptions& options, const FarmPlan& plan, const RunJobs& run_jobs);
+/// Returns 1 if a job failed or was skipped, otherwise 0.
+int exit_status(const FarmState& state);
+
+/// Reasons of the jobs that have no results, by their names.
+using JobFaults = std::map<std::string, std::string>;
+/// Runs the jobs into which a command splits its work, on this machine. Jobs that are done are not run again.
+/// @param folder     of the results, and of jobs.txt with the manifest; is created
+/// @param manifest   text; see read_manifest()
+/// @param jobs       names of the only jobs to run, with those that they need; empty: all
+/// @param processes  jobs at a time; 0: one per processor
+/// @throws Error if the folder cannot be written or Ctrl-C is pressed
+JobFaults run_split(const std::string& folder, const std::string& manifest,
+                    const std::vector<std::string>& jobs, int processes);
 
 }  // namespace roomradar

@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <optional>
 
 #include "app/cli/deferred_errors.hpp"
 #include "app/cli/interrupt.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
+#include "app/commands/farm_command.hpp"
 #include "app/evaluation/pareto/greedy_search.hpp"
 #include "app/evaluation/pareto/sample_settings.hpp"
+#include "app/evaluation/pareto/sweep_jobs.hpp"
 #include "app/evaluation/trade/machine.hpp"
 #include "app/evaluation/trade/prescan_work.hpp"
 #include "app/evaluation/trade/run_work.hpp"
@@ -18,6 +22,7 @@
 #include "app/evaluation/trade/trade_frames.hpp"
 #include "app/evaluation/trade/trade_page.hpp"
 #include "app/evaluation/trade/trade_presets.hpp"
+#include "app/farm/manifest.hpp"
 #include "app/sim/scenarios/scenarios.hpp"
 #include "app/sim/sensor/sim_options.hpp"
 #include "mapping/types/system/error.hpp"
@@ -80,23 +85,72 @@ std::vector<MeasuredWork> works_of(const TradeOptions& options) {
 /// Records a Ctrl-C, after which the measurements so far are the result.
 class Stop {
  public:
-  Stop() {
+  /// @param by_jobs  true: never asked; Ctrl-C then ends the jobs and the command
+  explicit Stop(bool by_jobs) {
+    if (by_jobs) return;
+    interrupt_.emplace();
     Interrupt::say(
         "\nroomradar: stops here; the completed scenes are the result. Press Ctrl-C again to end at once\n");
   }
-  bool asked() { return was_asked_ = was_asked_ || Interrupt::take(); }
+  bool asked() { return was_asked_ = was_asked_ || (interrupt_ && Interrupt::take()); }
 
  private:
-  Interrupt interrupt_;
+  std::optional<Interrupt> interrupt_;
   bool was_asked_ = false;
 };
 
-TradeResult traded(const MeasuredWork& work, const TradeOptions& options, Stop& stop, TradeCsv& csv) {
+/// The words of a job that say where and how it measures, beside its setting.
+std::string job_words(const TradeOptions& options, std::size_t scene) {
+  std::string words;
+  if (scene < options.rooms.size()) {
+    words += " --rooms " + quoted_literal(options.rooms[scene]);
+  } else {
+    const std::string& source = options.recordings[scene - options.rooms.size()];
+    std::error_code ignored;
+    const bool is_path = std::filesystem::exists(source, ignored);
+    words +=
+        " " +
+        quoted_literal(is_path ? std::filesystem::absolute(source).lexically_normal().string() : source) +
+        " --rooms none";
+  }
+  words += " --repeats " + std::to_string(options.repeats);
+  if (options.objects != TradeOptions().objects) words += " --objects " + std::to_string(options.objects);
+  return words + (options.quick ? " --quick" : "");
+}
+
+/// Measures by jobs. A sweep calls it several times, as later settings depend on earlier results.
+class SweepByJobs {
+ public:
+  explicit SweepByJobs(const TradeOptions& options) : options_(options) {}
+
+  SweptRows operator()(const MeasuredWork& work, const std::vector<Setting>& settings,
+                       const SweepWatch& watch) {
+    manifest_ +=
+        sweep_manifest(work, settings, [&](std::size_t scene) { return job_words(options_, scene); });
+    JobFaults failed =
+        run_split(options_.jobs, manifest_, sweep_job_names(work, settings), options_.processes);
+    SweptRows swept{joined_sweep_rows(work, settings, options_.repeats, options_.jobs, failed), {}};
+    for (const SweepRow& row : swept.rows) watch.on_row(row);
+    failed_.merge(std::move(failed));
+    return swept;
+  }
+  [[nodiscard]] const JobFaults& failed() const { return failed_; }
+
+ private:
+  const TradeOptions& options_;
+  std::string manifest_ = "# Measurements of roomradar trade, as jobs of roomradar farm.\n";
+  JobFaults failed_;
+};
+
+TradeResult traded(const MeasuredWork& work, const TradeOptions& options, Stop& stop, SweepByJobs& by_jobs,
+                   TradeCsv& csv) {
   TradeResult result{.work = work};
   result.defaults = 0;
+  result.is_by_jobs = !options.jobs.empty();
   const std::size_t in_greedy_search = options.settings / 3;
   const auto rows = (1 + options.settings) * work.scenes.size() * static_cast<std::size_t>(options.repeats);
-  Progress progress(work.name, static_cast<std::int64_t>(rows));
+  std::optional<Progress> progress;
+  if (!result.is_by_jobs) progress.emplace(work.name, static_cast<std::int64_t>(rows));
   const auto measure = [&](const std::vector<Setting>& settings) {
     const std::size_t before = result.settings.size();
     result.settings.insert(result.settings.end(), settings.begin(), settings.end());
@@ -109,11 +163,13 @@ TradeResult traded(const MeasuredWork& work, const TradeOptions& options, Stop& 
     watch.on_row = [&](const SweepRow& made) {
       const SweepRow row = of_all(made);
       csv.write(work, result.settings, row);
+      if (!progress) return;
       char note[64];
       std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
-      progress.step(row.fault.empty() ? note : row.fault);
+      progress->step(row.fault.empty() ? note : row.fault);
     };
-    SweptRows made = sweep(work, {settings, options.repeats, options.seed}, watch);
+    SweptRows made = result.is_by_jobs ? by_jobs(work, settings, watch)
+                                       : sweep(work, {settings, options.repeats, options.seed}, watch);
     for (SweepRow& row : made.rows) result.rows.push_back(of_all(std::move(row)));
     result.fault = std::move(made.fault);
     result.summaries = summarise(work, result.settings, result.rows);
@@ -154,6 +210,8 @@ void print_preset(const TradeResult& result, std::size_t setting) {
 void print_presets(const TradeResult& result) {
   for (std::size_t i = 0; i < result.summaries.size(); ++i)
     if (!names_of(i, result.defaults, result.choice, "").empty()) print_preset(result, i);
+  if (result.is_by_jobs)
+    std::printf("%-8s times of jobs that ran beside others: not to be compared\n", result.work.name.c_str());
 }
 
 nlohmann::json result_json(const TradeResult& result) {
@@ -169,11 +227,9 @@ nlohmann::json result_json(const TradeResult& result) {
       row[result.work.figures[f].name] = summary.figures[f];
     settings.push_back(std::move(row));
   }
-  return {{"measurements", result.rows.size()},
-          {"settings", settings},
-          {"front", result.choice.front},
-          {"cut_short", result.was_cut_short},
-          {"not_measured", faults_of(result)}};
+  return {{"measurements", result.rows.size()},     {"settings", settings},
+          {"front", result.choice.front},           {"cut_short", result.was_cut_short},
+          {"times_comparable", !result.is_by_jobs}, {"not_measured", faults_of(result)}};
 }
 
 int print_table1(const TradeOptions& options, Report report) {
@@ -190,11 +246,13 @@ int print_table1(const TradeOptions& options, Report report) {
 /// Measures the works one after another. Throws Error if nothing was measured; faults after the first
 /// measurement are added to `faults`.
 std::vector<TradeResult> measure_all(const std::vector<MeasuredWork>& works, const TradeOptions& options,
-                                     Stop& stop, TradeCsv& csv, StageTimes& times, DeferredErrors& faults) {
+                                     Stop& stop, SweepByJobs& by_jobs, TradeCsv& csv, StageTimes& times,
+                                     DeferredErrors& faults) {
   std::vector<TradeResult> results;
   for (const MeasuredWork& work : works) {
     TradeResult result;
-    if (!stop.asked()) result = times.timed(work.name, [&] { return traded(work, options, stop, csv); });
+    if (!stop.asked())
+      result = times.timed(work.name, [&] { return traded(work, options, stop, by_jobs, csv); });
     if (!result.fault.empty()) faults.add("trade: " + work.name + ": " + result.fault);
     if (!result.rows.empty())
       results.push_back(std::move(result));
@@ -251,10 +309,23 @@ void write_presets_of(const std::vector<TradeResult>& results, const TradeOption
                 options.presets);
 }
 
+/// Measures a single setting and writes its rows, as a job.
+int measure_setting(const TradeOptions& options) {
+  const MeasuredWork work = works_of(options).front();
+  const Setting setting = setting_from(work.parameters, options.setting);
+  if (work.scenes.size() != 1)
+    throw Error("trade: --setting: measures in one room or recording, but " +
+                std::to_string(work.scenes.size()) + " are given; choose one with --rooms and SOURCE");
+  const SweptRows swept = sweep(work, {{setting}, options.repeats, options.seed});
+  if (!swept.fault.empty()) throw Error("trade: " + work.name + ": " + swept.fault);
+  write_sweep_rows(work, swept.rows, options.rows);
+  return 0;
+}
+
 }  // namespace
 
 int run(const TradeOptions& options) {
-  for (const std::string& path : {options.csv, options.html, options.presets, options.report})
+  for (const std::string& path : {options.csv, options.html, options.presets, options.report, options.rows})
     require_writable(path);
   Report report;
   report.command = "trade";
@@ -264,13 +335,16 @@ int run(const TradeOptions& options) {
                      {"only", options.only},   {"objects", options.objects}};
   require_scenes(options);
   if (options.compare_published) return print_table1(options, std::move(report));
+  if (!options.setting.empty()) return measure_setting(options);
   const Machine machine = this_machine();
   report.renderer = machine.renderer;
   const std::vector<MeasuredWork> works = works_of(options);
   TradeCsv csv(options.csv, works);
-  Stop stop;              // until the results are written
+  Stop stop(!options.jobs.empty());  // until the results are written
+  SweepByJobs by_jobs(options);
   DeferredErrors faults;  // errors do not keep earlier measurements from being written
-  const std::vector<TradeResult> results = measure_all(works, options, stop, csv, report.times, faults);
+  const std::vector<TradeResult> results =
+      measure_all(works, options, stop, by_jobs, csv, report.times, faults);
   for (const TradeResult& result : results) {
     print_result(result);
     report.results[result.work.name] = result_json(result);
@@ -283,7 +357,7 @@ int run(const TradeOptions& options) {
   faults.attempt([&] { write_presets_of(results, options, machine); });
   faults.attempt([&] { write_report(report, options.report); });
   faults.throw_first();
-  return 0;
+  return by_jobs.failed().empty() ? 0 : 1;
 }
 
 }  // namespace roomradar

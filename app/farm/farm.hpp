@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <string>
 
 #include "app/farm/job_process.hpp"
 #include "app/farm/schedule.hpp"
@@ -15,6 +16,10 @@ struct FarmState {
   Schedule schedule;
   std::map<std::size_t, JobResult> results;  ///< of the jobs that ended in this run, by index
 };
+
+/// Returns why a job of the plan has no results, as a sentence; empty if it has. For a job that was skipped,
+/// the sentence names the job that failed and the command that runs it.
+std::string fault_of(const FarmPlan& plan, const FarmState& state, std::size_t job);
 
 /// Called after each job, with its index, on one thread at a time.
 using WatchFarm = std::function<void(const FarmState& state, std::size_t job)>;

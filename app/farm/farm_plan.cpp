@@ -77,6 +77,12 @@ FarmPlan plan_farm(Manifest manifest, const fs::path& out, std::span<const std::
     open.pop_back();
     if (plan.jobs[job].key.empty()) plan_job(job, hashes, plan);
   }
+  for (std::size_t i = 0; i < plan.jobs.size() && !wanted.empty(); ++i) {
+    PlannedJob& job = plan.jobs[i];
+    if (job.key.empty() || job.is_present || std::find(wanted.begin(), wanted.end(), i) != wanted.end())
+      continue;
+    job.earlier_fault = failure_of(plan.out / plan.manifest.jobs[i].name, job.key).value_or("");
+  }
   hashes.save();
   return plan;
 }

@@ -17,6 +17,9 @@ struct PlannedJob {
   std::string key;
   double cost = 0.0;        ///< as stated, otherwise 1 plus the size of its inputs in 10^6 bytes
   bool is_present = false;  ///< its folder holds the results for this key
+  /// Reason why the job is not run again: it failed with this key, and the plan has it only because a wanted
+  /// job needs it. Otherwise empty.
+  std::string earlier_fault = {};
 };
 
 struct FarmPlan {
@@ -27,7 +30,8 @@ struct FarmPlan {
 
 /// Hashes the inputs, and finds the jobs that are already done.
 /// @param out     folder of the results; is created
-/// @param wanted  jobs to plan, with those that they need; empty: all
+/// @param wanted  jobs to plan, with those that they need; empty: all. Needed jobs that failed before are not
+///                planned again unless they are wanted, too
 /// @throws Error if an input cannot be read or the folder cannot be created
 FarmPlan plan_farm(Manifest manifest, const std::filesystem::path& out,
                    std::span<const std::size_t> wanted = {});

@@ -23,20 +23,33 @@ namespace fs = std::filesystem;
 
 constexpr const char* kJobFile = "job.json";
 constexpr const char* kFormat = "roomradar job";
+constexpr const char* kFailureFile = "failure.json";
+constexpr const char* kFailureFormat = "roomradar failed job";
 constexpr std::uintmax_t kLargestJobFile_bytes = 1U << 24U;
 
 fs::path with_ending(const fs::path& folder, const char* ending) { return folder.string() + ending; }
 
+/// Returns the content of a file on the job with this key; nullopt if it is not there or of another form.
+std::optional<nlohmann::json> read_of_job(const fs::path& file, const char* format, const std::string& key) {
+  try {
+    const std::string text = read_bytes(file, "a job's file", kLargestJobFile_bytes);
+    nlohmann::json job = nlohmann::json::parse(text);
+    if (job.value("format", "") == format && job.value("key", "") == key) return job;
+  } catch (const std::exception&) {
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool is_done(const fs::path& folder, const std::string& key) {
-  try {
-    const std::string text = read_bytes(folder / kJobFile, "a job's file", kLargestJobFile_bytes);
-    const nlohmann::json job = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-    return job.is_object() && job.value("format", "") == kFormat && job.value("key", "") == key;
-  } catch (const std::exception&) {  // not there, or of another form
-    return false;
-  }
+  return read_of_job(folder / kJobFile, kFormat, key).has_value();
+}
+
+std::optional<std::string> failure_of(const fs::path& folder, const std::string& key) {
+  const auto failure = read_of_job(with_ending(folder, ".failed") / kFailureFile, kFailureFormat, key);
+  if (!failure || !failure->contains("fault") || !failure->at("fault").is_string()) return std::nullopt;
+  return failure->at("fault").get<std::string>();
 }
 
 std::optional<RunningFolder> RunningFolder::create(const fs::path& folder) {
@@ -70,6 +83,16 @@ RunningFolder::~RunningFolder() {
   } catch (const std::exception&) {  // it is emptied when the job is run once more
   }
   close(lock_);
+}
+
+void RunningFolder::note_failure(const std::string& key, const std::string& fault) const noexcept {
+  try {
+    const nlohmann::json failure = {
+        {"format", kFailureFormat}, {"version", 1}, {"key", key}, {"fault", fault}};
+    const auto replace = nlohmann::json::error_handler_t::replace;  // a program may print any bytes
+    write_bytes(running_ / kFailureFile, failure.dump(2, ' ', false, replace) + "\n");
+  } catch (const std::exception&) {
+  }
 }
 
 void RunningFolder::commit(const std::string& key, const std::vector<std::string>& command) {

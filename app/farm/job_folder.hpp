@@ -13,6 +13,10 @@ namespace roomradar {
 /// Returns true if a folder holds the results of a job with this key.
 bool is_done(const std::filesystem::path& folder, const std::string& key);
 
+/// Returns the reason why the job with this key failed last; nullopt if it did not fail, was cancelled, or is
+/// done since.
+std::optional<std::string> failure_of(const std::filesystem::path& folder, const std::string& key);
+
 /// The folder NAME.running of one job. Only one process at a time can have it. The destructor renames it to
 /// NAME.failed unless commit() succeeded.
 class RunningFolder {
@@ -28,6 +32,8 @@ class RunningFolder {
   /// Writes job.json and renames the folder to NAME, in place of an older one. Throws Error on failure.
   /// @param command  the job's words, as information in job.json
   void commit(const std::string& key, const std::vector<std::string>& command);
+  /// Writes the reason of a failure, for failure_of(). Ignores errors: the job then counts as not run.
+  void note_failure(const std::string& key, const std::string& fault) const noexcept;
 
  private:
   RunningFolder(std::filesystem::path folder, int lock);

@@ -124,7 +124,10 @@ JobResult run_job(const FarmPlan& plan, std::size_t job, const fs::path& program
     const fs::path log_file = folder.string() + ".log";
     const pid_t child = start(program, arguments_of(plan, job), running->path(), log_file);
     result.fault = wait_for(child, log_file, is_cancelled, result);
-    if (result.fault.empty()) running->commit(plan.jobs[job].key, stated.words);
+    if (result.fault.empty())
+      running->commit(plan.jobs[job].key, stated.words);
+    else if (!is_cancelled())
+      running->note_failure(plan.jobs[job].key, result.fault);
     result.is_done = result.fault.empty();
   } catch (const std::exception& error) {
     result.fault = error.what();

@@ -124,6 +124,19 @@ void refuse_circles(const Manifest& manifest) {
 
 }  // namespace
 
+std::string quoted_word(const std::string& word) {
+  const char quote = word.find('\'') == std::string::npos ? '\'' : '"';
+  if (word.find(quote) != std::string::npos || word.find('\n') != std::string::npos)
+    throw Error("'" + word + "': a name with both kinds of quotes, or a line end, cannot be handed to a job");
+  return quote + word + quote;
+}
+
+std::string quoted_literal(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '{' || c == '}' ? std::string(2, c) : std::string(1, c);
+  return quoted_word(escaped);
+}
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};

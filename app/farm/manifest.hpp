@@ -42,6 +42,12 @@ Manifest read_manifest(const std::filesystem::path& path);
 /// @param path  for messages, and as Manifest::path
 Manifest parse_manifest(const std::string& text, const std::filesystem::path& path);
 
+/// Returns a word in quotation marks, as a manifest needs it. Placeholders stay placeholders. Throws Error if
+/// the word holds both kinds of quotation marks or a line end.
+std::string quoted_word(const std::string& word);
+/// Returns a quoted word without placeholders: { and } are doubled.
+std::string quoted_literal(const std::string& text);
+
 /// Returns true if a job may have this name: 1 to 100 letters, digits, - _ . that begin with neither . nor -.
 bool is_job_name(std::string_view name);
 

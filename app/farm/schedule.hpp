@@ -16,7 +16,7 @@ enum class JobState {
   kRunning,
   kPresent,  ///< was done before
   kDone,
-  kFailed,
+  kFailed,   ///< in this run, or before and not run again
   kSkipped,  ///< a job that it needs failed
 };
 
@@ -44,6 +44,7 @@ class Schedule {
   std::size_t left_ = 0;
 
   void make_ready(std::size_t job);
+  void skip_those_that_need(std::size_t job);
 };
 
 }  // namespace roomradar

@@ -67,11 +67,13 @@ void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) 
   command
       .add_option("--jobs", options.jobs,
                   "split the run into jobs of `roomradar farm` in this folder, run those that are not done,\n"
-                  "and join their results (default: this process runs all scenarios)")
+                  "and join their results: the same table but for times, which jobs that run beside others\n"
+                  "do not measure well (default: this process runs all scenarios)")
       ->type_name("DIR");
   command.add_option("--job-size", options.job_size, "scenarios per job of --jobs (default: 100)")
       ->check(whole_within(1, 1'000'000))
       ->type_name("N");
+  add_processes_option(command, options.processes);
   CLI::Option* scenario = command
                               .add_option("--scenario", options.scenario,
                                           "replay only this scenario, as a video (default: run all)")
@@ -83,11 +85,6 @@ void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) 
                            ->type_name("FILE");
   scenario->needs(video);
   video->needs(scenario);
-}
-
-void refuse_given(const CLI::App& command, const std::vector<std::string>& names, const char* why) {
-  for (const std::string& name : names)
-    if (command.count(name) > 0) throw CLI::ValidationError(name + why);
 }
 
 }  // namespace
@@ -106,17 +103,17 @@ void complete_options(const CLI::App& command, FallthroughOptions& options) {
   else
     refuse_given(command,
                  {"--scenarios", "--seed", "--random-rooms", "--threads", "--maps", "--csv", "--html",
-                  "--scenario", "--video", "--part", "--rows", "--jobs", "--job-size"},
+                  "--scenario", "--video", "--part", "--rows", "--jobs", "--job-size", "--processes"},
                  ": used only for simulated rooms, not with a SOURCE");
   if (!options.source.empty() && options.map.empty()) throw CLI::RequiredError("--map");
   if (options.scenario)
     refuse_given(command,
                  {"--scenarios", "--threads", "--csv", "--html", "--report", "--part", "--rows", "--jobs",
-                  "--job-size"},
+                  "--job-size", "--processes"},
                  ": not available with --scenario");
   if (options.part) refuse_given(command, {"--scenarios", "--jobs"}, ": not available with --part");
   if (options.jobs.empty())
-    refuse_given(command, {"--job-size"}, ": used only with --jobs DIR, which is not given");
+    refuse_given(command, {"--job-size", "--processes"}, ": used only with --jobs DIR, which is not given");
   else
     refuse_given(command, {"--maps", "--threads", "--rows"},
                  ": each job has its own; not available with --jobs");

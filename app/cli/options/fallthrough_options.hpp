@@ -49,6 +49,8 @@ struct FallthroughOptions {
   std::string jobs;
   /// Number of scenarios per job.
   int job_size = 100;
+  /// Number of jobs at a time; 0: one per processor.
+  int processes = 0;
   /// Number of the single scenario to run; unset: all scenarios are run.
   std::optional<std::int64_t> scenario;
   /// Video file of the single scenario; used with `scenario`.

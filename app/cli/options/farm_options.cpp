@@ -17,13 +17,11 @@ void add_options(CLI::App& command, FarmOptions& options) {
   command.add_option("--out", options.out, "folder of the results, with a folder per job (required)")
       ->required()
       ->type_name("DIR");
-  command.add_option("--processes", options.processes, "jobs at a time (default: one per processor)")
-      ->check(whole_within(1, 4096))
-      ->type_name("N");
+  add_processes_option(command, options.processes);
   command
       .add_option("--job", options.jobs,
-                  "run only this job, with those that it needs; may be given several times\n"
-                  "(default: all jobs)")
+                  "run only this job, after those that it needs; may be given several times. Needed jobs\n"
+                  "that failed before are not run again, unless they are given, too (default: all jobs)")
       ->type_name("NAME");
   add_choice<std::optional<BatchForm>>(
       command, "--emit", options.emit,

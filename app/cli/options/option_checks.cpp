@@ -38,6 +38,11 @@ std::string words_of_choice(const std::string& type) {
   return words;
 }
 
+void refuse_given(const CLI::App& command, const std::vector<std::string>& names, const char* why) {
+  for (const std::string& name : names)
+    if (command.count(name) > 0) throw CLI::ValidationError(name + why);
+}
+
 void refuse_other_bases(CLI::App& app) {
   const auto fault_of = [](const std::string& text) -> std::string {
     const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });

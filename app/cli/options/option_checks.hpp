@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace roomradar {
 
@@ -17,6 +18,9 @@ CLI::Validator whole_within(std::int64_t low, std::int64_t high);
 
 /// Returns the words of a type such as "a|b|c" for a sentence: "a, b or c". Other text is unchanged.
 std::string words_of_choice(const std::string& type);
+
+/// Throws CLI::ValidationError with the name and `why` if one of these options was given.
+void refuse_given(const CLI::App& command, const std::vector<std::string>& names, const char* why);
 
 /// Adds checks that reject numbers that CLI11 would misread. It reads 010 as 8, and the seed -1 as 2^64 - 1.
 /// The checks apply to all options of type "N" of the program and its commands. Call after all options were

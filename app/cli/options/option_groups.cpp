@@ -91,7 +91,7 @@ std::vector<CommandHelp> command_helps() {
       {"fallthrough",
        {{"Everyday options", {"--scenarios", "--html", "--report"}},
         {"Scenarios", {"--seed", "--random-rooms", "--threads", "--maps", "--csv", "--scenario", "--video"}},
-        {"Jobs", {"--jobs", "--job-size", "--part", "--rows"}},
+        {"Jobs", {"--jobs", "--job-size", "--processes", "--part", "--rows"}},
         {"A map instead of scenarios",
          {"--map", "--reference", "--poses", "--frames", "--calibration", "--cell", "--picture"}}},
        "  roomradar fallthrough --scenarios 100 --html fallthrough.html\n"
@@ -114,8 +114,10 @@ std::vector<CommandHelp> command_helps() {
        {{"Everyday options", {"--quick", "--html", "--presets", "--report"}},
         {"What is measured",
          {"--rooms", "--only", "--settings", "--repeats", "--objects", "--seed", "--time"}},
-        {"More", {"--csv", "--compare-published"}}},
+        {"More", {"--csv", "--compare-published"}},
+        {"Jobs", {"--jobs", "--processes", "--setting", "--rows"}}},
        "  roomradar trade --quick --html trade.html\n"
+       "  roomradar trade RECORDING --rooms none --jobs sweep --html accuracy.html\n"
        "  roomradar trade RECORDING --settings 50 --html trade.html --presets presets.json\n"},
   };
 }

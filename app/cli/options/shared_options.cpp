@@ -68,6 +68,12 @@ void add_ui_scale_option(CLI::App& command, std::optional<double>& ui_scale) {
       ->type_name("X");
 }
 
+void add_processes_option(CLI::App& command, int& processes) {
+  command.add_option("--processes", processes, "jobs at a time (default: one per processor)")
+      ->check(whole_within(1, 4096))
+      ->type_name("N");
+}
+
 void add_report_option(CLI::App& command, std::string& report) {
   command
       .add_option("--report", report,

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/renamed_options.hpp"
@@ -17,7 +19,7 @@ void add_sweep_options(CLI::App& command, TradeOptions& options) {
       "folders with recordings that have poses, in addition to the simulated rooms (default: none)");
   command
       .add_option("--rooms", options.rooms,
-                  "simulated rooms, separated by commas (default: table,random?seed=2)")
+                  "simulated rooms, separated by commas; none: only SOURCE (default: table,random?seed=2)")
       ->allow_extra_args(false)  // the next argument is a recording
       ->delimiter(',')
       ->type_name("LIST");
@@ -71,14 +73,52 @@ void add_result_options(CLI::App& command, TradeOptions& options) {
   add_report_option(command, options.report);
 }
 
+void add_job_options(CLI::App& command, TradeOptions& options) {
+  command
+      .add_option("--jobs", options.jobs,
+                  "split the sweep into jobs of `roomradar farm` in this folder, one per setting and scene,\n"
+                  "run those that are not done, and join their results: the same errors, but times that are\n"
+                  "not to be compared, as jobs run beside others (default: this process measures)")
+      ->type_name("DIR");
+  add_processes_option(command, options.processes);
+  command
+      .add_option("--setting", options.setting,
+                  "measure only this setting, as a job of --jobs does: default, or NAME=VALUE,NAME=VALUE...\n"
+                  "(default: a sweep)")
+      ->type_name("LIST");
+  command
+      .add_option("--rows", options.rows,
+                  "write the measurements of --setting, as --jobs joins them (required with --setting)")
+      ->type_name("FILE");
+}
+
 }  // namespace
 
 void add_options(CLI::App& command, TradeOptions& options) {
   add_sweep_options(command, options);
   add_result_options(command, options);
+  add_job_options(command, options);
 }
 
 void complete_options(const CLI::App& command, TradeOptions& options) {
+  if (options.rooms == std::vector<std::string>{"none"}) options.rooms.clear();
+  if (options.rooms.empty() && options.recordings.empty())
+    throw CLI::ValidationError("--rooms none: leaves nothing to measure in; give a SOURCE");
+  if (options.jobs.empty())
+    refuse_given(command, {"--processes"}, ": used only with --jobs DIR, which is not given");
+  else
+    refuse_given(command, {"--presets"},
+                 ": are chosen by times, which jobs beside others do not measure well; leave out --jobs");
+  if ((command.count("--setting") > 0) != (command.count("--rows") > 0))
+    throw CLI::ValidationError("--setting and --rows are used only together");
+  if (command.count("--setting") > 0) {
+    if (options.setting.empty()) throw CLI::ValidationError("--setting: is empty; the default is: default");
+    if (command.count("--only") == 0) throw CLI::RequiredError("--only, with --setting,");
+    refuse_given(command,
+                 {"--settings", "--seed", "--time", "--csv", "--html", "--presets", "--report", "--jobs",
+                  "--compare-published"},
+                 ": used only for a sweep, not with --setting");
+  }
   if (command.count("--presets") > 0 && command.count("--only") > 0)
     throw CLI::ValidationError("--presets: need measurements of both prescan and run; leave out --only");
   if (command.count("--objects") > 0 && options.only == "prescan")
@@ -86,10 +126,10 @@ void complete_options(const CLI::App& command, TradeOptions& options) {
   if (!options.compare_published) return;
   if ((command.count("--rooms") > 0 && options.rooms.size() > 1) || !options.recordings.empty())
     throw CLI::ValidationError("--compare-published: needs exactly one simulated room; give it with --rooms");
-  for (const char* name :
-       {"--only", "--settings", "--repeats", "--objects", "--seed", "--time", "--csv", "--html", "--presets"})
-    if (command.count(name) > 0)
-      throw CLI::ValidationError(std::string(name) + ": used only for a sweep, not with --compare-published");
+  refuse_given(command,
+               {"--only", "--settings", "--repeats", "--objects", "--seed", "--time", "--csv", "--html",
+                "--presets", "--jobs"},
+               ": used only for a sweep, not with --compare-published");
 }
 
 }  // namespace roomradar

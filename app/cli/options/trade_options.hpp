@@ -13,7 +13,7 @@ namespace roomradar {
 struct TradeOptions {
   /// Folders of recordings with poses, in addition to `rooms`.
   std::vector<std::string> recordings;
-  /// Simulated rooms, as after `sim:`.
+  /// Simulated rooms, as after `sim:`. Empty after complete_options() for the word "none".
   std::vector<std::string> rooms = {"table", "random?seed=2"};
   /// Command to measure, prescan or run; empty: both.
   std::string only;
@@ -39,6 +39,15 @@ struct TradeOptions {
   std::string presets;
   /// JSON file to write; empty: not written.
   std::string report;
+
+  /// Folder of the jobs that measure; empty: this process measures.
+  std::string jobs;
+  /// Number of jobs at a time; 0: one per processor.
+  int processes = 0;
+  /// The only setting to measure, as setting_from() reads it; empty: a sweep. Used with `only` and `rows`.
+  std::string setting;
+  /// JSON file for the measurements of `setting`.
+  std::string rows;
 };
 
 /// Adds the options with their help texts and checks.

@@ -84,7 +84,8 @@ ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std:
       throw Error("room " + room.title + ": the walk round it shows no surface; use a finer resolution");
     if (!folder.empty()) save_map(folder, map);
   }
-  room.unknown_world = unknown_surface(map.octree, map.mesh).mesh_world;
+  const std::shared_ptr<const UnknownSurface>& stored = *map.unknown;
+  room.unknown_world = stored ? stored->mesh_world : unknown_surface(map.octree, map.mesh).mesh_world;
   room.mesh_world = std::move(map.mesh);
   return room;
 }

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <iterator>
 
+#include "app/evaluation/fallthrough/mapped_room.hpp"
 #include "app/evaluation/fallthrough/scenario_rows.hpp"
+#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
@@ -37,13 +39,21 @@ std::string scenario_manifest(const FallthroughOptions& options) {
 
 std::filesystem::path maps_of_jobs(const std::filesystem::path& folder) { return folder / kRooms / "maps"; }
 
-std::vector<ScenarioRow> joined_rows(const FallthroughOptions& options) {
+std::vector<ScenarioRow> joined_rows(const FallthroughOptions& options,
+                                     const std::map<std::string, std::string>& faults) {
+  const std::size_t rooms = choose_rooms(options.random_rooms).size();
   std::vector<ScenarioRow> rows;
-  visit_parts(options, [&](const std::string& name, std::int64_t, std::int64_t) {
+  visit_parts(options, [&](const std::string& name, std::int64_t first, std::int64_t last) {
+    if (faults.contains(name)) return;
     const std::filesystem::path file = std::filesystem::path(options.jobs) / name / "rows.json";
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) return;  // the job failed
     std::vector<ScenarioRow> part = read_rows(file);
+    bool is_whole = std::ssize(part) == last - first + 1;
+    for (std::size_t i = 0; i < part.size(); ++i)
+      is_whole = is_whole && part[i].number == first + static_cast<std::int64_t>(i) &&
+                 part[i].room == turn_of(part[i].number, rooms).room;
+    if (!is_whole)
+      throw Error(file.string() + ": holds other scenarios than " + std::to_string(first) + " to " +
+                  std::to_string(last) + "; delete its folder, and run the command again");
     std::move(part.begin(), part.end(), std::back_inserter(rows));
   });
   return rows;

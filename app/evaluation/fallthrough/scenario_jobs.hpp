@@ -1,6 +1,7 @@
 // scenario_jobs.hpp: splits the scenarios of a run into jobs of `roomradar farm`, and joins their results.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,10 @@ std::string scenario_manifest(const FallthroughOptions& options);
 /// Returns the folder of the rooms' maps, of the manifest's first job.
 std::filesystem::path maps_of_jobs(const std::filesystem::path& folder);
 
-/// Returns the rows of all jobs that are done, in the scenarios' order. Throws Error if a file is damaged.
-std::vector<ScenarioRow> joined_rows(const FallthroughOptions& options);
+/// Returns the rows of all jobs that have results, in the scenarios' order.
+/// @param faults  reasons of the jobs that have no results, by their names
+/// @throws Error if a file is damaged or holds other scenarios than its job's
+std::vector<ScenarioRow> joined_rows(const FallthroughOptions& options,
+                                     const std::map<std::string, std::string>& faults);
 
 }  // namespace roomradar

@@ -29,4 +29,10 @@ bool has_default_load(const std::vector<Parameter>& parameters, const Setting& s
 /// none.
 std::string describe(const std::vector<Parameter>& parameters, const Setting& setting);
 
+/// Returns the differences from the default as one word, such as "radar=sampled,radar_px=32", or "default".
+std::string setting_words(const std::vector<Parameter>& parameters, const Setting& setting);
+/// Returns the setting that setting_words() wrote. Throws Error if a parameter or its value is unknown, or a
+/// parameter occurs twice.
+Setting setting_from(const std::vector<Parameter>& parameters, const std::string& words);
+
 }  // namespace roomradar

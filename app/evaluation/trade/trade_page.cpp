@@ -153,7 +153,8 @@ std::string plots_of(const TradeResult& result) {
 std::string table_of(const TradeResult& result, const std::vector<std::size_t>& settings) {
   std::string html =
       "<div class=\"wide\"><table><thead><tr><th>setting</th><th>what differs from the default</th>"
-      "<th>time relative to the default's (spread)</th><th>loss</th>";
+      "<th>time relative to the default's (spread)" +
+      std::string(result.is_by_jobs ? ", not comparable" : "") + "</th><th>loss</th>";
   for (const FigureName& figure : result.work.figures) html += "<th>" + escaped(figure.title) + "</th>";
   html += "</tr></thead>\n";
   for (const std::size_t i : settings) {
@@ -202,6 +203,9 @@ std::string about(const TradeResult& result) {
   std::string text = std::to_string(shown) + " settings on the plots, " + std::to_string(result.rows.size()) +
                      " measurements in: " + escaped(scenes) +
                      "<br>Time compared: " + escaped(result.work.figures[result.work.time].title);
+  if (result.is_by_jobs)
+    text +=
+        "<br><b>Times are not comparable:</b> measured by jobs that ran beside others; compare the errors";
   if (result.was_cut_short) text += "<br><b>Stopped early:</b> not all settings were measured";
   for (const std::string& fault : faults_of(result)) text += "<br><b>Not measured:</b> " + escaped(fault);
   return text;

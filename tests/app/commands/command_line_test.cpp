@@ -535,6 +535,17 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   expect_fault(roomradar("trade --seed -1"), 2, "must be a whole number");
   expect_fault(roomradar("trade --only prescan --objects 5"), 2, "--objects");
   expect_fault(roomradar("trade --only both"), 2, "prescan");
+  expect_fault(roomradar("trade --rooms none"), 2, "--rooms none: leaves nothing");
+  expect_fault(roomradar("trade --processes 2"), 2, "--processes: used only with --jobs");
+  expect_fault(roomradar("trade --jobs " + path("j") + " --presets " + path("p.json")), 2,
+               "leave out --jobs");
+  const std::string one = "trade --only prescan --rows " + path("r.json");
+  expect_fault(roomradar(one), 2, "--setting and --rows");
+  expect_fault(roomradar(one + " --setting default --seed 2"), 2, "--seed: used only for a sweep");
+  expect_fault(roomradar("trade --setting default --rows " + path("r.json")), 2, "--only");
+  expect_fault(roomradar(one + " --rooms wall --setting fuse_every=5"), 1, "fuse_every=5: the values");
+  expect_fault(roomradar(one + " --setting default"), 1, "choose one");
+  EXPECT_FALSE(fs::exists(path("j")));
 }
 
 TEST_F(CommandLine, WrongUsageIsStatusTwo) {

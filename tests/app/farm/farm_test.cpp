@@ -115,6 +115,57 @@ TEST_F(Farm, CountsFailuresAndGoesOn) {
   EXPECT_EQ(read_bytes(out_ / "a.log", "a log"), "begins fail\nno such room\n");
 }
 
+TEST_F(Farm, ANeededJobThatFailedIsNotRunAgainUnlessItIsAskedFor) {
+  const std::string jobs =
+      "a: prescan fail x {}\nb: prescan join {a} {}\nc: prescan join {b} {}\nd: prescan write input {}\n";
+  (void)run(plan(jobs));
+  EXPECT_EQ(ran(), 2U);  // a, d
+  const std::vector<std::size_t> c = {2}, a_and_c = {0, 2};
+  FarmPlan planned = plan(jobs, c);
+  FarmState state = run(planned);
+  EXPECT_EQ(ran(), 0U);
+  EXPECT_EQ(state.schedule.state(0), JobState::kFailed);
+  EXPECT_EQ(state.schedule.state(1), JobState::kSkipped);
+  EXPECT_EQ(state.schedule.state(2), JobState::kSkipped);
+  EXPECT_EQ(state.schedule.state(3), JobState::kNotPlanned);
+  EXPECT_EQ(fault_of(planned, state, 2),
+            "was not run, because the job a, which it needs, failed; to run that again: roomradar farm " +
+                (folder_.path() / "jobs.txt").string() + " --out " + out_.string() + " --job a");
+  EXPECT_EQ(fault_of(planned, state, 0), "exit status 3: no such room; see " + (out_ / "a.log").string());
+  EXPECT_EQ(fault_of(planned, state, 3), "");
+
+  (void)run(plan(jobs, a_and_c));
+  EXPECT_EQ(ran(), 1U);
+  (void)run(plan(jobs));
+  EXPECT_EQ(ran(), 1U) << "all jobs: what failed is tried again";
+
+  // A job with other words than the failed one was never run.
+  const std::string mended = "a: prescan write input {}\n" + jobs.substr(jobs.find('b'));
+  state = run(planned = plan(mended, c));
+  EXPECT_EQ(ran(), 3U);
+  EXPECT_EQ(fault_of(planned, state, 2), "");
+  // A failure that is not known: damaged, or of a job that was cancelled.
+  (void)run(plan(jobs));
+  write_bytes(out_ / "a.failed" / "failure.json", "[\"key\"");
+  (void)ran();
+  (void)run(plan(jobs, c));
+  EXPECT_EQ(ran(), 1U);
+}
+
+TEST_F(Farm, ACancelledNeedIsRunAgain) {
+  const std::string jobs = "a: prescan sleep x {}\nb: prescan join {a} {}\n";
+  std::thread cancel([this] {
+    while (!fs::exists(out_ / "a.running" / "result"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    is_cancelled_ = true;
+  });
+  const std::vector<std::size_t> b = {1};
+  (void)run(plan(jobs, b));
+  cancel.join();
+  EXPECT_TRUE(fs::exists(out_ / "a.failed"));
+  EXPECT_EQ(Schedule(plan(jobs, b)).count(JobState::kWaiting), 2U);
+}
+
 TEST_F(Farm, AFailureKeepsTheOlderResult) {
   (void)run(plan("a: prescan write input {}\n"));
   (void)run(plan("a: prescan fail x {}\n"));

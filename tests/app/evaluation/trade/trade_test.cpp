@@ -16,6 +16,7 @@
 #include "app/evaluation/pareto/pareto_front.hpp"
 #include "app/evaluation/pareto/sample_settings.hpp"
 #include "app/evaluation/pareto/sweep.hpp"
+#include "app/evaluation/pareto/sweep_jobs.hpp"
 #include "app/evaluation/trade/picture_judge.hpp"
 #include "app/evaluation/trade/prescan_work.hpp"
 #include "app/evaluation/trade/run_work.hpp"
@@ -23,6 +24,7 @@
 #include "app/evaluation/trade/trade_frames.hpp"
 #include "app/evaluation/trade/trade_page.hpp"
 #include "app/evaluation/trade/trade_presets.hpp"
+#include "app/farm/manifest.hpp"
 #include "app/sim/simulate.hpp"
 #include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/system/error.hpp"
@@ -492,6 +494,118 @@ TEST(Presets, AFrontSaysWhatAPartTakesInTheFramesThatHaveIt) {
   const test::TemporaryFolder folder;
   write_presets(presets, folder.path() / "p.json");
   EXPECT_EQ(read_presets(folder.path() / "p.json").front[1].run, presets.front[1].run);
+}
+
+TEST(SettingWords, MakeTheSameSettingAndWrongOnesAreNamed) {
+  for (const std::vector<Parameter>& parameters : {scan_parameters(), run_parameters(5)})
+    for (const Setting& setting : draw_settings(parameters, 30, 1))
+      EXPECT_EQ(setting_from(parameters, setting_words(parameters, setting)), setting);
+  EXPECT_EQ(setting_words(kParameters, {2, 1, 0}), "default");
+  EXPECT_EQ(setting_from(kParameters, "default"), default_setting(kParameters));
+  EXPECT_EQ(setting_words(kParameters, {0, 0, 0}), "fine=4,how=fast");
+  const auto fault = [](const std::string& words) {
+    return test::error_of([&] { (void)setting_from(kParameters, words); });
+  };
+  for (const char* wrong : {"", "fine", "fine=", "fine=3", "finer=4", "fine=4,", "fine=4,fine=2", "=", ","})
+    EXPECT_NE(fault(wrong).find("setting " + std::string(wrong) + ": "), std::string::npos) << wrong;
+  EXPECT_NE(fault("fine=3").find("4, 2, 1"), std::string::npos);
+}
+
+/// A simulated machine that measures the settings as jobs of a folder.
+struct JobFolder {
+  test::TemporaryFolder folder;
+  Machine machine;
+  MeasuredWork work = machine.work();
+  std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}, {2, 0, 0}};
+
+  std::filesystem::path file(std::size_t scene, std::size_t setting) const {
+    return folder.path() / sweep_job_name(work, scene, settings[setting]) / "rows.json";
+  }
+  /// As the job's process does.
+  void run_job(std::size_t scene, std::size_t setting) {
+    MeasuredWork of_job = work;
+    of_job.scenes = {work.scenes[scene]};
+    of_job.open = [&, scene](std::size_t) { return work.open(scene); };
+    std::filesystem::create_directories(file(scene, setting).parent_path());
+    write_sweep_rows(of_job, sweep(of_job, {{settings[setting]}, 2, 1}).rows, file(scene, setting));
+  }
+  void run_all() {
+    for (std::size_t scene = 0; scene < 2; ++scene)
+      for (std::size_t setting = 0; setting < settings.size(); ++setting) run_job(scene, setting);
+  }
+  std::vector<SweepRow> joined(const std::map<std::string, std::string>& faults = {}) const {
+    return joined_sweep_rows(work, settings, 2, folder.path(), faults);
+  }
+};
+
+TEST(SweepJobs, AreOnePerSettingAndSceneAndMeasureWhatTheSweepDoes) {
+  JobFolder jobs;
+  jobs.run_all();
+  const auto by_jobs = summarise(jobs.work, jobs.settings, jobs.joined());
+  const auto alone = summarise(jobs.work, jobs.settings, sweep(jobs.work, {jobs.settings, 2, 1}).rows);
+  ASSERT_EQ(by_jobs.size(), alone.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    EXPECT_EQ(by_jobs[i].rows, alone[i].rows);
+    EXPECT_EQ(by_jobs[i].is_complete, alone[i].is_complete);
+    for (std::size_t f = 0; f < alone[i].figures.size(); ++f)
+      EXPECT_TRUE(by_jobs[i].figures[f] == alone[i].figures[f] || std::isnan(alone[i].figures[f])) << i << f;
+  }
+  // Settings that cannot be done are results, too.
+  EXPECT_EQ(jobs.joined()[4].fault, "cannot be done");
+
+  const std::string text =
+      sweep_manifest(jobs.work, jobs.settings, [](std::size_t scene) { return scene == 0 ? " A" : " B"; });
+  const Manifest manifest = parse_manifest(text, "/jobs.txt");
+  const std::vector<std::string> names = sweep_job_names(jobs.work, jobs.settings);
+  ASSERT_EQ(manifest.jobs.size(), 6U);
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(manifest.jobs[i].name, names[i]);
+  EXPECT_EQ(manifest.jobs[4].name, "work-1-110");
+  EXPECT_EQ(manifest.jobs[4].words, (std::vector<std::string>{"trade", "--only", "work", "--setting",
+                                                              "fine=2", "B", "--rows", "{}/rows.json"}));
+}
+
+TEST(SweepJobs, AFailedJobLeavesRowsWithItsFaultAndTheOthersCount) {
+  JobFolder jobs;
+  jobs.run_all();
+  TradeResult result{.work = jobs.work, .settings = jobs.settings, .is_by_jobs = true};
+  result.rows = jobs.joined({{"work-1-110", "was killed: Killed"}});
+  ASSERT_EQ(result.rows.size(), 12U);
+  result.summaries = summarise(result.work, result.settings, result.rows);
+  result.choice = choose_presets(result.work, result.summaries, 0);
+  EXPECT_EQ(result.summaries[0].rows, 4);
+  EXPECT_EQ(result.summaries[1].rows, 2);
+  EXPECT_FALSE(result.summaries[1].is_complete) << "its errors are of another scene than the default's";
+  EXPECT_EQ(faults_of(result),
+            (std::vector<std::string>{"how fast, in a: cannot be done",
+                                      "fine 2, in b: job work-1-110: was killed: Killed"}));
+  write_trade_page({result}, {}, jobs.folder.path() / "page.html");
+  const std::string page = text_of(jobs.folder.path() / "page.html");
+  EXPECT_NE(page.find("<b>Not measured:</b> fine 2, in b: job work-1-110: was killed"), std::string::npos);
+  EXPECT_NE(page.find("Times are not comparable"), std::string::npos);
+  TradeCsv csv(jobs.folder.path() / "rows.csv", {result.work});
+  for (const SweepRow& row : result.rows) csv.write(result.work, result.settings, row);
+  EXPECT_NE(text_of(jobs.folder.path() / "rows.csv").find("job work-1-110: was killed: Killed,2,slow,1,,,\n"),
+            std::string::npos);
+}
+
+TEST(SweepJobs, ADamagedFileIsNamed) {
+  JobFolder jobs;
+  jobs.run_all();
+  const std::string good = text_of(jobs.file(0, 1));
+  const auto fault = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    std::ofstream(jobs.file(0, 1)) << text;
+    return test::error_of([&] { (void)jobs.joined(); });
+  };
+  for (const std::string& message :
+       {fault("{", ""), fault("roomradar measurements", "roomradar scenarios"),
+        fault("\"version\":1", "\"version\":2"), fault("error_m", "other_m"),
+        fault("\"repeat\":1", "\"repeat\":2"), fault("\"fault\":\"\"", "\"fault\":0"),
+        fault("\"measurements\":[", "\"measurements\":3,\"x\":[")})
+    EXPECT_NE(message.find("work-0-110/rows.json: "), std::string::npos) << message;
+  std::filesystem::remove(jobs.file(0, 1));
+  EXPECT_NE(test::error_of([&] { (void)jobs.joined(); }).find("work-0-110/rows.json"), std::string::npos);
 }
 
 TEST(TradeFiles, CsvFieldsAreQuotedWhereTheyMustBe) {
