@@ -49,8 +49,6 @@ GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fus
     revision.verdicts = votes.verdicts();
     if (revision.voxels() == 0) return;
     const GhostZone zone(revision.verdicts, map.resolution_m());
-    for (std::vector<VoxelIndex>* voxels : {&revision.verdicts.still, &revision.verdicts.unseen})
-      std::erase_if(*voxels, [&](const VoxelIndex& voxel) { return !zone.reaches(voxel); });
     map.revise_samples([&](const SurfaceSample& sample) { return zone.fate_of(sample); });
   });
   return revision;

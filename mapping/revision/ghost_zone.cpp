@@ -113,6 +113,12 @@ bool GhostZone::reaches(const VoxelIndex& voxel) const {
   return false;
 }
 
+bool GhostZone::touches(const VoxelIndex& first) const {
+  for (int i = 0; i < kCellsRound; ++i)
+    if (marks_.contains(voxel_key(first + kBrickEdge * neighbour_offset(i)))) return true;
+  return false;
+}
+
 const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {
   const auto found = marks_.find(voxel_key(brick_of(voxel)));
   return found == marks_.end() ? nullptr : &found->second;

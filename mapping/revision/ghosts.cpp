@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/revision/ghost_zone.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/system/parallel_for.hpp"
 #include "mapping/types/validity.hpp"
@@ -199,14 +200,18 @@ bool GhostVotes::is_share(int part, int others) const {
 }
 
 template <typename Visit>
+void GhostVotes::for_each_voxel_of(const CellBrick& brick, const Visit& visit) const {
+  for (std::size_t i = brick.begin; i < brick.end; ++i) {
+    const VoxelIndex lowest = brick.first + in_brick(votes_[i].offset);
+    const int voxels = votes_[i].coarse != 0 ? 8 : 1;
+    for (int v = 0; v < voxels; ++v)
+      visit(VoxelIndex(lowest + Eigen::Vector3i(v & 1, v >> 1 & 1, v >> 2)), static_cast<std::uint32_t>(i));
+  }
+}
+
+template <typename Visit>
 void GhostVotes::for_each_voxel(const Visit& visit) const {
-  for (const CellBrick& brick : bricks_)
-    for (std::size_t i = brick.begin; i < brick.end; ++i) {
-      const VoxelIndex lowest = brick.first + in_brick(votes_[i].offset);
-      const int voxels = votes_[i].coarse != 0 ? 8 : 1;
-      for (int v = 0; v < voxels; ++v)
-        visit(VoxelIndex(lowest + Eigen::Vector3i(v & 1, v >> 1 & 1, v >> 2)), static_cast<std::uint32_t>(i));
-    }
+  for (const CellBrick& brick : bricks_) for_each_voxel_of(brick, visit);
 }
 
 template <typename AreSuch>
@@ -276,16 +281,25 @@ GhostVotes::Verdicts GhostVotes::verdicts() const {
   const std::vector<Fate> fates = this->fates();
   Verdicts verdicts;
   for_each_voxel([&](const VoxelIndex& voxel, std::uint32_t i) {
-    const Votes& votes = votes_[i];
-    if (fates[i] == Fate::kGhost)
-      verdicts.ghosts.push_back(voxel);
-    else if (fates[i] == Fate::kAbsent)
-      verdicts.absent.push_back(voxel);
-    else if (votes.seen == 0 && votes.through == 0 && votes.glimpsed == 0)
-      verdicts.unseen.push_back(voxel);
-    else if (votes.occupied != 0)
-      verdicts.still.push_back(voxel);
+    if (fates[i] == Fate::kGhost) verdicts.ghosts.push_back(voxel);
+    if (fates[i] == Fate::kAbsent) verdicts.absent.push_back(voxel);
   });
+
+  // What stays is all of the room. Only what is near the removed voxels is needed.
+  const GhostZone zone(verdicts, resolution_m_);
+  const auto is_seen = [](const Votes& votes) {
+    return votes.seen != 0 || votes.through != 0 || votes.glimpsed != 0;
+  };
+  for (const CellBrick& brick : bricks_) {
+    if (!zone.touches(brick.first)) continue;
+    for_each_voxel_of(brick, [&](const VoxelIndex& voxel, std::uint32_t i) {
+      if (fates[i] != Fate::kStill || !zone.reaches(voxel)) return;
+      if (!is_seen(votes_[i]))
+        verdicts.unseen.push_back(voxel);
+      else if (votes_[i].occupied != 0)
+        verdicts.still.push_back(voxel);
+    });
+  }
   return verdicts;
 }
 

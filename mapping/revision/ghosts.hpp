@@ -32,10 +32,12 @@ class GhostVotes {
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects through which frames see
     std::vector<VoxelIndex> absent;  ///< voxels of departed objects without measured depth behind
-    std::vector<VoxelIndex> still;   ///< other occupied surface that a frame observed
-    std::vector<VoxelIndex> unseen;  ///< surface of an earlier scan, which no frame measured or saw through
+    /// Other occupied surface that a frame observed, where the GhostZone of `ghosts` and `absent` reaches.
+    std::vector<VoxelIndex> still;
+    /// Surface of an earlier scan, which no frame measured or saw through, where that zone reaches.
+    std::vector<VoxelIndex> unseen;
   };
-  /// Classifies all voxels. Each list is in Morton order.
+  /// Classifies the voxels. Each list is in Morton order.
   [[nodiscard]] Verdicts verdicts() const;
 
  private:
@@ -50,7 +52,10 @@ class GhostVotes {
     // Number of frames that see through the voxel in its pixel, but not in the whole window.
     std::uint16_t glimpsed = 0;
   };
-  // Calls visit(voxel, index in votes_) for each voxel of the surface cells, in Morton order.
+  // Calls visit(voxel, index in votes_) for each voxel of a brick's surface cells, in Morton order.
+  template <typename Visit>
+  void for_each_voxel_of(const CellBrick& brick, const Visit& visit) const;
+  // As for_each_voxel_of(), of all bricks.
   template <typename Visit>
   void for_each_voxel(const Visit& visit) const;
   // Returns the voxels for which are_such(votes, absence votes) is true.

@@ -465,17 +465,51 @@ TEST(Ghosts, ASecondLookThatIsCutOffGoesOnToTheSameMap) {
 }
 
 TEST(Ghosts, FramesThatDoNotFitTheirCameraSayNothing) {
+  // Something stands before the wall in the last frames. The others see through where it is.
+  const Scene with_box = before_wall({-0.3, 1.2, -0.3}, {0.3, 1.4, 0.3});
   StaticMap map(kResolution_m);
-  const auto frames = record(3, [](int) { return wall(); });
+  const auto frames = record(24, [&](int i) { return i < 14 ? wall() : with_box; });
   for (const Frame& frame : frames) ASSERT_EQ(map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
   GhostVotes votes(map);
-  Frame wrong = frames[0];
+  for (const Frame& frame : frames) votes.look(frame, *frame.T_world_camera);
+  const auto ghosts = votes.verdicts().ghosts.size();
+  EXPECT_GT(ghosts, 100U);
+  Frame wrong = frames[20];  // would say that the box is there
   wrong.depth_camera.width_px = 80;
-  for (int i = 0; i < 5; ++i) votes.look(wrong, *wrong.T_world_camera);
+  for (int i = 0; i < 500; ++i) votes.look(wrong, *wrong.T_world_camera);
   votes.look(Frame{}, Eigen::Isometry3d::Identity());
-  EXPECT_TRUE(votes.verdicts().ghosts.empty());
-  EXPECT_TRUE(votes.verdicts().still.empty());
-  EXPECT_FALSE(votes.verdicts().unseen.empty());
+  EXPECT_EQ(votes.verdicts().ghosts.size(), ghosts);
+  for (int i = 0; i < 500; ++i) votes.look(frames[20], *frames[20].T_world_camera);
+  EXPECT_LT(votes.verdicts().ghosts.size(), ghosts) << "the right ones count";
+}
+
+TEST(Ghosts, WhatStaysIsListedNearWhatGoesAlone) {
+  const Scene beside_it = before_wall({0.3, 1.2, -0.3}, {0.6, 1.4, 0.3});
+  const Scene with_box = test::nearest_of(beside_it, before_wall({-0.3, 1.2, -0.3}, {0.3, 1.4, 0.3}));
+  StaticMap map(kResolution_m);
+  const auto frames = record(24, [&](int i) { return i < 14 ? beside_it : with_box; });
+  for (const Frame& frame : frames) ASSERT_EQ(map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+  GhostVotes votes(map);
+  for (const Frame& frame : frames) votes.look(frame, *frame.T_world_camera);
+  const GhostVotes::Verdicts verdicts = votes.verdicts();
+  const GhostZone zone(verdicts, kResolution_m);
+  std::size_t beside = 0;
+  map.visit_samples([&](const SurfaceSample& sample) {
+    if (sample.occupancy == Occupancy::kOccupied && zone.reaches(sample.voxel)) ++beside;
+  });
+  ASSERT_GT(beside, verdicts.ghosts.size() + 100U);
+  EXPECT_GT(verdicts.ghosts.size(), 100U);
+  for (const VoxelIndex& voxel : verdicts.still) EXPECT_TRUE(zone.reaches(voxel));
+  // All of the occupied surface that the zone reaches is a ghost, absent, still or unseen.
+  EXPECT_GE(verdicts.ghosts.size() + verdicts.absent.size() + verdicts.still.size() + verdicts.unseen.size(),
+            beside);
+  StaticMap still_map(kResolution_m);
+  const auto of_wall = record(8, [](int) { return wall(); });
+  for (const Frame& frame : of_wall)
+    ASSERT_EQ(still_map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+  GhostVotes nothing_goes(still_map);
+  for (const Frame& frame : of_wall) nothing_goes.look(frame, *frame.T_world_camera);
+  EXPECT_TRUE(nothing_goes.verdicts().still.empty());
 }
 
 TEST(Ghosts, AnEmptyMapHasNone) {
