@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "mapping/types/depth_noise.hpp"
 
@@ -12,6 +13,11 @@ namespace {
 constexpr int kMostMeasurements = 60;  // then the mean becomes a moving average
 
 }  // namespace
+
+double view_distance(const Eigen::Isometry3d& T_a_b) {
+  constexpr double kFar_m = 0.8, kFar_rad = 35.0 * std::numbers::pi / 180.0;
+  return T_a_b.translation().norm() / kFar_m + Eigen::AngleAxisd(T_a_b.linear()).angle() / kFar_rad;
+}
 
 StoredView store(const ViewPyramid& pyramid, const Image<std::uint8_t>& measured) {
   const ViewPyramid::Level& finest = pyramid.levels.front();

@@ -35,6 +35,10 @@ struct Keyframe {
   CameraVelocity velocity = {};  ///< of the camera at `frame_index`
 };
 
+/// Returns a measure of how much two viewpoints differ: distance / 0.8 m + angle / 35 degrees. At 1, the two
+/// views hardly overlap.
+double view_distance(const Eigen::Isometry3d& T_a_b);
+
 /// Returns the pyramid's finest level in compact form. `measured` must have that level's size.
 StoredView store(const ViewPyramid& pyramid, const Image<std::uint8_t>& measured);
 

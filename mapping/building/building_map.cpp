@@ -10,8 +10,8 @@
 #include <string>
 #include <unordered_map>
 
+#include "mapping/alignment/keyframe.hpp"
 #include "mapping/localization/keyframe_database_file.hpp"
-#include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

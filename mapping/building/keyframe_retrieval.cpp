@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
+#include "mapping/alignment/keyframe.hpp"
 #include "mapping/localization/place_matching.hpp"
-#include "mapping/odometry/keyframe_graph.hpp"
 
 namespace roomradar {
 namespace {

@@ -2,7 +2,6 @@
 #include "mapping/odometry/keyframe_graph.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <span>
 #include <utility>
 
@@ -70,11 +69,6 @@ PoseConstraint weighed_by_likeness(PoseConstraint constraint) {
 }
 
 }  // namespace
-
-double view_distance(const Eigen::Isometry3d& T_a_b) {
-  constexpr double kFar_m = 0.8, kFar_rad = 35.0 * std::numbers::pi / 180.0;
-  return T_a_b.translation().norm() / kFar_m + Eigen::AngleAxisd(T_a_b.linear()).angle() / kFar_rad;
-}
 
 std::vector<std::size_t> keyframes_near(std::span<const Keyframe> keyframes,
                                         const Eigen::Isometry3d& T_world_camera, double furthest) {

@@ -47,10 +47,6 @@ struct ConnectConfig {
   KeyframeGraphConfig graph;
 };
 
-/// Returns a measure of how much two viewpoints differ: distance / 0.8 m + angle / 35 degrees. At 1, the two
-/// views hardly overlap.
-double view_distance(const Eigen::Isometry3d& T_a_b);
-
 /// Returns the indices of all keyframes whose view_distance() to a camera pose is less than `furthest`,
 /// nearest first.
 std::vector<std::size_t> keyframes_near(std::span<const Keyframe> keyframes,
