@@ -232,10 +232,10 @@ TEST(TileWindow, DamagedAndMissingTilesAreNamedAndSurvived) {
   ASSERT_GE(near.size(), 4U);
   const std::string cut = tiles.building.tiles[near[0]].mesh.name;
   fs::resize_file(copy.path() / cut, fs::file_size(copy.path() / cut) / 2);
-  const std::string missing = tiles.building.tiles[near[1]].octree.name;
+  const std::string missing = tiles.building.tiles[near[1]].unknown.name;
   fs::remove(copy.path() / missing);
-  const std::string altered = tiles.building.tiles[near[2]].octree.name;
-  std::string bytes = read_bytes(copy.path() / altered, "octree");
+  const std::string altered = tiles.building.tiles[near[2]].unknown.name;
+  std::string bytes = read_bytes(copy.path() / altered, "unknown space");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
   write_bytes(copy.path() / altered, bytes);
 
