@@ -106,7 +106,7 @@ std::vector<std::size_t> TileWindow::in_view_of(const Frame& frame,
       points_world.push_back(T_world_camera * back_project(frame.depth_camera, x, y,
                                                            static_cast<double>(frame.depth_m.at(x, y))));
     }
-  return tiles_with(config_.building, points_world);
+  return tiles_in_view(config_.building, T_world_camera.translation(), points_world);
 }
 
 std::vector<std::size_t> TileWindow::chosen_at(const Eigen::Vector3d& position_world,
