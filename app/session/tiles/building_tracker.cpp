@@ -20,15 +20,18 @@ Tracking begin_at(Locator& locator, const Frame& frame, const Eigen::Isometry3d&
                   const ExpectedDepth& expected_depth) {
   constexpr double kMaxShift_m = 0.15, kMaxShift_rad = 0.1;
   constexpr double kMinAlike = 0.5, kMaxFarther = 0.15, kMinCovered = 0.2;
+  constexpr double kMinAlikeOpen = 0.95, kMaxFartherOpen = 0.02;  // of a pose that depth does not constrain
   locator.T_world_camera = T_world_place;
   locator.T_last_now.setIdentity();
   const Tracking tracking = locate(locator, frame, KeyframeDatabase{}, {}, expected_depth);
   if (has_pose(tracking)) {
     const DepthAgreement agreement =
         depth_agreement_of(frame.depth_m, expected_depth(tracking.T_world_camera));
+    const bool is_open = tracking.status == TrackStatus::kDegenerate;
     if (is_near(tracking.T_world_camera, T_world_place, kMaxShift_m, kMaxShift_rad) &&
-        agreement.both > kMinCovered * agreement.valid && agreement.alike_part() > kMinAlike &&
-        agreement.farther_part() < kMaxFarther)
+        agreement.both > kMinCovered * agreement.valid &&
+        agreement.alike_part() > (is_open ? kMinAlikeOpen : kMinAlike) &&
+        agreement.farther_part() < (is_open ? kMaxFartherOpen : kMaxFarther))
       return tracking;
   }
   forget_pose(locator);
@@ -52,7 +55,7 @@ void BuildingTracker::judge(const Frame& frame, const Tracking& tracking, const 
 }
 
 bool BuildingTracker::is_support_outdated(double stamp_s) const {
-  constexpr double kMaxFollowed_s = 0.25;  // 0.25 m at a quick walk
+  constexpr double kMaxFollowed_s = 0.15;  // 0.15 m at a quick walk
   return !supported_s_ || !(std::abs(stamp_s - *supported_s_) <= kMaxFollowed_s);
 }
 
@@ -66,7 +69,7 @@ Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
                                  const ExpectedDepth& expected_depth) {
   // A pose farther than this from the place that the frame shows is wrong. One without support is replaced
   // much earlier.
-  constexpr double kElsewhere_m = 0.25, kElsewhere_rad = 0.15, kSlipped_m = 0.08, kSlipped_rad = 0.05;
+  constexpr double kElsewhere_m = 0.25, kElsewhere_rad = 0.15, kSlipped_m = 0.05, kSlipped_rad = 0.03;
   // Without keyframes, the camera is followed, also after a short loss, but not searched.
   Tracking tracking = roomradar::locate(locator, frame, KeyframeDatabase{}, dynamic_mask, expected_depth);
   if (has_pose(tracking)) judge(frame, tracking, expected_depth(tracking.T_world_camera));

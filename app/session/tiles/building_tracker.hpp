@@ -19,7 +19,7 @@ namespace roomradar {
 /// contradicts the pose, else after 3 frames, then every 5 frames.
 ///
 /// A pose is supported if depth constrains it and surface is loaded in a good part of the view, or if the
-/// frame shows that place. Others are followed for 0.25 s after the last supported one, then given up: their
+/// frame shows that place. Others are followed for 0.15 s after the last supported one, then given up: their
 /// error grows with the camera's motion.
 class BuildingTracker {
  public:
@@ -40,7 +40,7 @@ class BuildingTracker {
   }
 
   [[nodiscard]] const TileWindow& tiles() const { return tiles_; }
-  /// Returns true if a tile could not be read, and take_fault() has not yet returned why.
+  /// See TileWindow::has_fault().
   [[nodiscard]] bool has_fault() const { return tiles_.has_fault(); }
   std::string take_fault() { return tiles_.take_fault(); }
   /// Numbers of untracked frames whose place was recognised, or refused because another fits as well.
