@@ -40,7 +40,7 @@ Tracking begin_at(Locator& locator, const Frame& frame, const Eigen::Isometry3d&
 
 }  // namespace
 
-void BuildingTracker::judge(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m) {
+bool BuildingTracker::judge(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m) {
   // A hand in front of the camera covers less than half of the image, and nothing is seen through a surface.
   constexpr double kMaxFarther = 0.05, kMinAlike = 0.5, kRefutedFarther = 0.1, kRefutedAlike = 0.4;
   constexpr double kMinCovered = 0.3;
@@ -52,6 +52,7 @@ void BuildingTracker::judge(const Frame& frame, const Tracking& tracking, const 
       tracking.status == TrackStatus::kTracked && agreement.both >= kMinCovered * agreement.valid;
   if (is_supported) supported_s_ = frame.stamp_s;
   doubtful_frames_ = is_contradicted_ || !is_supported ? doubtful_frames_ + 1 : 0;
+  return is_supported;
 }
 
 bool BuildingTracker::is_support_outdated(double stamp_s) const {
@@ -72,18 +73,18 @@ Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
   constexpr double kElsewhere_m = 0.25, kElsewhere_rad = 0.15, kSlipped_m = 0.05, kSlipped_rad = 0.03;
   // Without keyframes, the camera is followed, also after a short loss, but not searched.
   Tracking tracking = roomradar::locate(locator, frame, KeyframeDatabase{}, dynamic_mask, expected_depth);
-  if (has_pose(tracking)) judge(frame, tracking, expected_depth(tracking.T_world_camera));
+  const bool is_supported =
+      has_pose(tracking) && judge(frame, tracking, expected_depth(tracking.T_world_camera));
   const bool is_unsupported = has_pose(tracking) && is_support_outdated(frame.stamp_s);
   const std::optional<Eigen::Isometry3d> T_world_last_place = std::exchange(T_world_place_, std::nullopt);
   if (!has_pose(tracking) || is_unsupported || is_recheck_due()) {
     const RecognisedPlace place = recognise_place(frame, keyframe_database, locator.relocalise);
     if (place.status == PlaceStatus::kAmbiguous) ++ambiguous_;
     if (place) ++recognised_;
-    const bool is_constrained = tracking.status == TrackStatus::kTracked;
     const bool is_same =
         has_pose(tracking) && place &&
-        is_near(place.T_world_camera, tracking.T_world_camera, is_constrained ? kElsewhere_m : kSlipped_m,
-                is_constrained ? kElsewhere_rad : kSlipped_rad);
+        is_near(place.T_world_camera, tracking.T_world_camera, is_supported ? kElsewhere_m : kSlipped_m,
+                is_supported ? kElsewhere_rad : kSlipped_rad);
     if (is_same) supported_s_ = frame.stamp_s;
     if (has_pose(tracking) && !is_same && (place || is_refuted_ || is_unsupported)) {
       tracking = {};

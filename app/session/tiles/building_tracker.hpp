@@ -58,7 +58,8 @@ class BuildingTracker {
       T_world_place_;  ///< place recognised in the last frame, if it was untracked
 
   /// Judges a tracked pose. Counts consecutive frames with a doubtful one: contradicted or not supported.
-  void judge(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m);
+  /// Returns true if it is supported by depth.
+  bool judge(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m);
   [[nodiscard]] bool is_recheck_due() const;
   /// Returns true if the last supported pose is too old to follow a pose without support.
   [[nodiscard]] bool is_support_outdated(double stamp_s) const;
