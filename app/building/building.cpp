@@ -129,6 +129,7 @@ BuildingTile adopted_tile(const BuildingWork& work, const std::string& name, con
   tile.octree = adopt(job / "tile.octree", work.folder, stem, ".octree", hashes);
   tile.mesh = adopt(job / "tile.mesh", work.folder, stem, ".mesh", hashes);
   tile.glb = adopt(job / "tile.glb", work.folder, stem, ".glb", hashes);
+  tile.unknown = adopt(job / "tile.unknown", work.folder, stem, ".unknown", hashes);
   return tile;
 }
 
@@ -144,7 +145,7 @@ bool is_keyframe_file(const fs::path& path) {
 void delete_others(const BuildingInfo& info, const fs::path& folder) {
   std::set<std::string> used;
   for (const BuildingTile& tile : info.tiles)
-    for (const ContentFile* file : {&tile.octree, &tile.mesh, &tile.glb}) used.insert(file->name);
+    for (const ContentFile* file : files_of(tile)) used.insert(file->name);
   for (const BuildingRecording& recording : info.recordings) used.insert(recording.keyframe_file.name);
   std::vector<fs::path> others;
   for (const char* part : {kTilesFolder, kRecordingsFolder})

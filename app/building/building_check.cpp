@@ -7,6 +7,7 @@
 #include "app/building/tileset.hpp"
 #include "mapping/building/building_info.hpp"
 #include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
@@ -64,6 +65,18 @@ void check_glb(const fs::path& path) {
   require_that(read_bytes(path, "a tile's surface").starts_with("glTF"), path, "is no .glb file");
 }
 
+void check_unknown(const fs::path& path, const TileGrid& grid, const TileIndex& tile) {
+  constexpr double kMargin_cells = 8.0;  // unknown cells are kept that far round the tile's known space
+  const CellGrid cells = read_unknown_surface(path).grid;
+  const Eigen::AlignedBox3d cube = box_of(grid, tile);
+  const Eigen::Vector3d margin_m = Eigen::Vector3d::Constant(kMargin_cells * cells.cell_m);
+  const Eigen::AlignedBox3d reach(cube.min() - margin_m, cube.max() + margin_m);
+  const Eigen::Vector3d low = cells.cell_m * cells.first_cell.cast<double>();
+  const Eigen::Vector3d high = low + cells.cell_m * cells.size.cast<double>();
+  require_that(cells.size.isZero() || (reach.contains(low) && reach.contains(high)), path,
+               "has unknown space far outside its tile");
+}
+
 void check_keyframes(const fs::path& path, const BuildingRecording& recording) {
   require_that(
       static_cast<std::int64_t>(read_keyframe_database(path).keyframes.size()) == recording.keyframes, path,
@@ -82,6 +95,10 @@ std::vector<std::string> verify_building(const fs::path& folder) {
     check_file(
         tile.mesh, folder, [&](const fs::path& path) { check_mesh(path, tile); }, faults);
     check_file(tile.glb, folder, check_glb, faults);
+    if (!tile.unknown.name.empty())
+      check_file(
+          tile.unknown, folder, [&](const fs::path& path) { check_unknown(path, info.grid, tile.index); },
+          faults);
   }
   for (const BuildingRecording& recording : info.recordings)
     if (!recording.keyframe_file.name.empty())

@@ -69,7 +69,7 @@ void print_summary(const BuildingOptions& options, const BuildingResult& result)
   std::uintmax_t bytes = 0;
   for (const BuildingTile& tile : result.info.tiles) {
     triangles += tile.triangles;
-    bytes += tile.octree.bytes + tile.mesh.bytes + tile.glb.bytes;
+    for (const ContentFile* file : files_of(tile)) bytes += file->bytes;
   }
   std::printf("%s: %zu tiles, %lld triangles, %.1f MB\n", options.folder.c_str(), result.info.tiles.size(),
               static_cast<long long>(triangles), 1e-6 * static_cast<double>(bytes));
@@ -216,6 +216,7 @@ void add_building_steps(CLI::App& app, std::function<int()>& work) {
     command.add_option("--tile", step.tile)->required();
     command.add_option("PART", step.parts)->required();
     command.add_option("--deviation", step.deviation_m)->required();
+    command.add_option("--unknown-cells", step.unknown_cells)->required();
     add_grid(command, step.grid);
   });
 }

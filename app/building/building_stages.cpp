@@ -127,6 +127,7 @@ Manifest tile_stage(const BuildingWork& work, const PartsByTile& parts_of) {
     for (const std::string& part : parts) lines.word(part);
     add_grid(lines, work.grid);
     lines.word("--deviation=" + format_number(work.deviation_m));
+    lines.word("--unknown-cells=" + format_number(kTileUnknownCells));
     lines.word("--out={}");
     lines.end();
   }

@@ -18,6 +18,7 @@
 #include "mapping/deskewed_source.hpp"
 #include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/map/level_surfaces.hpp"
+#include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/prescan_passes.hpp"
 #include "mapping/storage/binary_file.hpp"
@@ -201,6 +202,8 @@ int run(const TileStep& step) {
     own.add_evidence(map, lowest_voxel(step.grid, tile), step.grid.edge_voxels);
     own.write(step.out / "tile.octree");
     write_tile_mesh(mesh, step.out / "tile.mesh");
+    write_unknown_surface(unknown_surface(own, mesh, {.max_cells = step.unknown_cells}),
+                          step.out / "tile.unknown");
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3f& v : mesh.vertices) box.extend(mesh.origin + v.cast<double>());
     const auto array_of = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };

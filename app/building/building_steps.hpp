@@ -54,13 +54,18 @@ struct FuseStep {
 int run(const FuseStep& step);
 inline constexpr const char* kPlacedKeyframesFile = "keyframes.bin";
 
-/// Adds the parts of one tile, and extracts its surface. Writes out/tile.octree (the tile's cube), tile.mesh
-/// and tile.glb, or nothing but out/tile.json if the tile has no surface of its own.
+/// Max cells of a tile's unknown space: 2.5 MB of bits, cells of 2 cm in a tile of 5 m.
+inline constexpr double kTileUnknownCells = 2e7;
+
+/// Adds the parts of one tile, and extracts its surface and the border of its unknown space. Writes
+/// out/tile.octree (the tile's cube), tile.mesh, tile.glb and tile.unknown (of the cube alone, closed on all
+/// sides), or nothing but out/tile.json if the tile has no surface of its own.
 struct TileStep {
   std::string tile;                          ///< its name
   std::vector<std::filesystem::path> parts;  ///< files, in the order in which they are added
   TileGrid grid;
   double deviation_m = 0.002;
+  double unknown_cells = kTileUnknownCells;  ///< max cells of unknown space
   std::filesystem::path out;
 };
 int run(const TileStep& step);

@@ -44,7 +44,7 @@ BuildingSummary summarise_building(const fs::path& folder) {
     surfaces.insert(surfaces.end(), own.begin(), own.end());
     summary.surface_m2 += surface_area_m2(mesh);
     summary.triangles += tile.triangles;
-    summary.bytes += tile.octree.bytes + tile.mesh.bytes + tile.glb.bytes;
+    for (const ContentFile* file : files_of(tile)) summary.bytes += file->bytes;
     summary.surface_world.extend(tile.surface_world);
   }
   for (const BuildingRecording& recording : summary.info.recordings)
@@ -105,7 +105,7 @@ json json_of(const BuildingSummary& summary) {
                                    {"frames_tracked", one.frames_tracked},
                                    {"keyframes", one.keyframes},
                                    {"frames_placed", one.frames_placed}});
-  for (const BuildingTile& tile : summary.info.tiles)
+  for (const BuildingTile& tile : summary.info.tiles) {
     value["tiles"].push_back({{"name", name_of(tile.index)},
                               {"triangles", tile.triangles},
                               {"surface_min_m", array_of(tile.surface_world.min())},
@@ -113,6 +113,8 @@ json json_of(const BuildingSummary& summary) {
                               {"octree", tile.octree.name},
                               {"mesh", tile.mesh.name},
                               {"glb", tile.glb.name}});
+    if (!tile.unknown.name.empty()) value["tiles"].back()["unknown"] = tile.unknown.name;
+  }
   for (const BuildingFloor& floor : summary.floors)
     value["floors"].push_back({{"height_m", floor.height_m}, {"area_m2", floor.area_m2}});
   return value;

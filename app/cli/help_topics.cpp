@@ -168,7 +168,7 @@ constexpr std::string_view kHttp =
   GET /maps                          names and kinds (building, room) of the maps
   GET /maps/NAME                     facts, as `roomradar map info --json`: files, extents, floors
   GET /maps/NAME/tileset.json        a building for viewers of 3D Tiles 1.1; its tiles are below tiles/
-  GET /maps/NAME/tiles/FILE          .glb, .mesh or .octree of a tile; only files that the facts list
+  GET /maps/NAME/tiles/FILE          .glb, .mesh, .octree, .unknown of a tile; only files that the facts list
   GET /maps/NAME/mesh.ply            surface of a room; also texture.jpg
   POST /maps/NAME/locate             pose of a camera in this map
   POST /locate                       the same in all maps; refused if two of them fit

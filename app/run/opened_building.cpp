@@ -39,6 +39,13 @@ OpenedBuilding open_building(const RunOptions& options, const Script& script) {
   opened.tiles.max_process_bytes = static_cast<std::size_t>(kMB * options.max_memory_mb);
   const BuildingInfo& building = opened.tiles.building;
   if (building.tiles.empty()) throw Error(options.map + ": has no tiles; was any recording placed?");
+  if (options.unknown_is_solid &&
+      std::any_of(building.tiles.begin(), building.tiles.end(),
+                  [](const BuildingTile& tile) { return tile.unknown.name.empty(); }))
+    throw Error(
+        options.map +
+        ": has no borders of unknown space, since an earlier version made it; run `roomradar building` "
+        "once more with the same recordings, or add --unknown free");
   mmap_large_allocations();  // tiles come and go: their memory goes back to the system
 
   const double keyframes_mb = kKeyframesPart * options.max_memory_mb;

@@ -46,7 +46,7 @@ void MapSnapshot::read_building_map() {
   info_text_ = json_of(summary).dump();
   tileset_text_ = roomradar::tileset_text(summary.info);
   for (const BuildingTile& tile : summary.info.tiles) {
-    for (const ContentFile* file : {&tile.octree, &tile.mesh, &tile.glb}) files_[file->name] = *file;
+    for (const ContentFile* file : files_of(tile)) files_[file->name] = *file;
     tiles_.push_back({name_of(tile.index), tile.surface_world, tile.glb.name});
   }
 }

@@ -174,6 +174,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
 FrameResult Session::pass_unlocated(const Frame& frame, TrackStatus tracking) {
   FrameResult result;
   result.tracking = tracking;
+  result.notices = objects_.take_notices();
   if (config_.make_picture) composer_.show_camera_alone(frame);
   result.picture_is_new = config_.make_picture;
   composer_.end_frame(std::nullopt);

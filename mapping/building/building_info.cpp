@@ -55,6 +55,7 @@ BuildingTile tile_of(const json& value) {
   tile.octree = content_file_of(value.at("octree"));
   tile.mesh = content_file_of(value.at("mesh"));
   tile.glb = content_file_of(value.at("glb"));
+  if (value.contains("unknown")) tile.unknown = content_file_of(value.at("unknown"));
   return tile;
 }
 
@@ -85,6 +86,12 @@ BuildingInfo info_of(const json& value) {
 }
 
 }  // namespace
+
+std::vector<const ContentFile*> files_of(const BuildingTile& tile) {
+  std::vector<const ContentFile*> files = {&tile.octree, &tile.mesh, &tile.glb};
+  if (!tile.unknown.name.empty()) files.push_back(&tile.unknown);
+  return files;
+}
 
 bool is_building(const fs::path& folder) {
   std::error_code ignored;
@@ -119,7 +126,7 @@ void write_building(const BuildingInfo& info, const fs::path& folder) {
     if (!one.keyframe_file.name.empty())
       value["recordings"].back()["keyframe_file"] = to_json(one.keyframe_file);
   }
-  for (const BuildingTile& tile : info.tiles)
+  for (const BuildingTile& tile : info.tiles) {
     value["tiles"].push_back({{"name", name_of(tile.index)},
                               {"triangles", tile.triangles},
                               {"surface_min_m", array_of(tile.surface_world.min())},
@@ -128,6 +135,8 @@ void write_building(const BuildingInfo& info, const fs::path& folder) {
                               {"octree", to_json(tile.octree)},
                               {"mesh", to_json(tile.mesh)},
                               {"glb", to_json(tile.glb)}});
+    if (!tile.unknown.name.empty()) value["tiles"].back()["unknown"] = to_json(tile.unknown);
+  }
   AtomicFile file(folder / kBuildingFile);
   file.stream() << value.dump(1) << "\n";
   file.commit();

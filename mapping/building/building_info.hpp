@@ -25,6 +25,9 @@ struct BuildingTile {
   ContentFile octree;                 ///< StaticMap::write(); only the tile's cube
   ContentFile mesh;                   ///< write_tile_mesh()
   ContentFile glb;                    ///< the same mesh relative to mesh_origin, y up
+  /// write_unknown_surface(): border of unknown space within the cube, closed towards other tiles. Without a
+  /// name if the building was made by an earlier version.
+  ContentFile unknown;
   Eigen::Vector3d mesh_origin = Eigen::Vector3d::Zero();
 };
 
@@ -51,6 +54,9 @@ inline constexpr const char* kBuildingFile = "building.json";
 inline constexpr const char* kTilesFolder = "tiles";
 /// Holds each recording's trajectory and keyframes in the building.
 inline constexpr const char* kRecordingsFolder = "recordings";
+
+/// Returns the tile's files that have a name.
+std::vector<const ContentFile*> files_of(const BuildingTile& tile);
 
 /// Returns true if the folder holds a building.
 bool is_building(const std::filesystem::path& folder);

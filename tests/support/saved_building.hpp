@@ -9,6 +9,7 @@
 #include "mapping/building/building_info.hpp"
 #include "mapping/building/tile_surface.hpp"
 #include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/sha256.hpp"
 
@@ -58,6 +59,7 @@ inline std::vector<Frame> write_small_building(const std::filesystem::path& fold
     own.add_evidence(map, lowest_voxel(info.grid, index), info.grid.edge_voxels);
     own.write(folder / (stem + ".octree"));
     write_tile_mesh(mesh, folder / (stem + ".mesh"));
+    write_unknown_surface(unknown_surface(own, mesh), folder / (stem + ".unknown"));
     for (const Eigen::Vector3f& v : mesh.vertices) tile.surface_world.extend(mesh.origin + v.cast<double>());
     tile.triangles = static_cast<std::int64_t>(mesh.triangles.size());
     tile.mesh_origin = mesh.origin;
@@ -66,6 +68,7 @@ inline std::vector<Frame> write_small_building(const std::filesystem::path& fold
     tile.octree = named_by_content(folder, stem, ".octree");
     tile.mesh = named_by_content(folder, stem, ".mesh");
     tile.glb = named_by_content(folder, stem, ".glb");
+    tile.unknown = named_by_content(folder, stem, ".unknown");
     info.tiles.push_back(tile);
   }
   const std::string stem = std::string(kRecordingsFolder) + "/one";

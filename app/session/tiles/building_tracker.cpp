@@ -1,6 +1,8 @@
 // building_tracker.cpp: tracking by locate(), search by recognise_place().
 #include "app/session/tiles/building_tracker.hpp"
 
+#include <cmath>
+
 namespace roomradar {
 namespace {
 
@@ -18,15 +20,18 @@ Tracking begin_at(Locator& locator, const Frame& frame, const Eigen::Isometry3d&
                   const ExpectedDepth& expected_depth) {
   constexpr double kMaxShift_m = 0.15, kMaxShift_rad = 0.1;
   constexpr double kMinAlike = 0.5, kMaxFarther = 0.15, kMinCovered = 0.2;
+  constexpr double kMinAlikeOpen = 0.95, kMaxFartherOpen = 0.02;  // of a pose that depth does not constrain
   locator.T_world_camera = T_world_place;
   locator.T_last_now.setIdentity();
   const Tracking tracking = locate(locator, frame, KeyframeDatabase{}, {}, expected_depth);
   if (has_pose(tracking)) {
     const DepthAgreement agreement =
         depth_agreement_of(frame.depth_m, expected_depth(tracking.T_world_camera));
+    const bool is_open = tracking.status == TrackStatus::kDegenerate;
     if (is_near(tracking.T_world_camera, T_world_place, kMaxShift_m, kMaxShift_rad) &&
-        agreement.both > kMinCovered * agreement.valid && agreement.alike_part() > kMinAlike &&
-        agreement.farther_part() < kMaxFarther)
+        agreement.both > kMinCovered * agreement.valid &&
+        agreement.alike_part() > (is_open ? kMinAlikeOpen : kMinAlike) &&
+        agreement.farther_part() < (is_open ? kMaxFartherOpen : kMaxFarther))
       return tracking;
   }
   forget_pose(locator);
@@ -35,16 +40,24 @@ Tracking begin_at(Locator& locator, const Frame& frame, const Eigen::Isometry3d&
 
 }  // namespace
 
-void BuildingTracker::count_doubt(const Frame& frame, const Tracking& tracking,
-                                  const DepthImage& expected_m) {
+bool BuildingTracker::judge(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m) {
   // A hand in front of the camera covers less than half of the image, and nothing is seen through a surface.
   constexpr double kMaxFarther = 0.05, kMinAlike = 0.5, kRefutedFarther = 0.1, kRefutedAlike = 0.4;
+  constexpr double kMinCovered = 0.3;
   const DepthAgreement agreement = depth_agreement_of(frame.depth_m, expected_m);
   const double farther = agreement.farther_part(), alike = agreement.alike_part();
   is_contradicted_ = farther > kMaxFarther || alike < kMinAlike;
   is_refuted_ = farther > kRefutedFarther || alike < kRefutedAlike;
-  doubtful_frames_ =
-      is_contradicted_ || tracking.status == TrackStatus::kDegenerate ? doubtful_frames_ + 1 : 0;
+  const bool is_supported =
+      tracking.status == TrackStatus::kTracked && agreement.both >= kMinCovered * agreement.valid;
+  if (is_supported) supported_s_ = frame.stamp_s;
+  doubtful_frames_ = is_contradicted_ || !is_supported ? doubtful_frames_ + 1 : 0;
+  return is_supported;
+}
+
+bool BuildingTracker::is_support_outdated(double stamp_s) const {
+  constexpr double kMaxFollowed_s = 0.15;  // 0.15 m at a quick walk
+  return !supported_s_ || !(std::abs(stamp_s - *supported_s_) <= kMaxFollowed_s);
 }
 
 bool BuildingTracker::is_recheck_due() const {
@@ -55,18 +68,25 @@ bool BuildingTracker::is_recheck_due() const {
 Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
                                  const KeyframeDatabase& keyframe_database, const MaskImage& dynamic_mask,
                                  const ExpectedDepth& expected_depth) {
-  constexpr double kElsewhere_m = 0.25, kElsewhere_rad = 0.15;  // then the tracked pose is wrong
+  // A pose farther than this from the place that the frame shows is wrong. One without support is replaced
+  // much earlier.
+  constexpr double kElsewhere_m = 0.25, kElsewhere_rad = 0.15, kSlipped_m = 0.05, kSlipped_rad = 0.03;
   // Without keyframes, the camera is followed, also after a short loss, but not searched.
   Tracking tracking = roomradar::locate(locator, frame, KeyframeDatabase{}, dynamic_mask, expected_depth);
-  if (has_pose(tracking)) count_doubt(frame, tracking, expected_depth(tracking.T_world_camera));
+  const bool is_supported =
+      has_pose(tracking) && judge(frame, tracking, expected_depth(tracking.T_world_camera));
+  const bool is_unsupported = has_pose(tracking) && is_support_outdated(frame.stamp_s);
   const std::optional<Eigen::Isometry3d> T_world_last_place = std::exchange(T_world_place_, std::nullopt);
-  if (!has_pose(tracking) || is_recheck_due()) {
+  if (!has_pose(tracking) || is_unsupported || is_recheck_due()) {
     const RecognisedPlace place = recognise_place(frame, keyframe_database, locator.relocalise);
     if (place.status == PlaceStatus::kAmbiguous) ++ambiguous_;
     if (place) ++recognised_;
-    const bool is_same = has_pose(tracking) && place &&
-                         is_near(place.T_world_camera, tracking.T_world_camera, kElsewhere_m, kElsewhere_rad);
-    if (has_pose(tracking) && !is_same && (place || is_refuted_)) {
+    const bool is_same =
+        has_pose(tracking) && place &&
+        is_near(place.T_world_camera, tracking.T_world_camera, is_supported ? kElsewhere_m : kSlipped_m,
+                is_supported ? kElsewhere_rad : kSlipped_rad);
+    if (is_same) supported_s_ = frame.stamp_s;
+    if (has_pose(tracking) && !is_same && (place || is_refuted_ || is_unsupported)) {
       tracking = {};
       forget_pose(locator);
     }
@@ -75,6 +95,7 @@ Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
       doubtful_frames_ = 0;
       if (tiles_.is_ready_for(frame, place.T_world_camera))
         tracking = begin_at(locator, frame, place.T_world_camera, expected_depth);
+      if (has_pose(tracking)) supported_s_ = frame.stamp_s;
       if (has_pose(tracking) && T_world_last_place)
         locator.T_last_now = T_world_last_place->inverse() * tracking.T_world_camera;
     }

@@ -17,6 +17,10 @@ namespace roomradar {
 /// frame, aligned with their surface, stays at that place. A place that looks like another is refused. A
 /// tracked pose that is doubtful is compared with the place that the frame shows: at once if the depth
 /// contradicts the pose, else after 3 frames, then every 5 frames.
+///
+/// A pose is supported if depth constrains it and surface is loaded in a good part of the view, or if the
+/// frame shows that place. Others are followed for 0.15 s after the last supported one, then given up: their
+/// error grows with the camera's motion.
 class BuildingTracker {
  public:
   /// Throws Error if the config is invalid. `context` must outlive the tracker.
@@ -36,7 +40,7 @@ class BuildingTracker {
   }
 
   [[nodiscard]] const TileWindow& tiles() const { return tiles_; }
-  /// Returns true if a tile could not be read, and take_fault() has not yet returned why.
+  /// See TileWindow::has_fault().
   [[nodiscard]] bool has_fault() const { return tiles_.has_fault(); }
   std::string take_fault() { return tiles_.take_fault(); }
   /// Numbers of untracked frames whose place was recognised, or refused because another fits as well.
@@ -49,12 +53,16 @@ class BuildingTracker {
   int doubtful_frames_ = 0;
   bool is_contradicted_ = false;  ///< depth does not agree well with the last tracked pose
   bool is_refuted_ = false;       ///< it agrees so badly that the pose is given up if no place is recognised
+  std::optional<double> supported_s_;  ///< stamp of the last frame whose pose was supported
   std::optional<Eigen::Isometry3d>
       T_world_place_;  ///< place recognised in the last frame, if it was untracked
 
-  /// Counts consecutive frames with a doubtful pose: contradicted, or not constrained by depth.
-  void count_doubt(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m);
+  /// Judges a tracked pose. Counts consecutive frames with a doubtful one: contradicted or not supported.
+  /// Returns true if it is supported by depth.
+  bool judge(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m);
   [[nodiscard]] bool is_recheck_due() const;
+  /// Returns true if the last supported pose is too old to follow a pose without support.
+  [[nodiscard]] bool is_support_outdated(double stamp_s) const;
 };
 
 }  // namespace roomradar

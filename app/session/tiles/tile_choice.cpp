@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/session/tiles/unloaded_space.hpp"
 #include "mapping/types/system/config_check.hpp"
 
 namespace roomradar {
@@ -14,9 +15,9 @@ namespace {
 constexpr double kTriangleBytes = 120.0;        // tree, renderer's copy, the rasteriser's pieces
 constexpr double kUnknownTriangleBytes = 15.0;  // border of unknown space, per triangle of the surface
 constexpr double kUnknownGridBytes = 3e6;
-constexpr double kOctreeExpansion = 4.0;  // octree in memory, relative to its file
-constexpr double kUnknownLoadingBytes = 25e6;
-constexpr double kMeshExpansion = 2.0;  // mesh and file while it is read
+constexpr double kUnknownLoadingBytes = 4e6;
+constexpr double kMeshExpansion =
+    3.0;  // mesh, its file and its tree while they are made, per byte of the file
 
 }  // namespace
 
@@ -34,8 +35,7 @@ std::size_t tile_bytes(const BuildingTile& tile, bool has_unknown) {
 }
 
 std::size_t loading_bytes(const BuildingTile& tile, bool has_unknown) {
-  const double unknown =
-      has_unknown ? kOctreeExpansion * static_cast<double>(tile.octree.bytes) + kUnknownLoadingBytes : 0.0;
+  const double unknown = has_unknown ? kUnknownLoadingBytes : 0.0;
   return static_cast<std::size_t>(kMeshExpansion * static_cast<double>(tile.mesh.bytes) + unknown);
 }
 
@@ -46,20 +46,23 @@ double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position
                   tile.surface_world.exteriorDistance(ahead_world));
 }
 
-std::vector<std::size_t> tiles_with(const BuildingInfo& building,
-                                    std::span<const Eigen::Vector3d> points_world) {
+std::vector<std::size_t> tiles_in_view(const BuildingInfo& building, const Eigen::Vector3d& position_world,
+                                       std::span<const Eigen::Vector3d> points_world) {
   constexpr double kMinPart = 0.05;
-  std::vector<std::pair<int, std::size_t>> holding;
+  constexpr double kReach = 1.05;  // of a ray, relative to its point: depth and poses have errors
+  std::vector<std::pair<int, std::size_t>> entered;
   for (std::size_t i = 0; i < building.tiles.size(); ++i) {
-    const Eigen::AlignedBox3d cube = box_of(building.grid, building.tiles[i].index);
-    const auto held = static_cast<int>(std::count_if(points_world.begin(), points_world.end(),
-                                                     [&](const auto& p) { return cube.contains(p); }));
-    if (held > 0 && held >= kMinPart * static_cast<double>(points_world.size()))
-      holding.emplace_back(-held, i);
+    const Eigen::AlignedBox3d& box = building.tiles[i].surface_world;
+    const auto rays = static_cast<int>(
+        std::count_if(points_world.begin(), points_world.end(), [&](const Eigen::Vector3d& p_world) {
+          return ray_entry(box, position_world, p_world - position_world) <= kReach;
+        }));
+    if (rays > 0 && rays >= kMinPart * static_cast<double>(points_world.size()))
+      entered.emplace_back(-rays, i);
   }
-  std::sort(holding.begin(), holding.end());
+  std::sort(entered.begin(), entered.end());
   std::vector<std::size_t> tiles;
-  for (const auto& [negative, i] : holding) tiles.push_back(i);
+  for (const auto& [negative, i] : entered) tiles.push_back(i);
   return tiles;
 }
 

@@ -29,9 +29,11 @@ std::size_t loading_bytes(const BuildingTile& tile, bool has_unknown);
 double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position_world,
                        const Eigen::Vector3d& velocity_world_mps, const TileChoiceConfig& config);
 
-/// Returns the tiles that hold at least 5 % of the points, those with the most points first.
-std::vector<std::size_t> tiles_with(const BuildingInfo& building,
-                                    std::span<const Eigen::Vector3d> points_world);
+/// Returns the tiles whose surface may be in view: those whose bounding box at least 5 % of the rays from the
+/// camera to the points enter, those with the most rays first. While one of them is not loaded, nothing is
+/// known along these rays; see hide_behind().
+std::vector<std::size_t> tiles_in_view(const BuildingInfo& building, const Eigen::Vector3d& position_world,
+                                       std::span<const Eigen::Vector3d> points_world);
 
 /// Returns the indices of the chosen tiles in `building.tiles`: those in view first, then nearest first.
 /// Loaded tiles count as keep_m nearer than they are, so a camera that moves to and fro between two tiles

@@ -1,15 +1,12 @@
-// tile_loading.cpp: mesh and octree of a tile, and the open faces of its border of unknown space.
+// tile_loading.cpp: the files of a tile, and the open faces of its border of unknown space.
 #include "app/session/tiles/tile_loading.hpp"
 
 #include <algorithm>
 
-#include "mapping/octree/static_map.hpp"
+#include "mapping/map/unknown_surface_file.hpp"
 
 namespace roomradar {
 namespace {
-
-constexpr double kMaxCells =
-    2e7;  // of a tile's unknown space: 2.5 MB of bits, cells of 2 cm in a tile of 5 m
 
 bool is_listed(const BuildingInfo& building, const TileIndex& index) {
   const auto found = std::lower_bound(
@@ -45,8 +42,7 @@ LoadedTile load_tile(const BuildingInfo& building, const std::filesystem::path& 
   loaded.mesh.normals = {};
   loaded.mesh.colours = {};
   if (has_unknown) {
-    const StaticMap octree = StaticMap::read(folder / listed.octree.name);
-    loaded.unknown = unknown_surface(octree, loaded.mesh, {.max_cells = kMaxCells});
+    loaded.unknown = read_unknown_surface(folder / listed.unknown.name);
     Mesh& border = loaded.unknown.mesh_world;
     open_faces(building, listed.index, loaded.unknown.grid.cell_m, border);
     loaded.unknown_tree.build_by_place(border);

@@ -19,13 +19,12 @@ struct LoadedTile {
   TriangleTree unknown_tree;
 };
 
-/// Reads a tile. The border of unknown space is extracted from the tile's octree alone, in cells of about 2
-/// cm. On faces of the cube behind which there is another tile, the border is left open: the other tile has
-/// it where its own space is unknown.
+/// Reads a tile; its octree is not read. On faces of the cube behind which there is another tile, the border
+/// of unknown space is left open: the other tile has it where its own space is unknown.
 ///
 /// Thread safe. Throws Error naming the file and the fault if a file is missing or damaged.
 /// @param tile         index in building.tiles
-/// @param has_unknown  false: the border of unknown space is left empty, and the octree is not read
+/// @param has_unknown  false: the border of unknown space is left empty, and its file is not read
 LoadedTile load_tile(const BuildingInfo& building, const std::filesystem::path& folder, std::size_t tile,
                      bool has_unknown);
 

@@ -58,6 +58,7 @@ void TileWindow::follow(const Frame& frame, const Eigen::Isometry3d& T_world_cam
   limit_memory();
   const std::vector<std::size_t> in_view = in_view_of(frame, T_world_camera);
   chosen_ = chosen_at(T_world_camera.translation(), in_view);
+  if (chosen_.empty() && !in_view.empty()) tell_too_little_memory(in_view.front());
   std::vector<std::optional<Clock::time_point>> missed_before(missed_since_.size());
   missed_before.swap(missed_since_);
   for (const std::size_t tile : in_view)
@@ -94,6 +95,19 @@ void TileWindow::limit_memory() {
   }
 }
 
+/// Tells once that the limit leaves too little memory for the tile.
+void TileWindow::tell_too_little_memory(std::size_t tile) {
+  const TileChoiceConfig& choice = config_.choice;
+  if (has_told_memory_ || choice.max_bytes == 0 || has_failed_[tile]) return;
+  has_told_memory_ = true;
+  const BuildingTile& listed = config_.building.tiles[tile];
+  const auto mb = [](std::size_t bytes) { return std::to_string((bytes + 999'999) / 1'000'000) + " MB"; };
+  fault_ = "--max-memory: " + mb(config_.max_process_bytes) + " leave " + mb(choice.max_bytes) +
+           " for tiles, but the one in view takes " +
+           mb(tile_bytes(listed, choice.has_unknown) + loading_bytes(listed, choice.has_unknown)) +
+           "; the camera is not located there, so allow more";
+}
+
 std::vector<std::size_t> TileWindow::in_view_of(const Frame& frame,
                                                 const Eigen::Isometry3d& T_world_camera) const {
   constexpr int kAcross = 24;  // points per row and column
@@ -106,7 +120,7 @@ std::vector<std::size_t> TileWindow::in_view_of(const Frame& frame,
       points_world.push_back(T_world_camera * back_project(frame.depth_camera, x, y,
                                                            static_cast<double>(frame.depth_m.at(x, y))));
     }
-  return tiles_with(config_.building, points_world);
+  return tiles_in_view(config_.building, T_world_camera.translation(), points_world);
 }
 
 std::vector<std::size_t> TileWindow::chosen_at(const Eigen::Vector3d& position_world,

@@ -88,7 +88,8 @@ class TileWindow {
   /// By tile of the building.
   [[nodiscard]] const std::vector<bool>& loaded() const { return is_loaded_; }
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
-  /// Returns true if a tile could not be read, and take_fault() has not yet returned why.
+  /// Returns true if a tile could not be read, or the first time that memory does not suffice for a tile in
+  /// view, and take_fault() has not yet returned why.
   [[nodiscard]] bool has_fault() const { return !fault_.empty(); }
   std::string take_fault() { return std::exchange(fault_, {}); }
 
@@ -112,6 +113,7 @@ class TileWindow {
   std::optional<Eigen::Vector3d> position_world_;
   double position_stamp_s_ = 0.0, stamp_s_ = 0.0;
   Eigen::Vector3d velocity_world_mps_ = Eigen::Vector3d::Zero();
+  bool has_told_memory_ = false;
   std::string fault_;  ///< of the last tile; a frame takes up one tile
   TileCounts counts_;
 
@@ -120,6 +122,7 @@ class TileWindow {
   void take_up(std::size_t tile, LoadedTile loaded);
   void load_next();
   void limit_memory();
+  void tell_too_little_memory(std::size_t tile);
   void set_velocity(const Eigen::Vector3d& position_world);
   [[nodiscard]] std::vector<std::size_t> in_view_of(const Frame& frame,
                                                     const Eigen::Isometry3d& T_world_camera) const;

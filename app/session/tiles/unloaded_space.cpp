@@ -7,29 +7,22 @@
 #include "radar/gl/projection.hpp"
 
 namespace roomradar {
-namespace {
-
-/// Returns the depth at which a ray enters the box, >= 0; infinite if it misses the box.
-/// @param ray_world  point of the ray at depth 1, relative to `from_world`
-/// Source: Kay and Kajiya, Ray tracing complex scenes, SIGGRAPH 1986 (slabs).
-double entry_m(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& from_world,
-               const Eigen::Vector3d& ray_world) {
-  double enters_m = 0.0, leaves_m = std::numeric_limits<double>::infinity();
+double ray_entry(const Eigen::AlignedBox3d& box_world, const Eigen::Vector3d& from_world,
+                 const Eigen::Vector3d& ray_world) {
+  double enters = 0.0, leaves = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
+    const double low = box_world.min()[axis] - from_world[axis],
+                 high = box_world.max()[axis] - from_world[axis];
     if (ray_world[axis] == 0.0) {
-      if (from_world[axis] < box.min()[axis] || from_world[axis] > box.max()[axis])
-        return std::numeric_limits<double>::infinity();
+      if (low > 0.0 || high < 0.0) return std::numeric_limits<double>::infinity();
       continue;
     }
-    const double a = (box.min()[axis] - from_world[axis]) / ray_world[axis];
-    const double b = (box.max()[axis] - from_world[axis]) / ray_world[axis];
-    enters_m = std::max(enters_m, std::min(a, b));
-    leaves_m = std::min(leaves_m, std::max(a, b));
+    const double a = low / ray_world[axis], b = high / ray_world[axis];
+    enters = std::max(enters, std::min(a, b));
+    leaves = std::min(leaves, std::max(a, b));
   }
-  return enters_m <= leaves_m ? enters_m : std::numeric_limits<double>::infinity();
+  return enters <= leaves ? enters : std::numeric_limits<double>::infinity();
 }
-
-}  // namespace
 
 void hide_behind(std::span<const Eigen::AlignedBox3d> boxes_world, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m) {
@@ -48,7 +41,7 @@ void hide_behind(std::span<const Eigen::AlignedBox3d> boxes_world, const Intrins
       for (int x = rect.x; x < rect.x + rect.width; ++x) {
         if (row[x] == 0.0F) continue;
         const Eigen::Vector3d ray_world = T_world_camera.linear() * back_project(camera, x, y, 1.0);
-        if (entry_m(box, from_world, ray_world) < static_cast<double>(row[x])) row[x] = 0.0F;
+        if (ray_entry(box, from_world, ray_world) < static_cast<double>(row[x])) row[x] = 0.0F;
       }
     }
   }

@@ -1,4 +1,4 @@
-// unloaded_space.hpp: removes expected depth that lies behind tiles that are not loaded.
+// unloaded_space.hpp: rays into tiles; removes expected depth behind tiles that are not loaded.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -7,6 +7,11 @@
 #include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {
+
+/// Returns where a ray enters a box, as a multiple of `ray_world`, >= 0; infinite if it misses the box.
+/// Source: Kay and Kajiya, Ray tracing complex scenes, SIGGRAPH 1986 (slabs).
+double ray_entry(const Eigen::AlignedBox3d& box_world, const Eigen::Vector3d& from_world,
+                 const Eigen::Vector3d& ray_world);
 
 /// Sets the depth to 0 where a pixel's ray enters one of the boxes before it reaches that depth. A surface in
 /// the box may be nearer than the depth, so nothing is known there.

@@ -112,13 +112,31 @@ TEST_F(BuildingMap, EveryAlteredFileIsNamed) {
   EXPECT_EQ(verify_building(folder_).size(), 4U);
 }
 
+TEST_F(BuildingMap, BordersOfUnknownSpaceAreCheckedWhereThereAreAny) {
+  const ContentFile border = info_.tiles.front().unknown;
+  EXPECT_EQ(json_of(summarise_building(folder_)).at("tiles").at(0).at("unknown"), border.name);
+  const std::uintmax_t bytes = summarise_building(folder_).bytes;
+  // The border of a far tile in place of a tile's own: only the content tells.
+  std::swap(info_.tiles.front().unknown, info_.tiles.back().unknown);
+  write_building(info_, folder_);
+  const std::vector<std::string> faults = verify_building(folder_);
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_NE(faults[1].find(border.name), std::string::npos) << faults[1];
+  // A building of an earlier version has none.
+  for (BuildingTile& tile : info_.tiles) tile.unknown = {};
+  write_building(info_, folder_);
+  EXPECT_EQ(verify_building(folder_), std::vector<std::string>{});
+  EXPECT_LT(summarise_building(folder_).bytes, bytes);
+  EXPECT_FALSE(json_of(summarise_building(folder_)).at("tiles").at(0).contains("unknown"));
+}
+
 TEST_F(BuildingMap, ContentThatContradictsTheListIsNamed) {
   ++info_.tiles.front().triangles;
   ++info_.recordings.front().keyframes;
-  info_.grid.resolution_m = 0.02;  // another grid: voxels outside their tiles
+  info_.grid.resolution_m = 0.02;  // another grid: voxels and unknown cells outside their tiles
   write_building(info_, folder_);
   write_tileset(info_, folder_);
-  EXPECT_EQ(verify_building(folder_).size(), info_.tiles.size() + 2);
+  EXPECT_EQ(verify_building(folder_).size(), 2 * info_.tiles.size() + 2);
 }
 
 TEST_F(BuildingMap, IsExportedAndOtherFormatsAreRefused) {

@@ -70,7 +70,7 @@ BuildingInfo building_of(const std::vector<TileIndex>& tiles) {
     tile.triangles = 7;
     tile.surface_world = box_of(info.grid, index);
     tile.mesh_origin = tile.surface_world.min();
-    for (ContentFile* file : {&tile.octree, &tile.mesh, &tile.glb})
+    for (ContentFile* file : {&tile.octree, &tile.mesh, &tile.glb, &tile.unknown})
       *file = {"tiles/" + name_of(index) + ".x", std::string(64, 'a'), 12};
     info.tiles.push_back(tile);
   }

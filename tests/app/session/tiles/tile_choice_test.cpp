@@ -89,9 +89,13 @@ TEST(TileChoice, TilesInViewComeFirst) {
   std::vector<Vector3d> points(6, in_tile(12));
   points.insert(points.end(), 93, in_tile(13));
   points.push_back(in_tile(15));
-  const Chosen in_view = tiles_with(info, points);
-  EXPECT_EQ(in_view, (Chosen{13, 12})) << "one point of 100 does not count";
-  EXPECT_TRUE(tiles_with(info, {}).empty());
+  const Vector3d behind(5.12 * 12.0 - 1.0, 500.0,
+                        1.0);  // beside the corridor: rays enter it at the points' tiles
+  const Chosen in_view = tiles_in_view(info, behind, points);
+  EXPECT_EQ(in_view, (Chosen{13, 12})) << "one ray of 100 does not count";
+  EXPECT_EQ(tiles_in_view(info, in_tile(10), points), (Chosen{10, 11, 12, 13}))
+      << "rays pass through 10 and 11";
+  EXPECT_TRUE(tiles_in_view(info, behind, {}).empty());
   const std::vector<bool> none(info.tiles.size(), false);
   EXPECT_EQ(choose_tiles(info, in_tile(10), kStill, in_view, none, {.reach_m = 3.0}),
             (Chosen{13, 12, 10, 9, 11}));

@@ -204,6 +204,42 @@ TEST(TileWindow, IsLocatedInBothRoomsAlsoAfterAJump) {
   EXPECT_EQ(wrong, 0) << "of " << located;
 }
 
+TEST(TileWindow, IsNeverWrongWhereMemoryHoldsFewTiles) {
+  TileWindowConfig tiles = window_config(building().folder.path());
+  tiles.choice.reach_m = 4.0;
+  tiles.choice.max_bytes = 0;  // for the largest tile alone
+  for (const BuildingTile& tile : tiles.building.tiles)
+    tiles.choice.max_bytes =
+        std::max(tiles.choice.max_bytes, tile_bytes(tile, true) + loading_bytes(tile, true));
+  BuildingSession run(tiles, PoseOrigin::kTracked);
+  int located = 0, wrong = 0;
+  for (std::size_t i = 0; i < 400; ++i) {
+    const FrameResult result = run.show(i);
+    if (result.status != FrameStatus::kDone) continue;
+    ++located;
+    const Vector3d error_m = result.T_world_camera.translation() - position(building().frames[i]);
+    if (error_m.norm() > 0.2) ++wrong;
+  }
+  EXPECT_GT(located, 0);
+  EXPECT_EQ(wrong, 0) << "of " << located;  // 8 of 101 if poses without support are followed on
+}
+
+TEST(TileWindow, TooLittleMemoryIsToldOnce) {
+  TileWindowConfig tiles = window_config(building().folder.path());
+  tiles.choice.max_bytes = 1000;
+  BuildingSession run(tiles, PoseOrigin::kTracked);
+  std::string said;
+  for (int round = 0; round < 3; ++round)
+    for (std::size_t i = 0; i < 10; ++i) {
+      const FrameResult result = run.show(i);
+      EXPECT_NE(result.status, FrameStatus::kDone);
+      for (const ObjectNotice& notice : result.notices) said += notice.text + "\n";
+    }
+  const std::size_t at = said.find("--max-memory");
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_EQ(said.find("--max-memory", at + 1), std::string::npos) << said;
+}
+
 TEST(TileWindow, ResultsDoNotDependOnTheWorkersSpeed) {
   const TileWindowConfig tiles = window_config(building().folder.path());
   std::vector<std::vector<std::size_t>> loaded[2];
@@ -232,12 +268,16 @@ TEST(TileWindow, DamagedAndMissingTilesAreNamedAndSurvived) {
   ASSERT_GE(near.size(), 4U);
   const std::string cut = tiles.building.tiles[near[0]].mesh.name;
   fs::resize_file(copy.path() / cut, fs::file_size(copy.path() / cut) / 2);
-  const std::string missing = tiles.building.tiles[near[1]].octree.name;
+  const std::string missing = tiles.building.tiles[near[1]].unknown.name;
   fs::remove(copy.path() / missing);
-  const std::string altered = tiles.building.tiles[near[2]].octree.name;
-  std::string bytes = read_bytes(copy.path() / altered, "octree");
+  const std::string altered = tiles.building.tiles[near[2]].unknown.name;
+  std::string bytes = read_bytes(copy.path() / altered, "unknown space");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
   write_bytes(copy.path() / altered, bytes);
+
+  // Octrees are not read.
+  const std::size_t without_octree = near[3];
+  fs::remove(copy.path() / tiles.building.tiles[without_octree].octree.name);
 
   BuildingSession run(tiles, PoseOrigin::kRecorded);
   std::string said;
@@ -252,6 +292,7 @@ TEST(TileWindow, DamagedAndMissingTilesAreNamedAndSurvived) {
   EXPECT_GE(loaded.size(), near.size() - 3);
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(std::find(loaded.begin(), loaded.end(), near[static_cast<std::size_t>(i)]), loaded.end());
+  EXPECT_NE(std::find(loaded.begin(), loaded.end(), without_octree), loaded.end());
 }
 
 TEST(TileWindow, UnknownSpaceIsOpenTowardsNeighboursAndClosedElsewhere) {
