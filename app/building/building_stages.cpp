@@ -31,7 +31,7 @@ Manifest written(const BuildingWork& work, const char* stage, const Lines& lines
   make_folder(work.jobs());
   const fs::path path = work.jobs() / (std::string(stage) + ".jobs");
   write_bytes(path, lines.text());
-  return read_manifest(path);
+  return lines.text().empty() ? Manifest{} : read_manifest(path);  // one part alone has no pairs
 }
 
 /// A recording's source as a word: relative to the folder of jobs if it is a file or folder, so that a

@@ -47,7 +47,7 @@ inline std::string join_job(const SubmapName& a, const SubmapName& b) {
   return "join-" + a.name() + "-" + b.name();
 }
 inline std::string tile_job(const TileIndex& tile) { return "tile-" + name_of(tile); }
-inline constexpr const char* kRetrieveJob = "pairs";  // no folder may have the name of a step
+inline constexpr const char* kRetrieveJob = "candidates";  // no folder may have the name of a step
 
 /// Returns the submaps of a recording that was tracked, in order of time.
 std::vector<SubmapName> submaps_of(const BuildingWork& work, const std::string& recording);

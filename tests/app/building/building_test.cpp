@@ -99,6 +99,14 @@ Eigen::AlignedBox3d check_node(const nlohmann::json& node, const Eigen::Vector3d
   return volume;
 }
 
+TEST(BuildingStages, OnePartAloneHasNoPairs) {
+  const test::TemporaryFolder folder;
+  BuildingWork work;
+  work.folder = folder.path();
+  EXPECT_TRUE(join_stage(work, {{"a", 0}}, {}).jobs.empty());
+  EXPECT_EQ(join_stage(work, {{"a", 0}, {"b", 0}}, {{0, 1, 2}}).jobs.size(), 1U);
+}
+
 TEST(Tileset, NestsBoxesRoundAllTilesOnBothSidesOfTheOrigin) {
   const test::TemporaryFolder folder;
   const std::vector<TileIndex> tiles{{-3, 0, 0}, {-1, -1, 0}, {0, 0, 0}, {5, 2, 1}};
