@@ -26,7 +26,7 @@ errors_of() {
 }
 
 room="$work/my room's {1}"
-"$program" simulate "$room" --room 'table?width=160' --frames 20 > "$work/log" 2>&1 || fail "no recording"
+"$program" simulate "$room" --room 'table?width=160' --frames 30 > "$work/log" 2>&1 || fail "no recording"
 sweep=("$program" trade "$room" --rooms none --quick --only prescan --settings 2 --repeats 2)
 
 echo "== trade: the same errors in one process and by jobs"
