@@ -6,7 +6,6 @@
 #include <bit>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <string>
 #include <unordered_map>
 
@@ -83,6 +82,17 @@ StaticMap load_building_octree(const BuildingInfo& info, const fs::path& folder)
   return whole;
 }
 
+std::vector<std::size_t> distinct_views(std::span<const MapKeyframe> keyframes, double min_step) {
+  std::vector<std::size_t> distinct;
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const auto step = [&] {
+      return view_distance(keyframes[distinct.back()].T_world_camera.inverse() * keyframes[i].T_world_camera);
+    };
+    if (distinct.empty() || !(step() < min_step)) distinct.push_back(i);
+  }
+  return distinct;
+}
+
 std::size_t keyframe_bytes(const MapKeyframe& keyframe) {
   constexpr std::size_t kIndexed = 128;  // bytes per indexed descriptor: 16 tables of 8 bytes
   return sizeof(MapKeyframe) + keyframe.descriptors.size() * sizeof(Descriptor) +
@@ -106,16 +116,12 @@ std::size_t bytes_of(const std::vector<MapKeyframe>& keyframes) {
   return bytes;
 }
 
-/// Leaves out keyframes whose view_distance() from the last one that is kept is small, until the rest has at
-/// most max_bytes.
+/// Leaves out keyframes with similar views, until the rest has at most max_bytes.
 void thin_out(std::vector<MapKeyframe>& keyframes, std::size_t max_bytes) {
   for (double step = 0.05; keyframes.size() > 1 && bytes_of(keyframes) > max_bytes; step *= 1.25) {
-    std::optional<Eigen::Isometry3d> T_last_world;
-    std::erase_if(keyframes, [&](const MapKeyframe& keyframe) {
-      if (T_last_world && view_distance(*T_last_world * keyframe.T_world_camera) < step) return true;
-      T_last_world = keyframe.T_world_camera.inverse();
-      return false;
-    });
+    std::vector<MapKeyframe> kept;
+    for (const std::size_t i : distinct_views(keyframes, step)) kept.push_back(std::move(keyframes[i]));
+    keyframes = std::move(kept);
   }
 }
 

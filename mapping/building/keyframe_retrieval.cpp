@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "mapping/alignment/keyframe.hpp"
+#include "mapping/building/building_map.hpp"
 #include "mapping/localization/place_matching.hpp"
 
 namespace roomradar {
@@ -20,17 +20,12 @@ struct DistinctKeyframes {
 DistinctKeyframes distinct_keyframes(const Submap& submap, double min_step) {
   const auto& keyframes = submap.keyframes.keyframes;
   DistinctKeyframes distinct;
-  for (std::size_t k = 0; k < keyframes.size(); ++k) {
-    const auto step = [&] {
-      return view_distance(keyframes[distinct.index_of.back()].T_world_camera.inverse() *
-                           keyframes[k].T_world_camera);
-    };
-    if (k > 0 && step() < min_step) continue;
-    distinct.index_of.push_back(k);
-    auto& descriptors = distinct.database.keyframes.emplace_back().descriptors;
-    const auto count = std::min(keyframes[k].descriptors.size(), FeatureIndex::kIndexedFeatures);
-    descriptors.assign(keyframes[k].descriptors.begin(),
-                       keyframes[k].descriptors.begin() + static_cast<std::ptrdiff_t>(count));
+  distinct.index_of = distinct_views(keyframes, min_step);
+  for (const std::size_t k : distinct.index_of) {
+    const auto& all = keyframes[k].descriptors;
+    const auto count = std::min(all.size(), FeatureIndex::kIndexedFeatures);
+    distinct.database.keyframes.emplace_back().descriptors.assign(
+        all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
   }
   return distinct;
 }

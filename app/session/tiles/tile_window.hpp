@@ -52,8 +52,8 @@ struct TileCounts {
   std::int64_t loaded = 0, dropped = 0;
   std::int64_t frames_over_33_ms = 0;  ///< frames to which taking up a tile added more than 33 ms
   /// Stages: `frame`, the time that taking up or dropping tiles added to a frame; `blocked`, the time for
-  /// which a frame waited for the worker thread; `late`, the time for which a tile within near_m of the
-  /// camera was not in use, one value per tile loaded.
+  /// which a frame waited for the worker thread; `late`, the time for which a tile was in view but
+  /// not in use, one value per tile loaded.
   StageTimes times;
 };
 

@@ -7,6 +7,7 @@
 #include "radar/gl/projection.hpp"
 
 namespace roomradar {
+
 double ray_entry(const Eigen::AlignedBox3d& box_world, const Eigen::Vector3d& from_world,
                  const Eigen::Vector3d& ray_world) {
   double enters = 0.0, leaves = std::numeric_limits<double>::infinity();
