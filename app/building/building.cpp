@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -71,6 +73,26 @@ std::vector<GraphSubmap> graph_submaps(const BuildingWork& work, const std::vect
   }
   return graph;
 }
+
+/// Reads submaps with their features, of which it keeps the last few.
+class SubmapReader {
+ public:
+  SubmapReader(const BuildingWork& work, const std::vector<SubmapName>& names) : work_(work), names_(names) {}
+
+  std::shared_ptr<const Submap> read(std::size_t submap) {
+    constexpr std::size_t kKept = 8;
+    for (const auto& [index, kept] : kept_)
+      if (index == submap) return kept;
+    if (kept_.size() == kKept) kept_.pop_front();
+    auto read = std::make_shared<const Submap>(load_submap(work_.jobs() / names_[submap].folder()));
+    return kept_.emplace_back(submap, std::move(read)).second;
+  }
+
+ private:
+  const BuildingWork& work_;
+  const std::vector<SubmapName>& names_;
+  std::deque<std::pair<std::size_t, std::shared_ptr<const Submap>>> kept_;
+};
 
 /// Poses of a recording's placed frames in the building, and those that it states.
 struct PlacedFrames {
@@ -210,7 +232,12 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
       joined, std::to_string(pairs.size()) + " pairs may meet, " + std::to_string(joins.size()) + " joins"));
 
   // All submaps in one world. The connected part with the most frames is the building.
-  const BuildingGraph graph = solve_building(graph_submaps(work, names, submaps), joins);
+  SubmapReader reader(work, names);
+  const TestOverlap test_overlap = [&reader](std::size_t a, std::size_t b,
+                                             std::span<const PredictedPair> predicted) {
+    return test_placement(*reader.read(a), *reader.read(b), predicted);
+  };
+  const BuildingGraph graph = solve_building(graph_submaps(work, names, submaps), joins, test_overlap);
   std::size_t at = 0;
   for (JoinedPair& pair : result.joins) {
     if (pair.join.status != JoinStatus::kJoined) continue;

@@ -1,22 +1,18 @@
-// building_graph.cpp: finds joins that contradict each other, then solves the pose graph.
+// building_graph.cpp: places submaps by the joins that are used, then solves the pose graph.
 #include "mapping/building/building_graph.hpp"
 
 #include <algorithm>
 #include <deque>
-#include <map>
 #include <numeric>
 #include <optional>
 
+#include "mapping/building/join_choice.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/odometry/pose_graph.hpp"
 #include "mapping/types/disjoint_sets.hpp"
 
 namespace roomradar {
 namespace {
-
-double size_m(const Eigen::Isometry3d& gap) {
-  return gap.translation().norm() + Eigen::AngleAxisd(gap.linear()).angle();
-}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -42,68 +38,11 @@ class JoinTree {
     });
     DisjointSets<std::size_t> parts(submaps.size());
     for (const std::size_t j : order) {
-      if (parts.find(joins[j].a) == parts.find(joins[j].b)) {
-        others_.push_back(j);
-        continue;
-      }
+      if (parts.find(joins[j].a) == parts.find(joins[j].b)) continue;
       parts.join(joins[j].a, joins[j].b);
       by_submap_[joins[j].a].push_back(j);
       by_submap_[joins[j].b].push_back(j);
     }
-  }
-
-  /// Joins that are not in the tree: each closes a cycle.
-  [[nodiscard]] const std::vector<std::size_t>& others() const { return others_; }
-
-  /// The joins on the path between a join's submaps, and how far the path's end is off the join, m.
-  struct Cycle {
-    std::vector<std::size_t> joins;
-    double off_m = 0.0;
-    double length_m = 0.0;  ///< within the submaps
-  };
-  [[nodiscard]] Cycle cycle_of(std::size_t join) const {
-    const GraphJoin& closing = joins_[join];
-    const KeyframeLink& link = middle_of(closing.join);
-    // Breadth-first from a to b; the step by which each submap was reached.
-    std::vector<std::optional<std::size_t>> reached_by(submaps_.size());
-    std::deque<std::size_t> open{closing.a};
-    std::vector<bool> is_known(submaps_.size(), false);
-    is_known[closing.a] = true;
-    while (!open.empty() && !is_known[closing.b]) {
-      const std::size_t at = open.front();
-      open.pop_front();
-      for (const std::size_t j : by_submap_[at]) {
-        const std::size_t next = joins_[j].a == at ? joins_[j].b : joins_[j].a;
-        if (is_known[next]) continue;
-        is_known[next] = true;
-        reached_by[next] = j;
-        open.push_back(next);
-      }
-    }
-    Cycle cycle;
-    // Back from b's keyframe to a's.
-    Eigen::Isometry3d T_at_end = Eigen::Isometry3d::Identity();  // b's linked camera, in the camera at hand
-    std::size_t submap = closing.b, keyframe = link.b;
-    const auto move_within = [&](std::size_t to) {
-      const auto& poses = submaps_[submap].T_submap_keyframe;
-      const Eigen::Isometry3d T_to_at = poses[to].inverse() * poses[keyframe];
-      cycle.length_m += T_to_at.translation().norm();
-      T_at_end = T_to_at * T_at_end;
-      keyframe = to;
-    };
-    while (submap != closing.a) {
-      const GraphJoin& step = joins_[*reached_by[submap]];
-      const KeyframeLink& by = middle_of(step.join);
-      cycle.joins.push_back(*reached_by[submap]);
-      const bool is_b = step.b == submap;
-      move_within(is_b ? by.b : by.a);
-      T_at_end = (is_b ? by.T_a_b : by.T_a_b.inverse()) * T_at_end;
-      submap = is_b ? step.a : step.b;
-      keyframe = is_b ? by.a : by.b;
-    }
-    move_within(link.a);
-    cycle.off_m = size_m(link.T_a_b.inverse() * T_at_end);
-    return cycle;
   }
 
   /// Places the submaps of each part by the tree. Parts are numbered by their first submap.
@@ -138,35 +77,7 @@ class JoinTree {
   std::span<const GraphSubmap> submaps_;
   std::span<const GraphJoin> joins_;
   std::vector<std::vector<std::size_t>> by_submap_;  ///< joins of the tree
-  std::vector<std::size_t> others_;
 };
-
-/// Refuses joins until no cycle contradicts itself by more than drift explains. In each round, refuses the
-/// join that most cycles accuse, less those that confirm it; of equals, the one with the fewest keyframes.
-void refuse_contradictions(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
-                           std::vector<bool>& is_used) {
-  constexpr double kAllowed_m = 0.3, kDrift = 0.03;
-  for (;;) {
-    const JoinTree tree(submaps, joins, is_used);
-    std::map<std::size_t, int> blame;
-    bool is_contradicted = false;
-    for (const std::size_t j : tree.others()) {
-      const JoinTree::Cycle cycle = tree.cycle_of(j);
-      const bool is_off = cycle.off_m > kAllowed_m + kDrift * cycle.length_m;
-      is_contradicted |= is_off;
-      blame[j] += is_off ? 1 : -1;
-      for (const std::size_t on_path : cycle.joins) blame[on_path] += is_off ? 1 : -1;
-    }
-    if (!is_contradicted) return;
-    const auto worst = std::max_element(blame.begin(), blame.end(), [&](const auto& x, const auto& y) {
-      const auto weight = [&](const auto& entry) {
-        return std::pair(entry.second, -joins[entry.first].join.agreeing);
-      };
-      return weight(x) < weight(y);
-    });
-    is_used[worst->first] = false;
-  }
-}
 
 /// The pose graph of all keyframes.
 class Keyframes {
@@ -240,8 +151,9 @@ std::vector<PoseConstraint> constraints_of(std::span<const GraphSubmap> submaps,
 double off_m_of(const GraphJoin& join, const Keyframes& keyframes) {
   std::vector<double> off_m;
   for (const KeyframeLink& link : join.join.links)
-    off_m.push_back(size_m(link.T_a_b.inverse() * keyframes.poses[keyframes.index(join.a, link.a)].inverse() *
-                           keyframes.poses[keyframes.index(join.b, link.b)]));
+    off_m.push_back(
+        motion_length_m(link.T_a_b.inverse() * keyframes.poses[keyframes.index(join.a, link.a)].inverse() *
+                        keyframes.poses[keyframes.index(join.b, link.b)]));
   return median(std::move(off_m));
 }
 
@@ -265,21 +177,21 @@ void solve(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> join
 
 double moved_m(std::span<const Eigen::Isometry3d> from, std::span<const Eigen::Isometry3d> to) {
   double most_m = 0.0;
-  for (std::size_t k = 0; k < from.size(); ++k) most_m = std::max(most_m, size_m(from[k].inverse() * to[k]));
+  for (std::size_t k = 0; k < from.size(); ++k)
+    most_m = std::max(most_m, motion_length_m(from[k].inverse() * to[k]));
   return most_m;
 }
 
 }  // namespace
 
 BuildingGraph solve_building(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
-                             const GraphConfig& config) {
+                             const TestOverlap& test_overlap, const GraphConfig& config) {
   BuildingGraph graph;
   graph.submaps.resize(submaps.size());
-  graph.is_used.assign(joins.size(), true);
+  graph.is_used = choose_joins(submaps, joins, test_overlap);
   graph.off_m.assign(joins.size(), 0.0);
   if (submaps.empty()) return graph;
 
-  refuse_contradictions(submaps, joins, graph.is_used);
   std::vector<Eigen::Isometry3d> T_building_submap;
   std::vector<std::size_t> part;
   JoinTree(submaps, joins, graph.is_used).place(T_building_submap, part);

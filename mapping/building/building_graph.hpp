@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,10 @@ struct GraphJoin {
   std::size_t a = 0, b = 0;  ///< submaps
   SubmapJoin join;           ///< with status kJoined
 };
+
+/// Compares two submaps where a placement says that their keyframes have nearly the same view.
+using TestOverlap =
+    std::function<PlacementTest(std::size_t a, std::size_t b, std::span<const PredictedPair> pairs)>;
 
 struct GraphConfig {
   /// Standard deviation of the relative pose of two successive keyframes of a submap.
@@ -46,12 +51,13 @@ struct BuildingGraph {
   std::size_t parts = 0;      ///< number of connected parts
 };
 
-/// Solves for all keyframes' poses. The world is that of the first submap, or of the kept ones. Begins with a
-/// spanning tree of the joins with the most agreeing keyframes, then adds the others as robust constraints,
-/// and refuses those that remain off, the worst first, until all agree. Submaps that no join connects with
+/// Solves for all keyframes' poses. The world is that of the first submap, or of the kept ones. Chooses joins
+/// that do not contradict each other (join_choice.hpp), begins with a spanning tree of those with the most
+/// agreeing keyframes, then adds the others as robust constraints, and refuses those that remain off, the
+/// worst first, until all agree. Submaps that no join connects with
 /// the first form parts of their own, each in the world of its first submap. Deterministic. Source: Kümmerle
 /// et al., g2o, ICRA 2011 (pose graph).
 BuildingGraph solve_building(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
-                             const GraphConfig& config = {});
+                             const TestOverlap& test_overlap = {}, const GraphConfig& config = {});
 
 }  // namespace roomradar

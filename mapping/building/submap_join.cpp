@@ -98,67 +98,57 @@ PreviewOverlap compare(const MapKeyframe& from, const MapKeyframe& to, const Eig
   return overlap;
 }
 
-/// What keyframes of b show of the places where a's keyframes say that they are.
-struct Test {
-  int expected = 0, recognised = 0;
-  std::int64_t same = 0, through = 0;
-};
-
-/// Tests one keyframe of b against the keyframes of a around it.
-void test_keyframe(const Submap& a, const MapKeyframe& view, const Eigen::Isometry3d& T_a_b, double drift_m,
-                   Test& test) {
-  constexpr double kSimilarView = 0.6;     // of view_distance()
+/// Tests one keyframe of b against those of a with nearly its view. Sorts the pairs.
+void test_keyframe(const Submap& a, const MapKeyframe& view, std::vector<PredictedPair>& pairs,
+                   PlacementTest& test) {
   constexpr double kOverlap = 0.4;         // of the view's pixels
   constexpr std::size_t kDescribed = 100;  // features, below which a view need not be recognised
   constexpr std::size_t kMostPartners = 3;
   constexpr int kInliers = 10;
-  const Eigen::Isometry3d T_a_camera = T_a_b * view.T_world_camera;
-  std::vector<std::pair<double, const MapKeyframe*>> partners;
-  for (const MapKeyframe& other : a.keyframes.keyframes) {
-    const double distance = view_distance(other.T_world_camera.inverse() * T_a_camera);
-    if (distance < kSimilarView) partners.emplace_back(distance, &other);
-  }
-  std::sort(partners.begin(), partners.end());
-  if (partners.size() > kMostPartners) partners.resize(kMostPartners);
-
+  std::sort(pairs.begin(), pairs.end(), [](const PredictedPair& x, const PredictedPair& y) {
+    return std::pair(view_distance(x.T_a_b), x.a) < std::pair(view_distance(y.T_a_b), y.a);
+  });
   bool is_expected = false, is_recognised = false;
-  std::int64_t same = 0, through = 0;
-  for (const auto& [distance, other] : partners) {
-    const Eigen::Isometry3d T_other_view = other->T_world_camera.inverse() * T_a_camera;
-    const PreviewOverlap forth = compare(view, *other, T_other_view, drift_m);
-    const PreviewOverlap back = compare(*other, view, T_other_view.inverse(), drift_m);
-    same += forth.same + back.same;
-    through += forth.through + back.through;
+  for (std::size_t p = 0; p < std::min(pairs.size(), kMostPartners); ++p) {
+    const MapKeyframe& other = a.keyframes.keyframes.at(pairs[p].a);
+    const Eigen::Isometry3d& T_other_view = pairs[p].T_a_b;
+    const PreviewOverlap forth = compare(view, other, T_other_view, pairs[p].drift_m);
+    const PreviewOverlap back = compare(other, view, T_other_view.inverse(), pairs[p].drift_m);
+    test.same += forth.same + back.same;
+    test.through += forth.through + back.through;
     const int both = forth.same + forth.through;
     if (both < kOverlap * forth.valid || is_recognised) continue;
-    if (std::min(view.descriptors.size(), other->descriptors.size()) < kDescribed) continue;
+    if (std::min(view.descriptors.size(), other.descriptors.size()) < kDescribed) continue;
     is_expected = true;
-    const KeyframeMatch match = match_keyframes(*other, view);
-    is_recognised = match.inliers >= kInliers && is_near(match.T_a_b, T_other_view, 0.25 + drift_m, 0.15);
+    const KeyframeMatch match = match_keyframes(other, view);
+    is_recognised =
+        match.inliers >= kInliers && is_near(match.T_a_b, T_other_view, 0.25 + pairs[p].drift_m, 0.15);
   }
-  test.same += same;
-  test.through += through;
   test.expected += is_expected ? 1 : 0;
   test.recognised += is_recognised ? 1 : 0;
 }
 
 /// Tests a relative pose with all keyframes of b that are near the votes for it.
-Test test_of(const Submap& a, const Submap& b, const std::vector<Vote>& votes, const JoinConfig& config) {
+PlacementTest test_votes(const Submap& a, const Submap& b, const std::vector<Vote>& votes,
+                         const JoinConfig& config) {
   constexpr double kDrift = 0.02;
-  Test test;
-  for (const MapKeyframe& view : b.keyframes.keyframes) {
+  std::vector<Eigen::Isometry3d> T_a_keyframe;
+  for (const MapKeyframe& keyframe : a.keyframes.keyframes) T_a_keyframe.push_back(keyframe.T_world_camera);
+  std::vector<PredictedPair> pairs;
+  for (std::size_t k = 0; k < b.keyframes.keyframes.size(); ++k) {
+    const Eigen::Isometry3d& T_b_view = b.keyframes.keyframes[k].T_world_camera;
     const Vote* nearest = nullptr;
     double nearest_m = config.near_m;
     for (const Vote& vote : votes) {
       const Eigen::Vector3d& p = b.keyframes.keyframes[vote.b].T_world_camera.translation();
-      const double distance_m = (p - view.T_world_camera.translation()).norm();
+      const double distance_m = (p - T_b_view.translation()).norm();
       if (distance_m >= nearest_m) continue;
       nearest_m = distance_m;
       nearest = &vote;
     }
-    if (nearest) test_keyframe(a, view, nearest->T_a_b, kDrift * nearest_m, test);
+    if (nearest) predict_pairs(T_a_keyframe, nearest->T_a_b * T_b_view, k, kDrift * nearest_m, pairs);
   }
-  return test;
+  return test_placement(a, b, pairs);
 }
 
 /// A keyframe's preview, prepared for alignment.
@@ -220,12 +210,11 @@ SubmapJoin judged(const Submap& a, const Submap& b, const std::vector<Vote>& agr
   SubmapJoin join;
   join.T_a_b = middle.T_a_b;
   join.agreeing = static_cast<int>(agreeing.size());
-  const Test test = test_of(a, b, agreeing, config);
+  const PlacementTest test = test_votes(a, b, agreeing, config);
   join.expected = test.expected;
   join.recognised = test.recognised;
-  const auto common = static_cast<double>(test.same + test.through);
-  join.agreement = common > 0.0 ? static_cast<double>(test.same) / common : 0.0;
-  if (common <= 0.0) {
+  join.agreement = test.agreement();
+  if (test.same + test.through == 0) {
     join.status =
         JoinStatus::kNotRecognised;  // no keyframes have nearly the same view: nothing to prove it by
   } else if (join.agreement < config.min_agreement) {
@@ -253,6 +242,27 @@ std::string describe(const SubmapJoin& join) {
                 "%s: %d keyframes agree, %d of %d others are recognised, %.0f %% of the surface agrees",
                 outcome, join.agreeing, join.recognised, join.expected, 100.0 * join.agreement);
   return text.data();
+}
+
+void predict_pairs(std::span<const Eigen::Isometry3d> T_a_keyframe, const Eigen::Isometry3d& T_a_b,
+                   std::size_t b, double drift_m, std::vector<PredictedPair>& pairs) {
+  constexpr double kSimilarView = 0.6;  // of view_distance()
+  for (std::size_t a = 0; a < T_a_keyframe.size(); ++a)
+    if (const Eigen::Isometry3d T = T_a_keyframe[a].inverse() * T_a_b; view_distance(T) < kSimilarView)
+      pairs.push_back({a, b, T, drift_m});
+}
+
+PlacementTest test_placement(const Submap& a, const Submap& b, std::span<const PredictedPair> pairs) {
+  PlacementTest test;
+  std::vector<PredictedPair> of_one;
+  for (auto at = pairs.begin(); at != pairs.end();) {
+    const auto end =
+        std::find_if(at, pairs.end(), [&](const PredictedPair& pair) { return pair.b != at->b; });
+    of_one.assign(at, end);
+    test_keyframe(a, b.keyframes.keyframes.at(at->b), of_one, test);
+    at = end;
+  }
+  return test;
 }
 
 std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,

@@ -9,15 +9,6 @@
 #include "mapping/odometry/odometry_state.hpp"
 
 namespace roomradar {
-namespace {
-
-/// Length of a motion; a radian counts as a metre.
-double length(const Eigen::Isometry3d& T) {
-  return T.translation().norm() + Eigen::AngleAxisd(T.linear()).angle();
-}
-
-}  // namespace
-
 Tracking Odometry::State::start(const Frame& frame) {
   Tracking tracking;
   if (live.levels.front().size() < static_cast<std::size_t>(std::max(config.align.min_points, 1))) {
@@ -159,7 +150,7 @@ Tracking Odometry::track(const Frame& frame) {
     return tracking;
   }
   const Eigen::Isometry3d T_last_next = kept.T_world_last.inverse() * tracking.T_world_camera;
-  kept.path_length_m += length(T_last_next) * (tracking ? 1.0 : 10.0);
+  kept.path_length_m += motion_length_m(T_last_next) * (tracking ? 1.0 : 10.0);
   if (tracking && !first) {
     if (s.config.estimate_timing) s.take_evidence(frame, tracking);
     deskew(s.pyramid, s.velocity, kept.timing.current.depth_readout_s);

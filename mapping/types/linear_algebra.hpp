@@ -36,6 +36,9 @@ Matrix6d inverse(const Matrix6d& A);
 /// decomposition. Its determinant is -1 if A's is negative.
 Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& A);
 
+/// Returns the length of a motion, in m; a radian of rotation counts as 1 m.
+double motion_length_m(const Eigen::Isometry3d& T);
+
 /// Returns the smallest rotation from one direction to another. Neither may be zero.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 

@@ -1,0 +1,263 @@
+// join_choice.cpp: finds conflicts along the shortest ways between submaps, and breaks them.
+#include "mapping/building/join_choice.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <queue>
+#include <set>
+#include <utility>
+
+#include "mapping/building/hitting_set.hpp"
+#include "mapping/types/linear_algebra.hpp"
+
+namespace roomradar {
+namespace {
+
+/// A way from one submap (its start) over joins to another.
+struct Way {
+  Eigen::Isometry3d T_start_end = Eigen::Isometry3d::Identity();  ///< of the two submaps' worlds
+  std::vector<std::size_t> joins;
+  std::size_t leaves_by = 0, arrives_at = 0;  ///< keyframes of the start and of the end
+  double length_m = 0.0;                      ///< within the submaps, from leaves_by to arrives_at
+
+  /// Joins count as some metres, so that of two ways of the same length the one with fewer joins is taken.
+  [[nodiscard]] double cost() const { return length_m + 2.0 * static_cast<double>(joins.size()); }
+};
+
+/// The submaps and those of their joins that are used.
+struct UsedJoins {
+  std::span<const GraphSubmap> submaps;
+  std::span<const GraphJoin> joins;
+  std::vector<bool> is_used;
+  std::vector<std::vector<std::size_t>> of_submap;  ///< joins, by submap
+};
+
+double distance_m(const GraphSubmap& submap, std::size_t i, std::size_t j) {
+  return (submap.T_submap_keyframe[i].translation() - submap.T_submap_keyframe[j].translation()).norm();
+}
+
+/// Returns the way that goes on over a join.
+Way extended(const UsedJoins& used, const Way& way, std::size_t at, std::size_t j) {
+  const GraphJoin& join = used.joins[j];
+  const bool from_a = join.a == at;
+  const auto near_of = [&](const KeyframeLink& link) { return from_a ? link.a : link.b; };
+  const std::vector<KeyframeLink>& links = join.join.links;
+  // By the link nearest to where the submap was entered; from the start, by the one in the middle.
+  const KeyframeLink& link =
+      way.joins.empty() ? links[links.size() / 2]
+                        : *std::min_element(links.begin(), links.end(), [&](const auto& x, const auto& y) {
+                            return distance_m(used.submaps[at], way.arrives_at, near_of(x)) <
+                                   distance_m(used.submaps[at], way.arrives_at, near_of(y));
+                          });
+  const Eigen::Isometry3d T_a_b = used.submaps[join.a].T_submap_keyframe[link.a] * link.T_a_b *
+                                  used.submaps[join.b].T_submap_keyframe[link.b].inverse();
+  Way next = way;
+  next.T_start_end = way.T_start_end * (from_a ? T_a_b : T_a_b.inverse());
+  if (way.joins.empty())
+    next.leaves_by = near_of(link);
+  else
+    next.length_m += distance_m(used.submaps[at], way.arrives_at, near_of(link));
+  next.arrives_at = from_a ? link.b : link.a;
+  next.joins.push_back(j);
+  return next;
+}
+
+/// Returns the shortest way from `start` to each submap that can be reached. Source: Dijkstra 1959.
+/// @param without  a join that no way may use; none if it is the number of joins
+std::vector<std::optional<Way>> ways_from(const UsedJoins& used, std::size_t start, std::size_t without) {
+  struct Open {
+    Way way;
+    std::size_t at = 0;
+    bool operator<(const Open& other) const {  // the queue gives the greatest first
+      return std::pair(way.cost(), at) > std::pair(other.way.cost(), other.at);
+    }
+  };
+  std::vector<std::optional<Way>> found(used.submaps.size());
+  std::priority_queue<Open> open;
+  open.push({{}, start});
+  while (!open.empty()) {
+    const Open next = open.top();
+    open.pop();
+    if (found[next.at]) continue;
+    found[next.at] = next.way;
+    for (const std::size_t j : used.of_submap[next.at]) {
+      const GraphJoin& join = used.joins[j];
+      const std::size_t to = join.a == next.at ? join.b : join.a;
+      if (j != without && used.is_used[j] && !found[to])
+        open.push({extended(used, next.way, next.at, j), to});
+    }
+  }
+  return found;
+}
+
+/// Returns whether a cycle does not close.
+bool is_open(double off_m, double length_m) {
+  constexpr double kAllowed_m = 0.3, kDrift = 0.03;
+  return off_m > kAllowed_m + kDrift * length_m;
+}
+
+/// Compares each join with the shortest way around it.
+void find_open_cycles(const UsedJoins& used, std::set<Conflict>& conflicts) {
+  for (std::size_t j = 0; j < used.joins.size(); ++j) {
+    if (!used.is_used[j]) continue;
+    const GraphJoin& join = used.joins[j];
+    const std::optional<Way> way = ways_from(used, join.a, j)[join.b];
+    if (!way) continue;
+    const GraphSubmap &a = used.submaps[join.a], &b = used.submaps[join.b];
+    const auto length_m = [&](const KeyframeLink& link) {
+      return way->length_m + distance_m(a, way->leaves_by, link.a) + distance_m(b, way->arrives_at, link.b);
+    };
+    const KeyframeLink& link =
+        *std::min_element(join.join.links.begin(), join.join.links.end(),
+                          [&](const auto& x, const auto& y) { return length_m(x) < length_m(y); });
+    const Eigen::Isometry3d T_by_way =
+        a.T_submap_keyframe[link.a].inverse() * way->T_start_end * b.T_submap_keyframe[link.b];
+    if (!is_open(motion_length_m(link.T_a_b.inverse() * T_by_way), length_m(link))) continue;
+    Conflict conflict = way->joins;
+    conflict.push_back(j);
+    std::sort(conflict.begin(), conflict.end());
+    conflicts.insert(std::move(conflict));
+  }
+}
+
+/// Compares each join that is not in a spanning tree with the way through the tree: these cycles are a basis
+/// of all.
+void find_open_basis_cycles(const UsedJoins& used, std::set<Conflict>& conflicts) {
+  std::vector<bool> is_placed(used.submaps.size(), false);
+  for (std::size_t root = 0; root < used.submaps.size(); ++root) {
+    if (is_placed[root]) continue;
+    const std::vector<std::optional<Way>> ways = ways_from(used, root, used.joins.size());
+    for (std::size_t s = 0; s < ways.size(); ++s) is_placed[s] = is_placed[s] || ways[s];
+    for (std::size_t j = 0; j < used.joins.size(); ++j) {
+      const GraphJoin& join = used.joins[j];
+      if (!used.is_used[j] || !ways[join.a]) continue;
+      const Way &to_a = *ways[join.a], &to_b = *ways[join.b];
+      Conflict conflict;  // the joins that only one of the ways has
+      const auto [last_a, last_b] =
+          std::mismatch(to_a.joins.begin(), to_a.joins.end(), to_b.joins.begin(), to_b.joins.end());
+      conflict.assign(last_a, to_a.joins.end());
+      conflict.insert(conflict.end(), last_b, to_b.joins.end());
+      if (std::find(conflict.begin(), conflict.end(), j) != conflict.end()) continue;  // in the tree
+      const GraphSubmap &a = used.submaps[join.a], &b = used.submaps[join.b];
+      const KeyframeLink& link = join.join.links[join.join.links.size() / 2];
+      const Eigen::Isometry3d T_by_ways = (to_a.T_start_end * a.T_submap_keyframe[link.a]).inverse() *
+                                          to_b.T_start_end * b.T_submap_keyframe[link.b];
+      const double length_m = to_a.length_m + to_b.length_m +
+                              (to_a.joins.empty() ? 0.0 : distance_m(a, to_a.arrives_at, link.a)) +
+                              (to_b.joins.empty() ? 0.0 : distance_m(b, to_b.arrives_at, link.b));
+      if (!is_open(motion_length_m(link.T_a_b.inverse() * T_by_ways), length_m)) continue;
+      conflict.push_back(j);
+      std::sort(conflict.begin(), conflict.end());
+      conflicts.insert(std::move(conflict));
+    }
+  }
+}
+
+/// Returns the keyframes of the way's ends that have nearly the same view by the way, if it is short enough
+/// to say so. Leaves out what the way's only join has tested already.
+std::vector<PredictedPair> overlap_of(const UsedJoins& used, const Way& way, std::size_t a, std::size_t b) {
+  constexpr double kLongest_m = 20.0, kDrift = 0.02;
+  const GraphSubmap &from = used.submaps[a], &to = used.submaps[b];
+  const double tested_m = way.joins.size() == 1 ? JoinConfig{}.near_m : 0.0;
+  std::vector<PredictedPair> pairs;
+  for (std::size_t k = 0; k < to.T_submap_keyframe.size(); ++k) {
+    const double from_end_m = distance_m(to, way.arrives_at, k);
+    if (way.length_m + from_end_m > kLongest_m) continue;
+    if (tested_m > 0.0) {
+      const std::vector<KeyframeLink>& links = used.joins[way.joins.front()].join.links;
+      const bool is_b = used.joins[way.joins.front()].b == b;
+      if (std::any_of(links.begin(), links.end(), [&](const KeyframeLink& link) {
+            return distance_m(to, is_b ? link.b : link.a, k) < tested_m;
+          }))
+        continue;
+    }
+    const std::size_t first = pairs.size();
+    predict_pairs(from.T_submap_keyframe, way.T_start_end * to.T_submap_keyframe[k], k, 0.0, pairs);
+    for (std::size_t p = first; p < pairs.size(); ++p)
+      pairs[p].drift_m = kDrift * (way.length_m + from_end_m + distance_m(from, way.leaves_by, pairs[p].a));
+    std::erase_if(pairs, [](const PredictedPair& pair) { return pair.drift_m > kDrift * kLongest_m; });
+  }
+  return pairs;
+}
+
+/// Joins that put two submaps at the same place, where they look different.
+struct Overlap {
+  Conflict joins;
+  double cost = 0.0;  ///< of leaving it so; 0: they look the same, or nothing can be said
+};
+
+Overlap judged(const PlacementTest& test, const Way& way) {
+  constexpr int kMinExpected = 4;
+  constexpr double kRecognised = 0.25, kAgreement = 0.6, kSure = 6.0;
+  Overlap overlap{way.joins, 0.0};
+  const int missing = test.expected - test.recognised;
+  const bool looks_different = test.recognised < kRecognised * test.expected || test.agreement() < kAgreement;
+  if (test.expected >= kMinExpected && looks_different)
+    overlap.cost = std::clamp(static_cast<double>(missing) / kSure, 0.5, 2.0);
+  std::sort(overlap.joins.begin(), overlap.joins.end());
+  return overlap;
+}
+
+/// Cost of refusing a join.
+double cost_of(const GraphSubmap& submap, const GraphJoin& join) {
+  constexpr double kRoom_m = 5.0;  // a look-alike room is not longer
+  double span_m = 0.0;
+  for (const KeyframeLink& link : join.join.links)
+    span_m = std::max(span_m, distance_m(submap, join.join.links.front().b, link.b));
+  const double quality = std::clamp((join.join.agreement - 0.7) / 0.3, 0.2, 1.0);
+  return (0.5 + std::min(span_m / kRoom_m, 2.0)) * quality;
+}
+
+}  // namespace
+
+std::vector<bool> choose_joins(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
+                               const TestOverlap& test_overlap) {
+  UsedJoins used{submaps, joins, std::vector<bool>(joins.size(), true), {}};
+  used.of_submap.resize(submaps.size());
+  std::vector<double> costs;
+  for (std::size_t j = 0; j < joins.size(); ++j) {
+    used.of_submap[joins[j].a].push_back(j);
+    used.of_submap[joins[j].b].push_back(j);
+    costs.push_back(cost_of(submaps[joins[j].b], joins[j]));
+  }
+  std::set<Conflict> cycles;
+  std::map<std::pair<std::pair<std::size_t, std::size_t>, Conflict>, Overlap> overlaps;  // by pair and way
+  for (;;) {
+    const std::size_t known_cycles = cycles.size();
+    std::size_t found = 0;
+    find_open_cycles(used, cycles);
+    if (cycles.size() == known_cycles) find_open_basis_cycles(used, cycles);
+    found += cycles.size() - known_cycles;
+    if (test_overlap && found == 0)
+      for (std::size_t a = 0; a < submaps.size(); ++a) {
+        const std::vector<std::optional<Way>> ways = ways_from(used, a, joins.size());
+        for (std::size_t b = a + 1; b < submaps.size(); ++b) {
+          if (!ways[b]) continue;
+          const auto key = std::pair(std::pair(a, b), ways[b]->joins);
+          if (overlaps.contains(key)) continue;
+          const std::vector<PredictedPair> pairs = overlap_of(used, *ways[b], a, b);
+          const Overlap overlap = pairs.empty() ? Overlap{} : judged(test_overlap(a, b, pairs), *ways[b]);
+          overlaps.emplace(key, overlap);
+          found += overlap.cost > 0.0 ? 1 : 0;
+        }
+      }
+    if (found == 0) return used.is_used;
+
+    // Leaving an overlap as it is, is an element of its own.
+    std::vector<Conflict> conflicts(cycles.begin(), cycles.end());
+    std::vector<double> all_costs = costs;
+    for (const auto& [key, overlap] : overlaps) {
+      if (overlap.cost <= 0.0) continue;
+      conflicts.push_back(overlap.joins);
+      conflicts.back().push_back(all_costs.size());
+      all_costs.push_back(overlap.cost);
+    }
+    used.is_used.assign(joins.size(), true);
+    for (const std::size_t refused : cheapest_hitting_set(conflicts, all_costs))
+      if (refused < joins.size()) used.is_used[refused] = false;
+  }
+}
+
+}  // namespace roomradar
