@@ -300,7 +300,7 @@ TEST(ShadeDepth, IsBrighterWhereTheSurfaceFacesTheCamera) {
 
 class Drawer : public ::testing::Test {
  protected:
-  GlContext context_{RendererChoice::kSoftware};
+  GlContext context_;
   ObjectDrawer drawer_{context_};
   GpuMesh mesh_{context_};
   DrawnObject object_{{&mesh_, Eigen::Isometry3d::Identity()}};

@@ -76,6 +76,9 @@ int pixels_apart(const DepthImage& one_m, const DepthImage& other_m, float toler
 }
 
 TEST_F(DepthRasterTest, AgreesWithOpenGlFromFineToCoarseTriangles) {
+  // A fold thinner than OpenGL's 1/256 pixel may appear in only one of the images; a GPU also rounds depth in
+  // its own way (NVIDIA H100: up to 16 pixels).
+  const int most = context.is_software() ? 3 : 30;
   for (const int cells : {20, 150, 500}) {
     GpuMesh mesh(context);
     mesh.upload(hills(cells), MeshUsage::kStatic);
@@ -83,9 +86,8 @@ TEST_F(DepthRasterTest, AgreesWithOpenGlFromFineToCoarseTriangles) {
       Eigen::Isometry3d T_world_camera(Eigen::AngleAxisd(turned, Eigen::Vector3d(0.6, 0.8, 0.0)));
       const DepthImage gl_m = draw(with_gl, mesh, T_world_camera);
       const DepthImage processor_m = draw(by_processor, mesh, T_world_camera);
-      // A fold thinner than OpenGL's 1/256 pixel may appear in only one of the images.
-      EXPECT_LE(pixels_apart(processor_m, gl_m, 1e-5F), 3) << cells << " " << turned;
-      EXPECT_LE(pixels_apart(gl_m, processor_m, 1e-5F), 3) << cells << " " << turned;
+      EXPECT_LE(pixels_apart(processor_m, gl_m, 1e-5F), most) << cells << " " << turned;
+      EXPECT_LE(pixels_apart(gl_m, processor_m, 1e-5F), most) << cells << " " << turned;
       int same = 0, both = 0;
       for (std::size_t i = 0; i < gl_m.pixels.size(); ++i) {
         both += gl_m.pixels[i] > 0.0F && processor_m.pixels[i] > 0.0F;

@@ -25,7 +25,7 @@ const Eigen::Vector3d kDown = -Eigen::Vector3d::UnitZ();
 
 class RadarPicturesTest : public ::testing::Test {
  protected:
-  GlContext context{RendererChoice::kSoftware};
+  GlContext context;
   GlRadar gl{context, {.resolution_px = kResolution_px, .exact_fallback = false}};
 
   RadarPictures of_gl(const Mesh& object, const Eigen::Isometry3d& T_world_object,
