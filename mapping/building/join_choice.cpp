@@ -15,6 +15,9 @@
 namespace roomradar {
 namespace {
 
+constexpr double kAnyLength_m = std::numeric_limits<double>::infinity();
+constexpr double kLongestOverlap_m = 20.0;  ///< of the ways by which views are predicted
+
 /// A way from one submap (its start) over joins to another.
 struct Way {
   Eigen::Isometry3d T_start_end = Eigen::Isometry3d::Identity();  ///< of the two submaps' worlds
@@ -65,8 +68,10 @@ Way extended(const UsedJoins& used, const Way& way, std::size_t at, std::size_t 
 }
 
 /// Returns the shortest way from `start` to each submap that can be reached. Source: Dijkstra 1959.
-/// @param without  a join that no way may use; none if it is the number of joins
-std::vector<std::optional<Way>> ways_from(const UsedJoins& used, std::size_t start, std::size_t without) {
+/// @param longest_m  longer ways are not searched
+/// @param without    a join that no way may use
+std::vector<std::optional<Way>> ways_from(const UsedJoins& used, std::size_t start, double longest_m,
+                                          std::optional<std::size_t> without = {}) {
   struct Open {
     Way way;
     std::size_t at = 0;
@@ -85,8 +90,9 @@ std::vector<std::optional<Way>> ways_from(const UsedJoins& used, std::size_t sta
     for (const std::size_t j : used.of_submap[next.at]) {
       const GraphJoin& join = used.joins[j];
       const std::size_t to = join.a == next.at ? join.b : join.a;
-      if (j != without && used.is_used[j] && !found[to])
-        open.push({extended(used, next.way, next.at, j), to});
+      if (j == without || !used.is_used[j] || found[to]) continue;
+      Way way = extended(used, next.way, next.at, j);
+      if (way.length_m <= longest_m) open.push({std::move(way), to});
     }
   }
   return found;
@@ -98,12 +104,14 @@ bool is_open(double off_m, double length_m) {
   return off_m > kAllowed_m + kDrift * length_m;
 }
 
-/// Compares each join with the shortest way around it.
-void find_open_cycles(const UsedJoins& used, std::set<Conflict>& conflicts) {
+/// Compares each join with the shortest way around it. Returns whether a cycle is open that was not known.
+bool find_open_cycles(const UsedJoins& used, std::set<Conflict>& conflicts) {
+  const std::size_t known = conflicts.size();
+  constexpr double kLongest_m = 100.0;  // beyond, drift explains almost everything
   for (std::size_t j = 0; j < used.joins.size(); ++j) {
     if (!used.is_used[j]) continue;
     const GraphJoin& join = used.joins[j];
-    const std::optional<Way> way = ways_from(used, join.a, j)[join.b];
+    const std::optional<Way> way = ways_from(used, join.a, kLongest_m, j)[join.b];
     if (!way) continue;
     const GraphSubmap &a = used.submaps[join.a], &b = used.submaps[join.b];
     const auto length_m = [&](const KeyframeLink& link) {
@@ -120,15 +128,17 @@ void find_open_cycles(const UsedJoins& used, std::set<Conflict>& conflicts) {
     std::sort(conflict.begin(), conflict.end());
     conflicts.insert(std::move(conflict));
   }
+  return conflicts.size() > known;
 }
 
 /// Compares each join that is not in a spanning tree with the way through the tree: these cycles are a basis
-/// of all.
-void find_open_basis_cycles(const UsedJoins& used, std::set<Conflict>& conflicts) {
+/// of all. Returns as find_open_cycles().
+bool find_open_basis_cycles(const UsedJoins& used, std::set<Conflict>& conflicts) {
+  const std::size_t known = conflicts.size();
   std::vector<bool> is_placed(used.submaps.size(), false);
   for (std::size_t root = 0; root < used.submaps.size(); ++root) {
     if (is_placed[root]) continue;
-    const std::vector<std::optional<Way>> ways = ways_from(used, root, used.joins.size());
+    const std::vector<std::optional<Way>> ways = ways_from(used, root, kAnyLength_m);
     for (std::size_t s = 0; s < ways.size(); ++s) is_placed[s] = is_placed[s] || ways[s];
     for (std::size_t j = 0; j < used.joins.size(); ++j) {
       const GraphJoin& join = used.joins[j];
@@ -153,18 +163,19 @@ void find_open_basis_cycles(const UsedJoins& used, std::set<Conflict>& conflicts
       conflicts.insert(std::move(conflict));
     }
   }
+  return conflicts.size() > known;
 }
 
 /// Returns the keyframes of the way's ends that have nearly the same view by the way, if it is short enough
 /// to say so. Leaves out what the way's only join has tested already.
 std::vector<PredictedPair> overlap_of(const UsedJoins& used, const Way& way, std::size_t a, std::size_t b) {
-  constexpr double kLongest_m = 20.0, kDrift = 0.02;
+  constexpr double kDrift = 0.02;
   const GraphSubmap &from = used.submaps[a], &to = used.submaps[b];
   const double tested_m = way.joins.size() == 1 ? JoinConfig{}.near_m : 0.0;
   std::vector<PredictedPair> pairs;
   for (std::size_t k = 0; k < to.T_submap_keyframe.size(); ++k) {
     const double from_end_m = distance_m(to, way.arrives_at, k);
-    if (way.length_m + from_end_m > kLongest_m) continue;
+    if (way.length_m + from_end_m > kLongestOverlap_m) continue;
     if (tested_m > 0.0) {
       const std::vector<KeyframeLink>& links = used.joins[way.joins.front()].join.links;
       const bool is_b = used.joins[way.joins.front()].b == b;
@@ -177,7 +188,7 @@ std::vector<PredictedPair> overlap_of(const UsedJoins& used, const Way& way, std
     predict_pairs(from.T_submap_keyframe, way.T_start_end * to.T_submap_keyframe[k], k, 0.0, pairs);
     for (std::size_t p = first; p < pairs.size(); ++p)
       pairs[p].drift_m = kDrift * (way.length_m + from_end_m + distance_m(from, way.leaves_by, pairs[p].a));
-    std::erase_if(pairs, [](const PredictedPair& pair) { return pair.drift_m > kDrift * kLongest_m; });
+    std::erase_if(pairs, [](const PredictedPair& pair) { return pair.drift_m > kDrift * kLongestOverlap_m; });
   }
   return pairs;
 }
@@ -198,6 +209,27 @@ Overlap judged(const PlacementTest& test, const Way& way) {
     overlap.cost = std::clamp(static_cast<double>(missing) / kSure, 0.5, 2.0);
   std::sort(overlap.joins.begin(), overlap.joins.end());
   return overlap;
+}
+
+/// By pair of submaps and the joins of the way between them.
+using Overlaps = std::map<std::pair<std::pair<std::size_t, std::size_t>, Conflict>, Overlap>;
+
+/// Compares all submaps that ways put at the same place. Returns whether a new one looks different.
+bool find_overlaps(const UsedJoins& used, const TestOverlap& test_overlap, Overlaps& overlaps) {
+  bool is_new = false;
+  for (std::size_t a = 0; a < used.submaps.size(); ++a) {
+    const std::vector<std::optional<Way>> ways = ways_from(used, a, kLongestOverlap_m);
+    for (std::size_t b = a + 1; b < used.submaps.size(); ++b) {
+      if (!ways[b]) continue;
+      const auto key = std::pair(std::pair(a, b), ways[b]->joins);
+      if (overlaps.contains(key)) continue;
+      const std::vector<PredictedPair> pairs = overlap_of(used, *ways[b], a, b);
+      Overlap& overlap = overlaps[key];
+      if (!pairs.empty()) overlap = judged(test_overlap(a, b, pairs), *ways[b]);
+      is_new |= overlap.cost > 0.0;
+    }
+  }
+  return is_new;
 }
 
 /// Cost of refusing a join.
@@ -223,27 +255,12 @@ std::vector<bool> choose_joins(std::span<const GraphSubmap> submaps, std::span<c
     costs.push_back(cost_of(submaps[joins[j].b], joins[j]));
   }
   std::set<Conflict> cycles;
-  std::map<std::pair<std::pair<std::size_t, std::size_t>, Conflict>, Overlap> overlaps;  // by pair and way
+  Overlaps overlaps;
   for (;;) {
-    const std::size_t known_cycles = cycles.size();
-    std::size_t found = 0;
-    find_open_cycles(used, cycles);
-    if (cycles.size() == known_cycles) find_open_basis_cycles(used, cycles);
-    found += cycles.size() - known_cycles;
-    if (test_overlap && found == 0)
-      for (std::size_t a = 0; a < submaps.size(); ++a) {
-        const std::vector<std::optional<Way>> ways = ways_from(used, a, joins.size());
-        for (std::size_t b = a + 1; b < submaps.size(); ++b) {
-          if (!ways[b]) continue;
-          const auto key = std::pair(std::pair(a, b), ways[b]->joins);
-          if (overlaps.contains(key)) continue;
-          const std::vector<PredictedPair> pairs = overlap_of(used, *ways[b], a, b);
-          const Overlap overlap = pairs.empty() ? Overlap{} : judged(test_overlap(a, b, pairs), *ways[b]);
-          overlaps.emplace(key, overlap);
-          found += overlap.cost > 0.0 ? 1 : 0;
-        }
-      }
-    if (found == 0) return used.is_used;
+    // Overlaps are compared where no cycle is open any more.
+    bool is_new = find_open_cycles(used, cycles) || find_open_basis_cycles(used, cycles);
+    if (!is_new && test_overlap) is_new = find_overlaps(used, test_overlap, overlaps);
+    if (!is_new) return used.is_used;
 
     // Leaving an overlap as it is, is an element of its own.
     std::vector<Conflict> conflicts(cycles.begin(), cycles.end());
