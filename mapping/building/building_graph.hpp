@@ -31,7 +31,7 @@ using TestOverlap =
 
 struct GraphConfig {
   /// Standard deviation of the relative pose of two successive keyframes of a submap.
-  double step_sigma_m = 0.004, step_sigma_rad = 0.002;
+  double step_sigma_m = 0.004, step_sigma_rad = 0.001;
   /// A join is refused if it is off by more than this after the solution, in m; rotations count 1 m per rad
   /// as seen from the keyframe.
   double max_off_m = 0.15;

@@ -190,7 +190,8 @@ void add_links(const Submap& a, const Submap& b, const Vote& vote, std::vector<K
     return;
   // The mean of both directions, with the features' information where depth does not constrain it.
   const Eigen::Isometry3d T_a_b = pose_between(b_in_a.T_world_camera, a_in_b.T_world_camera.inverse(), 0.5);
-  constexpr double kSigma_m = 0.01, kSigma_rad = 0.01;
+  // Half of the links of a simulated building are within 1.5 mm and 0.8 mrad, nine of ten within 6 mm.
+  constexpr double kSigma_m = 0.003, kSigma_rad = 0.001;
   Vector6d information;
   information << Eigen::Vector3d::Constant(1.0 / (kSigma_m * kSigma_m)),
       Eigen::Vector3d::Constant(1.0 / (kSigma_rad * kSigma_rad));

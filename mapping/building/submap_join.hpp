@@ -51,7 +51,7 @@ struct JoinConfig {
   double min_agreement = 0.75;  ///< see SubmapJoin::agreement
   double max_different = 0.25;  ///< max fraction of the expected keyframes that are not recognised
   double near_m = 6.0;          ///< farther from the links, drift of the submaps prevents a comparison
-  std::size_t max_links = 12;   ///< the links are chosen evenly along b
+  std::size_t max_links = 60;   ///< the links are chosen evenly along b
 };
 
 /// Keyframes of two submaps that have nearly the same view where a placement puts the submaps.

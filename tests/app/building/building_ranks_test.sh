@@ -61,3 +61,29 @@ for moment in 1 4; do
 done
 ranks cut 3 > "$work/log" 2>&1 || fail "after the kills: exit status $?"
 hashes cut | cmp - "$work/whole.hashes" || fail "after the kills: other bytes"
+
+[[ -n ${ROOMRADAR_LONG_TESTS:-} ]] || exit 0
+echo "== the same bytes after a rank was killed at each of 100 random moments, and no job is done twice"
+RANDOM=1
+kills=0 building=0
+jobs_done() { { find "$work/often-$building/work" -maxdepth 2 -name job.json ! -path '*.running/*' -printf '%p %i %T@\n' 2> /dev/null || true; } | sort; }
+while [[ $kills -lt 100 ]]; do
+  jobs_done > "$work/before"
+  ranks often-$building 3 > "$work/log" 2>&1 &
+  started=$!
+  sleep "$((RANDOM % 4)).$((RANDOM % 10))"
+  mapfile -t pids < <(pgrep -f "^$mpi building $work/often-$building ")
+  if [[ ${#pids[@]} -gt 0 ]] && kill -9 "${pids[RANDOM % ${#pids[@]}]}" 2> /dev/null; then kills=$((kills + 1)); fi
+  status=0
+  wait $started || status=$?
+  jobs_done | comm -23 "$work/before" - > "$work/again"
+  [[ ! -s $work/again ]] || fail "done twice: $(head -n 1 "$work/again")"
+  if [[ $status -eq 0 ]]; then
+    hashes often-$building | cmp - "$work/whole.hashes" || fail "after $kills kills: other bytes"
+    rm -rf "$work/often-$building"
+    building=$((building + 1))
+  fi
+done
+ranks often-$building 3 > "$work/log" 2>&1 || fail "after all kills: exit status $?"
+hashes often-$building | cmp - "$work/whole.hashes" || fail "after all kills: other bytes"
+echo "$kills kills, $((building + 1)) buildings"
