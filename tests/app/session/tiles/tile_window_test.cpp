@@ -140,9 +140,8 @@ TEST(TileWindow, AnObjectStaysToTheBitWhileItsTileIsGone) {
   ASSERT_TRUE(pot.body.asleep);
   const Eigen::Isometry3d T_world_pot = pot.body.T_world_object;
 
-  constexpr std::size_t kStride = 4;  // walks as fast as the tiles can follow
   const std::size_t far = farthest_frame();
-  for (std::size_t i = 0; i <= far; i += kStride) (void)run.show(i);
+  for (std::size_t i = 0; i <= far; ++i) (void)run.show(i);
   for (int i = 0; i < 40; ++i) (void)run.show(far);
   const std::vector<std::size_t> there = loaded_tiles(*run.session);
   EXPECT_EQ(std::find(there.begin(), there.end(), place.tile), there.end())
@@ -157,7 +156,7 @@ TEST(TileWindow, AnObjectStaysToTheBitWhileItsTileIsGone) {
   const Vector3d hangs_at = falling.body.T_world_object.translation();
   EXPECT_EQ(hangs_at.z(), place.point_world.z() + 0.4);
 
-  for (std::size_t i = far; i >= kStride; i -= kStride) (void)run.show(i);
+  for (std::size_t i = far + 1; i-- > 0;) (void)run.show(i);
   for (int i = 0; i < 60; ++i) (void)run.show(0);
   const std::vector<std::size_t> back = loaded_tiles(*run.session);
   EXPECT_NE(std::find(back.begin(), back.end(), place.tile), back.end());
