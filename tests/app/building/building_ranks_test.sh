@@ -8,16 +8,16 @@ program=$1 mpi=${2:-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" >&2 || true; exit 1; }
-options=(--recordings "$work/list.txt" --resolution 0.02 --tile-edge 256)
+options=(--recordings "$work/list.txt" --resolution 0.03 --tile-edge 128)
 alone() { "$program" building "$work/$1" "${options[@]}" --report "$work/$1.json" > "$work/log" 2>&1 || fail "$1: exit status $?"; }
 ranks() { mpirun --allow-run-as-root --oversubscribe --mca btl vader,self -n "$2" "$mpi" building "$work/$1" "${options[@]}"; }
 hashes() { (cd "$work/$1" && find . -type f ! -path './work/*' | sort | xargs sha256sum); }
 value() { python3 -c "import json,sys; r=json.load(open('$work/$1.json')); print($2)"; }
 
 for seed in 1 2 5; do
-  echo "table-$seed: sim:table?seed=$seed&frames=80&rate=8&width=160"
+  echo "table-$seed: sim:table?seed=$seed&frames=48&rate=8&width=160"
 done > "$work/list.txt"
-echo "elsewhere: sim:shelf?frames=30&rate=8&width=160" >> "$work/list.txt"
+echo "elsewhere: sim:shelf?frames=20&rate=8&width=160" >> "$work/list.txt"
 
 echo "== one building of three recordings; the fourth shows another room"
 alone whole

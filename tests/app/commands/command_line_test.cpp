@@ -157,8 +157,9 @@ TEST_F(CommandLine, PrescanLeavesAMapThatVerifiesAndAReport) {
 // Colour that comes 40 ms late is noticed after 100 frames. They are tracked again, counted from 1.
 TEST_F(CommandLine, PrescanTracksAgainOnceTheTimesOfTheSensorAreKnown) {
   const fs::path late = folder_ / "late", report = folder_ / "late.json";
-  const Outcome scanned = roomradar("prescan 'sim:table?seed=3&frames=104&width=320&delay=40' --map " +
-                                    late.string() + " --resolution 0.03 --report " + report.string());
+  const Outcome scanned =
+      roomradar("prescan 'sim:table?seed=3&frames=104&width=240&delay=40' --map " + late.string() +
+                " --resolution 0.05 --texture off --report " + report.string());
   ASSERT_EQ(scanned.status, 0) << scanned.out;
   const nlohmann::json found = nlohmann::json::parse(read_text(report));
   EXPECT_EQ(found["tracking_restarts"], 1);

@@ -29,9 +29,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSource = "sim:table?frames=60&width=128";
+constexpr const char* kSource = "sim:table?frames=40&width=128";
 // Shorter: closing loops takes a time that grows with the square of the frames.
-constexpr const char* kTrackedSource = "sim:table?frames=48&width=128";
+constexpr const char* kTrackedSource = "sim:table?frames=30&width=128";
 
 bool is_long_test() { return std::getenv("ROOMRADAR_LONG_TESTS") != nullptr; }
 
@@ -100,6 +100,14 @@ class ResumeTest : public ::testing::Test {
         text_of(unfinished() / ("checkpoint-" + std::to_string(newest())) / "manifest.json");
     return manifest.find("\"stage\": \"fuse\"") != std::string::npos;
   }
+  /// Returns the map of the tracked scan that nothing cuts off, made once for all tests.
+  [[nodiscard]] fs::path uncut_tracked_map() const {
+    const fs::path uncut = shared_->path() / "uncut";
+    if (!fs::exists(uncut)) {
+      EXPECT_EQ(run(scan(uncut, false, "tracked")), 0) << said();
+    }
+    return uncut;
+  }
   static void expect_very_same_map(const fs::path& a, const fs::path& b) {
     for (const char* file :
          {"map.json", "octree.bin", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"})
@@ -121,12 +129,15 @@ class ResumeTest : public ::testing::Test {
     EXPECT_TRUE(diff_maps(map_a.octree, map_b.octree, Eigen::Isometry3d::Identity()).empty());
   }
 
+  static void SetUpTestSuite() { shared_ = new test::TemporaryFolder; }
+  static void TearDownTestSuite() { delete shared_; }
+
   test::TemporaryFolder temporary_;
+  static inline test::TemporaryFolder* shared_ = nullptr;  // not an object: forks would delete the folder
 };
 
 TEST_F(ResumeTest, KilledAgainAndAgainTheMapIsTheSame) {
-  const fs::path uncut = temporary_.path() / "uncut";
-  ASSERT_EQ(run(scan(uncut, false, "tracked")), 0) << said();
+  const fs::path uncut = uncut_tracked_map();
   std::mt19937 random(1);
   const int kills = is_long_test() ? 12 : 6;
   int killed = 0;
@@ -154,8 +165,7 @@ TEST_F(ResumeTest, KilledAgainAndAgainTheMapIsTheSame) {
 }
 
 TEST_F(ResumeTest, KilledWhileFusingAndWritingTheMapIsTheVerySame) {
-  const fs::path uncut = temporary_.path() / "uncut";
-  ASSERT_EQ(run(scan(uncut, false, "tracked")), 0) << said();
+  const fs::path uncut = uncut_tracked_map();
   ASSERT_TRUE(cut_off(
       false, [&] { return is_fusing() && fs::exists(unfinished() / "checkpoint.writing"); }, "tracked"));
   ASSERT_EQ(run(scan(map(), true, "tracked")), 0) << said();
@@ -218,7 +228,7 @@ TEST_F(ResumeTest, OtherSettingsAreRefusedAndADamagedCheckpointIsPassedOver) {
       run({"prescan", kSource, "--map", map(), "--resolution", "0.05", "--poses", "recorded", "--resume"}),
       1);
   EXPECT_NE(said().find("resolution"), std::string::npos) << said();
-  EXPECT_EQ(run({"prescan", "sim:wall?frames=60&width=128", "--map", map(), "--resolution", "0.04", "--poses",
+  EXPECT_EQ(run({"prescan", "sim:wall?frames=40&width=128", "--map", map(), "--resolution", "0.04", "--poses",
                  "recorded", "--resume"}),
             1);
   EXPECT_NE(said().find("source"), std::string::npos) << said();
@@ -374,25 +384,25 @@ TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
     if (resume) arguments.emplace_back("--resume");
     return arguments;
   };
-  ASSERT_EQ(run(scan_table("sim:table?frames=60&width=160", false)), 0) << said();
+  ASSERT_EQ(run(scan_table("sim:table?frames=40&width=160", false)), 0) << said();
   const SavedMap before = load_map(map());
   static_cast<void>(*before.octree);  // before its folder is replaced
   const std::string json = text_of(map() / "map.json");
-  EXPECT_EQ(run(scan_table("sim:shelf?frames=30&width=160", true)), 1);
+  EXPECT_EQ(run(scan_table("sim:shelf?frames=15&width=160", true)), 1);
   EXPECT_NE(said().find("cannot be registered to the map"), std::string::npos) << said();
   EXPECT_EQ(text_of(map() / "map.json"), json);
   fs::remove_all(unfinished());  // a slow machine may have written a checkpoint
 
   // The same walk again with less noise, and with a new crate.
-  ASSERT_EQ(run(scan_table("sim:table?frames=60&width=160&noise=0.7&crate=1", true)), 0) << said();
+  ASSERT_EQ(run(scan_table("sim:table?frames=40&width=160&noise=0.7&crate=1", true)), 0) << said();
   const SavedMap after = load_map(map());
   const std::string extended = text_of(map() / "map.json");
-  EXPECT_EQ(run(scan_table("sim:table?frames=60&width=160&noise=0.7&crate=1", true)), 0) << said();
+  EXPECT_EQ(run(scan_table("sim:table?frames=40&width=160&noise=0.7&crate=1", true)), 0) << said();
   EXPECT_NE(said().find("nothing to resume"), std::string::npos) << said();
   EXPECT_EQ(text_of(map() / "map.json"), extended);
-  EXPECT_EQ(after.info.frames_fused, before.info.frames_fused + 60);
+  EXPECT_EQ(after.info.frames_fused, before.info.frames_fused + 40);
   EXPECT_GT(after.keyframe_database.keyframes.size(), before.keyframe_database.keyframes.size());
-  EXPECT_EQ(after.trajectory.size(), before.trajectory.size() + 60);
+  EXPECT_EQ(after.trajectory.size(), before.trajectory.size() + 40);
   EXPECT_TRUE(after.info.T_world_recorded.isApprox(before.info.T_world_recorded, 1e-12));
   EXPECT_NEAR(after.octree->resolution_m(), 0.03, 1e-12);
   for (std::size_t i = 0; i < before.trajectory.size(); ++i)
@@ -404,7 +414,8 @@ TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
 
 TEST_F(ResumeTest, ARecordingIsKnownHoweverItsFolderIsSpelled) {
   const fs::path recording = temporary_.path() / "walk";
-  ASSERT_EQ(run({"simulate", recording, "--room", "table", "--frames", "20", "--format", "7scenes"}), 0)
+  ASSERT_EQ(
+      run({"simulate", recording, "--room", "table?width=160", "--frames", "20", "--format", "7scenes"}), 0)
       << said();
   const auto scan_as = [&](const fs::path& spelled, bool resume) {
     std::vector<std::string> arguments = {"prescan",      spelled, "--map",   map(),
@@ -458,7 +469,7 @@ TEST_F(ResumeTest, AMapIsAddedToAsAWholeOrNotAtAllWhereMemoryIsShort) {
     all.insert(all.end(), rest.begin(), rest.end());
     return all;
   };
-  ASSERT_EQ(run(words("sim:table?frames=60&width=160", {"--deviation", "0.004"})), 0) << said();
+  ASSERT_EQ(run(words("sim:table?frames=30&width=160", {"--deviation", "0.004"})), 0) << said();
   const std::string json = text_of(map() / "map.json");
   const std::string added = "sim:table?frames=100&width=320&noise=0.7";
   EXPECT_EQ(run(words(added, {"--resume", "--max-memory", "1"})), 1);

@@ -14,12 +14,37 @@ has_focus() { xdotool windowfocus "$(xdotool search --onlyvisible --name '^roomr
 tracked() { tr '\r' '\n' < "$work/log" | sed -n 's/^track \([0-9]*\).*/\1/p' | tail -n 1; }
 has_tracked() { [[ $(tracked || true) -ge $1 ]]; }
 says() { grep -q "$1" "$work/log"; }
+# there_and_back FOLDER FRAMES: lengthens a recording at 5 frames per second by links: backwards, forwards and so on.
+there_and_back() {
+  awk -v frames="$2" '
+    { lines[NR - 1] = $0 }
+    END {
+      n = NR / 3
+      for (k = n; k < frames; ++k) {
+        i = k % (2 * n - 2)
+        if (i >= n) i = 2 * n - 2 - i
+        for (j = 3 * i; j < 3 * i + 3; ++j) {
+          kind = substr(lines[j], 1, 1)
+          ending = lines[j]
+          sub(/.*\./, "", ending)
+          printf "%s %s-%.6f-%d.%s\n", lines[j], kind, 0.2 * k, 12000000 * k, ending
+        }
+      }
+    }' "$1/INDEX.txt" > "$work/links"
+  while read -r old new; do
+    ln "$1/$old" "$1/$new"
+    echo "$new" >> "$1/INDEX.txt"
+  done < "$work/links"
+}
 # scan NAME SOURCE [OPTION...]: starts a scan in a window.
 scan() {
   "$program" prescan "$2" --map "$work/$1" --resolution 0.03 --window "${@:3}" > "$work/log" 2>&1 &
   shown=$!
   until_true has_focus
 }
+
+# asked: the view asks whether to discard the scan; its pixels change with every frame until then.
+asked() { xdotool key Delete; sleep 0.5; }
 
 screen 1280x800
 
@@ -37,14 +62,15 @@ xdotool key Return
 over 0
 
 echo "== Space pauses, Space goes on, Return finishes"
-long='sim:table?seed=3&frames=4000&width=320&rate=10'
+long='sim:table?seed=3&frames=4000&width=160&rate=10'
 scan finished "$long"
 until_true has_tracked 20
 shot scanning
 xdotool key space
-sleep 1.5
+until_changed "$(pixel_sum)" 1
+still  # the frame that was being read is tracked
 before=$(tracked)
-sleep 1.5
+sleep 1
 [[ $(tracked) == "$before" ]] || fail "the scan goes on while it is paused"
 shot paused
 xdotool key space
@@ -60,7 +86,7 @@ plays() { [[ $(xdotool getwindowname "$window" 2> /dev/null) == "roomradar - "* 
 until_true plays
 until_true says '^run'
 xdotool windowfocus "$window"
-sleep 1
+still
 shot play
 xdotool key ctrl+q
 over 0
@@ -68,14 +94,12 @@ over 0
 echo "== Delete asks, Escape goes on, Delete and Return discard the scan"
 scan discarded "$long"
 until_true has_tracked 10
-xdotool key Delete
-sleep 0.5
+asked
 shot asks
 xdotool key Escape
 before=$(tracked)
 until_true has_tracked $((before + 5))
-xdotool key Delete
-sleep 0.5
+asked
 xdotool key Return
 over 1
 says 'was discarded' || fail "nothing is said about the end"
@@ -83,13 +107,14 @@ says 'was discarded' || fail "nothing is said about the end"
 
 echo "== a window that is closed leaves a scan that can be resumed"
 scan closed "$long" --checkpoint-every 0.5
-until_true has_tracked 40
+until_true has_tracked 20
 xdotool key ctrl+q
 over 1
 [[ -d $work/closed.unfinished ]] || fail "nothing to resume is left"
 if command -v fakenect > /dev/null; then
   echo "== a Kinect's driver, with fakenect in the device's place"
-  "$program" record 'sim:table?seed=3&frames=170&rate=5&pace=slow' "$work/kinect" --format fakenect > "$work/log" 2>&1 || fail record
+  "$program" record 'sim:table?seed=3&frames=35&rate=5&pace=slow' "$work/kinect" --format fakenect > "$work/log" 2>&1 || fail record
+  there_and_back "$work/kinect" 170
   FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" prescan kinect:0 --map "$work/live" --resolution 0.03 --window \
     > "$work/log" 2>&1 &
   shown=$!
@@ -116,13 +141,12 @@ if command -v fakenect > /dev/null; then
   window=$(xdotool search --onlyvisible --name '^roomradar scan - ')
   xdotool key Return
   until_true is_saved_times 1
-  sleep 1
+  still
   shot holes
   before=$(frames_of_map)
   xdotool key p
   until_true is_titled "roomradar - "
   until_true says '^running'
-  sleep 1
   shot played
   lines=$(grep -c '^track' "$work/log" || true)
   xdotool key m

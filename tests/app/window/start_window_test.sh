@@ -12,17 +12,38 @@ mkdir -p "$shots" "$work/here"
 shots=$(readlink -f "$shots")
 export XDG_CONFIG_HOME=$work/config
 settings=$XDG_CONFIG_HOME/roomradar/start.json
-source='sim:table?seed=3&frames=40&width=160&rate=10'
-more='sim:table?seed=3&frames=30&width=160'
+source='sim:table?seed=3&frames=25&width=160&rate=10'
+more='sim:table?seed=3&frames=20&width=160'
 cd "$work/here"
 
 window() { xdotool search --onlyvisible --name "$1" 2> /dev/null | head -n 1; }
 has_focus() { local id; id=$(window "$1"); [[ -n $id ]] && xdotool windowfocus "$id" 2> /dev/null; }
 says() { grep -qE -- "$1" "$work/log"; }
-settled_shot() { sleep 0.6; shot "$1" 200; }
-# keys KEY...: types keys one after the other, each in a frame of its own.
-keys() { for key in "$@"; do xdotool key "$key"; sleep 0.4; done; }
-start() { "$program" start "$@" > "$work/log" 2>&1 & shown=$!; until_true has_focus '^roomradar$'; sleep 1; }
+has_scans() { [[ $(grep -c '^holes' "$work/log") -ge $1 ]]; }
+settled_shot() { still; shot "$1" 200; }
+# keys KEY...: types keys one after the other, each once the screen shows what the one before has done.
+keys() {
+  local before
+  for key in "$@"; do
+    before=$(pixel_sum)
+    xdotool key "$key"
+    until_changed "$before" 1
+    still
+  done
+}
+start() { "$program" start "$@" > "$work/log" 2>&1 & shown=$!; until_true has_focus '^roomradar$'; still; }
+
+# copied NAME [TEXT]: copies the map, with TEXT after its mesh; the view lists folders every two seconds.
+copied() {
+  cp -r maps/kitchen "$work/copy"
+  printf %s "${2:-}" >> "$work/copy/mesh.ply"
+  still
+  local before
+  before=$(pixel_sum)
+  mv "$work/copy" "maps/$1"
+  until_changed "$before" 4
+  still
+}
 
 screen 1280x800
 echo "== S asks for a name, Enter scans in the same window, Enter comes back"
@@ -47,7 +68,7 @@ echo "== P plays in the chosen map, Ctrl+Q comes back"
 keys p
 until_true has_focus '^roomradar - '
 until_true says '^roomradar run sim:table.*path=view.* --map maps/table --window'
-sleep 2
+until_true says '^running'
 settled_shot play
 keys ctrl+q
 until_true has_focus '^roomradar$'
@@ -65,13 +86,12 @@ keys Tab Up m
 has_changed() { [[ $(sha256sum < maps/table/map.json) != "$before" ]]; }
 until_true has_changed
 until_true has_focus '^roomradar scan - '
-sleep 1
+until_true has_scans 2
 keys Return
 until_true has_focus '^roomradar$'
 settled_shot back-from-scan-more
 
 echo "== R renames, E exports, C compares"
-sleep 1
 keys r
 settled_shot rename-asks
 xdotool type 'kitchen'
@@ -81,19 +101,16 @@ keys e
 settled_shot export-asks
 keys p
 until_true test -s maps/kitchen.ply
-cp -r maps/kitchen maps/other
-sleep 3  # the view lists folders every two seconds
+copied other
 keys c
 settled_shot compare-asks
 keys Return
-sleep 4
+until_changed "$(pixel_sum)" 4
 settled_shot compared
 keys Return
 
 echo "== a damaged map: a sentence in the view, and nothing is lost"
-cp -r maps/kitchen maps/zzz
-echo x >> maps/zzz/mesh.ply
-sleep 3
+copied zzz x
 keys Home
 settled_shot damaged
 keys p
@@ -128,7 +145,7 @@ keys Escape Delete Return
 
 echo "== D shows what of the set-up works; + is remembered"
 keys d
-sleep 3
+until_changed "$(pixel_sum)" 3
 settled_shot doctor
 keys Return plus ctrl+q
 over 0
@@ -150,7 +167,6 @@ for look in '640x480 2' '1280x960 1' '3840x2160 2'; do
   id=$(window '^roomradar$')
   xdotool windowmove "$id" 0 0
   xdotool windowsize "$id" "${size%x*}" "${size#*x}"
-  sleep 2
   settled_shot "$size-maps"
   keys Tab
   settled_shot "$size-sources"

@@ -140,13 +140,13 @@ xdotool key space
 echo "== views"
 xdotool key r v
 until_true has_event ' drop object view '
-sleep 2
+settle
 shot models
 xdotool key v
-sleep 1
+settle
 shot both
 xdotool key v h
-sleep 1
+settle
 shot help
 
 echo "== a click closes the help, and does nothing else"
