@@ -26,6 +26,14 @@ std::size_t cell_of(const VoxelIndex& voxel) {
   return half(0) | half(1) << 1U | half(2) << 2U;
 }
 
+// Sets the bits of a brick's voxels that are in a box, borders included.
+void set_box(const VoxelIndex& low, const VoxelIndex& high, std::bitset<512>& bits) {
+  const VoxelIndex from = low.cwiseMax(0), to = high.cwiseMin(kBrickEdge - 1);
+  for (int z = from.z(); z <= to.z(); ++z)
+    for (int y = from.y(); y <= to.y(); ++y)
+      for (int x = from.x(); x <= to.x(); ++x) bits.set(brick_offset({x, y, z}));
+}
+
 struct Rectangle {
   int left = 0, top = 0, right = -1, bottom = -1;  // borders included
 };
@@ -86,14 +94,15 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
   for (const VoxelIndex& ghost : verdicts.ghosts) mark(ghost, &Marks::ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark(absent, &Marks::absent);
   const auto mark_near = [this](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
-    if (!reaches(voxel)) return;
-    for (int z = -kNear; z <= kNear; ++z)
-      for (int y = -kNear; y <= kNear; ++y)
-        for (int x = -kNear; x <= kNear; ++x) {
-          const VoxelIndex near = voxel + VoxelIndex(x, y, z);
-          const auto found = marks_.find(voxel_key(brick_of(near)));
-          if (found != marks_.end()) (found->second.*bits).set(offset_of(near));
-        }
+    const VoxelIndex low = voxel.array() - kNear, high = voxel.array() + kNear;
+    const VoxelIndex last = brick_of(high);
+    VoxelIndex first = brick_of(low);
+    const VoxelIndex begin = first;
+    for (first.z() = begin.z(); first.z() <= last.z(); first.z() += kBrickEdge)
+      for (first.y() = begin.y(); first.y() <= last.y(); first.y() += kBrickEdge)
+        for (first.x() = begin.x(); first.x() <= last.x(); first.x() += kBrickEdge)
+          if (const auto found = marks_.find(voxel_key(first)); found != marks_.end())
+            set_box(low - first, high - first, found->second.*bits);
   };
   for (const VoxelIndex& ghost : verdicts.ghosts) mark_near(ghost, &Marks::near_ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark_near(absent, &Marks::near_ghost);
@@ -147,13 +156,18 @@ bool GhostZone::in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_wor
 
 void GhostZone::mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                      DepthImage& depth_m) const {
+  std::optional<std::uint64_t> last_brick;  // neighbouring pixels mostly see the same one
+  const Marks* marks = nullptr;
   for (int y = 0; y < depth_m.height; ++y)
     for (int x = 0; x < depth_m.width; ++x) {
       float& depth = depth_m.at(x, y);
       if (!(depth > 0.0F)) continue;
       const Eigen::Vector3d p_world = T_world_camera * back_project(camera, x, y, static_cast<double>(depth));
       const VoxelIndex voxel = (p_world / resolution_m_).array().floor().cast<int>();
-      const Marks* marks = marks_of(voxel);
+      if (const std::uint64_t brick = voxel_key(brick_of(voxel)); brick != last_brick) {
+        marks = marks_of(voxel);
+        last_brick = brick;
+      }
       const std::size_t offset = offset_of(voxel);
       if (!marks || !marks->near_still.test(offset) || marks->near_ghost.test(offset)) depth = 0.0F;
     }
