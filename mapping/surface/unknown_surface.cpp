@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3i;
 
-constexpr int kGridsAtOnce = 8;  // bit grids alive at the same time; most while pockets are sought
+constexpr int kGridsAtOnce = 6;  // bit grids alive at the same time
 
 // State of the map in cells of one voxel, or of several if the map is very large.
 struct Known {
@@ -71,21 +71,17 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
 // `known.unknown`.
 void leave_out_pockets(Known& known, const std::array<BitGrid, 3>& blocked,
                        const UnknownSurfaceConfig& config, BitGrid& unknown) {
-  BitGrid hanging = unknown;  // not connected to anything occupied or to the margin
-  {
-    const BitGrid everywhere(known.grid.size, true);
-    BitGrid held = std::move(known.unknown);
-    (held |= known.free).flip();
-    for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, blocked);
-    held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
-    held &= unknown;
-    held.flood(unknown, blocked);
-    hanging.subtract(held);
-  }
+  BitGrid held = std::move(known.unknown);
+  (held |= known.free).flip();
+  for (int step = 0; step < config.cube_voxels; ++step) held.spread(blocked);
+  held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
+  held &= unknown;
+  held.flood(unknown, blocked);
+  BitGrid unseen = std::move(held.flip());  // not connected to anything occupied or to the margin
+  unseen &= unknown;
 
   std::vector<Vector3i> piece;
-  BitGrid unseen = hanging;
-  hanging.for_each_set([&](const Vector3i& first) {
+  unseen.for_each_set([&](const Vector3i& first) {
     if (!unseen.at(first)) return;
     piece.assign(1, first);
     unseen.set(first, false);
@@ -104,24 +100,25 @@ void leave_out_pockets(Known& known, const std::array<BitGrid, 3>& blocked,
 
 // Cells that an object coming from free space can reach: any distance through free voxels, then rim_voxels
 // further through anything that does not count as unknown.
-BitGrid reachable(const BitGrid& free, const BitGrid& unknown, const std::array<BitGrid, 3>& blocked,
+BitGrid reachable(BitGrid free, const BitGrid& unknown, const std::array<BitGrid, 3>& blocked,
                   const UnknownSurfaceConfig& config) {
   BitGrid reached = opened(free, config.least_voxels);
   reached.flood(free, blocked);
-  BitGrid passable(free.size(), true);
-  passable.subtract(unknown);
+  free = unknown;
+  const BitGrid& passable = free.flip();
   for (int step = 0; step < config.rim_voxels; ++step) reached.spread(passable, blocked);
   return reached;
 }
 
-// Meshes the faces of unknown cells towards reached ones, unless a surface separates the two.
-Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, const std::array<BitGrid, 3>& blocked,
+// Meshes the faces of unknown cells towards reached ones, unless a surface separates the two. Uses up
+// `blocked`.
+Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, std::array<BitGrid, 3>& blocked,
                   const CellGrid& grid) {
   VoxelFaceMesher mesher(grid);
   for (int axis = 0; axis < 3; ++axis)
     for (const int step : {1, -1}) {
       BitGrid faces = reached;
-      BitGrid bars = blocked[static_cast<std::size_t>(axis)];
+      BitGrid& bars = blocked[static_cast<std::size_t>(axis)];
       if (step < 0) bars.shift(axis, -1);
       faces.shift(axis, step).subtract(bars) &= unknown;
       mesher.add({std::move(faces), axis, step});
@@ -154,10 +151,9 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
   Known known = known_cells(map, counts.known_world, config);
   result.grid = known.grid;
   result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
-  const std::array<BitGrid, 3> blocked = blocked_neighbours(surface_world, known.grid);
+  std::array<BitGrid, 3> blocked = blocked_neighbours(surface_world, known.grid);
   leave_out_pockets(known, blocked, config, result.unknown);
-  const BitGrid reached = reachable(known.free, result.unknown, blocked, config);
-  known.free = {};
+  const BitGrid reached = reachable(std::move(known.free), result.unknown, blocked, config);
   result.mesh_world = mesh_between(result.unknown, reached, blocked, known.grid);
   result.memory_bytes = kGridsAtOnce * reached.memory_bytes();
   return result;
