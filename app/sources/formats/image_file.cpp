@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/sources/formats/image_header.hpp"
+#include "app/sources/formats/jpeg_colour.hpp"
 #include "app/sources/formats/kinect_units.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -130,6 +131,11 @@ void decode_colour(std::string_view bytes, const std::string& name, ColourImage&
   if (header.kind == ImageKind::kPpm && header.bits == 8) {
     colour.resize(header.width_px, header.height_px);
     std::memcpy(colour.pixels.data(), bytes.data() + header.pixels_at, colour.pixels.size() * sizeof(Rgb));
+    return;
+  }
+  if (header.kind == ImageKind::kJpeg && header.bits == 8 && (header.channels == 1 || header.channels == 3)) {
+    colour.resize(header.width_px, header.height_px);
+    if (const auto fault = decode_jpeg(bytes, colour)) throw Error(name + ": cannot be decoded: " + *fault);
     return;
   }
   const cv::Mat image =
