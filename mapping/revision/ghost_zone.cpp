@@ -2,6 +2,7 @@
 #include "mapping/revision/ghost_zone.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -93,16 +94,22 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
   };
   for (const VoxelIndex& ghost : verdicts.ghosts) mark(ghost, &Marks::ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark(absent, &Marks::absent);
-  const auto mark_near = [this](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
-    const VoxelIndex low = voxel.array() - kNear, high = voxel.array() + kNear;
-    const VoxelIndex last = brick_of(high);
-    VoxelIndex first = brick_of(low);
-    const VoxelIndex begin = first;
-    for (first.z() = begin.z(); first.z() <= last.z(); first.z() += kBrickEdge)
-      for (first.y() = begin.y(); first.y() <= last.y(); first.y() += kBrickEdge)
-        for (first.x() = begin.x(); first.x() <= last.x(); first.x() += kBrickEdge)
-          if (const auto found = marks_.find(voxel_key(first)); found != marks_.end())
-            set_box(low - first, high - first, found->second.*bits);
+  // The marks of a brick and of the 26 around it; null: not in the zone. Voxels come brick by brick.
+  std::array<Marks*, kCellsRound> round{};
+  std::optional<VoxelIndex> middle;
+  const auto mark_near = [&](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
+    if (const VoxelIndex first = brick_of(voxel); first != middle) {
+      for (int i = 0; i < kCellsRound; ++i) {
+        const auto found = marks_.find(voxel_key(first + kBrickEdge * neighbour_offset(i)));
+        round[static_cast<std::size_t>(i)] = found == marks_.end() ? nullptr : &found->second;
+      }
+      middle = first;
+    }
+    for (int i = 0; i < kCellsRound; ++i) {
+      Marks* const marks = round[static_cast<std::size_t>(i)];
+      const VoxelIndex in_brick = voxel - *middle - kBrickEdge * neighbour_offset(i);
+      if (marks) set_box(in_brick.array() - kNear, in_brick.array() + kNear, marks->*bits);
+    }
   };
   for (const VoxelIndex& ghost : verdicts.ghosts) mark_near(ghost, &Marks::near_ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark_near(absent, &Marks::near_ghost);
