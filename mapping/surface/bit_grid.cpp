@@ -217,20 +217,41 @@ void BitGrid::spread(const std::array<BitGrid, 3>& blocked) {
   clear_row_ends();
 }
 
-// In place, alternately upwards and downwards, so a straight path of any length takes one pass.
+// In place, alternately upwards and downwards, so a straight path of any length takes one pass. A row is
+// visited again only after one beside it has changed.
 void BitGrid::flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
+  struct Times {
+    std::uint32_t visited = 0, changed = 1;
+  };
+  std::vector<Times> times(words_a_row_ == 0 ? 0 : words_.size() / words_a_row_);
+  std::uint32_t now = 1;  // number of visits
+  const auto flood_row = [&](int y, int z) {
+    Times& own = times[row_index(y, z)];
+    Rows rows{row(y, z), nullptr, nullptr, nullptr, nullptr};
+    std::uint32_t newest = own.visited == 0 ? own.changed : 0;
+    const auto beside = [&](int at_y, int at_z) -> const std::uint64_t* {
+      if (at_y < 0 || at_y >= size_.y() || at_z < 0 || at_z >= size_.z()) return nullptr;
+      newest = std::max(newest, times[row_index(at_y, at_z)].changed);
+      return row(at_y, at_z);
+    };
+    rows.y_before = beside(y - 1, z);
+    rows.y_after = beside(y + 1, z);
+    rows.z_before = beside(y, z - 1);
+    rows.z_after = beside(y, z + 1);
+    if (newest <= own.visited) return false;
+    own.visited = ++now;
+    const Bars bars = bars_around(blocked, y, z);
+    bool any = false;
+    while (spread_to_row(row(y, z), rows, where.row(y, z), bars, words_a_row_)) any = true;
+    if (any) own.changed = now;
+    return any;
+  };
   for (bool any = true; any;) {
     any = false;
-    const auto flood_row = [&](int y, int z) {
-      const Rows rows{row(y, z), y > 0 ? row(y - 1, z) : nullptr, y + 1 < size_.y() ? row(y + 1, z) : nullptr,
-                      z > 0 ? row(y, z - 1) : nullptr, z + 1 < size_.z() ? row(y, z + 1) : nullptr};
-      const Bars bars = bars_around(blocked, y, z);
-      while (spread_to_row(row(y, z), rows, where.row(y, z), bars, words_a_row_)) any = true;
-    };
     for (int z = 0; z < size_.z(); ++z)
-      for (int y = 0; y < size_.y(); ++y) flood_row(y, z);
+      for (int y = 0; y < size_.y(); ++y) any |= flood_row(y, z);
     for (int z = size_.z() - 1; z >= 0; --z)
-      for (int y = size_.y() - 1; y >= 0; --y) flood_row(y, z);
+      for (int y = size_.y() - 1; y >= 0; --y) any |= flood_row(y, z);
   }
 }
 
