@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <utility>
 #include <vector>
 
@@ -47,15 +48,9 @@ CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world
   }
 }
 
-Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
-                  const UnknownSurfaceConfig& config) {
-  // Wide enough that all unknown cells of the margin count, independent of the cells in the box.
-  const int margin = std::max(config.least_voxels, config.cube_voxels);
-  Known known;
-  int edge = 1;
-  known.grid = grid_round(map, known_world, margin, config.cube_voxels, config.max_cells, edge);
-  known.free = BitGrid(known.grid.size, false);
-  known.unknown = BitGrid(known.grid.size, true);
+/// @param edge  of a cell, voxels
+Known known_cells(const StaticMap& map, const CellGrid& grid, int edge) {
+  Known known{grid, BitGrid(grid.size, false), BitGrid(grid.size, true)};
   map.visit_leaves([&](const MapLeaf& leaf) {
     const Vector3i from = leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v, edge); });
     const Vector3i to =
@@ -148,10 +143,15 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
   UnknownSurface result;
   const MapCounts counts = map.counts();
   if (counts.free_leaves == 0) return result;
-  Known known = known_cells(map, counts.known_world, config);
-  result.grid = known.grid;
+  // Wide enough that all unknown cells of the margin count, independent of the cells in the box.
+  const int margin = std::max(config.least_voxels, config.cube_voxels);
+  int edge = 1;
+  result.grid = grid_round(map, counts.known_world, margin, config.cube_voxels, config.max_cells, edge);
+  auto blocking =
+      std::async(std::launch::async, [&] { return blocked_neighbours(surface_world, result.grid); });
+  Known known = known_cells(map, result.grid, edge);
   result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
-  std::array<BitGrid, 3> blocked = blocked_neighbours(surface_world, known.grid);
+  std::array<BitGrid, 3> blocked = blocking.get();
   leave_out_pockets(known, blocked, config, result.unknown);
   const BitGrid reached = reachable(std::move(known.free), result.unknown, blocked, config);
   result.mesh_world = mesh_between(result.unknown, reached, blocked, known.grid);
