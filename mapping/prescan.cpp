@@ -17,6 +17,7 @@
 #include "mapping/texture_pass.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {
@@ -64,6 +65,7 @@ std::future<TimedCoverage> begin_coverage(const StaticMap& octree, const Mesh& m
   return std::async(std::launch::async, [&octree, &mesh, poses = std::move(earlier)] {
     const auto start = std::chrono::steady_clock::now();
     Coverage coverage = survey_coverage(octree, mesh, poses);
+    release_unused_memory();  // the texture needs it
     return TimedCoverage{std::move(coverage), ms_since(start)};
   });
 }
