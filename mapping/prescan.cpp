@@ -1,10 +1,13 @@
 // prescan.cpp: the stages of a prescan, from the first frame to the finished map.
 #include "mapping/prescan.hpp"
 
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mapping/coverage/coverage.hpp"
 #include "mapping/deskewed_source.hpp"
@@ -14,6 +17,7 @@
 #include "mapping/texture_pass.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {
@@ -44,6 +48,26 @@ std::string why_none_fused(const PrescanWork& work) {
     return "no frame could be fused: the poses are out of the octree's reach of " +
            std::to_string(std::lround(work.reach_m)) + " m; take coarser cells";
   return "no frame could be fused; the depth images hold no usable measurement";
+}
+
+/// Unobserved regions, and how long it took to find them.
+struct TimedCoverage {
+  Coverage coverage;
+  double ms = 0.0;
+};
+
+/// Surveys the coverage on a second thread. Octree and mesh must not change meanwhile.
+/// @param earlier  poses of the map that is extended
+std::future<TimedCoverage> begin_coverage(const StaticMap& octree, const Mesh& mesh,
+                                          std::vector<TimedPose> earlier,
+                                          const std::vector<TimedPose>& trajectory) {
+  earlier.insert(earlier.end(), trajectory.begin(), trajectory.end());
+  return std::async(std::launch::async, [&octree, &mesh, poses = std::move(earlier)] {
+    const auto start = std::chrono::steady_clock::now();
+    Coverage coverage = survey_coverage(octree, mesh, poses);
+    release_unused_memory();  // the texture needs it
+    return TimedCoverage{std::move(coverage), ms_since(start)};
+  });
 }
 
 /// Fills in the map's description, except for the fields that save_map sets.
@@ -109,12 +133,21 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   if (map.mesh.triangles.empty())
     throw Error(source.name() + ": " + std::to_string(pass.fused.size()) + " frames show no surface at " +
                 format_number(config.resolution_m) + " m; try another --resolution");
+  if (config.bake_texture)
+    erase_flat_triangles(map.mesh);  // so that the texture fits the mesh that is read from the map
+
+  // Texture. Unobserved regions are found meanwhile.
+  auto coverage = begin_coverage(
+      map.octree, map.mesh, start.map ? start.map->trajectory : std::vector<TimedPose>{}, map.trajectory);
   if (config.bake_texture) {
     EarlierTextures earlier;
     if (start.map) add_texture_of(*start.map, Eigen::Isometry3d::Identity(), earlier);
-    erase_flat_triangles(map.mesh);  // so that the texture fits the mesh that is read from the map
     map.texture = run_texture_pass(work, map.trajectory, pass, earlier, map.mesh);
   }
+  TimedCoverage surveyed = coverage.get();
+  times.add_ms("coverage", surveyed.ms);
+  map.coverage_png = std::move(surveyed.coverage.picture_png);
+  result.holes = std::move(surveyed.coverage.holes);
   map.keyframe_database = std::move(pass.found.keyframe_database);
   transform(map.keyframe_database, pass.T_world_found);
 
@@ -135,14 +168,9 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     start.map->octree = std::move(map.octree);
     start.map->mesh = std::move(map.mesh);
     start.map->texture = std::move(map.texture);
+    start.map->coverage_png = std::move(map.coverage_png);
     map = std::move(*start.map);
   }
-
-  // Coverage: unobserved regions.
-  Coverage coverage =
-      times.timed("coverage", [&] { return survey_coverage(map.octree, map.mesh, map.trajectory); });
-  map.coverage_png = std::move(coverage.picture_png);
-  result.holes = std::move(coverage.holes);
   return result;
 }
 

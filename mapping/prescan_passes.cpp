@@ -10,6 +10,7 @@
 #include "mapping/map/registration.hpp"
 #include "mapping/map/surface_points.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
+#include "mapping/read_ahead.hpp"
 #include "mapping/revision/ghost_removal.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/storage/checkpoints.hpp"
@@ -22,7 +23,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Reads the next readable frame; returns false at the end.
-bool read(FrameSource& source, StageTimes& times, Frame& frame, PrescanCounts& counts) {
+/// @param source  FrameSource or ReadAhead
+template <typename Source>
+bool read(Source& source, StageTimes& times, Frame& frame, PrescanCounts& counts) {
   for (;;) {
     const ReadResult result = times.timed("read", [&] { return source.next(frame); });
     if (result.status == ReadStatus::kEnd) return false;
@@ -253,9 +256,9 @@ void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory
   if (pass.frames_read > 0) skip_frames(*work.source, pass.frames_read, kFusingStage, work.progress);
   release_unused_memory();
   bool has_room = true;
+  ReadAhead frames(*work.source, pass.counts.frames_read - pass.frames_read);
   Frame frame;
-  while (has_room && pass.frames_read < pass.counts.frames_read &&
-         read(*work.source, work.times, frame, second_pass)) {
+  while (has_room && read(frames, work.times, frame, second_pass)) {
     pass.frames_read = second_pass.frames_read;
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end() || is_held_out(frame.index, work.config.hold_out)) continue;

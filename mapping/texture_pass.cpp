@@ -85,6 +85,8 @@ std::shared_ptr<const SurfaceTexture> run_texture_pass(PrescanWork& work,
     align_views(mesh, views);
     return bake_texture(mesh, views, earlier);
   });
+  views = {};
+  release_unused_memory();  // the views' small parts
   if (texture.corners.empty()) return nullptr;
   return std::make_shared<const SurfaceTexture>(std::move(texture));
 }

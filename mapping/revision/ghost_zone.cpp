@@ -2,6 +2,7 @@
 #include "mapping/revision/ghost_zone.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -24,6 +25,14 @@ std::size_t offset_of(const VoxelIndex& voxel) {
 std::size_t cell_of(const VoxelIndex& voxel) {
   const auto half = [&](int axis) { return static_cast<std::size_t>(voxel[axis] >> 2 & 1); };
   return half(0) | half(1) << 1U | half(2) << 2U;
+}
+
+// Sets the bits of a brick's voxels that are in a box, borders included.
+void set_box(const VoxelIndex& low, const VoxelIndex& high, std::bitset<512>& bits) {
+  const VoxelIndex from = low.cwiseMax(0), to = high.cwiseMin(kBrickEdge - 1);
+  for (int z = from.z(); z <= to.z(); ++z)
+    for (int y = from.y(); y <= to.y(); ++y)
+      for (int x = from.x(); x <= to.x(); ++x) bits.set(brick_offset({x, y, z}));
 }
 
 struct Rectangle {
@@ -85,15 +94,22 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
   };
   for (const VoxelIndex& ghost : verdicts.ghosts) mark(ghost, &Marks::ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark(absent, &Marks::absent);
-  const auto mark_near = [this](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
-    if (!reaches(voxel)) return;
-    for (int z = -kNear; z <= kNear; ++z)
-      for (int y = -kNear; y <= kNear; ++y)
-        for (int x = -kNear; x <= kNear; ++x) {
-          const VoxelIndex near = voxel + VoxelIndex(x, y, z);
-          const auto found = marks_.find(voxel_key(brick_of(near)));
-          if (found != marks_.end()) (found->second.*bits).set(offset_of(near));
-        }
+  // The marks of a brick and of the 26 around it; null: not in the zone. Voxels come brick by brick.
+  std::array<Marks*, kCellsRound> round{};
+  std::optional<VoxelIndex> middle;
+  const auto mark_near = [&](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
+    if (const VoxelIndex first = brick_of(voxel); first != middle) {
+      for (int i = 0; i < kCellsRound; ++i) {
+        const auto found = marks_.find(voxel_key(first + kBrickEdge * neighbour_offset(i)));
+        round[static_cast<std::size_t>(i)] = found == marks_.end() ? nullptr : &found->second;
+      }
+      middle = first;
+    }
+    for (int i = 0; i < kCellsRound; ++i) {
+      Marks* const marks = round[static_cast<std::size_t>(i)];
+      const VoxelIndex in_brick = voxel - *middle - kBrickEdge * neighbour_offset(i);
+      if (marks) set_box(in_brick.array() - kNear, in_brick.array() + kNear, marks->*bits);
+    }
   };
   for (const VoxelIndex& ghost : verdicts.ghosts) mark_near(ghost, &Marks::near_ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark_near(absent, &Marks::near_ghost);
@@ -147,13 +163,18 @@ bool GhostZone::in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_wor
 
 void GhostZone::mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                      DepthImage& depth_m) const {
+  std::optional<std::uint64_t> last_brick;  // neighbouring pixels mostly see the same one
+  const Marks* marks = nullptr;
   for (int y = 0; y < depth_m.height; ++y)
     for (int x = 0; x < depth_m.width; ++x) {
       float& depth = depth_m.at(x, y);
       if (!(depth > 0.0F)) continue;
       const Eigen::Vector3d p_world = T_world_camera * back_project(camera, x, y, static_cast<double>(depth));
       const VoxelIndex voxel = (p_world / resolution_m_).array().floor().cast<int>();
-      const Marks* marks = marks_of(voxel);
+      if (const std::uint64_t brick = voxel_key(brick_of(voxel)); brick != last_brick) {
+        marks = marks_of(voxel);
+        last_brick = brick;
+      }
       const std::size_t offset = offset_of(voxel);
       if (!marks || !marks->near_still.test(offset) || marks->near_ghost.test(offset)) depth = 0.0F;
     }

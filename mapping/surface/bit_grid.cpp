@@ -104,6 +104,42 @@ void BitGrid::move_rows(int axis, int step) {
   }
 }
 
+// In place: a row changes after all rows that need its old value.
+BitGrid& BitGrid::erode(int axis, int steps) {
+  const int rows = size_.y() * size_.z(), width = axis == 1 ? size_.y() : size_.z();
+  for (int i = 0; i < rows; ++i) {
+    const int y = i % size_.y(), z = i / size_.y(), at = axis == 1 ? y : z;
+    std::uint64_t* const words = row(y, z);
+    for (std::size_t w = 0; axis == 0 && w < words_a_row_; ++w) {
+      const std::uint64_t own = words[w], next = w + 1 < words_a_row_ ? words[w + 1] : 0;
+      for (int step = 1; step <= steps; ++step) words[w] &= own >> step | next << (64 - step);
+    }
+    for (int step = 1; axis > 0 && step <= steps; ++step) {
+      const std::uint64_t* const after =
+          at + step < width ? words + static_cast<std::size_t>(step) * stride_words(axis) : nullptr;
+      for (std::size_t w = 0; w < words_a_row_; ++w) words[w] &= after ? after[w] : 0;
+    }
+  }
+  return *this;
+}
+
+BitGrid& BitGrid::dilate(int axis, int steps) {
+  for (int i = size_.y() * size_.z() - 1; i >= 0; --i) {
+    const int y = i % size_.y(), z = i / size_.y(), at = axis == 1 ? y : z;
+    std::uint64_t* const words = row(y, z);
+    for (std::size_t w = words_a_row_; axis == 0 && w-- > 0;) {
+      const std::uint64_t own = words[w], before = w > 0 ? words[w - 1] : 0;
+      for (int step = 1; step <= steps; ++step) words[w] |= own << step | before >> (64 - step);
+    }
+    for (int step = 1; axis > 0 && step <= std::min(steps, at); ++step) {
+      const std::uint64_t* const before = words - static_cast<std::size_t>(step) * stride_words(axis);
+      for (std::size_t w = 0; w < words_a_row_; ++w) words[w] |= before[w];
+    }
+  }
+  clear_row_ends();
+  return *this;
+}
+
 void BitGrid::keep_multiples_of(int spacing) {
   std::vector<std::uint64_t> kept(words_a_row_, 0);
   for (int x = 0; x < size_.x(); x += spacing)
@@ -130,11 +166,12 @@ BitGrid::Bars BitGrid::bars_around(const std::array<BitGrid, 3>& blocked, int y,
 }
 
 /// Sets the voxels of `row` that dilating `source` sets in it. Returns true if a voxel was added.
+/// @param where  null: everywhere, also past the row's end
 bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::uint64_t* where,
                             const Bars& bars, std::size_t words) {
   bool any = false;
   const auto add = [&](std::size_t i, std::uint64_t word) {
-    word &= where[i] & ~row[i];
+    word &= (where ? where[i] : kAll) & ~row[i];
     any = any || word != 0;
     row[i] |= word;
   };
@@ -155,7 +192,7 @@ bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::u
 }
 
 // Only the previous rows of two planes must be kept.
-void BitGrid::spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
+void BitGrid::spread(const BitGrid* where, const std::array<BitGrid, 3>& blocked) {
   const std::size_t plane_words = words_a_row_ * static_cast<std::size_t>(size_.y());
   std::vector<std::uint64_t> below, plane;  // z - 1 and z, as they were before
   for (int z = 0; z < size_.z(); ++z) {
@@ -169,39 +206,60 @@ void BitGrid::spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked
           row(y, z),
           {of(plane, y), y > 0 ? of(plane, y - 1) : nullptr, y + 1 < size_.y() ? of(plane, y + 1) : nullptr,
            z > 0 ? of(below, y) : nullptr, z + 1 < size_.z() ? row(y, z + 1) : nullptr},
-          where.row(y, z), bars_around(blocked, y, z), words_a_row_);
+          where ? where->row(y, z) : nullptr, bars_around(blocked, y, z), words_a_row_);
   }
 }
 
-// In place, alternately upwards and downwards, so a straight path of any length takes one pass.
+void BitGrid::spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked) { spread(&where, blocked); }
+
+void BitGrid::spread(const std::array<BitGrid, 3>& blocked) {
+  spread(nullptr, blocked);
+  clear_row_ends();
+}
+
+// In place, alternately upwards and downwards, so a straight path of any length takes one pass. A row is
+// visited again only after one beside it has changed.
 void BitGrid::flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
+  struct Times {
+    std::uint32_t visited = 0, changed = 1;
+  };
+  std::vector<Times> times(words_a_row_ == 0 ? 0 : words_.size() / words_a_row_);
+  std::uint32_t now = 1;  // number of visits
+  const auto flood_row = [&](int y, int z) {
+    Times& own = times[row_index(y, z)];
+    Rows rows{row(y, z), nullptr, nullptr, nullptr, nullptr};
+    std::uint32_t newest = own.visited == 0 ? own.changed : 0;
+    const auto beside = [&](int at_y, int at_z) -> const std::uint64_t* {
+      if (at_y < 0 || at_y >= size_.y() || at_z < 0 || at_z >= size_.z()) return nullptr;
+      newest = std::max(newest, times[row_index(at_y, at_z)].changed);
+      return row(at_y, at_z);
+    };
+    rows.y_before = beside(y - 1, z);
+    rows.y_after = beside(y + 1, z);
+    rows.z_before = beside(y, z - 1);
+    rows.z_after = beside(y, z + 1);
+    if (newest <= own.visited) return false;
+    own.visited = ++now;
+    const Bars bars = bars_around(blocked, y, z);
+    bool any = false;
+    while (spread_to_row(row(y, z), rows, where.row(y, z), bars, words_a_row_)) any = true;
+    if (any) own.changed = now;
+    return any;
+  };
   for (bool any = true; any;) {
     any = false;
-    const auto flood_row = [&](int y, int z) {
-      const Rows rows{row(y, z), y > 0 ? row(y - 1, z) : nullptr, y + 1 < size_.y() ? row(y + 1, z) : nullptr,
-                      z > 0 ? row(y, z - 1) : nullptr, z + 1 < size_.z() ? row(y, z + 1) : nullptr};
-      const Bars bars = bars_around(blocked, y, z);
-      while (spread_to_row(row(y, z), rows, where.row(y, z), bars, words_a_row_)) any = true;
-    };
     for (int z = 0; z < size_.z(); ++z)
-      for (int y = 0; y < size_.y(); ++y) flood_row(y, z);
+      for (int y = 0; y < size_.y(); ++y) any |= flood_row(y, z);
     for (int z = size_.z() - 1; z >= 0; --z)
-      for (int y = size_.y() - 1; y >= 0; --y) flood_row(y, z);
+      for (int y = size_.y() - 1; y >= 0; --y) any |= flood_row(y, z);
   }
 }
 
-BitGrid opened(const BitGrid& bits, int edge, int lattice) {
-  BitGrid cubes = bits;  // after the loop: the lowest voxels of whole cubes
-  for (int axis = 0; axis < 3; ++axis) {
-    BitGrid ahead = cubes;
-    for (int i = 1; i < edge; ++i) cubes &= ahead.shift(axis, 1);
-  }
-  if (lattice > 1) cubes.keep_multiples_of(lattice);
-  for (int axis = 0; axis < 3; ++axis) {
-    BitGrid behind = cubes;
-    for (int i = 1; i < edge; ++i) cubes |= behind.shift(axis, -1);
-  }
-  return cubes;
+BitGrid opened(BitGrid bits, int edge, int lattice) {
+  for (int axis = 0; axis < 3; ++axis) bits.erode(axis, edge - 1);  // the lowest voxels of whole cubes
+  if (lattice > 1) bits.keep_multiples_of(lattice);
+  for (int axis = 0; axis < 3; ++axis) bits.dilate(axis, edge - 1);
+  return bits;
 }
 
 }  // namespace roomradar

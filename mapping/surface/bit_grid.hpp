@@ -37,6 +37,11 @@ class BitGrid {
   /// Gives each voxel the value of its neighbour `step` (-1 or 1) along the axis.
   BitGrid& shift(int axis, int step);
 
+  /// Keeps the voxels whose next `steps` (0..63) voxels along the axis are all set.
+  BitGrid& erode(int axis, int steps);
+  /// Sets the next `steps` (0..63) voxels along the axis after each set voxel.
+  BitGrid& dilate(int axis, int steps);
+
   /// Clears all voxels whose coordinates are not all multiples of `spacing` (>= 1).
   void keep_multiples_of(int spacing);
 
@@ -44,10 +49,13 @@ class BitGrid {
   /// blocked[axis] blocks the steps between it and the next voxel along the axis in both directions. All
   /// grids must have the same size.
   void spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
+  /// Dilates by one step everywhere.
+  void spread(const std::array<BitGrid, 3>& blocked);
   /// Repeats spread() until nothing changes.
   void flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
 
-  /// Calls visit(p) for each set voxel, z slowest, x fastest.
+  /// Calls visit(p) for each set voxel, z slowest, x fastest. `visit` may clear voxels. It is still called
+  /// for those among the 64 of its word.
   template <typename Visit>
   void for_each_set(const Visit& visit) const {
     for (int z = 0; z < size_.z(); ++z)
@@ -85,9 +93,14 @@ class BitGrid {
   [[nodiscard]] const std::uint64_t* row(int y, int z) const {
     return words_.data() + row_index(y, z) * words_a_row_;
   }
+  /// Words from a row to the next along y or z.
+  [[nodiscard]] std::size_t stride_words(int axis) const {
+    return words_a_row_ * (axis == 1 ? 1 : static_cast<std::size_t>(size_.y()));
+  }
   void clear_row_ends();
   void shift_rows(int step);
   void move_rows(int axis, int step);
+  void spread(const BitGrid* where, const std::array<BitGrid, 3>& blocked);
   struct Rows;
   struct Bars;
   [[nodiscard]] static Bars bars_around(const std::array<BitGrid, 3>& blocked, int y, int z);
@@ -101,7 +114,7 @@ class BitGrid {
 
 /// Returns the morphological opening by a cube. Keeps the voxels that are in a cube of edge x edge x edge set
 /// voxels, and removes thinner structures. With lattice > 1, considers only cubes whose lowest voxel's
-/// coordinates are multiples of `lattice`. edge and lattice must be >= 1.
-BitGrid opened(const BitGrid& bits, int edge, int lattice = 1);
+/// coordinates are multiples of `lattice`. edge (at most 64) and lattice must be >= 1.
+BitGrid opened(BitGrid bits, int edge, int lattice = 1);
 
 }  // namespace roomradar

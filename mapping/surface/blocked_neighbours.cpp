@@ -65,8 +65,8 @@ void bar_along(int axis, const std::array<Vector3d, 3>& corners, BitGrid& blocke
 }  // namespace
 
 std::array<BitGrid, 3> blocked_neighbours(const Mesh& surface_world, const CellGrid& grid) {
-  const BitGrid none(grid.size, false);
-  std::array<BitGrid, 3> blocked{none, none, none};
+  std::array<BitGrid, 3> blocked;
+  for (BitGrid& bits : blocked) bits = BitGrid(grid.size, false);
   const Vector3d origin_cells =
       surface_world.origin / grid.cell_m - grid.first_cell.cast<double>() - Vector3d::Constant(0.5);
   for (const Triangle& triangle : surface_world.triangles) {

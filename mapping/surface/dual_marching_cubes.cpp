@@ -97,8 +97,8 @@ class Net {
     for (Grid& grid : grids_) grid.cells.resize(grid.bricks.bricks().size());
     for (const Grid& grid : grids_)
       if (!grid.cells.empty()) {
-        mesh_.origin = on_vertex_grid(grid.edge * grid.bricks.bricks().front().first.cast<double>() *
-                                      resolution_m);
+        mesh_.origin =
+            on_vertex_grid(grid.edge * grid.bricks.bricks().front().first.cast<double>() * resolution_m);
         break;
       }
     for_each_brick([this](Grid& grid, std::size_t b) { find_signs(grid, b); });

@@ -58,8 +58,8 @@ Mesh extract_full_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_w
                           const SurfaceConfig& config) {
   require_valid(config);
   constexpr int kNodes_voxels = 8, kExtrapolation_voxels = 2, kCell_voxels = 2;
-  static_assert(kSurfaceReach_voxels >= kSweeps * kReachPerSweep_voxels + kNodes_voxels +
-                                            kExtrapolation_voxels + 2 * kCell_voxels);
+  static_assert(kSurfaceReach_voxels >=
+                kSweeps * kReachPerSweep_voxels + kNodes_voxels + kExtrapolation_voxels + 2 * kCell_voxels);
   TsdfLevels levels(map, config.min_weight, box_world);
   if (config.smoothing > 0.0F) smooth(levels, config.smoothing, kSweeps);
   extrapolate_neighbours(levels);

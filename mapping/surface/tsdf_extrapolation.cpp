@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "mapping/types/system/parallel_for.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -20,11 +22,11 @@ const TsdfSample* known_at(const std::vector<Brick>& bricks, const BrickNeighbou
   return sample.known() ? &sample : nullptr;
 }
 
-// Returns a guess for each unknown sample next to a known one.
-std::vector<Guess> guess_neighbours(const TsdfBricks& bricks) {
+// Appends a guess for each unknown sample next to a known one, of bricks begin..end-1.
+void guess_neighbours(const TsdfBricks& bricks, std::size_t begin, std::size_t end,
+                      std::vector<Guess>& guesses) {
   const std::vector<Brick>& all = bricks.bricks();
-  std::vector<Guess> guesses;
-  for (std::size_t b = 0; b < all.size(); ++b) {
+  for (std::size_t b = begin; b < end; ++b) {
     const BrickNeighbourhood around(bricks, b);
     for (int z = 0; z < kBrickEdge; ++z)
       for (int y = 0; y < kBrickEdge; ++y)
@@ -51,23 +53,34 @@ std::vector<Guess> guess_neighbours(const TsdfBricks& bricks) {
                  lines > 0 ? on_lines / static_cast<float>(lines) : beside / static_cast<float>(count)});
         }
   }
+}
+
+// Returns the guesses of all bricks, those of kBricksAtOnce together.
+std::vector<std::vector<Guess>> guess_neighbours(const TsdfBricks& bricks) {
+  constexpr std::size_t kBricksAtOnce = 64;
+  const std::size_t count = bricks.bricks().size();
+  std::vector<std::vector<Guess>> guesses((count + kBricksAtOnce - 1) / kBricksAtOnce);
+  parallel_ranges(count, kBricksAtOnce, [&](std::size_t begin, std::size_t end) {
+    guess_neighbours(bricks, begin, end, guesses[begin / kBricksAtOnce]);
+  });
   return guesses;
 }
 
-void store(const std::vector<Guess>& guesses, TsdfBricks& bricks) {
-  for (const Guess& guess : guesses) {
-    TsdfSample& sample = bricks.bricks()[guess.brick].samples[guess.offset];
-    sample.distance_m = guess.distance_m;
-    sample.weight = std::numeric_limits<float>::min();
-    sample.extrapolated = true;
-  }
+void store(const std::vector<std::vector<Guess>>& guesses, TsdfBricks& bricks) {
+  for (const std::vector<Guess>& some : guesses)
+    for (const Guess& guess : some) {
+      TsdfSample& sample = bricks.bricks()[guess.brick].samples[guess.offset];
+      sample.distance_m = guess.distance_m;
+      sample.weight = std::numeric_limits<float>::min();
+      sample.extrapolated = true;
+    }
 }
 
 }  // namespace
 
 void extrapolate_neighbours(TsdfLevels& levels) {
   for (int ring = 0; ring < 2; ++ring) {
-    const std::vector<Guess> in_voxels = guess_neighbours(levels.voxels);
+    const std::vector<std::vector<Guess>> in_voxels = guess_neighbours(levels.voxels);
     store(guess_neighbours(levels.coarse), levels.coarse);
     store(in_voxels, levels.voxels);
     levels.mirror_voxels_in_coarse();

@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "mapping/types/system/parallel_for.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
@@ -46,6 +47,15 @@ void for_each_in_cube(int edge, const Visit& visit) {
   for (int z = 0; z < edge; ++z)
     for (int y = 0; y < edge; ++y)
       for (int x = 0; x < edge; ++x) visit(Eigen::Vector3i(x, y, z));
+}
+
+/// Calls visit(node) for each node, on all cores.
+template <typename Visit>
+void for_each_node(const std::vector<VoxelIndex>& nodes, const Visit& visit) {
+  constexpr std::size_t kNodesAtOnce = 256;
+  parallel_ranges(nodes.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) visit(nodes[i]);
+  });
 }
 
 TsdfSample& place_in(TsdfBricks& bricks, const VoxelIndex& cell) {
@@ -131,7 +141,7 @@ TsdfLevels::TsdfLevels(const StaticMap& map, float min_weight, const Eigen::Alig
 }
 
 void TsdfLevels::mirror_coarse_in_voxels() {
-  for (const VoxelIndex& node : coarse_beside_voxels_)
+  for_each_node(coarse_beside_voxels_, [&](const VoxelIndex& node) {
     for_each_in_cube(kCoarsePerNode, [&](const Eigen::Vector3i& at) {
       const VoxelIndex cell = kCoarsePerNode * node + at;
       const TsdfSample* own = sample_in(coarse, cell);
@@ -158,10 +168,11 @@ void TsdfLevels::mirror_coarse_in_voxels() {
         voxel = mirrored(*own, distance_m);
       });
     });
+  });
 }
 
 void TsdfLevels::mirror_voxels_in_coarse() {
-  for (const VoxelIndex& node : voxels_beside_coarse_)
+  for_each_node(voxels_beside_coarse_, [&](const VoxelIndex& node) {
     for_each_in_cube(kCoarsePerNode, [&](const Eigen::Vector3i& at) {
       const VoxelIndex cell = kCoarsePerNode * node + at;
       float sum_m = 0.0F;
@@ -178,6 +189,7 @@ void TsdfLevels::mirror_voxels_in_coarse() {
       place_in(coarse, cell) =
           known == kVoxelsPerCell ? mirrored(any, sum_m / kVoxelsPerCell) : unknown_mirrored();
     });
+  });
 }
 
 }  // namespace roomradar

@@ -5,12 +5,15 @@
 #include <cstddef>
 #include <vector>
 
+#include "mapping/types/system/parallel_for.hpp"
+
 namespace roomradar {
 namespace {
 
 // Samples with a weight above this many times the strength are skipped: they would move by less than a tenth
 // of the difference to their neighbours.
 constexpr float kFirm = 30.0F;
+constexpr std::size_t kBricksAtOnce = 64;  // of a thread
 
 // The strength in the grid of coarse cells, relative to that of voxels. Of 1, 1/2, 1/4, 1/8 on a simulated
 // dining room, 1/4 and 1/8 kept the shape of edges as well as voxels did; 1/4 has the lower median error.
@@ -54,25 +57,29 @@ class Sweeps {
   // Smooths the cells whose coordinates have a sum of this parity (0 or 1). Their axis neighbours have the
   // other parity, so the order of cells and bricks does not matter.
   void half_sweep(float strength, std::size_t parity) {
-    for (std::size_t b = 0; b < all_.size(); ++b)
-      for (std::size_t i = 0; i < kBrickSize; ++i) {
-        if (((i ^ i / kBrickEdge ^ i / (kBrickEdge * kBrickEdge)) & 1U) != parity) continue;
-        TsdfSample& sample = all_[b].samples[i];
-        if (!sample.known() || sample.mirrored || sample.weight > kFirm * strength) continue;
-        float sum = sample.weight * measured_m_[b][i];
-        float weight = sample.weight;
-        for (const auto& [axis, step] : kAxes) {
-          const int coordinate = static_cast<int>(i) / step % kBrickEdge;
-          const TsdfSample* before = neighbour(neighbours_[b].before[axis], b, i, -step, coordinate == 0);
-          if (!before) continue;
-          const TsdfSample* after =
-              neighbour(neighbours_[b].after[axis], b, i, step, coordinate == kBrickEdge - 1);
-          if (!after) continue;
-          sum += strength * 0.5F * (before->distance_m + after->distance_m);
-          weight += strength;
-        }
-        sample.distance_m = sum / weight;
+    parallel_ranges(all_.size(), kBricksAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) half_sweep_of(b, strength, parity);
+    });
+  }
+  void half_sweep_of(std::size_t b, float strength, std::size_t parity) {
+    for (std::size_t i = 0; i < kBrickSize; ++i) {
+      if (((i ^ i / kBrickEdge ^ i / (kBrickEdge * kBrickEdge)) & 1U) != parity) continue;
+      TsdfSample& sample = all_[b].samples[i];
+      if (!sample.known() || sample.mirrored || sample.weight > kFirm * strength) continue;
+      float sum = sample.weight * measured_m_[b][i];
+      float weight = sample.weight;
+      for (const auto& [axis, step] : kAxes) {
+        const int coordinate = static_cast<int>(i) / step % kBrickEdge;
+        const TsdfSample* before = neighbour(neighbours_[b].before[axis], b, i, -step, coordinate == 0);
+        if (!before) continue;
+        const TsdfSample* after =
+            neighbour(neighbours_[b].after[axis], b, i, step, coordinate == kBrickEdge - 1);
+        if (!after) continue;
+        sum += strength * 0.5F * (before->distance_m + after->distance_m);
+        weight += strength;
       }
+      sample.distance_m = sum / weight;
+    }
   }
 
   // The sample one step from i along an axis, in brick b or the next; null if unknown.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace {
 
 using Eigen::Vector3i;
 
-constexpr int kGridsAtOnce = 8;  // bit grids alive at the same time; most while pockets are sought
+constexpr int kGridsAtOnce = 6;  // bit grids alive at the same time
 
 // State of the map in cells of one voxel, or of several if the map is very large.
 struct Known {
@@ -47,15 +48,9 @@ CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world
   }
 }
 
-Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
-                  const UnknownSurfaceConfig& config) {
-  // Wide enough that all unknown cells of the margin count, independent of the cells in the box.
-  const int margin = std::max(config.least_voxels, config.cube_voxels);
-  Known known;
-  int edge = 1;
-  known.grid = grid_round(map, known_world, margin, config.cube_voxels, config.max_cells, edge);
-  known.free = BitGrid(known.grid.size, false);
-  known.unknown = BitGrid(known.grid.size, true);
+/// @param edge  of a cell, voxels
+Known known_cells(const StaticMap& map, const CellGrid& grid, int edge) {
+  Known known{grid, BitGrid(grid.size, false), BitGrid(grid.size, true)};
   map.visit_leaves([&](const MapLeaf& leaf) {
     const Vector3i from = leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v, edge); });
     const Vector3i to =
@@ -71,21 +66,17 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
 // `known.unknown`.
 void leave_out_pockets(Known& known, const std::array<BitGrid, 3>& blocked,
                        const UnknownSurfaceConfig& config, BitGrid& unknown) {
-  BitGrid hanging = unknown;  // not connected to anything occupied or to the margin
-  {
-    const BitGrid everywhere(known.grid.size, true);
-    BitGrid held = std::move(known.unknown);
-    (held |= known.free).flip();
-    for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, blocked);
-    held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
-    held &= unknown;
-    held.flood(unknown, blocked);
-    hanging.subtract(held);
-  }
+  BitGrid held = std::move(known.unknown);
+  (held |= known.free).flip();
+  for (int step = 0; step < config.cube_voxels; ++step) held.spread(blocked);
+  held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
+  held &= unknown;
+  held.flood(unknown, blocked);
+  BitGrid unseen = std::move(held.flip());  // not connected to anything occupied or to the margin
+  unseen &= unknown;
 
   std::vector<Vector3i> piece;
-  BitGrid unseen = hanging;
-  hanging.for_each_set([&](const Vector3i& first) {
+  unseen.for_each_set([&](const Vector3i& first) {
     if (!unseen.at(first)) return;
     piece.assign(1, first);
     unseen.set(first, false);
@@ -104,24 +95,25 @@ void leave_out_pockets(Known& known, const std::array<BitGrid, 3>& blocked,
 
 // Cells that an object coming from free space can reach: any distance through free voxels, then rim_voxels
 // further through anything that does not count as unknown.
-BitGrid reachable(const BitGrid& free, const BitGrid& unknown, const std::array<BitGrid, 3>& blocked,
+BitGrid reachable(BitGrid free, const BitGrid& unknown, const std::array<BitGrid, 3>& blocked,
                   const UnknownSurfaceConfig& config) {
   BitGrid reached = opened(free, config.least_voxels);
   reached.flood(free, blocked);
-  BitGrid passable(free.size(), true);
-  passable.subtract(unknown);
+  free = unknown;
+  const BitGrid& passable = free.flip();
   for (int step = 0; step < config.rim_voxels; ++step) reached.spread(passable, blocked);
   return reached;
 }
 
-// Meshes the faces of unknown cells towards reached ones, unless a surface separates the two.
-Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, const std::array<BitGrid, 3>& blocked,
+// Meshes the faces of unknown cells towards reached ones, unless a surface separates the two. Uses up
+// `blocked`.
+Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, std::array<BitGrid, 3>& blocked,
                   const CellGrid& grid) {
   VoxelFaceMesher mesher(grid);
   for (int axis = 0; axis < 3; ++axis)
     for (const int step : {1, -1}) {
       BitGrid faces = reached;
-      BitGrid bars = blocked[static_cast<std::size_t>(axis)];
+      BitGrid& bars = blocked[static_cast<std::size_t>(axis)];
       if (step < 0) bars.shift(axis, -1);
       faces.shift(axis, step).subtract(bars) &= unknown;
       mesher.add({std::move(faces), axis, step});
@@ -151,13 +143,17 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
   UnknownSurface result;
   const MapCounts counts = map.counts();
   if (counts.free_leaves == 0) return result;
-  Known known = known_cells(map, counts.known_world, config);
-  result.grid = known.grid;
+  // Wide enough that all unknown cells of the margin count, independent of the cells in the box.
+  const int margin = std::max(config.least_voxels, config.cube_voxels);
+  int edge = 1;
+  result.grid = grid_round(map, counts.known_world, margin, config.cube_voxels, config.max_cells, edge);
+  auto blocking =
+      std::async(std::launch::async, [&] { return blocked_neighbours(surface_world, result.grid); });
+  Known known = known_cells(map, result.grid, edge);
   result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
-  const std::array<BitGrid, 3> blocked = blocked_neighbours(surface_world, known.grid);
+  std::array<BitGrid, 3> blocked = blocking.get();
   leave_out_pockets(known, blocked, config, result.unknown);
-  const BitGrid reached = reachable(known.free, result.unknown, blocked, config);
-  known.free = {};
+  const BitGrid reached = reachable(std::move(known.free), result.unknown, blocked, config);
   result.mesh_world = mesh_between(result.unknown, reached, blocked, known.grid);
   result.memory_bytes = kGridsAtOnce * reached.memory_bytes();
   return result;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mapping/texture/view_alignment.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {
 namespace {
@@ -33,12 +34,12 @@ float median(std::vector<float>& values) {
 /// Returns the colours of the centres of evenly chosen triangles, in all views that show them. Leaves out
 /// centres that fewer than two views show.
 std::vector<std::vector<Sample>> shared_points(const Mesh& mesh, std::span<const TextureView> views) {
-  std::vector<std::vector<Sample>> points;
   const std::size_t step = std::max<std::size_t>(1, mesh.triangles.size() / kPoints);
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
+  std::vector<std::vector<Sample>> points((mesh.triangles.size() + step - 1) / step);
+  const auto collect = [&](std::size_t i) {
     const MeshPoint centre =
-        mesh_point(mesh, static_cast<std::uint32_t>(t), Eigen::Vector3f::Constant(1.0F / 3.0F));
-    std::vector<Sample> samples;
+        mesh_point(mesh, static_cast<std::uint32_t>(i * step), Eigen::Vector3f::Constant(1.0F / 3.0F));
+    std::vector<Sample>& samples = points[i];
     for (std::uint32_t v = 0; v < views.size(); ++v) {
       const ShownPoint point = shown(views[v], centre.p_local, centre.normal);
       if (!(point.score > 0.0F)) continue;
@@ -46,8 +47,12 @@ std::vector<std::vector<Sample>> shared_points(const Mesh& mesh, std::span<const
       if (colour.minCoeff() > kDark && colour.maxCoeff() < kBright)
         samples.push_back({v, Eigen::Array3f(colour.log())});
     }
-    if (samples.size() >= 2) points.push_back(std::move(samples));
-  }
+  };
+  constexpr std::size_t kPointsAtOnce = 128;
+  parallel_ranges(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) collect(i);
+  });
+  std::erase_if(points, [](const std::vector<Sample>& samples) { return samples.size() < 2; });
   return points;
 }
 
@@ -78,8 +83,10 @@ void even_exposure(const Mesh& mesh, std::span<TextureView> views) {
   std::vector<std::size_t> shared(views.size(), 0);
   for (const std::vector<Sample>& samples : points)
     for (const Sample& sample : samples) ++shared[sample.view];
-  std::vector<float> values;
-  for (int channel = 0; channel < 3; ++channel) {
+  constexpr std::size_t kChannels = 3;
+  parallel_for(kChannels, hardware_threads(), [&](std::size_t c, unsigned) {
+    const auto channel = static_cast<Eigen::Index>(c);
+    std::vector<float> values;
     std::vector<float> log_gain(views.size(), 0.0F);
     for (int round = 0; round < kRounds; ++round) {
       std::vector<std::vector<float>> residuals(views.size());
@@ -102,9 +109,8 @@ void even_exposure(const Mesh& mesh, std::span<TextureView> views) {
       for (std::size_t v = 0; v < views.size(); ++v)
         if (shared[v] >= kMinShared) log_gain[v] -= sum / count;
     }
-    for (std::size_t v = 0; v < views.size(); ++v)
-      views[v].gain[static_cast<std::size_t>(channel)] = std::exp(log_gain[v]);
-  }
+    for (std::size_t v = 0; v < views.size(); ++v) views[v].gain[c] = std::exp(log_gain[v]);
+  });
   keep_highlights(points, views);
 }
 

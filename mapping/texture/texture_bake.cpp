@@ -47,7 +47,7 @@ std::vector<float> texels_per_m(const Mesh& mesh, std::span<const TextureView> v
   std::vector<float> wanted(mesh.triangles.size(), kMinTexelsPerM);
   const auto most = static_cast<float>(1.0 / min_texel_m);
   const Eigen::Vector3f middle = Eigen::Vector3f::Constant(1.0F / 3.0F);
-  for (std::uint32_t t = 0; t < wanted.size(); ++t) {
+  const auto set = [&](std::uint32_t t) {
     const MeshPoint point = mesh_point(mesh, t, middle);
     for (const TextureView& view : views)
       wanted[t] = std::max(wanted[t], shown(view, point.p_local, point.normal).px_per_m);
@@ -55,7 +55,11 @@ std::vector<float> texels_per_m(const Mesh& mesh, std::span<const TextureView> v
     if (const auto found = find_densest(earlier, mesh.origin + point.p_local.cast<double>(), point.normal))
       wanted[t] = std::max(wanted[t], found->texels_per_m);
     wanted[t] = std::min(wanted[t], most);
-  }
+  };
+  constexpr std::size_t kTrianglesAtOnce = 1024;
+  parallel_ranges(wanted.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) set(static_cast<std::uint32_t>(t));
+  });
   return wanted;
 }
 

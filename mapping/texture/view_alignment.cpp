@@ -73,11 +73,12 @@ struct Aligned {
   TextureView* view = nullptr;
   Eigen::Isometry3f T_first;           // the view's first pose
   std::vector<std::uint32_t> visible;  // indices of points
+  std::vector<Grey> greys;             // of visible, from the present pose
   GreyPicture picture;
 };
 
 Aligned begin(std::span<const MeshPoint> points, TextureView& view) {
-  Aligned aligned{&view, view.T_camera_local, {}, {}};
+  Aligned aligned{&view, view.T_camera_local, {}, {}, {}};
   for (std::uint32_t i = 0; i < points.size(); ++i)
     if (shown(view, points[i].p_local, points[i].normal).score > 0.0F) aligned.visible.push_back(i);
   return aligned;
@@ -92,18 +93,27 @@ Vector6d moved(const Aligned& aligned) {
   return twist;
 }
 
-/// One Gauss-Newton step of the view's pose.
+/// Looks up the visible points in the view's picture.
+void look(std::span<const MeshPoint> points, Aligned& aligned) {
+  const TextureView& view = *aligned.view;
+  aligned.greys.resize(aligned.visible.size());
+  for (std::size_t k = 0; k < aligned.visible.size(); ++k)
+    aligned.greys[k] = grey_at(
+        aligned.picture, pixel_of(view.camera, view.T_camera_local * points[aligned.visible[k]].p_local));
+}
+
+/// One Gauss-Newton step of the view's pose. Call look() before.
 void step(std::span<const MeshPoint> points, std::span<const float> brightness, Aligned& aligned) {
   TextureView& view = *aligned.view;
   Matrix6d H = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
   const auto fx = static_cast<float>(view.camera.fx_px), fy = static_cast<float>(view.camera.fy_px);
-  for (const std::uint32_t i : aligned.visible) {
-    if (brightness[i] < 0.0F) continue;
+  for (std::size_t k = 0; k < aligned.visible.size(); ++k) {
+    const std::uint32_t i = aligned.visible[k];
+    const Grey& grey = aligned.greys[k];
+    if (brightness[i] < 0.0F || !grey.is_inside) continue;
     const Eigen::Vector3f p = view.T_camera_local * points[i].p_local;
     if (!(p.z() > 0.1F)) continue;
-    const Grey grey = grey_at(aligned.picture, pixel_of(view.camera, p));
-    if (!grey.is_inside) continue;
     const float difference = grey.value - brightness[i];
     const float weight = std::min(1.0F, kHuber / std::max(std::abs(difference), 1e-3F));
     // Gradient by the point in the camera frame, then by a twist: p moves by t + r x p.
@@ -131,19 +141,16 @@ void step(std::span<const MeshPoint> points, std::span<const float> brightness, 
 }
 
 /// Sets each point's brightness to the mean over the views; negative if fewer than two show it.
-void set_brightness(std::span<const MeshPoint> points, std::span<const Aligned> all,
-                    std::vector<float>& brightness) {
-  std::vector<float> count(points.size(), 0.0F);
-  brightness.assign(points.size(), 0.0F);
+void set_brightness(std::span<const Aligned> all, std::vector<float>& brightness) {
+  std::vector<float> count(brightness.size(), 0.0F);
+  std::fill(brightness.begin(), brightness.end(), 0.0F);
   for (const Aligned& aligned : all)
-    for (const std::uint32_t i : aligned.visible) {
-      const Grey grey = grey_at(
-          aligned.picture, pixel_of(aligned.view->camera, aligned.view->T_camera_local * points[i].p_local));
-      if (!grey.is_inside) continue;
-      brightness[i] += grey.value;
-      count[i] += 1.0F;
+    for (std::size_t k = 0; k < aligned.visible.size(); ++k) {
+      if (!aligned.greys[k].is_inside) continue;
+      brightness[aligned.visible[k]] += aligned.greys[k].value;
+      count[aligned.visible[k]] += 1.0F;
     }
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < brightness.size(); ++i)
     brightness[i] = count[i] >= 2.0F ? brightness[i] / count[i] : -1.0F;
 }
 
@@ -192,12 +199,13 @@ void align_views(const Mesh& mesh, std::span<TextureView> views) {
   const unsigned threads = hardware_threads();
   std::vector<Aligned> all(views.size());
   parallel_for(views.size(), threads, [&](std::size_t v, unsigned) { all[v] = begin(points, views[v]); });
-  std::vector<float> brightness;
+  std::vector<float> brightness(points.size());
   for (const int factor : kFactors) {
     parallel_for(all.size(), threads,
                  [&](std::size_t v, unsigned) { all[v].picture = grey_of(*all[v].view, factor); });
     for (int i = 0; i < kStepsPerFactor; ++i) {
-      set_brightness(points, all, brightness);
+      parallel_for(all.size(), threads, [&](std::size_t v, unsigned) { look(points, all[v]); });
+      set_brightness(all, brightness);
       parallel_for(all.size(), threads, [&](std::size_t v, unsigned) { step(points, brightness, all[v]); });
     }
   }
@@ -207,7 +215,10 @@ void align_view(std::span<const MeshPoint> points, std::span<const float> bright
   Aligned aligned = begin(points, view);
   for (const int factor : kFactors) {
     aligned.picture = grey_of(view, factor);
-    for (int i = 0; i < kStepsPerFactor; ++i) step(points, brightness, aligned);
+    for (int i = 0; i < kStepsPerFactor; ++i) {
+      look(points, aligned);
+      step(points, brightness, aligned);
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/sources/formats/image_header.hpp"
+#include "app/sources/formats/jpeg_colour.hpp"
 #include "app/sources/formats/kinect_units.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -60,8 +61,10 @@ void convert(const cv::Mat& image, float units_per_m, int invalid, DepthImage& d
   for (int y = 0; y < image.rows; ++y) {
     const std::uint16_t* from = image.ptr<std::uint16_t>(y);
     float* to = depth_m.row(y);
-    for (int x = 0; x < image.cols; ++x)
-      to[x] = from[x] == invalid ? 0.0F : static_cast<float>(from[x]) / units_per_m;
+    for (int x = 0; x < image.cols; ++x) {  // vectorised, since it always divides
+      const float depth = static_cast<float>(from[x]) / units_per_m;
+      to[x] = from[x] == invalid ? 0.0F : depth;
+    }
   }
 }
 
@@ -130,6 +133,12 @@ void decode_colour(std::string_view bytes, const std::string& name, ColourImage&
   if (header.kind == ImageKind::kPpm && header.bits == 8) {
     colour.resize(header.width_px, header.height_px);
     std::memcpy(colour.pixels.data(), bytes.data() + header.pixels_at, colour.pixels.size() * sizeof(Rgb));
+    return;
+  }
+  if (header.kind == ImageKind::kJpeg && header.bits == 8 && (header.channels == 1 || header.channels == 3)) {
+    if (colour.width != header.width_px || colour.height != header.height_px)
+      colour.resize(header.width_px, header.height_px);
+    if (const auto fault = decode_jpeg(bytes, colour)) throw Error(name + ": cannot be decoded: " + *fault);
     return;
   }
   const cv::Mat image =

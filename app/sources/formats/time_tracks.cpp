@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/sources/formats/camera_rig.hpp"
 #include "app/sources/formats/kinect_units.hpp"
 #include "mapping/types/linear_algebra.hpp"
 

@@ -32,4 +32,12 @@ void parallel_for(std::size_t pieces, unsigned threads, const Work& work) {
   for (std::future<void>& other : others) other.get();
 }
 
+/// Calls work(begin, end) for consecutive ranges of 0..count-1, each of at most `most` (> 0) numbers, on all
+/// processors.
+template <typename Work>
+void parallel_ranges(std::size_t count, std::size_t most, const Work& work) {
+  parallel_for((count + most - 1) / most, hardware_threads(),
+               [&](std::size_t piece, unsigned) { work(piece * most, std::min(count, (piece + 1) * most)); });
+}
+
 }  // namespace roomradar

@@ -1,0 +1,95 @@
+// read_ahead_test.cpp: frames come in order, and no more of them are read than asked for.
+#include "mapping/read_ahead.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar::read_ahead_test {
+namespace {
+
+/// Frames 0, 1, ... without end. Frame 2 is unreadable, the source waits before frame 4, and frame `faulty`
+/// throws.
+class Endless final : public FrameSource {
+ public:
+  ReadResult next(Frame& frame) override {
+    ++reads;
+    if (next_ == 4 && !has_waited_) {
+      has_waited_ = true;
+      return {ReadStatus::kSkipped, "no frame yet", /*waiting=*/true};
+    }
+    const std::int64_t index = next_++;
+    if (index == faulty) throw Error("frame " + std::to_string(index) + " cannot be read");
+    if (index == last + 1) return {};
+    if (index == 2) return {ReadStatus::kSkipped, "frame 2"};
+    frame.index = index;
+    return {ReadStatus::kFrame, {}};
+  }
+  bool rewind() override { return false; }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
+  [[nodiscard]] std::string name() const override { return "endless"; }
+
+  int reads = 0;
+  std::int64_t faulty = -1;
+  std::int64_t last = 1000;
+
+ private:
+  std::int64_t next_ = 0;
+  bool has_waited_ = false;
+};
+
+/// Indices of the delivered frames; -1: unreadable, -2: waiting.
+std::vector<std::int64_t> delivered(FrameSource& source, std::int64_t count) {
+  ReadAhead frames(source, count);
+  std::vector<std::int64_t> indices;
+  Frame frame;
+  for (;;) {
+    const ReadResult result = frames.next(frame);
+    if (result.status == ReadStatus::kEnd) return indices;
+    indices.push_back(result.status == ReadStatus::kFrame ? frame.index : result.waiting ? -2 : -1);
+  }
+}
+
+TEST(ReadAhead, DeliversFramesInOrder) {
+  Endless source;
+  EXPECT_EQ(delivered(source, 6), (std::vector<std::int64_t>{0, 1, -1, 3, -2, 4, 5}));
+  EXPECT_EQ(source.reads, 7) << "the frames and the wait, and none beyond";
+}
+
+TEST(ReadAhead, ReadsNothingIfNoFramesAreWanted) {
+  Endless source;
+  EXPECT_TRUE(delivered(source, 0).empty());
+  EXPECT_EQ(source.reads, 0);
+}
+
+TEST(ReadAhead, EndsWithTheSource) {
+  Endless source;
+  source.last = 1;
+  EXPECT_EQ(delivered(source, 6), (std::vector<std::int64_t>{0, 1}));
+}
+
+TEST(ReadAhead, ErrorsComeAtTheirFrame) {
+  Endless source;
+  source.faulty = 1;
+  ReadAhead frames(source, 6);
+  Frame frame;
+  EXPECT_EQ(frames.next(frame).status, ReadStatus::kFrame);
+  EXPECT_EQ(frame.index, 0);
+  EXPECT_THROW((void)frames.next(frame), Error);
+}
+
+TEST(ReadAhead, MayBeLeftWhileAFrameIsRead) {
+  Endless source;
+  Frame frame;
+  {
+    ReadAhead frames(source, 6);
+    EXPECT_EQ(frames.next(frame).status, ReadStatus::kFrame);
+  }
+  EXPECT_EQ(source.reads, 2);
+}
+
+}  // namespace
+}  // namespace roomradar::read_ahead_test
