@@ -28,6 +28,7 @@ keys() {
     before=$(pixel_sum)
     xdotool key "$key"
     until_changed "$before" 1
+    sleep 0.2  # what changed may be something else, and two keys must not come in one frame
     still
   done
 }
@@ -97,6 +98,7 @@ settled_shot rename-asks
 xdotool type 'kitchen'
 keys Return
 [[ -e maps/kitchen/map.json && ! -e maps/table ]] || fail "the map is not renamed"
+sleep 1  # the view reads the renamed map
 keys e
 settled_shot export-asks
 keys p
