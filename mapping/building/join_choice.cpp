@@ -197,17 +197,20 @@ std::vector<PredictedPair> overlap_of(const UsedJoins& used, const Way& way, std
 struct Overlap {
   Conflict joins;
   double cost = 0.0;  ///< of leaving it so; 0: they look the same, or nothing can be said
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< of the two submaps' worlds
 };
 
+/// A few keyframes that are not recognised prove nothing. Several in a row do: chance does not fail in one
+/// place only.
 Overlap judged(const PlacementTest& test, const Way& way) {
-  constexpr int kMinExpected = 4;
-  constexpr double kRecognised = 0.25, kAgreement = 0.6, kSure = 6.0;
-  Overlap overlap{way.joins, 0.0};
-  const int missing = test.expected - test.recognised;
-  const bool looks_different = test.recognised < kRecognised * test.expected || test.agreement() < kAgreement;
-  if (test.expected >= kMinExpected && looks_different)
-    overlap.cost = std::clamp(static_cast<double>(missing) / kSure, 0.5, 2.0);
+  constexpr int kMinMiss = 4;
+  constexpr double kSure = 4.0;  // keyframes in a row
+  Overlap overlap{way.joins, 0.0, way.T_start_end};
   std::sort(overlap.joins.begin(), overlap.joins.end());
+  if (test.longest_miss >= kMinMiss)
+    overlap.cost = test.longest_miss / kSure;
+  else if (test.expected >= kMinMiss && test.agreement() < JoinConfig{}.min_agreement)
+    overlap.cost = 1.0;
   return overlap;
 }
 
@@ -242,6 +245,39 @@ double cost_of(const GraphSubmap& submap, const GraphJoin& join) {
   return (0.5 + std::min(span_m / kRoom_m, 2.0)) * quality;
 }
 
+/// Conflicts between joins, and what breaking them costs: first of the joins, then of leaving an overlap as
+/// it is.
+struct Conflicts {
+  std::vector<Conflict> all;
+  std::vector<double> costs;
+};
+
+Conflicts all_conflicts(const std::set<Conflict>& cycles, const Overlaps& overlaps,
+                        const std::vector<double>& join_costs) {
+  Conflicts conflicts{{cycles.begin(), cycles.end()}, join_costs};
+  // Two ways may put a pair at the same place: that is left once.
+  std::vector<std::pair<const Overlap*, std::size_t>> left;  // of the pair at hand, with its element
+  std::pair<std::size_t, std::size_t> pair_at_hand;
+  for (const auto& [key, overlap] : overlaps) {
+    if (overlap.cost <= 0.0) continue;
+    if (key.first != pair_at_hand) left.clear();
+    pair_at_hand = key.first;
+    const Eigen::Isometry3d& T_a_b = overlap.T_a_b;
+    auto same = std::find_if(left.begin(), left.end(), [&T_a_b](const auto& one) {
+      return motion_length_m(one.first->T_a_b.inverse() * T_a_b) < 1.0;
+    });
+    if (same == left.end()) {
+      same = left.insert(same, {&overlap, conflicts.costs.size()});
+      conflicts.costs.push_back(overlap.cost);
+    }
+    double& cost = conflicts.costs[same->second];
+    cost = std::max(cost, overlap.cost);
+    conflicts.all.push_back(overlap.joins);
+    conflicts.all.back().push_back(same->second);
+  }
+  return conflicts;
+}
+
 }  // namespace
 
 std::vector<bool> choose_joins(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
@@ -261,18 +297,9 @@ std::vector<bool> choose_joins(std::span<const GraphSubmap> submaps, std::span<c
     bool is_new = find_open_cycles(used, cycles) || find_open_basis_cycles(used, cycles);
     if (!is_new && test_overlap) is_new = find_overlaps(used, test_overlap, overlaps);
     if (!is_new) return used.is_used;
-
-    // Leaving an overlap as it is, is an element of its own.
-    std::vector<Conflict> conflicts(cycles.begin(), cycles.end());
-    std::vector<double> all_costs = costs;
-    for (const auto& [key, overlap] : overlaps) {
-      if (overlap.cost <= 0.0) continue;
-      conflicts.push_back(overlap.joins);
-      conflicts.back().push_back(all_costs.size());
-      all_costs.push_back(overlap.cost);
-    }
+    const Conflicts conflicts = all_conflicts(cycles, overlaps, costs);
     used.is_used.assign(joins.size(), true);
-    for (const std::size_t refused : cheapest_hitting_set(conflicts, all_costs))
+    for (const std::size_t refused : cheapest_hitting_set(conflicts.all, conflicts.costs))
       if (refused < joins.size()) used.is_used[refused] = false;
   }
 }

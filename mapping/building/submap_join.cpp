@@ -99,7 +99,8 @@ PreviewOverlap compare(const MapKeyframe& from, const MapKeyframe& to, const Eig
 }
 
 /// Tests one keyframe of b against those of a with nearly its view. Sorts the pairs.
-void test_keyframe(const Submap& a, const MapKeyframe& view, std::vector<PredictedPair>& pairs,
+/// @param[in,out] miss  keyframes before it, in a row, that were not recognised
+void test_keyframe(const Submap& a, const MapKeyframe& view, std::vector<PredictedPair>& pairs, int& miss,
                    PlacementTest& test) {
   constexpr double kOverlap = 0.4;         // of the view's pixels
   constexpr std::size_t kDescribed = 100;  // features, below which a view need not be recognised
@@ -126,6 +127,8 @@ void test_keyframe(const Submap& a, const MapKeyframe& view, std::vector<Predict
   }
   test.expected += is_expected ? 1 : 0;
   test.recognised += is_recognised ? 1 : 0;
+  if (is_expected) miss = is_recognised ? 0 : miss + 1;
+  test.longest_miss = std::max(test.longest_miss, miss);
 }
 
 /// Tests a relative pose with all keyframes of b that are near the votes for it.
@@ -255,12 +258,13 @@ void predict_pairs(std::span<const Eigen::Isometry3d> T_a_keyframe, const Eigen:
 
 PlacementTest test_placement(const Submap& a, const Submap& b, std::span<const PredictedPair> pairs) {
   PlacementTest test;
+  int miss = 0;
   std::vector<PredictedPair> of_one;
   for (auto at = pairs.begin(); at != pairs.end();) {
     const auto end =
         std::find_if(at, pairs.end(), [&](const PredictedPair& pair) { return pair.b != at->b; });
     of_one.assign(at, end);
-    test_keyframe(a, b.keyframes.keyframes.at(at->b), of_one, test);
+    test_keyframe(a, b.keyframes.keyframes.at(at->b), of_one, miss, test);
     at = end;
   }
   return test;

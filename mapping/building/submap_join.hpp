@@ -69,8 +69,10 @@ void predict_pairs(std::span<const Eigen::Isometry3d> T_a_keyframe, const Eigen:
 
 /// What keyframes of b show of the places where a's keyframes say that they are.
 struct PlacementTest {
-  int expected = 0;          ///< keyframes of b that overlap enough with one of a to be recognised in it
-  int recognised = 0;        ///< of these, those that were recognised at the predicted pose
+  int expected = 0;    ///< keyframes of b that overlap enough with one of a to be recognised in it
+  int recognised = 0;  ///< of these, those that were recognised at the predicted pose
+  /// Most keyframes of b in a row, in order of time, that had to be recognised and none of which was.
+  int longest_miss = 0;
   std::int64_t same = 0;     ///< pixels whose surface is at the same place in both
   std::int64_t through = 0;  ///< pixels where one saw through the other's surface
 
