@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mapping/building/submap_join.hpp"
+#include "mapping/building/submap_overlap.hpp"
 
 namespace roomradar {
 

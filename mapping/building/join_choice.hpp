@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mapping/building/building_graph.hpp"
-#include "mapping/building/submap_join.hpp"
+#include "mapping/building/submap_overlap.hpp"
 
 namespace roomradar {
 

@@ -2,7 +2,6 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -53,39 +52,6 @@ struct JoinConfig {
   double near_m = 6.0;          ///< farther from the links, drift of the submaps prevents a comparison
   std::size_t max_links = 60;   ///< the links are chosen evenly along b
 };
-
-/// Keyframes of two submaps that have nearly the same view where a placement puts the submaps.
-struct PredictedPair {
-  std::size_t a = 0, b = 0;                                 ///< keyframes
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< predicted relative pose of the two cameras
-  double drift_m = 0.0;                                     ///< max assumed error of T_a_b
-};
-
-/// Adds the pairs of one keyframe of b with all keyframes of a that have nearly its view.
-/// @param T_a_keyframe  poses of a's keyframes in a's world
-/// @param T_a_b         predicted pose of the keyframe of b there
-void predict_pairs(std::span<const Eigen::Isometry3d> T_a_keyframe, const Eigen::Isometry3d& T_a_b,
-                   std::size_t b, double drift_m, std::vector<PredictedPair>& pairs);
-
-/// What keyframes of b show of the places where a's keyframes say that they are.
-struct PlacementTest {
-  int expected = 0;    ///< keyframes of b that overlap enough with one of a to be recognised in it
-  int recognised = 0;  ///< of these, those that were recognised at the predicted pose
-  /// Most keyframes of b in a row, in order of time, that had to be recognised and none of which was.
-  int longest_miss = 0;
-  std::int64_t same = 0;     ///< pixels whose surface is at the same place in both
-  std::int64_t through = 0;  ///< pixels where one saw through the other's surface
-
-  /// Fraction of the common surface that is at the same place in both; 0 if there is none.
-  [[nodiscard]] double agreement() const {
-    const auto common = static_cast<double>(same + through);
-    return common > 0.0 ? static_cast<double>(same) / common : 0.0;
-  }
-};
-
-/// Tests a placement by the depth and the features of predicted pairs: of each keyframe of b, those with the
-/// three most similar views. The pairs are in order of b.
-PlacementTest test_placement(const Submap& a, const Submap& b, std::span<const PredictedPair> pairs);
 
 /// Compares two submaps at all pairs of keyframes that look similar. Returns one join for each place where
 /// they meet; if there is none, the reason. A join is proved by three tests: several pairs of keyframes agree
