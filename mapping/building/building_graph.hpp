@@ -55,9 +55,8 @@ struct BuildingGraph {
 /// Solves for all keyframes' poses. The world is that of the first submap, or of the kept ones. Chooses joins
 /// that do not contradict each other (join_choice.hpp), begins with a spanning tree of those with the most
 /// agreeing keyframes, then adds the others as robust constraints, and refuses those that remain off, the
-/// worst first, until all agree. Submaps that no join connects with
-/// the first form parts of their own, each in the world of its first submap. Deterministic. Source: Kümmerle
-/// et al., g2o, ICRA 2011 (pose graph).
+/// worst first, until all agree. Submaps that no join connects with the first form parts of their own, each
+/// in the world of its first submap. Deterministic. Source: Kümmerle et al., g2o, ICRA 2011 (pose graph).
 BuildingGraph solve_building(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
                              const TestOverlap& test_overlap = {}, const GraphConfig& config = {});
 

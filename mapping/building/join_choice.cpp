@@ -98,10 +98,12 @@ std::vector<std::optional<Way>> ways_from(const UsedJoins& used, std::size_t sta
   return found;
 }
 
-/// Returns whether a cycle does not close.
-bool is_open(double off_m, double length_m) {
+/// Records a cycle of joins if it does not close.
+void add_if_open(double off_m, double length_m, Conflict joins, std::set<Conflict>& conflicts) {
   constexpr double kAllowed_m = 0.3, kDrift = 0.03;
-  return off_m > kAllowed_m + kDrift * length_m;
+  if (off_m <= kAllowed_m + kDrift * length_m) return;
+  std::sort(joins.begin(), joins.end());
+  conflicts.insert(std::move(joins));
 }
 
 /// Compares each join with the shortest way around it. Returns whether a cycle is open that was not known.
@@ -122,11 +124,10 @@ bool find_open_cycles(const UsedJoins& used, std::set<Conflict>& conflicts) {
                           [&](const auto& x, const auto& y) { return length_m(x) < length_m(y); });
     const Eigen::Isometry3d T_by_way =
         a.T_submap_keyframe[link.a].inverse() * way->T_start_end * b.T_submap_keyframe[link.b];
-    if (!is_open(motion_length_m(link.T_a_b.inverse() * T_by_way), length_m(link))) continue;
-    Conflict conflict = way->joins;
-    conflict.push_back(j);
-    std::sort(conflict.begin(), conflict.end());
-    conflicts.insert(std::move(conflict));
+    Conflict cycle = way->joins;
+    cycle.push_back(j);
+    add_if_open(motion_length_m(link.T_a_b.inverse() * T_by_way), length_m(link), std::move(cycle),
+                conflicts);
   }
   return conflicts.size() > known;
 }
@@ -144,12 +145,11 @@ bool find_open_basis_cycles(const UsedJoins& used, std::set<Conflict>& conflicts
       const GraphJoin& join = used.joins[j];
       if (!used.is_used[j] || !ways[join.a]) continue;
       const Way &to_a = *ways[join.a], &to_b = *ways[join.b];
-      Conflict conflict;  // the joins that only one of the ways has
       const auto [last_a, last_b] =
           std::mismatch(to_a.joins.begin(), to_a.joins.end(), to_b.joins.begin(), to_b.joins.end());
-      conflict.assign(last_a, to_a.joins.end());
-      conflict.insert(conflict.end(), last_b, to_b.joins.end());
-      if (std::find(conflict.begin(), conflict.end(), j) != conflict.end()) continue;  // in the tree
+      Conflict cycle(last_a, to_a.joins.end());  // the joins that only one of the ways has
+      cycle.insert(cycle.end(), last_b, to_b.joins.end());
+      if (std::find(cycle.begin(), cycle.end(), j) != cycle.end()) continue;  // in the tree
       const GraphSubmap &a = used.submaps[join.a], &b = used.submaps[join.b];
       const KeyframeLink& link = join.join.links[join.join.links.size() / 2];
       const Eigen::Isometry3d T_by_ways = (to_a.T_start_end * a.T_submap_keyframe[link.a]).inverse() *
@@ -157,10 +157,8 @@ bool find_open_basis_cycles(const UsedJoins& used, std::set<Conflict>& conflicts
       const double length_m = to_a.length_m + to_b.length_m +
                               (to_a.joins.empty() ? 0.0 : distance_m(a, to_a.arrives_at, link.a)) +
                               (to_b.joins.empty() ? 0.0 : distance_m(b, to_b.arrives_at, link.b));
-      if (!is_open(motion_length_m(link.T_a_b.inverse() * T_by_ways), length_m)) continue;
-      conflict.push_back(j);
-      std::sort(conflict.begin(), conflict.end());
-      conflicts.insert(std::move(conflict));
+      cycle.push_back(j);
+      add_if_open(motion_length_m(link.T_a_b.inverse() * T_by_ways), length_m, std::move(cycle), conflicts);
     }
   }
   return conflicts.size() > known;
@@ -188,8 +186,8 @@ std::vector<PredictedPair> overlap_of(const UsedJoins& used, const Way& way, std
     predict_pairs(from.T_submap_keyframe, way.T_start_end * to.T_submap_keyframe[k], k, 0.0, pairs);
     for (std::size_t p = first; p < pairs.size(); ++p)
       pairs[p].drift_m = kDrift * (way.length_m + from_end_m + distance_m(from, way.leaves_by, pairs[p].a));
-    std::erase_if(pairs, [](const PredictedPair& pair) { return pair.drift_m > kDrift * kLongestOverlap_m; });
   }
+  std::erase_if(pairs, [](const PredictedPair& pair) { return pair.drift_m > kDrift * kLongestOverlap_m; });
   return pairs;
 }
 

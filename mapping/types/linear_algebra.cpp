@@ -33,12 +33,12 @@ Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& A) {
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
-// Eigen's FromTwoVectors() decomposes a matrix to find the axis of a half turn. That takes 7 s to compile,
-// and loses half of the digits near a half turn.
 double motion_length_m(const Eigen::Isometry3d& T) {
   return T.translation().norm() + Eigen::AngleAxisd(T.linear()).angle();
 }
 
+// Eigen's FromTwoVectors() decomposes a matrix to find the axis of a half turn. That takes 7 s to compile,
+// and loses half of the digits near a half turn.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   constexpr double kNearHalfTurn = -0.99, kHalfTurn_rad = 1e-12;
   const Eigen::Vector3d from_unit = from.normalized(), to_unit = to.normalized();
