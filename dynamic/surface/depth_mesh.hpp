@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dynamic/surface/surface_policy.hpp"
+#include "mapping/types/depth_noise.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"

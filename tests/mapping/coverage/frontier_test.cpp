@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "mapping/coverage/holes.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/exact_depth.hpp"
 
