@@ -11,6 +11,7 @@
 
 #include "app/building/tileset.hpp"
 #include "app/farm/content_hashes.hpp"
+#include "mapping/building/look_alikes.hpp"
 #include "mapping/building/submap_join_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -222,11 +223,11 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   const std::vector<CandidatePair> pairs = read_pairs(work.job(kRetrieveJob) / "pairs.json", names.size());
   const StageCounts joined = stage("join", join_stage(work, names, pairs));
   require_all(joined);
-  std::vector<GraphJoin> joins;
+  std::vector<GraphJoin> joins, refused;
   for (const CandidatePair& pair : pairs)
     for (SubmapJoin& join : load_joins(work.job(join_job(names[pair.a], names[pair.b])) / "joins.bin")) {
       result.joins.push_back({names[pair.a], names[pair.b], join});
-      if (join.status == JoinStatus::kJoined) joins.push_back({pair.a, pair.b, std::move(join)});
+      (join.status == JoinStatus::kJoined ? joins : refused).push_back({pair.a, pair.b, std::move(join)});
     }
   show(sentence_of(
       joined, std::to_string(pairs.size()) + " pairs may meet, " + std::to_string(joins.size()) + " joins"));
@@ -242,13 +243,16 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   for (JoinedPair& pair : result.joins) {
     if (pair.join.status != JoinStatus::kJoined) continue;
     pair.is_used = graph.is_used[at];
-    pair.off_m = graph.off_m[at++];
+    pair.off_m = graph.off_m[at];
+    if (!pair.is_used) refused.push_back(joins[at]);
+    ++at;
   }
   std::vector<std::size_t> frames_of_part(graph.parts, 0);
   for (std::size_t i = 0; i < names.size(); ++i)
     frames_of_part[graph.submaps[i].part] += submaps[i].trajectory.size();
   const auto building_part = static_cast<std::size_t>(
       std::max_element(frames_of_part.begin(), frames_of_part.end()) - frames_of_part.begin());
+  result.info.look_alikes = find_look_alikes(graph.submaps, building_part, refused);
   std::vector<SubmapName> placed_names;
   std::map<std::string, PlacedFrames> placed_frames;  // by recording
   for (std::size_t i = 0; i < names.size(); ++i) {

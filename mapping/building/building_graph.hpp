@@ -23,7 +23,7 @@ struct GraphSubmap {
 /// A join between two submaps of the graph.
 struct GraphJoin {
   std::size_t a = 0, b = 0;  ///< submaps
-  SubmapJoin join;           ///< with status kJoined
+  SubmapJoin join;
 };
 
 /// Compares two submaps where a placement says that their keyframes have nearly the same view.
@@ -52,11 +52,12 @@ struct BuildingGraph {
   std::size_t parts = 0;      ///< number of connected parts
 };
 
-/// Solves for all keyframes' poses. The world is that of the first submap, or of the kept ones. Chooses joins
-/// that do not contradict each other (join_choice.hpp), begins with a spanning tree of those with the most
-/// agreeing keyframes, then adds the others as robust constraints, and refuses those that remain off, the
-/// worst first, until all agree. Submaps that no join connects with the first form parts of their own, each
-/// in the world of its first submap. Deterministic. Source: Kümmerle et al., g2o, ICRA 2011 (pose graph).
+/// Solves for all keyframes' poses. The joins have the status kJoined. The world is that of the first submap,
+/// or of the kept ones. Chooses joins that do not contradict each other (join_choice.hpp), begins with a
+/// spanning tree of those with the most agreeing keyframes, then adds the others as robust constraints, and
+/// refuses those that remain off, the worst first, until all agree. Submaps that no join connects with the
+/// first form parts of their own, each in the world of its first submap. Deterministic. Source: Kümmerle et
+/// al., g2o, ICRA 2011 (pose graph).
 BuildingGraph solve_building(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
                              const TestOverlap& test_overlap = {}, const GraphConfig& config = {});
 

@@ -2,6 +2,7 @@
 #include "mapping/building/building_info.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "mapping/mesh/serialize_mesh.hpp"
@@ -59,6 +60,25 @@ BuildingTile tile_of(const json& value) {
   return tile;
 }
 
+json to_json(const LookAlike& look_alike) {
+  const Eigen::Quaterniond q(look_alike.T_other_this.linear());
+  return {{"camera_position_m", array_of(look_alike.p_world)},
+          {"other_translation_m", array_of(look_alike.T_other_this.translation())},
+          {"other_rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+LookAlike look_alike_of(const json& value) {
+  LookAlike look_alike;
+  look_alike.p_world = vector_of(value.at("camera_position_m"));
+  const json& xyzw = value.at("other_rotation_xyzw");
+  const Eigen::Quaterniond q(xyzw.at(3).get<double>(), xyzw.at(0).get<double>(), xyzw.at(1).get<double>(),
+                             xyzw.at(2).get<double>());
+  if (!(std::abs(q.norm() - 1.0) < 1e-6)) throw Error("has a rotation that is no unit quaternion");
+  look_alike.T_other_this.linear() = q.normalized().toRotationMatrix();
+  look_alike.T_other_this.translation() = vector_of(value.at("other_translation_m"));
+  return look_alike;
+}
+
 BuildingInfo info_of(const json& value) {
   const int format = value.at("format").get<int>();
   if (format != kFormat)
@@ -77,6 +97,8 @@ BuildingInfo info_of(const json& value) {
       info.recordings.back().keyframe_file = content_file_of(one.at("keyframe_file"));
   }
   for (const json& one : value.at("tiles")) info.tiles.push_back(tile_of(one));
+  if (value.contains("look_alikes"))
+    for (const json& one : value.at("look_alikes")) info.look_alikes.push_back(look_alike_of(one));
   const auto is_unordered = [](const BuildingTile& a, const BuildingTile& b) {
     return !is_before(a.index, b.index);
   };
@@ -137,6 +159,8 @@ void write_building(const BuildingInfo& info, const fs::path& folder) {
                               {"glb", to_json(tile.glb)}});
     if (!tile.unknown.name.empty()) value["tiles"].back()["unknown"] = to_json(tile.unknown);
   }
+  value["look_alikes"] = json::array();
+  for (const LookAlike& one : info.look_alikes) value["look_alikes"].push_back(to_json(one));
   AtomicFile file(folder / kBuildingFile);
   file.stream() << value.dump(1) << "\n";
   file.commit();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapping/building/tile_grid.hpp"
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
@@ -48,6 +49,8 @@ struct BuildingInfo {
   TileGrid grid;
   std::vector<BuildingRecording> recordings;
   std::vector<BuildingTile> tiles;  ///< in the order of is_before()
+  /// Found by joins that were refused. Empty if the building was made by an earlier version.
+  std::vector<LookAlike> look_alikes;
 };
 
 inline constexpr const char* kBuildingFile = "building.json";

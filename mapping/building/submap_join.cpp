@@ -64,8 +64,7 @@ std::vector<Vote> agreeing_with(const Vote& middle, const std::vector<Vote>& vot
 }
 
 /// Tests a relative pose with all keyframes of b that are near the votes for it.
-PlacementTest test_votes(const Submap& a, const Submap& b, const std::vector<Vote>& votes,
-                         const JoinConfig& config) {
+PlacementTest test_votes(const Submap& a, const Submap& b, const std::vector<Vote>& votes, double near_m) {
   constexpr double kDrift = 0.02;
   std::vector<Eigen::Isometry3d> T_a_keyframe;
   for (const MapKeyframe& keyframe : a.keyframes.keyframes) T_a_keyframe.push_back(keyframe.T_world_camera);
@@ -73,7 +72,7 @@ PlacementTest test_votes(const Submap& a, const Submap& b, const std::vector<Vot
   for (std::size_t k = 0; k < b.keyframes.keyframes.size(); ++k) {
     const Eigen::Isometry3d& T_b_view = b.keyframes.keyframes[k].T_world_camera;
     const Vote* nearest = nullptr;
-    double nearest_m = config.near_m;
+    double nearest_m = near_m;
     for (const Vote& vote : votes) {
       const Eigen::Vector3d& p = b.keyframes.keyframes[vote.b].T_world_camera.translation();
       const double distance_m = (p - T_b_view.translation()).norm();
@@ -141,12 +140,21 @@ std::vector<Vote> spread(const std::vector<Vote>& votes, std::size_t count) {
   return chosen;
 }
 
+/// Returns whether two submaps look the same around votes that are refused because they differ elsewhere.
+bool look_alike_near(const Submap& a, const Submap& b, const std::vector<Vote>& votes) {
+  constexpr double kNear_m = 1.5, kMinRecognised = 0.7, kMinAgreement = 0.92;
+  const PlacementTest test = test_votes(a, b, votes, kNear_m);
+  return test.recognised > 0 && test.recognised >= kMinRecognised * test.expected &&
+         test.agreement() >= kMinAgreement;
+}
+
 SubmapJoin judged(const Submap& a, const Submap& b, const std::vector<Vote>& agreeing, const Vote& middle,
                   const JoinConfig& config) {
+  constexpr std::size_t kLinksOfRefused = 12;
   SubmapJoin join;
   join.T_a_b = middle.T_a_b;
   join.agreeing = static_cast<int>(agreeing.size());
-  const PlacementTest test = test_votes(a, b, agreeing, config);
+  const PlacementTest test = test_votes(a, b, agreeing, config.near_m);
   join.expected = test.expected;
   join.recognised = test.recognised;
   join.agreement = test.agreement();
@@ -162,6 +170,11 @@ SubmapJoin judged(const Submap& a, const Submap& b, const std::vector<Vote>& agr
     join.status = join.links.size() >= 2 ? JoinStatus::kJoined : JoinStatus::kNotRecognised;
     if (join.status != JoinStatus::kJoined) join.links.clear();
   }
+  const bool is_refused =
+      join.status == JoinStatus::kContradicted || join.status == JoinStatus::kLooksDifferent;
+  if (is_refused && look_alike_near(a, b, agreeing))
+    for (const Vote& vote : spread(agreeing, kLinksOfRefused))
+      join.links.push_back({vote.a, vote.b, vote.T_camera_a_camera_b});
   return join;
 }
 

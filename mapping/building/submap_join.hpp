@@ -33,7 +33,9 @@ enum class JoinStatus {
 /// Keyframes of two submaps that agree on where the submaps are to each other.
 struct SubmapJoin {
   JoinStatus status = JoinStatus::kNotRecognised;
-  std::vector<KeyframeLink> links;  ///< only if joined
+  /// If joined, refined by depth. If refused although the submaps look alike around the links, as the
+  /// features say, without information.
+  std::vector<KeyframeLink> links;
   /// Relative pose of the submaps' worlds near the links. Elsewhere, drift of both adds to it.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   int agreeing = 0;        ///< pairs of keyframes whose features agree on T_a_b

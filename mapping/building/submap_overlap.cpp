@@ -6,46 +6,11 @@
 
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/localization/pose_hypothesis.hpp"
+#include "mapping/localization/preview_overlap.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 
 namespace roomradar {
 namespace {
-
-/// Common pixels of two previews, seen from one of them.
-struct PreviewOverlap {
-  int valid = 0;    ///< pixels with depth in the image
-  int same = 0;     ///< of these, those at the other's surface
-  int through = 0;  ///< those in front of the other's surface: the other saw through them
-};
-
-/// Compares the depth of a keyframe with that of another, at a relative pose.
-PreviewOverlap compare(const MapKeyframe& from, const MapKeyframe& to, const Eigen::Isometry3d& T_to_from,
-                       double drift_m) {
-  constexpr int kStep_px = 4;
-  constexpr double kMax_m = 4.0;  // noise grows beyond
-  PreviewOverlap overlap;
-  for (int y = kStep_px / 2; y < from.preview_depth_mm.height; y += kStep_px)
-    for (int x = kStep_px / 2; x < from.preview_depth_mm.width; x += kStep_px) {
-      const double depth_m = 1e-3 * from.preview_depth_mm.at(x, y);
-      if (depth_m <= 0.0 || depth_m > kMax_m) continue;
-      ++overlap.valid;
-      const Eigen::Vector3d p = T_to_from * back_project(from.preview_camera, x, y, depth_m);
-      if (p.z() < 0.3) continue;
-      const Eigen::Vector2d at = project(to.preview_camera, p).array().round();
-      if (!(at.x() >= 0.0 && at.y() >= 0.0 && at.x() < to.preview_depth_mm.width &&
-            at.y() < to.preview_depth_mm.height))
-        continue;
-      const double other_m =
-          1e-3 * to.preview_depth_mm.at(static_cast<int>(at.x()), static_cast<int>(at.y()));
-      if (other_m <= 0.0) continue;
-      const double gate_m = 0.06 + 0.03 * p.z() + drift_m;
-      if (std::abs(other_m - p.z()) < gate_m)
-        ++overlap.same;
-      else if (other_m > p.z() + gate_m)
-        ++overlap.through;
-    }
-  return overlap;
-}
 
 /// Tests one keyframe of b against those of a with nearly its view. Sorts the pairs.
 /// @param[in,out] miss  keyframes before it, in a row, that were not recognised
@@ -62,8 +27,8 @@ void test_keyframe(const Submap& a, const MapKeyframe& view, std::vector<Predict
   for (std::size_t p = 0; p < std::min(pairs.size(), kMostPartners); ++p) {
     const MapKeyframe& other = a.keyframes.keyframes.at(pairs[p].a);
     const Eigen::Isometry3d& T_other_view = pairs[p].T_a_b;
-    const PreviewOverlap forth = compare(view, other, T_other_view, pairs[p].drift_m);
-    const PreviewOverlap back = compare(other, view, T_other_view.inverse(), pairs[p].drift_m);
+    const PreviewOverlap forth = compare_previews(view, other, T_other_view, pairs[p].drift_m);
+    const PreviewOverlap back = compare_previews(other, view, T_other_view.inverse(), pairs[p].drift_m);
     test.same += forth.same + back.same;
     test.through += forth.through + back.through;
     const int both = forth.same + forth.through;

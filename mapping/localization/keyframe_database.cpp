@@ -77,6 +77,10 @@ void update_index(KeyframeDatabase& keyframe_database) {
 void transform(KeyframeDatabase& keyframe_database, const Eigen::Isometry3d& T_new_old) {
   for (MapKeyframe& place : keyframe_database.keyframes)
     place.T_world_camera = T_new_old * place.T_world_camera;
+  for (LookAlike& look_alike : keyframe_database.look_alikes) {
+    look_alike.p_world = T_new_old * look_alike.p_world;
+    look_alike.T_other_this = T_new_old * look_alike.T_other_this * T_new_old.inverse();
+  }
 }
 
 }  // namespace roomradar

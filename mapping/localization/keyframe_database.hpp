@@ -29,8 +29,17 @@ struct MapKeyframe {
   Image<std::uint16_t> preview_depth_mm;  ///< preview: downsampled depth, mm; 0: none
 };
 
+/// Two places of the map that look alike, such as two rooms with the same furniture.
+struct LookAlike {
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< camera position in the one place, m
+  /// Moves the one place onto the other: cameras near p_world see nearly the same at T_world_camera and at
+  /// T_other_this * T_world_camera.
+  Eigen::Isometry3d T_other_this = Eigen::Isometry3d::Identity();
+};
+
 struct KeyframeDatabase {
   std::vector<MapKeyframe> keyframes;
+  std::vector<LookAlike> look_alikes;  ///< each pair of places in both directions; empty: none are known
   /// Index of the descriptors of the first index.size() keyframes. May be empty: searches compare all
   /// features of keyframes that are not in the index.
   FeatureIndex index;

@@ -6,9 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "mapping/alignment/keyframe.hpp"
 #include "mapping/localization/keyframe_proof.hpp"
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/localization/pose_hypothesis.hpp"
+#include "mapping/localization/preview_overlap.hpp"
 
 namespace roomradar {
 namespace {
@@ -51,6 +53,75 @@ std::vector<KeyframeWitness> witnesses_of(const Query& query, const KeyframeData
     if (agreeing == kWitnesses) break;
   }
   return witnesses;
+}
+
+/// Pixels of the frame and of the keyframes with a similar view that show the same surface, and those through
+/// which one of the two saw.
+struct SurfaceCount {
+  int same = 0, through = 0;
+  [[nodiscard]] double agreement() const { return static_cast<double>(same) / std::max(same + through, 1); }
+};
+
+SurfaceCount count_surface(const MapKeyframe& frame, const Eigen::Isometry3d& T_world_camera,
+                           const KeyframeDatabase& database) {
+  constexpr double kSimilarView = 1.5;  // of view_distance()
+  constexpr std::size_t kMost = 8;
+  constexpr double kTolerance_m = 0.05;
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t i = 0; i < database.keyframes.size(); ++i) {
+    const double apart = view_distance(database.keyframes[i].T_world_camera.inverse() * T_world_camera);
+    if (apart < kSimilarView) near.emplace_back(apart, i);
+  }
+  std::sort(near.begin(), near.end());
+  near.resize(std::min(near.size(), kMost));
+  SurfaceCount count;
+  for (const auto& [apart, i] : near) {
+    const MapKeyframe& keyframe = database.keyframes[i];
+    const Eigen::Isometry3d T_keyframe_camera = keyframe.T_world_camera.inverse() * T_world_camera;
+    for (const PreviewOverlap& overlap :
+         {compare_previews(frame, keyframe, T_keyframe_camera, kTolerance_m),
+          compare_previews(keyframe, frame, T_keyframe_camera.inverse(), kTolerance_m)}) {
+      count.same += overlap.same;
+      count.through += overlap.through;
+    }
+  }
+  return count;
+}
+
+/// Returns the poses that look like this one by the database's look-alikes near it.
+std::vector<Eigen::Isometry3d> look_alikes_of(const Eigen::Isometry3d& T_world_camera,
+                                              const KeyframeDatabase& database) {
+  constexpr double kNear_m = 2.5;  // less than the height of a storey
+  std::vector<std::pair<double, const LookAlike*>> near;
+  for (const LookAlike& look_alike : database.look_alikes) {
+    const double distance_m = (look_alike.p_world - T_world_camera.translation()).norm();
+    if (distance_m < kNear_m) near.emplace_back(distance_m, &look_alike);
+  }
+  std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Eigen::Isometry3d> poses;
+  for (const auto& [distance_m, look_alike] : near) {
+    const Eigen::Isometry3d T = look_alike->T_other_this * T_world_camera;
+    const auto is_same = [&](const Eigen::Isometry3d& other) {
+      return is_near(other, T, kSamePose_m, kSamePose_rad);
+    };
+    if (std::none_of(poses.begin(), poses.end(), is_same)) poses.push_back(T);
+  }
+  return poses;
+}
+
+/// Returns whether the frame may be from a place that looks like that of its pose: nothing that was recorded
+/// there contradicts it more than what was recorded at the pose itself.
+bool may_be_look_alike(const MapKeyframe& frame, const Eigen::Isometry3d& T_world_camera,
+                       const KeyframeDatabase& database) {
+  constexpr double kWorse = 0.03;
+  constexpr int kEnough = 200;  // pixels
+  const std::vector<Eigen::Isometry3d> others = look_alikes_of(T_world_camera, database);
+  if (others.empty()) return false;
+  const double agreement = count_surface(frame, T_world_camera, database).agreement();
+  return std::any_of(others.begin(), others.end(), [&](const Eigen::Isometry3d& T_world_other) {
+    const SurfaceCount there = count_surface(frame, T_world_other, database);
+    return there.same + there.through < kEnough || there.agreement() > agreement - kWorse;
+  });
 }
 
 /// Returns the most inliers of a witness whose pose is another one; 0 if there is none.
@@ -130,6 +201,8 @@ RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyf
   place.rival_inliers = std::max(rival_inliers(witnesses, T_world_best, keyframe_database),
                                  rival_inliers(elsewhere, T_world_best, keyframe_database));
   if (place.rival_inliers >= kRivalPart * place.feature_inliers) return ended(PlaceStatus::kAmbiguous);
+  if (may_be_look_alike(query.features, T_world_best, keyframe_database))
+    return ended(PlaceStatus::kAmbiguous);
   place.T_world_camera = joint_pose(witnesses, best, query.points, keyframe_database);
   return ended(PlaceStatus::kFound);
 }

@@ -35,8 +35,10 @@ struct [[nodiscard]] RecognisedPlace {
 /// Localises a frame with colour, as relocalise() does, and then looks for a rival: a pose farther than 0.3 m
 /// or 0.3 rad away, proved by features and depth, with at least half of the inliers. Keyframes more than 3 m
 /// from the pose are searched for rivals of their own, since those of one of two equal rooms may fill the
-/// first candidates. Time does not grow with the database if its index is complete. Deterministic. Does not
-/// throw, even for corrupt frames. Thread safe.
+/// first candidates. A rival is also each pose that the database's look-alikes give, unless keyframes
+/// with a similar view contradict the frame there: the right place may have been recorded from other views. Time
+/// does not grow with the database if its index is complete. Deterministic. Does not throw, even for corrupt
+/// frames. Thread safe.
 RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyframe_database,
                                 const RelocaliseConfig& config = {});
 

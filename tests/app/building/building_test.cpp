@@ -123,7 +123,10 @@ TEST(Tileset, NestsBoxesRoundAllTilesOnBothSidesOfTheOrigin) {
 
 TEST(BuildingInfo, IsReadAsWrittenAndRefusedIfDamaged) {
   const test::TemporaryFolder folder;
-  const BuildingInfo info = building_of({{-3, 0, 0}, {5, 2, 1}});
+  BuildingInfo info = building_of({{-3, 0, 0}, {5, 2, 1}});
+  LookAlike twin{{1.0, 2.0, 1.5}, Eigen::Isometry3d(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()))};
+  twin.T_other_this.translation().z() = 3.0;
+  info.look_alikes.push_back(twin);
   write_building(info, folder.path());
   ASSERT_TRUE(is_building(folder.path()));
   const BuildingInfo read = read_building(folder.path());
@@ -131,6 +134,9 @@ TEST(BuildingInfo, IsReadAsWrittenAndRefusedIfDamaged) {
   EXPECT_EQ(read.tiles[1].index, info.tiles[1].index);
   EXPECT_EQ(read.tiles[1].surface_world.min(), info.tiles[1].surface_world.min());
   EXPECT_EQ(read.recordings[0].frames_tracked, 9);
+  ASSERT_EQ(read.look_alikes.size(), 1U);
+  EXPECT_EQ(read.look_alikes[0].p_world, twin.p_world);
+  EXPECT_TRUE(read.look_alikes[0].T_other_this.isApprox(twin.T_other_this, 1e-12));
   const fs::path path = folder.path() / kBuildingFile;
   const std::string text = read_bytes(path, "json");
   const auto refused = [&](const std::string& from, const std::string& to) {
@@ -146,6 +152,7 @@ TEST(BuildingInfo, IsReadAsWrittenAndRefusedIfDamaged) {
   refused("tiles/-3_0_0.x", "../../etc/passwd");
   refused("tiles/-3_0_0.x", "/etc/passwd");
   refused("aaaa", "zzzz");
+  refused("\"other_rotation_xyzw\": [\n    0.0", "\"other_rotation_xyzw\": [\n    7.0");
   refused("\"-3_0_0\"", "\"9_9_9\"");  // out of order
   refused("\"resolution_m\": 0.01", "\"resolution_m\": -1");
   refused("\"tiles\"", "\"other\"");
