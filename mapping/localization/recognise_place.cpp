@@ -88,50 +88,43 @@ SurfaceCount count_surface(const MapKeyframe& frame, const Eigen::Isometry3d& T_
   return count;
 }
 
-/// Returns the poses that look like this one by the database's look-alikes near it.
-std::vector<Eigen::Isometry3d> look_alikes_of(const Eigen::Isometry3d& T_world_camera,
-                                              const KeyframeDatabase& database) {
+bool is_same(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b) {
+  return is_near(T_world_a, T_world_b, kSamePose_m, kSamePose_rad);
+}
+
+/// Adds a pose unless it is that of the best or of another one.
+void add_other(const Eigen::Isometry3d& T_world_other, const Eigen::Isometry3d& T_world_best,
+               std::vector<Eigen::Isometry3d>& others) {
+  const auto is_known = [&](const Eigen::Isometry3d& known) { return is_same(known, T_world_other); };
+  if (!is_same(T_world_other, T_world_best) && std::none_of(others.begin(), others.end(), is_known))
+    others.push_back(T_world_other);
+}
+
+/// Adds the poses that look like the best one by the database's look-alikes near it.
+void add_look_alikes(const Eigen::Isometry3d& T_world_best, const KeyframeDatabase& database,
+                     std::vector<Eigen::Isometry3d>& others) {
   constexpr double kNear_m = 2.5;  // less than the height of a storey
   std::vector<std::pair<double, const LookAlike*>> near;
   for (const LookAlike& look_alike : database.look_alikes) {
-    const double distance_m = (look_alike.p_world - T_world_camera.translation()).norm();
+    const double distance_m = (look_alike.p_world - T_world_best.translation()).norm();
     if (distance_m < kNear_m) near.emplace_back(distance_m, &look_alike);
   }
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Eigen::Isometry3d> poses;
-  for (const auto& [distance_m, look_alike] : near) {
-    const Eigen::Isometry3d T = look_alike->T_other_this * T_world_camera;
-    const auto is_same = [&](const Eigen::Isometry3d& other) {
-      return is_near(other, T, kSamePose_m, kSamePose_rad);
-    };
-    if (std::none_of(poses.begin(), poses.end(), is_same)) poses.push_back(T);
-  }
-  return poses;
+  for (const auto& [distance_m, look_alike] : near)
+    add_other(look_alike->T_other_this * T_world_best, T_world_best, others);
 }
 
-/// Returns whether the frame may be from a place that looks like that of its pose: nothing that was recorded
-/// there contradicts it more than what was recorded at the pose itself.
-bool may_be_look_alike(const MapKeyframe& frame, const Eigen::Isometry3d& T_world_camera,
-                       const KeyframeDatabase& database) {
+/// Removes the poses that keyframes contradict more than the best one.
+void remove_contradicted(const MapKeyframe& frame, const Eigen::Isometry3d& T_world_best,
+                         const KeyframeDatabase& database, std::vector<Eigen::Isometry3d>& others) {
   constexpr double kWorse = 0.03;
   constexpr int kEnough = 200;  // pixels
-  const std::vector<Eigen::Isometry3d> others = look_alikes_of(T_world_camera, database);
-  if (others.empty()) return false;
-  const double agreement = count_surface(frame, T_world_camera, database).agreement();
-  return std::any_of(others.begin(), others.end(), [&](const Eigen::Isometry3d& T_world_other) {
+  if (others.empty()) return;
+  const double agreement = count_surface(frame, T_world_best, database).agreement();
+  std::erase_if(others, [&](const Eigen::Isometry3d& T_world_other) {
     const SurfaceCount there = count_surface(frame, T_world_other, database);
-    return there.same + there.through < kEnough || there.agreement() > agreement - kWorse;
+    return there.same + there.through >= kEnough && there.agreement() < agreement - kWorse;
   });
-}
-
-/// Returns the most inliers of a witness whose pose is another one; 0 if there is none.
-int rival_inliers(const std::vector<KeyframeWitness>& witnesses, const Eigen::Isometry3d& T_world_camera,
-                  const KeyframeDatabase& database) {
-  int most = 0;
-  for (const KeyframeWitness& witness : witnesses)
-    if (!is_near(pose_by(witness, database), T_world_camera, kSamePose_m, kSamePose_rad))
-      most = std::max(most, witness.feature_inliers);
-  return most;
 }
 
 }  // namespace
@@ -198,12 +191,19 @@ RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyf
   bool ignored = false;
   const std::vector<KeyframeWitness> elsewhere =
       witnesses_of(query, keyframe_database, config, min_rival_inliers, is_elsewhere, ignored);
-  place.rival_inliers = std::max(rival_inliers(witnesses, T_world_best, keyframe_database),
-                                 rival_inliers(elsewhere, T_world_best, keyframe_database));
-  if (place.rival_inliers >= kRivalPart * place.feature_inliers) return ended(PlaceStatus::kAmbiguous);
-  if (may_be_look_alike(query.features, T_world_best, keyframe_database))
-    return ended(PlaceStatus::kAmbiguous);
   place.T_world_camera = joint_pose(witnesses, best, query.points, keyframe_database);
+  std::vector<Eigen::Isometry3d>& others = place.T_world_others;
+  for (const auto* found : {&witnesses, &elsewhere})
+    for (const KeyframeWitness& witness : *found) {
+      const Eigen::Isometry3d T_world_other = pose_by(witness, keyframe_database);
+      if (is_same(T_world_other, T_world_best)) continue;
+      place.rival_inliers = std::max(place.rival_inliers, witness.feature_inliers);
+      if (witness.feature_inliers >= kRivalPart * place.feature_inliers)
+        add_other(T_world_other, T_world_best, others);
+    }
+  add_look_alikes(T_world_best, keyframe_database, others);
+  remove_contradicted(query.features, T_world_best, keyframe_database, others);
+  if (!others.empty()) return ended(PlaceStatus::kAmbiguous);
   return ended(PlaceStatus::kFound);
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/localization/relocalise.hpp"
@@ -23,22 +24,24 @@ std::string_view to_string(PlaceStatus status);
 
 struct [[nodiscard]] RecognisedPlace {
   PlaceStatus status = PlaceStatus::kNoMatch;
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< valid only if found
-  std::int64_t keyframe = -1;    ///< index of the best keyframe in the database; -1: none
-  int feature_inliers = 0;       ///< features that agree with the pose, in the best keyframe
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< valid if found or ambiguous
+  std::vector<Eigen::Isometry3d> T_world_others;  ///< if ambiguous: the other poses that fit about as well
+  std::int64_t keyframe = -1;                     ///< index of the best keyframe in the database; -1: none
+  int feature_inliers = 0;                        ///< features that agree with the pose, in the best keyframe
   int rival_inliers = 0;         ///< features that agree with another pose; 0: none is proved
   double depth_agreement = 0.0;  ///< fraction of the pixels seen from both whose depths agree
   double overlap = 0.0;          ///< fraction of the frame's depth that the best keyframe sees
   explicit operator bool() const { return status == PlaceStatus::kFound; }
 };
 
-/// Localises a frame with colour, as relocalise() does, and then looks for a rival: a pose farther than 0.3 m
-/// or 0.3 rad away, proved by features and depth, with at least half of the inliers. Keyframes more than 3 m
-/// from the pose are searched for rivals of their own, since those of one of two equal rooms may fill the
-/// first candidates. A rival is also each pose that the database's look-alikes give, unless keyframes
-/// with a similar view contradict the frame there: the right place may have been recorded from other views. Time
-/// does not grow with the database if its index is complete. Deterministic. Does not throw, even for corrupt
-/// frames. Thread safe.
+/// Localises a frame with colour, as relocalise() does, and then looks for rivals: poses farther than 0.3 m
+/// or 0.3 rad away that fit about as well. Rivals are poses proved by features and depth, with at least half
+/// of the inliers; keyframes more than 3 m from the pose are searched for their own, since those of one of
+/// two equal rooms may fill the first candidates. Rivals are also the poses that the database's look-alikes
+/// give: the right place may have been recorded from other views only. A pose is no rival if keyframes with a
+/// similar view contradict the frame there, and contradict it less at the pose that was found. Time does not
+/// grow with the database if its index is complete. Deterministic. Does not throw, even for corrupt frames.
+/// Thread safe.
 RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyframe_database,
                                 const RelocaliseConfig& config = {});
 

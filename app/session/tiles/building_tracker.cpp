@@ -1,6 +1,7 @@
 // building_tracker.cpp: tracking by locate(), search by recognise_place().
 #include "app/session/tiles/building_tracker.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roomradar {
@@ -81,10 +82,15 @@ Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
     const RecognisedPlace place = recognise_place(frame, keyframe_database, locator.relocalise);
     if (place.status == PlaceStatus::kAmbiguous) ++ambiguous_;
     if (place) ++recognised_;
-    const bool is_same =
-        has_pose(tracking) && place &&
-        is_near(place.T_world_camera, tracking.T_world_camera, is_supported ? kElsewhere_m : kSlipped_m,
-                is_supported ? kElsewhere_rad : kSlipped_rad);
+    const auto is_tracked = [&](const Eigen::Isometry3d& T_world_camera) {
+      return is_near(T_world_camera, tracking.T_world_camera, is_supported ? kElsewhere_m : kSlipped_m,
+                     is_supported ? kElsewhere_rad : kSlipped_rad);
+    };
+    // Of places that look alike, the tracked one stays.
+    const bool is_seen = place || place.status == PlaceStatus::kAmbiguous;
+    const bool is_same = has_pose(tracking) && is_seen &&
+                         (is_tracked(place.T_world_camera) ||
+                          std::any_of(place.T_world_others.begin(), place.T_world_others.end(), is_tracked));
     if (is_same) supported_s_ = frame.stamp_s;
     if (has_pose(tracking) && !is_same && (place || is_refuted_ || is_unsupported)) {
       tracking = {};

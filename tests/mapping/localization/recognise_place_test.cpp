@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mapping/localization/pose_hypothesis.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
 
@@ -52,7 +53,10 @@ TEST(RecognisePlace, AViewThatOnlyTheTwinRoomHasIsAmbiguous) {
   ASSERT_EQ(recognise_place(frame, rooms.database).status, PlaceStatus::kFound)
       << "the frame fits the twin room, and nothing says that there are two";
   rooms.are_known_to_look_alike();
-  EXPECT_EQ(recognise_place(frame, rooms.database).status, PlaceStatus::kAmbiguous);
+  const RecognisedPlace place = recognise_place(frame, rooms.database);
+  EXPECT_EQ(place.status, PlaceStatus::kAmbiguous);
+  ASSERT_EQ(place.T_world_others.size(), 1U) << "the right pose";
+  EXPECT_TRUE(is_near(place.T_world_others[0], looking_north(0.05), 0.03, 0.02));
 }
 
 // A cupboard is in the room above only.
