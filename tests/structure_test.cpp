@@ -80,6 +80,7 @@ std::vector<Source> sources_of_the_house() {
       const fs::path extension = entry.path().extension();
       if (extension != ".hpp" && extension != ".cpp" && extension != ".h") continue;
       const fs::path relative = entry.path().lexically_relative(root);
+      if (relative.string().find("/_skbuild/") != std::string::npos) continue;  // build folder of a wheel
       Source source{relative.generic_string(), relative.parent_path().generic_string()};
       std::ifstream file(entry.path());
       for (std::string line; std::getline(file, line); ++source.lines) {

@@ -61,6 +61,9 @@ if(ROOMRADAR_HAS_PYTHON)
   install(TARGETS _roomradar DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
   install(FILES app/python/roomradar/__init__.py app/python/roomradar/__init__.pyi app/python/roomradar/py.typed
     DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
+  # What app/python/setup.py builds.
+  add_custom_target(install_python
+    COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --component python DEPENDS _roomradar)
   if(NOT SKBUILD)
     install(DIRECTORY app/python/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar COMPONENT python
       FILES_MATCHING PATTERN "*.py")
