@@ -99,6 +99,32 @@ TEST(SubmapJoin, ARoomThatLooksDifferentNearbyIsAnotherOne) {
   }
 }
 
+// Both recordings go on into a second room, 4 m away, whose paint differs.
+TEST(SubmapJoin, TwinRoomsWithDifferentNeighboursKeepTheLinksOfWhatLooksAlike) {
+  const auto with_neighbour = [](Submap submap, const Eigen::Isometry3d& T_own_room, int noise,
+                                 double painted_aside_m) {
+    Eigen::Isometry3d T_own_next = T_own_room;
+    T_own_next.translate(Eigen::Vector3d(4.0, 0.0, 0.0));
+    const Submap next =
+        submap_of(T_own_next, 0.05, noise, test::room(), [=](int) { return painted_aside_m; });
+    for (const MapKeyframe& keyframe : next.keyframes.keyframes)
+      submap.keyframes.keyframes.push_back(keyframe);
+    return submap;
+  };
+  const Eigen::Isometry3d T_b_room = T_a_b().inverse(), T_a_room = Eigen::Isometry3d::Identity();
+  const Submap a = with_neighbour(submap_a(), T_a_room, 400, 0.71);
+  const Submap b = with_neighbour(submap_of(T_b_room, 0.05, 500), T_b_room, 600, 0.37);
+  const std::vector<SubmapJoin> joins = joined(a, b);
+  ASSERT_EQ(joins.size(), 1U);
+  const SubmapJoin& join = joins.front();
+  EXPECT_EQ(join.status, JoinStatus::kLooksDifferent) << describe(join);
+  ASSERT_GE(join.links.size(), 4U);
+  for (const KeyframeLink& link : join.links) {
+    EXPECT_LT(link.a, static_cast<std::size_t>(kKeyframes));
+    EXPECT_LT(link.b, static_cast<std::size_t>(kKeyframes));
+  }
+}
+
 TEST(SubmapJoin, ARoomWithSpaceWhereTheOtherHasSurfaceIsAnotherOne) {
   // The same paint on the wall ahead, but half a metre of the room's right side is filled.
   const test::Scene filled = test::nearest_of(
