@@ -58,8 +58,8 @@ double SmoothRemaining::add(double estimate_s, double passed_s) {
   const double estimated_s = std::max(estimate_s, kLeast_s);
   if (left_s_ < 0.0) return left_s_ = estimated_s;
   const double counted_s = std::max(left_s_ - passed_s, kLeast_s);
-  const double constant_s =
-      std::min(kRateOver_s, std::max(estimated_s, 1.0));  // near the end it must be right
+  // Near the end, and where less is shown than remains, it must be right soon.
+  const double constant_s = std::min(kRateOver_s, std::max(std::min(estimated_s, counted_s), 1.0));
   return left_s_ = counted_s * std::pow(estimated_s / counted_s, 1.0 - std::exp(-passed_s / constant_s));
 }
 

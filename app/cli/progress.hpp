@@ -42,7 +42,7 @@ class SmoothRate {
 
 /// Remaining time of an operation, smoothed so that it does not jump with the speed. Counts down between
 /// estimates. An estimate pulls the remaining time exponentially (on a logarithmic scale) with a time
-/// constant of 15 s, or of the estimate itself if that is less.
+/// constant of 15 s, or of the estimate or the shown time if that is less.
 class SmoothRemaining {
  public:
   /// @param estimate_s  remaining steps divided by the recent speed, s

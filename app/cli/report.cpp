@@ -4,9 +4,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <string>
+#include <system_error>
+
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -60,11 +64,8 @@ void require_writable(const std::filesystem::path& path) {
   std::error_code fault;
   const bool is_pipe_or_device = std::filesystem::is_other(path, fault);
   if (is_pipe_or_device && access(path.c_str(), W_OK) == 0) return;
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder, fault) || access(folder.c_str(), W_OK) != 0)
-    throw Error(path.string() + ": cannot be written: its folder does not exist or is not writable");
-  if (std::filesystem::is_directory(path, fault))
-    throw Error(path.string() + ": cannot be written: a folder has that name; give the name of a file");
+  if (const std::string why = why_not_writable(path); !why.empty())
+    throw Error(path.string() + ": cannot be written: " + why);
   require_outside_maps(path);
 }
 

@@ -74,10 +74,16 @@ std::string missing_argument(const CLI::App& command) {
   return {};
 }
 
-/// Returns a sentence about an option that is given twice or without a value; empty for other faults.
-/// @param what  CLI11's message: "--map: At Most 1 required but received 2" or "--map: 1 required DIR
-/// missing"
+/// Returns a sentence about an option that is given twice or without a value, or a flag with one; empty for
+/// other faults.
+/// @param what  CLI11's message: "--map: At Most 1 required but received 2", "--map: 1 required DIR missing"
+/// or "window was given a disallowed flag override"
 std::string wrong_count(const CLI::App& command, const std::string& what) {
+  const std::size_t flag_end = what.find(" was given a disallowed flag override");
+  if (flag_end != std::string::npos) {
+    const std::string flag = what.substr(0, flag_end);
+    return (flag.starts_with("-") ? "" : "--") + flag + ": takes no value";
+  }
   const std::string name = what.substr(0, what.find(':'));
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return {};

@@ -74,8 +74,9 @@ void print_fit(const BoardViews& views, const CalibrationFit& fit, const Summary
 /// Returns the number of views, how many are tilted, and what is missing.
 std::string progress_note(const BoardViews& views, const Board& board) {
   const std::string advice = advice_on(views, board);
-  return std::to_string(views.views.size()) + " views, " + std::to_string(count_tilted(views)) + " tilted" +
-         (advice.empty() ? "" : "; " + advice);
+  const std::size_t count = views.views.size();
+  return std::to_string(count) + (count == 1 ? " view, " : " views, ") + std::to_string(count_tilted(views)) +
+         " tilted" + (advice.empty() ? "" : "; " + advice);
 }
 
 /// At the first colour image, prints that both cameras count as one if the depth is registered to the colour.

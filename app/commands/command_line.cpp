@@ -62,7 +62,8 @@ void complete_options(const CLI::App& command, RunOptions& options) {
 
 /// Returns the help of a command or a topic. Throws CLI::ValidationError naming the nearest known word.
 std::string help_on(CLI::App& app, const std::vector<std::string>& words) {
-  if (words.empty()) return app.help();
+  if (words.empty())  // app.help() is that of the command that was given, which is `help`
+    return app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal);
   for (const HelpTopic& topic : help_topics())
     if (words.size() == 1 && words.front() == topic.name) return std::string(topic.text);
   CLI::App* command = &app;
@@ -228,6 +229,7 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
   app.footer(kFirstSteps);
   arrange_help(app);
   refuse_other_bases(app);
+  refuse_flag_values(app);
   std::vector<const char*> words(argv, argv + argc);
   if (begins_with_file(app, argc, argv)) words.insert(words.begin() + 1, "start");
   try {

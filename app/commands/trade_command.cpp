@@ -276,13 +276,13 @@ void print_result(const TradeResult& result) {
 
 void write_page_of(const std::vector<TradeResult>& results, const TradeOptions& options,
                    const Machine& machine) {
-  write_trade_page(
-      results,
-      {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
-           machine.system,
-       "seed " + std::to_string(options.seed) + ", " + std::to_string(options.repeats) +
-           " repeats in each scene" + (options.quick ? ", quick: few frames of small images" : "")},
-      options.html);
+  write_trade_page(results,
+                   {machine.processor + ", " + std::to_string(machine.threads) + " threads, " +
+                        machine.renderer + ", " + machine.system,
+                    "seed " + std::to_string(options.seed) + ", " + std::to_string(options.repeats) +
+                        (options.repeats == 1 ? " repeat" : " repeats") + " in each scene" +
+                        (options.quick ? ", quick: few frames of small images" : "")},
+                   options.html);
 }
 
 /// Writes the presets file, if requested. Throws Error unless all settings of both works were measured.

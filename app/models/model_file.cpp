@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "app/models/scene_materials.hpp"
@@ -122,6 +123,10 @@ Model read_by_assimp(const std::filesystem::path& path) {
 
 Model read_sandboxed(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
+  std::error_code ignored;
+  if (extension.empty() && !std::filesystem::exists(path, ignored))
+    fail_for_file(path, std::string("there is no such file; a model is a file ") + kModelFormats +
+                            ", or the built-in teapot");
   if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end())
     fail_for_file(path, extension.find('=') != std::string::npos
                             ? "\"" + extension +

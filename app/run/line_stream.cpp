@@ -11,17 +11,22 @@
 #include <chrono>
 #include <climits>
 #include <cstdio>
+#include <string>
 #include <system_error>
 #include <utility>
 
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
 
 namespace roomradar {
 namespace {
 
 Error cannot_be_written(const std::filesystem::path& path, int fault) {
-  return Error((path == "-" ? "standard output" : path.string()) +
-               ": cannot be written: " + std::generic_category().message(fault));
+  if (path == "-")
+    return Error("standard output: cannot be written: " + std::generic_category().message(fault));
+  const std::string known = why_not_writable(path);
+  return Error(path.string() +
+               ": cannot be written: " + (known.empty() ? std::generic_category().message(fault) : known));
 }
 
 /// Returns a second descriptor of standard output, and directs standard output itself to standard error.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "mapping/types/disjoint_sets.hpp"
 
@@ -17,6 +18,7 @@ constexpr double kCosLevel = 0.98481;   // 10 degrees
 constexpr double kSameHeight_m = 0.03;  // as a table top bends in a scan
 constexpr double kMinFloorShare = 0.1;  // of the largest surface: smaller and lower is a box on a ledge below
 constexpr double kMinFloorArea_m2 = 0.05;  // of depth pixels; each keyframe counts
+constexpr double kCell_m = 0.2;            // within which a surface counts once, however often it was seen
 
 struct LevelTriangle {
   Eigen::Vector3d middle_world;
@@ -67,11 +69,15 @@ LevelSurface surface_of(const std::vector<const LevelTriangle*>& triangles) {
   return surface;
 }
 
+/// Area of level depth pixels in a cell of kCell_m, by the cell's position on a level plane.
+using AreaOfCells = std::map<std::pair<long, long>, double>;
+
 /// Adds the area of a keyframe's level pixels to a histogram over their heights, in steps of 1 cm.
 void add_level_pixels(const MapKeyframe& keyframe, const Eigen::Vector3d& up_world,
-                      std::map<long, double>& area_at) {
+                      std::map<long, AreaOfCells>& level_at) {
   constexpr int kStep_px = 4;          // noise of normals from nearer pixels exceeds 10 degrees
   constexpr double kFarthest_m = 4.0;  // a Kinect's error grows to 2 cm there
+  const Eigen::Vector3d along = up_world.unitOrthogonal(), across = up_world.cross(along);
   const Image<std::uint16_t>& depth_mm = keyframe.preview_depth_mm;
   const Intrinsics& camera = keyframe.preview_camera;
   const auto point = [&](int x, int y) -> std::optional<Eigen::Vector3d> {
@@ -86,8 +92,31 @@ void add_level_pixels(const MapKeyframe& keyframe, const Eigen::Vector3d& up_wor
       const Eigen::Vector3d area = (*below - *here).cross(*right - *here);  // towards the camera
       const double area_m2 = area.norm();
       if (!(area.dot(up_world) > kCosLevel * area_m2) || area_m2 > 0.02) continue;
-      area_at[std::lround(100.0 * here->dot(up_world))] += area_m2;
+      const std::pair cell(std::lround(here->dot(along) / kCell_m), std::lround(here->dot(across) / kCell_m));
+      level_at[std::lround(100.0 * here->dot(up_world))][cell] += area_m2;
     }
+}
+
+/// Level surface within 2 cm of a height.
+struct NearHeight {
+  double measured_m2 = 0.0;  ///< area of depth pixels, each keyframe counts
+  double surface_m2 = 0.0;   ///< the same, at most the area of the cells in which they are
+  double height_m = 0.0;     ///< mean height of the depth pixels
+};
+
+NearHeight near_height(const std::map<long, AreaOfCells>& level_at, long step) {
+  NearHeight near;
+  AreaOfCells cells;
+  double moment = 0.0;
+  for (auto at = level_at.lower_bound(step - 2); at != level_at.end() && at->first <= step + 2; ++at)
+    for (const auto& [cell, area_m2] : at->second) {
+      cells[cell] += area_m2;
+      near.measured_m2 += area_m2;
+      moment += 0.01 * static_cast<double>(at->first) * area_m2;
+    }
+  for (const auto& [cell, area_m2] : cells) near.surface_m2 += std::min(area_m2, kCell_m * kCell_m);
+  near.height_m = moment / near.measured_m2;
+  return near;
 }
 
 }  // namespace
@@ -120,29 +149,26 @@ std::optional<std::size_t> floor_among(std::span<const LevelSurface> surfaces) {
 
 std::optional<double> floor_height_m(const KeyframeDatabase& keyframe_database,
                                      const Eigen::Vector3d& up_world) {
-  std::map<long, double> area_at;
+  std::map<long, AreaOfCells> level_at;
   for (const MapKeyframe& keyframe : keyframe_database.keyframes)
-    add_level_pixels(keyframe, up_world, area_at);
-  // Area and mean height within 2 cm of a step.
-  const auto near = [&](long step) {
-    double area_m2 = 0.0, moment = 0.0;
-    for (auto at = area_at.lower_bound(step - 2); at != area_at.end() && at->first <= step + 2; ++at) {
-      area_m2 += at->second;
-      moment += 0.01 * static_cast<double>(at->first) * at->second;
-    }
-    return std::pair(area_m2, moment / area_m2);
-  };
-  double most_m2 = 0.0;
-  for (const auto& [step, area_m2] : area_at) most_m2 = std::max(most_m2, near(step).first);
-  if (most_m2 < kMinFloorArea_m2) return std::nullopt;
+    add_level_pixels(keyframe, up_world, level_at);
+  double most_m2 = 0.0, most_measured_m2 = 0.0;
+  for (const auto& [step, cells] : level_at) {
+    const NearHeight near = near_height(level_at, step);
+    most_m2 = std::max(most_m2, near.surface_m2);
+    most_measured_m2 = std::max(most_measured_m2, near.measured_m2);
+  }
+  if (most_measured_m2 < kMinFloorArea_m2) return std::nullopt;
   // The lowest local maximum of sufficient area.
-  for (const auto& [step, area_m2] : area_at) {
-    const double here_m2 = near(step).first;
-    if (here_m2 < kMinFloorShare * most_m2) continue;
-    long best = step;
-    for (long other = step; other <= step + 5; ++other)
-      if (area_at.contains(other) && near(other).first > near(best).first) best = other;
-    return near(best).second;
+  for (const auto& [step, cells] : level_at) {
+    if (near_height(level_at, step).surface_m2 < kMinFloorShare * most_m2) continue;
+    NearHeight best = near_height(level_at, step);
+    for (long other = step + 1; other <= step + 5; ++other) {
+      if (!level_at.contains(other)) continue;
+      const NearHeight near = near_height(level_at, other);
+      if (near.measured_m2 > best.measured_m2) best = near;
+    }
+    return best.height_m;
   }
   return std::nullopt;
 }

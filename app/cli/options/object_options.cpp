@@ -4,7 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 
 #include "app/cli/options/option_checks.hpp"
 
@@ -29,6 +31,28 @@ std::size_t next_key(std::string_view text, std::size_t from) {
   for (const std::string_view key : kKeys)
     first = std::min(first, text.find("," + std::string(key) + "=", from));
   return first;
+}
+
+/// Returns the first word of a ",word=" in the text; empty if there is none.
+std::string key_in(std::string_view text) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
+  for (std::size_t comma = text.find(','); comma != std::string_view::npos;
+       comma = text.find(',', comma + 1)) {
+    std::size_t end = comma + 1;
+    while (end < text.size() && is_letter(text[end])) ++end;
+    if (end > comma + 1 && end < text.size() && text[end] == '=')
+      return std::string(text.substr(comma + 1, end - comma - 1));
+  }
+  return {};
+}
+
+/// Throws CLI::ValidationError if there is a ",word=" of none of the known words in the text.
+void refuse_unknown_key(const std::string& text, std::string_view part) {
+  const std::string key = key_in(part);
+  if (key.empty()) return;
+  std::string known;
+  for (const std::string_view one : kKeys) known += (known.empty() ? "" : ", ") + std::string(one) + "=";
+  fail(text, "there is no " + key + "=; known are " + known);
 }
 
 double number_of(const std::string& text, const std::string& word, double low, double high,
@@ -60,6 +84,7 @@ void take_value(const std::string& text, const std::string& key, const std::stri
   const bool is_again = (key == "size" && object.source.size_m) || (key == "up" && object.source.up) ||
                         (key == "at" && object.at_world);
   if (is_again) fail(text, key + "= is given twice");
+  refuse_unknown_key(text, value);
   for (const MaterialField& field : kMaterialFields) {
     if (key != field.name) continue;
     std::optional<double>& number = object.material.*field.value;
@@ -81,6 +106,8 @@ ObjectOption object_of(const std::string& text) {
   std::size_t at = next_key(text, 0);
   object.source.mesh = text.substr(0, at);
   if (object.source.mesh.empty()) fail(text, "names no mesh; wanted is MESH[,size=M][,up=AXIS][,at=X,Y,Z]");
+  std::error_code ignored;
+  if (!std::filesystem::exists(object.source.mesh, ignored)) refuse_unknown_key(text, object.source.mesh);
   while (at != std::string::npos) {
     const std::size_t equals = text.find('=', at);
     const std::size_t end = next_key(text, equals);

@@ -54,4 +54,10 @@ void refuse_other_bases(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) refuse_other_bases(*command);
 }
 
+void refuse_flag_values(CLI::App& app) {
+  for (CLI::Option* option : app.get_options())
+    if (option->get_items_expected_max() == 0) option->disable_flag_override();
+  for (CLI::App* command : app.get_subcommands({})) refuse_flag_values(*command);
+}
+
 }  // namespace roomradar

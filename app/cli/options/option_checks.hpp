@@ -27,6 +27,10 @@ void refuse_given(const CLI::App& command, const std::vector<std::string>& names
 /// added.
 void refuse_other_bases(CLI::App& app);
 
+/// Rejects values of flags, such as --window=3, in the program and its commands. Call after all options were
+/// added.
+void refuse_flag_values(CLI::App& app);
+
 /// Adds an option with a value that is one of several words. CLI11's transformer would list the values as
 /// numbers.
 /// @param value  must outlive the parsing

@@ -71,6 +71,14 @@ std::vector<CommandHelp> command_helps() {
        {{"Options", {"--html", "--picture", "--report"}}},
        "  roomradar map diff maps/monday maps/tuesday\n"
        "  roomradar map diff maps/monday maps/tuesday --html changes.html\n"},
+      {"building",
+       {{"Options", {"--recordings", "--poses", "--processes", "--report"}},
+        {"Accuracy and tiles", {"--resolution", "--tile-edge", "--deviation"}}},
+       "  roomradar building buildings/museum --recordings recordings.txt\n"
+       "  roomradar building buildings/museum --recordings recordings.txt --resolution 0.02 --processes 8\n"
+       "where recordings.txt holds, for instance:\n"
+       "  hall: recordings/hall\n"
+       "  stairs: recordings/stairs\n"},
       {"record",
        {{"Options", {"--format", "--frames", "--calibration"}}},
        "  roomradar record kinect:0 recordings/kitchen\n"

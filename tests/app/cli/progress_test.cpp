@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <iterator>
+
 namespace roomradar::progress_test {
 namespace {
 
@@ -45,6 +48,21 @@ TEST(SmoothRemaining, CountsDownAndFollowsAChangeOfSpeedWithoutAJump) {
   EXPECT_NEAR(shown_s, estimate_s, 30.0);
   for (int i = 0; i < 2; ++i) shown_s = remaining.add(3.0, 5.0);
   EXPECT_LT(shown_s, 5.0) << "near the end";
+}
+
+TEST(SmoothRemaining, StaysNearTheEstimateWhereWorkSlowsDownTowardsItsEnd) {
+  // Frames left and recent speed every 5 s while a recording was tracked again, whose last part is slow.
+  constexpr double kLeft[] = {283, 196, 123, 108, 96, 83, 74, 56, 43, 31};
+  constexpr double kPer_s[] = {14.7, 15.7, 15.2, 9.1, 7.0, 5.5, 4.3, 4.0, 3.5, 3.1};
+  SmoothRemaining remaining;
+  double before_s = 0.0;
+  for (std::size_t i = 0; i < std::size(kLeft); ++i) {
+    const double estimate_s = kLeft[i] / kPer_s[i];
+    const double shown_s = remaining.add(estimate_s, 5.0);
+    EXPECT_GT(shown_s, 0.5 * estimate_s) << "line " << i;
+    if (i > 0) EXPECT_LT(shown_s, before_s + 3.0) << "line " << i;
+    before_s = shown_s;
+  }
 }
 
 TEST(SmoothRate, OneSlowSecondHardlyMovesTheRemainingTime) {

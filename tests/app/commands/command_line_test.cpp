@@ -512,7 +512,9 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   EXPECT_NE(traded.out.find("default"), std::string::npos) << traded.out;
   const std::string csv = read_text(path("trade.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 + 3) << csv;
-  EXPECT_NE(read_text(path("trade.html")).find("<svg"), std::string::npos);
+  const std::string page = read_text(path("trade.html"));
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_NE(page.find("seed 1, 1 repeat in each scene"), std::string::npos);
   const nlohmann::json report = nlohmann::json::parse(read_text(path("trade.json")));
   EXPECT_EQ(report["command"], "trade");
   EXPECT_EQ(report["prescan"]["measurements"], 3);
@@ -565,6 +567,8 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
                "--hold-out: must be a whole number within 2 and 1000000, not 1");
   expect_fault(roomradar(prescan + " --map twice"), 2, "--map: is given 2 times; give it once");
   expect_fault(roomradar("prescan sim:table --map"), 2, "--map: needs a value, DIR: folder for the map");
+  expect_fault(roomradar("run sim:table --map m --window=3"), 2, "--window: takes no value");
+  expect_fault(roomradar("map info m --json=x"), 2, "--json: takes no value");
   expect_fault(roomradar("trade --only foo"), 2, "--only foo: must be prescan or run");
   expect_fault(roomradar("trade --objects 3"), 2, "--objects: must be 1, 5 or 20, not 3");
   expect_fault(roomradar("run sim:table --map m --depth-stride 3"), 2, "--depth-stride 3: must be 1, 2 or 4");
@@ -720,6 +724,7 @@ TEST_F(CommandLine, AMissingArgumentIsNamedWithItsMeaning) {
 TEST_F(CommandLine, HelpExplainsCommandsAndTopics) {
   for (const char* topic : {"script", "models", "sources", "units", "calibrate", "files"})
     EXPECT_GT(roomradar(std::string("help ") + topic).out.size(), 500U) << topic;
+  EXPECT_EQ(roomradar("help").out, roomradar("--help").out);
   EXPECT_EQ(roomradar("help run").out, roomradar("run --help").out);
   EXPECT_EQ(roomradar("help map export").out, roomradar("map export --help").out);
   expect_fault(roomradar("help scirpt"), 2, "did you mean script?");
@@ -728,8 +733,8 @@ TEST_F(CommandLine, HelpExplainsCommandsAndTopics) {
 
 TEST_F(CommandLine, EveryHelpHasGroupsOfKnownOptionsAndTwoExamples) {
   for (const char* command :
-       {"start", "prescan", "run", "record", "simulate", "calibrate", "fallthrough", "trade", "doctor",
-        "map info", "map verify", "map export", "map merge", "map diff"}) {
+       {"start", "prescan", "run", "building", "serve", "record", "simulate", "calibrate", "fallthrough",
+        "farm", "trade", "doctor", "map info", "map verify", "map export", "map merge", "map diff"}) {
     const std::string help = roomradar(std::string(command) + " --help").out;
     EXPECT_GE(lines_with(help, std::string("roomradar ") + command + " ") +
                   lines_with(help, std::string("roomradar ") + command + "\n"),
@@ -757,7 +762,11 @@ TEST_F(CommandLine, CompletionKnowsCommandsOptionsAndChoices) {
   EXPECT_EQ(completed("help scr"), "script\n");
   EXPECT_EQ(completed("map export x --u"), "--unknown\n");
   EXPECT_EQ(shell("bash -n " + script).status, 0);
-  EXPECT_EQ(roomradar("--completion zsh").out.rfind("#compdef roomradar", 0), 0U);
+  const std::string zsh = roomradar("--completion zsh").out;
+  EXPECT_EQ(zsh.rfind("#compdef roomradar", 0), 0U);
+  // The compatibility needs compdef, which a shell without set-up of its own lacks.
+  EXPECT_LT(zsh.find("autoload -U compinit && compinit"), zsh.find("bashcompinit && bashcompinit"));
+  EXPECT_EQ(completed("--ver"), "--version\n");
   EXPECT_EQ(completed("run x --preset b"), "balanced\n");
   expect_fault(roomradar("--completion fish"), 2, "--completion fish: must be bash or zsh");
   expect_fault(roomradar("--completion"), 2, "--completion: needs a value");
@@ -787,6 +796,11 @@ TEST_F(CommandLine, CausesAreTheTrueOnes) {
   expect_fault(video, 1, "/proc/x.mp4: cannot be written: the system makes no files in /proc");
   EXPECT_EQ(video.out.find("full"), std::string::npos) << video.out;
   expect_fault(roomradar(run + " --video /no/such/folder/x.mp4"), 1, "its folder does not exist");
+  expect_fault(roomradar(run + " --stream /proc/x"), 1,
+               "/proc/x: cannot be written: the system makes no files");
+  const Outcome report = roomradar(run + " --report /proc/x.json");
+  expect_fault(report, 1, "/proc/x.json: cannot be written: the system makes no files in /proc");
+  EXPECT_EQ(report.out.find("frames in"), std::string::npos) << "said after the work: " << report.out;
 }
 
 TEST_F(CommandLine, UpIsStatedWhereItIsNotKnown) {
@@ -1107,6 +1121,10 @@ TEST_F(CommandLine, SeveralObjectsEachWithASizeAPlaceAndAnAxis) {
         "teapot,size=0.2,size=0.3", ",size=0.3", "teapot,mass=0", "teapot,mass=-1", "teapot,density=nan",
         "teapot,friction=11", "teapot,restitution=2", "teapot,mass=1,density=1000", "teapot,mass=1,mass=2"})
     expect_fault(roomradar(run + " --object " + bad), 2, "--object");
+  for (const char* bad : {"teapot,siz=0.3", "teapot,size=0.3,siz=0.3", "teapot,siz=0.3,size=0.3"})
+    expect_fault(roomradar(run + " --object " + bad), 2,
+                 "there is no siz=; known are size=, up=, at=, mass=");
+  expect_fault(roomradar(run + " --object teapt"), 1, "teapt: there is no such file; a model is a file .glb");
   expect_fault(roomradar(run + " --object-up w"), 2, "--object-up w");
   expect_fault(roomradar(run + " --object-size 0.3 --script s.txt"), 2, "--script says how");
 }

@@ -97,5 +97,13 @@ TEST(FloorHeight, IsThatOfTheLowestLevelSurfaceEvenIfATableIsLarger) {
   EXPECT_EQ(floor_height_m(database, Vector3d::UnitX()), std::nullopt);
 }
 
+TEST(FloorHeight, APlaceCountsOnceHoweverOftenItWasSeen) {
+  KeyframeDatabase database;
+  database.keyframes.push_back(keyframe_over(-0.83, 0.5));
+  for (int i = 0; i < 50; ++i)
+    database.keyframes.push_back(keyframe_over(-0.83, 5.0));  // the table fills them
+  EXPECT_NEAR(floor_height_m(database, Vector3d::UnitZ()).value_or(9.0), -0.83, 0.006);
+}
+
 }  // namespace
 }  // namespace roomradar::level_surfaces_test
