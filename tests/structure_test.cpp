@@ -23,7 +23,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"mapping/types"},
     {"mapping/storage"},
     {"mapping/mesh", "mapping/octree", "mapping/alignment", "radar/geometry", "dynamic/foreground",
-     "dynamic/surface", "app/sources/formats", "app/sources/containers", "app/sim/solids"},
+     "dynamic/surface", "app/sources/formats", "app/sources/containers", "app/sources/video", "app/sim/solids"},
     {"app/sources/datasets", "app/sim/room"},
     {"mapping/surface", "mapping/revision", "mapping/localization", "mapping/coverage", "mapping/texture",
      "radar/exact", "radar/gl", "app/sources/recordings", "app/calibration", "app/sim/building"},

@@ -9,6 +9,7 @@ set_target_properties(roomradar_warnings PROPERTIES EXPORT_NAME warnings)
 
 # The program.
 install(TARGETS roomradar COMPONENT program)
+install(TARGETS roomradar_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/roomradar COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
   RENAME roomradar COMPONENT program)
@@ -61,7 +62,9 @@ if(ROOMRADAR_HAS_PYTHON)
   install(TARGETS _roomradar DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
   install(FILES app/python/roomradar/__init__.py app/python/roomradar/__init__.pyi app/python/roomradar/py.typed
     DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
-  if(NOT SKBUILD)
+  if(SKBUILD)
+    install(TARGETS roomradar_video LIBRARY DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
+  else()
     install(DIRECTORY app/python/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar COMPONENT python
       FILES_MATCHING PATTERN "*.py")
     install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar RENAME copyright COMPONENT python)
@@ -105,6 +108,7 @@ foreach(module ${opencv_modules})
 endforeach()
 # Component sources only.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, libopenni2-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "roomradar")  # the module for videos
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, what moved, and frame sources.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libroomradar0)
@@ -112,6 +116,7 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS "roomradar")  # the module for videos
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
   "Shared library of roomradar with a C interface, for engines and other languages: saved rooms, sessions, radar.")
 set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_NAME libroomradar-c-dev)
