@@ -118,9 +118,11 @@ Texture texture_of_bmp_or_tga(std::string_view bytes, std::size_t max_pixels) {
   int width = 0, height = 0, channels = 0;
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const auto size = static_cast<int>(bytes.size());
-  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0 ||
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0 || std::min(width, height) < 1 ||
       std::max(width, height) > kMaxFileSide_px)
-    throw Error("cannot be decoded as BMP or TGA of at most 16384 px per side");
+    throw Error("cannot be decoded as BMP or TGA of 1..16384 px per side");
+  // A run of at most 128 pixels takes two bytes or more; without runs, a byte holds at most 8 pixels.
+  if (static_cast<double>(width) * height > 64.0 * size) throw Error("is cut short");
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free);
   if (pixels == nullptr)

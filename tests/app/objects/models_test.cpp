@@ -260,6 +260,12 @@ TEST_F(Models, ABitmapAndATgaAreTexturesAndOtherFormatsAreRefused) {
         std::string("II*\0 a TIFF of more than 18 bytes", 34), std::string("\0", 1)})
     EXPECT_NE(message_of([&] { (void)decode_texture(other, 100); }).find("neither PNG, JPEG, BMP nor TGA"),
               std::string::npos);
+  std::string empty = tga;
+  empty[12] = '\0';  // the width
+  EXPECT_NE(message_of([&] { (void)decode_texture(empty, 100); }).find("1..16384 px"), std::string::npos);
+  std::string huge = tga;
+  huge[13] = '\x3f';
+  EXPECT_EQ(message_of([&] { (void)decode_texture(huge, 100); }), "is cut short");
   for (std::size_t size = 0; size < bmp.size(); ++size)
     (void)message_of([&] { (void)decode_texture(bmp.substr(0, size), 100); });
   for (std::size_t size = 0; size < tga.size(); ++size)
