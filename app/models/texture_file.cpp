@@ -133,7 +133,7 @@ Texture texture_of_bmp_or_tga(std::string_view bytes, std::size_t max_pixels) {
 }  // namespace
 
 Texture decode_texture(std::string_view bytes, std::size_t max_pixels) {
-  if (bytes.empty()) throw Error("is empty");
+  if (bytes.empty()) throw Error("has no bytes");
   try {
     if (bytes.starts_with("\x89PNG")) return texture_of_png(bytes, max_pixels);
     if (bytes.starts_with("\xff\xd8")) return texture_of_jpeg(bytes, max_pixels);

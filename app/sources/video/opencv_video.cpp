@@ -86,7 +86,7 @@ class OpenCvCodecs : public VideoCodecs {
 }  // namespace
 }  // namespace roomradar
 
-const roomradar::VideoCodecs* roomradar_video_codecs(const char* version) {
+[[gnu::visibility("default")]] const roomradar::VideoCodecs* roomradar_video_codecs(const char* version) {
   static const roomradar::OpenCvCodecs codecs;
   return std::string_view(version) == roomradar::kVersion ? &codecs : nullptr;
 }

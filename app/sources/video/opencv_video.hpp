@@ -3,5 +3,4 @@
 #include "app/sources/video/video_codecs.hpp"
 
 /// Returns the codecs, or nullptr if `version` is not the version that the module was built with.
-extern "C" __attribute__((visibility("default"))) const roomradar::VideoCodecs* roomradar_video_codecs(
-    const char* version);
+extern "C" const roomradar::VideoCodecs* roomradar_video_codecs(const char* version);
