@@ -1,17 +1,16 @@
-// video_writer.cpp: writes video through OpenCV, with the checks that OpenCV lacks.
+// video_writer.cpp: writes video through the module for videos, with the checks that OpenCV lacks.
 #include "app/media/video_writer.hpp"
 
 #include <unistd.h>
 
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "app/sources/video/video_module.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -47,20 +46,16 @@ struct VideoWriter::State {
   std::filesystem::path partial;  // file being written
   double frames_per_s = 30.0;
   std::vector<std::string> codecs;
-  cv::VideoWriter writer;
-  cv::Mat bgr;
-  int width_px = 0;
-  int height_px = 0;
+  std::unique_ptr<VideoEncoder> encoder;
   std::int64_t frames_written = 0;
   double start_s = 0.0;  ///< stamp of the video's first picture
   double last_stamp_s = -std::numeric_limits<double>::infinity();
   bool is_closed = false;
 
-  void open() {
+  void open(const ColourImage& picture) {
     for (const std::string& codec : codecs) {
-      const int fourcc = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
-      const cv::Size size(width_px & ~1, height_px & ~1);
-      if (writer.open(partial.string(), cv::CAP_FFMPEG, fourcc, frames_per_s, size)) return;
+      encoder = video_codecs().create(partial.string(), codec, frames_per_s, picture.width, picture.height);
+      if (encoder != nullptr) return;
     }
     throw Error(path.string() +
                 ": the video cannot be created; is the folder writable, and is OpenCV built with FFmpeg?");
@@ -91,6 +86,7 @@ VideoWriter::VideoWriter(std::filesystem::path path, double frames_per_s)
   if (partial_of(path) != path)  // else a pipe or a device
     if (const std::string why = why_not_writable(path); !why.empty())
       throw Error(path.string() + ": cannot be written: " + why);
+  (void)video_codecs();  // a missing module is reported before the work begins
   state_->partial = partial_of(path);
   state_->path = std::move(path);
   state_->frames_per_s = frames_per_s;
@@ -111,17 +107,11 @@ void VideoWriter::write(const ColourImage& picture) {
   if (picture.width < 2 || picture.height < 2)
     throw Error(s.path.string() + ": a video's picture needs 2 x 2 pixels");
   if (s.frames_written == 0) {
-    s.width_px = picture.width;
-    s.height_px = picture.height;
     s.require_space();
-    s.open();
+    s.open(picture);
   }
   if (s.frames_written % kFramesBetweenSpaceChecks == 0) s.require_space();
-  cv::Mat rgb(picture.height, picture.width, CV_8UC3, const_cast<Rgb*>(picture.pixels.data()));
-  if (picture.width != s.width_px || picture.height != s.height_px)
-    cv::resize(rgb, rgb, cv::Size(s.width_px, s.height_px), 0.0, 0.0, cv::INTER_AREA);
-  cv::cvtColor(rgb(cv::Rect(0, 0, s.width_px & ~1, s.height_px & ~1)), s.bgr, cv::COLOR_RGB2BGR);
-  s.writer.write(s.bgr);
+  s.encoder->write(picture);
   ++s.frames_written;
 }
 
@@ -139,12 +129,12 @@ void VideoWriter::write_at(const ColourImage& picture, double stamp_s) {
 void VideoWriter::close() {
   State& s = *state_;
   if (std::exchange(s.is_closed, true) || s.frames_written == 0) return;
-  s.writer.release();
+  s.encoder.reset();
   if (s.partial == s.path) return;  // a pipe or a device cannot be read back
   // OpenCV does not report failed writes, so the file is read back: a truncated one has no index, or fewer
   // frames.
-  cv::VideoCapture reader(s.partial.string(), cv::CAP_FFMPEG);
-  const double frames_held = reader.isOpened() ? reader.get(cv::CAP_PROP_FRAME_COUNT) : 0.0;
+  const std::unique_ptr<VideoDecoder> reader = video_codecs().open(s.partial.string());
+  const double frames_held = reader != nullptr ? reader->frame_count() : 0.0;
   if (frames_held + 1.5 < static_cast<double>(s.frames_written))
     throw Error(s.path.string() + ": could be written with " +
                 std::to_string(static_cast<long>(std::max(frames_held, 0.0))) + " of " +

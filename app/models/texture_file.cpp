@@ -1,15 +1,19 @@
-// texture_file.cpp: decodes by OpenCV, and reduces by averaging blocks of pixels.
+// texture_file.cpp: decodes by libpng, libjpeg and stb_image, and reduces by averaging blocks of pixels.
 #include "app/models/texture_file.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <opencv2/imgcodecs.hpp>
+#include <memory>
+#include <new>
 #include <optional>
 #include <system_error>
 
-#include "app/models/tga_picture.hpp"
+#include <stb_image.h>
+
+#include "mapping/types/codecs/jpeg.hpp"
+#include "mapping/types/codecs/png.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 
@@ -17,23 +21,21 @@ namespace roomradar {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = 64U << 20U;
+constexpr int kMaxFileSide_px = 16384;
 
-/// Rows of decoded pixels: 1 (grey), 3 (BGR) or 4 (BGRA) channels of 8 or 16 bits.
+/// Decoded pixels: 3 or 4 bytes each, rows from the top.
 struct Decoded {
   const unsigned char* pixels = nullptr;
   int width = 0, height = 0, channels = 0;
-  std::size_t row_bytes = 0;
-  bool is_16_bit = false;
+  bool is_blue_first = false;
 
   /// Returns red, green, blue and alpha.
   [[nodiscard]] std::array<unsigned, 4> at(int x, int y) const {
-    const auto channel = [&](int c) -> unsigned {
-      const std::size_t index = static_cast<std::size_t>(x * channels + c);
-      const unsigned char* row = pixels + static_cast<std::size_t>(y) * row_bytes;
-      return is_16_bit ? row[2 * index + 1] : row[index];  // the high byte, as this machine is little-endian
-    };
-    if (channels == 1) return {channel(0), channel(0), channel(0), 255};
-    return {channel(2), channel(1), channel(0), channels == 4 ? channel(3) : 255};
+    const auto index =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    const unsigned char* const pixel = pixels + index * static_cast<std::size_t>(channels);
+    return {pixel[is_blue_first ? 2 : 0], pixel[1], pixel[is_blue_first ? 0 : 2],
+            channels == 4 ? pixel[3] : 255U};
   }
 };
 
@@ -45,7 +47,6 @@ double reduction(int width, int height, std::size_t max_pixels) {
 }
 
 /// Returns the picture with sides divided by the reduction; each pixel is the mean of those that it replaces.
-/// OpenCV's resize is not used: its threads do not exist in a forked child.
 Texture reduced(const Decoded& decoded, std::size_t max_pixels) {
   const double factor = reduction(decoded.width, decoded.height, max_pixels);
   const int width = std::max(1, static_cast<int>(decoded.width / factor));
@@ -95,36 +96,59 @@ std::string plain_name(std::string name) {
   return plain;
 }
 
+Texture texture_of_png(std::string_view bytes, std::size_t max_pixels) {
+  Image<Rgba> image;
+  if (const auto fault = decode_png(bytes, image)) throw Error("cannot be decoded as PNG: " + *fault);
+  return reduced({&image.pixels.front().r, image.width, image.height, 4}, max_pixels);
+}
+
+Texture texture_of_jpeg(std::string_view bytes, std::size_t max_pixels) {
+  ColourImage image;
+  if (const auto fault = decode_jpeg(bytes, image)) throw Error("cannot be decoded as JPEG: " + *fault);
+  return reduced({&image.pixels.front().r, image.width, image.height, 3}, max_pixels);
+}
+
+/// TGA has no mark at its beginning: a colour map or none, and one of the kinds that stb_image decodes.
+bool is_tga(std::string_view bytes) {
+  constexpr std::string_view kKinds("\1\2\3\x9\xa\xb");
+  return bytes.size() > 18 && (bytes[1] == 0 || bytes[1] == 1) && kKinds.find(bytes[2]) != kKinds.npos;
+}
+
+Texture texture_of_bmp_or_tga(std::string_view bytes, std::size_t max_pixels) {
+  int width = 0, height = 0, channels = 0;
+  const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const auto size = static_cast<int>(bytes.size());
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0 || std::min(width, height) < 1 ||
+      std::max(width, height) > kMaxFileSide_px)
+    throw Error("cannot be decoded as BMP or TGA of 1..16384 px per side");
+  // A run of at most 128 pixels takes two bytes or more; without runs, a byte holds at most 8 pixels.
+  if (static_cast<double>(width) * height > 64.0 * size) throw Error("is cut short");
+  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free);
+  if (pixels == nullptr)
+    throw Error("cannot be decoded as BMP or TGA: " + std::string(stbi_failure_reason()));
+  return reduced({pixels.get(), width, height, 4}, max_pixels);
+}
+
 }  // namespace
 
 Texture decode_texture(std::string_view bytes, std::size_t max_pixels) {
-  const char* const fault = "cannot be decoded as PNG, JPEG, BMP, TIFF, WebP or TGA";
-  if (bytes.empty()) throw Error("is empty");
-  cv::Mat image;
+  if (bytes.empty()) throw Error("has no bytes");
   try {
-    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-    image = cv::imdecode(encoded, cv::IMREAD_UNCHANGED);
-  } catch (const std::exception&) {  // also std::bad_alloc, for a picture that claims to be huge
-    throw Error(fault);
+    if (bytes.starts_with("\x89PNG")) return texture_of_png(bytes, max_pixels);
+    if (bytes.starts_with("\xff\xd8")) return texture_of_jpeg(bytes, max_pixels);
+    if (bytes.starts_with("BM") || is_tga(bytes)) return texture_of_bmp_or_tga(bytes, max_pixels);
+  } catch (const std::bad_alloc&) {  // of a picture that claims to be huge
+    throw Error("cannot be decoded: it is too large");
   }
-  const int channels = image.channels();
-  if (image.empty())
-    if (const std::optional<TgaPicture> tga = decode_tga(bytes))
-      return texture_of_bgra(tga->bgra, tga->width, tga->height, max_pixels);
-  if (image.empty() || (image.depth() != CV_8U && image.depth() != CV_16U) ||
-      (channels != 1 && channels != 3 && channels != 4))
-    throw Error(fault);
-  return reduced({image.data, image.cols, image.rows, channels, image.step[0], image.depth() == CV_16U},
-                 max_pixels);
+  throw Error("cannot be decoded: it is neither PNG, JPEG, BMP nor TGA");
 }
 
 Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size_t max_pixels) {
   if (width <= 0 || height <= 0 ||
       bytes.size() / 4 / static_cast<std::size_t>(width) < static_cast<std::size_t>(height))
     throw Error("is cut short");
-  return reduced({reinterpret_cast<const unsigned char*>(bytes.data()), width, height, 4,
-                  4 * static_cast<std::size_t>(width), false},
-                 max_pixels);
+  return reduced({reinterpret_cast<const unsigned char*>(bytes.data()), width, height, 4, true}, max_pixels);
 }
 
 std::filesystem::path find_texture(const std::filesystem::path& model, const std::string& name) {

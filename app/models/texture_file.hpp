@@ -13,9 +13,10 @@ inline constexpr int kMaxTextureSide_px = 4096;
 /// Max number of pixels of all textures of a model together.
 inline constexpr std::size_t kMaxTexturePixels = std::size_t{64} << 20U;
 
-/// Decodes a PNG, JPEG, BMP, TIFF, WebP or TGA image. An image with more than kMaxTextureSide_px per side or
-/// more than max_pixels in total is reduced by averaging. Alpha is kept if some pixel is not opaque.
-/// `bytes` may be malicious: call this function within run_sandboxed().
+/// Decodes a PNG, JPEG, BMP or TGA image. Pixels that a truncated JPEG, BMP or TGA lacks are grey or black.
+/// An image with more than kMaxTextureSide_px per side or more than max_pixels in total is reduced by
+/// averaging. Alpha is kept if some pixel is not opaque. `bytes` may be malicious: call this function within
+/// run_sandboxed().
 /// @throws Error "cannot be decoded; ..." without the file's name
 Texture decode_texture(std::string_view bytes, std::size_t max_pixels);
 /// Makes a texture from uncompressed pixels of 4 bytes: blue, green, red, alpha. Reduces it as

@@ -9,6 +9,7 @@ set_target_properties(roomradar_warnings PROPERTIES EXPORT_NAME warnings)
 
 # The program.
 install(TARGETS roomradar COMPONENT program)
+install(TARGETS roomradar_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/roomradar COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
   RENAME roomradar COMPONENT program)
@@ -63,8 +64,10 @@ if(ROOMRADAR_HAS_PYTHON)
     DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
   # What app/python/setup.py builds.
   add_custom_target(install_python
-    COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --component python DEPENDS _roomradar)
-  if(NOT SKBUILD)
+    COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --component python DEPENDS _roomradar roomradar_video)
+  if(SKBUILD)
+    install(TARGETS roomradar_video LIBRARY DESTINATION ${ROOMRADAR_PYTHON_DIR}/roomradar COMPONENT python)
+  else()
     install(DIRECTORY app/python/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar COMPONENT python
       FILES_MATCHING PATTERN "*.py")
     install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar RENAME copyright COMPONENT python)
@@ -102,12 +105,13 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroomradar-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # zlib1g-dev: assimp's targets link it, libassimp-dev does not depend on it.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libassimp-dev, libbz2-dev, libceres-dev, libegl-dev, libeigen3-dev, libjpeg62-turbo-dev, liblz4-dev, liboctomap-dev, libopengl-dev, libsqlite3-dev, libssl-dev, libzstd-dev, nlohmann-json3-dev, zlib1g-dev")
+  "libassimp-dev, libbz2-dev, libceres-dev, libegl-dev, libeigen3-dev, libjpeg62-turbo-dev, liblz4-dev, liboctomap-dev, libopengl-dev, libpng-dev, libsqlite3-dev, libssl-dev, libstb-dev, libzstd-dev, nlohmann-json3-dev, zlib1g-dev")
 foreach(module ${opencv_modules})
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopencv-${module}${opencv_abi}")
 endforeach()
 # Component sources only.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, libopenni2-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "roomradar")  # the module for videos
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, what moved, and frame sources.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libroomradar0)
@@ -115,6 +119,7 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS "roomradar")  # the module for videos
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
   "Shared library of roomradar with a C interface, for engines and other languages: saved rooms, sessions, radar.")
 set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_NAME libroomradar-c-dev)

@@ -3,6 +3,7 @@
 
 #include "mapping/coverage/coverage_picture.hpp"
 #include "mapping/coverage/frontier.hpp"
+#include "mapping/types/codecs/png.hpp"
 
 namespace roomradar {
 

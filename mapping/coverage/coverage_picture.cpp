@@ -7,7 +7,6 @@
 #include <complex>
 #include <cstdio>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <tuple>
@@ -345,18 +344,6 @@ ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Front
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < kWidth; ++x) image.at(x, y) = {picture(y, x)[2], picture(y, x)[1], picture(y, x)[0]};
   return image;
-}
-
-std::vector<std::uint8_t> encode_png(const ColourImage& picture) {
-  cv::Mat3b bgr(picture.height, picture.width);
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) {
-      const Rgb colour = picture.at(x, y);
-      bgr(y, x) = {colour.b, colour.g, colour.r};
-    }
-  std::vector<std::uint8_t> bytes;
-  if (picture.empty() || !cv::imencode(".png", bgr, bytes)) throw Error("a picture cannot be written as PNG");
-  return bytes;
 }
 
 }  // namespace roomradar

@@ -25,7 +25,4 @@ inline constexpr double kSeenWell_m = 0.003;
 ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                           std::span<const Hole> holes, std::span<const TimedPose> trajectory);
 
-/// Encodes a picture as a PNG file's bytes. Throws Error if the picture is empty.
-std::vector<std::uint8_t> encode_png(const ColourImage& picture);
-
 }  // namespace roomradar

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "mapping/texture/jpeg.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 
 namespace roomradar {
 namespace {

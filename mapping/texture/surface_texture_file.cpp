@@ -11,7 +11,7 @@
 #include "mapping/mesh/assimp_import.hpp"
 #include "mapping/storage/binary_file.hpp"
 #include "mapping/storage/compressed_columns.hpp"
-#include "mapping/texture/jpeg.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/system/file_io.hpp"
 
 namespace roomradar {

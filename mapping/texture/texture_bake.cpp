@@ -11,10 +11,10 @@
 #include "mapping/texture/atlas_fill.hpp"
 #include "mapping/texture/chart_packing.hpp"
 #include "mapping/texture/chart_texels.hpp"
-#include "mapping/texture/jpeg.hpp"
 #include "mapping/texture/mesh_raster.hpp"
 #include "mapping/texture/texture_charts.hpp"
 #include "mapping/texture/view_alignment.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/system/parallel_for.hpp"
 
 namespace roomradar {

@@ -32,9 +32,9 @@
 #include "app/media/picture_file.hpp"
 #include "mapping/deskewed_source.hpp"
 #include "mapping/prescan.hpp"
-#include "mapping/texture/jpeg.hpp"
 #include "mapping/texture/mesh_raster.hpp"
 #include "mapping/texture/view_alignment.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 #include "tests/bench/bench_program.hpp"
 
 namespace roomradar {

@@ -4,8 +4,8 @@
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/static_map.hpp"
-#include "mapping/texture/jpeg.hpp"
 #include "mapping/texture/surface_texture_file.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/trajectory.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "app/evaluation/fallthrough/totals.hpp"
 #include "app/media/svg_plot.hpp"
-#include "mapping/coverage/coverage_picture.hpp"
+#include "mapping/types/codecs/png.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 
 namespace roomradar {

@@ -7,13 +7,13 @@
 #include <sstream>
 #include <string>
 
-#include "app/sources/containers/video_file.hpp"
 #include "app/sources/datasets/arkit_axes.hpp"
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/time_tracks.hpp"
+#include "app/sources/video/video_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "app/window/link/player.hpp"
-#include "mapping/texture/jpeg.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 
 namespace roomradar {
 namespace {

@@ -241,6 +241,37 @@ TEST_F(Models, ALargePictureIsReducedToItsMean) {
   EXPECT_NE(message_of([&] { static_cast<void>(texture_of_bgra("short", 100, 100, 1000)); }), "");
 }
 
+TEST_F(Models, ABitmapAndATgaAreTexturesAndOtherFormatsAreRefused) {
+  // A bitmap of 2 x 1 pixels of 24 bits, a TGA whose packet repeats a pixel, and the last row first.
+  const std::string bmp(
+      "BM\x3e\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\1\0\0\0\1\0\x18\0\0\0\0\0\x08\0\0\0"
+      "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xff\0\0\0\0\xff\0\0",
+      62);
+  const std::string tga("\0\0\x0a\0\0\0\0\0\0\0\0\0\2\0\2\0\x20\x08\x81\1\2\3\x40\x81\4\5\6\x80", 28);
+  const Texture bitmap = decode_texture(bmp, 100);
+  ASSERT_EQ(bitmap.colour.width, 2);
+  EXPECT_EQ(bitmap.colour.pixels, (std::vector<Rgb>{{0, 0, 255}, {255, 0, 0}}));
+  const Texture targa = decode_texture(tga, 100);
+  ASSERT_EQ(targa.colour.height, 2);
+  EXPECT_EQ(targa.colour.pixels, (std::vector<Rgb>{{6, 5, 4}, {6, 5, 4}, {3, 2, 1}, {3, 2, 1}}));
+  EXPECT_EQ(targa.opacity.pixels, (std::vector<std::uint8_t>{128, 128, 64, 64}));
+  for (const std::string& other :
+       {std::string("RIFF\x10\0\0\0WEBPVP8 and more than 18 bytes", 40),
+        std::string("II*\0 a TIFF of more than 18 bytes", 34), std::string("\0", 1)})
+    EXPECT_NE(message_of([&] { (void)decode_texture(other, 100); }).find("neither PNG, JPEG, BMP nor TGA"),
+              std::string::npos);
+  std::string empty = tga;
+  empty[12] = '\0';  // the width
+  EXPECT_NE(message_of([&] { (void)decode_texture(empty, 100); }).find("1..16384 px"), std::string::npos);
+  std::string huge = tga;
+  huge[13] = '\x3f';
+  EXPECT_EQ(message_of([&] { (void)decode_texture(huge, 100); }), "is cut short");
+  for (std::size_t size = 0; size < bmp.size(); ++size)
+    (void)message_of([&] { (void)decode_texture(bmp.substr(0, size), 100); });
+  for (std::size_t size = 0; size < tga.size(); ++size)
+    (void)message_of([&] { (void)decode_texture(tga.substr(0, size), 100); });
+}
+
 TEST_F(Models, HolesOfATextureAreNotDrawn) {
   Model model = crate();
   model.textures[0].opacity.resize(64, 64, 255);

@@ -68,9 +68,6 @@ TEST(CoveragePicture, HolesAreMarkedAtTheirPlace) {
 TEST(CoveragePicture, AMapWithoutSurfaceIsDrawnAllTheSame) {
   const ColourImage picture = draw_coverage(StaticMap(0.02), {}, {}, {}, {});
   EXPECT_GT(picture.width, 1000);
-  const std::vector<std::uint8_t> png = encode_png(picture);
-  ASSERT_GT(png.size(), 8U);
-  EXPECT_EQ(png[1], 'P');
 }
 
 TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {

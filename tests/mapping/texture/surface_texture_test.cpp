@@ -5,8 +5,8 @@
 
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/mesh/ply_file.hpp"
-#include "mapping/texture/jpeg.hpp"
 #include "mapping/texture/surface_texture_file.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/mapping/texture/texture_scene.hpp"
@@ -162,25 +162,6 @@ TEST_F(SurfaceTextureFile, DamageIsNamed) {
   EXPECT_NE(fault().find("has 64 x 32 pixels, and 48 x 32 belong to the map"), std::string::npos) << fault();
   std::filesystem::remove(picture_);
   EXPECT_NE(fault().find("texture.jpg"), std::string::npos);
-}
-
-TEST(Jpeg, DamagedPixelsAreNotACrash) {
-  const std::vector<std::uint8_t> jpeg = jpeg_of(ColourImage(64, 64, {10, 200, 30}), 90);
-  const ColourImage whole = picture_of_jpeg(jpeg, 64, 64, "a.jpg");
-  EXPECT_NEAR(whole.at(30, 30).g, 200, 4);
-  EXPECT_NE(error_of([&] { (void)picture_of_jpeg(jpeg, 64, 63, "a.jpg"); }).find("a.jpg: has 64 x 64"),
-            std::string::npos);
-  EXPECT_NE(error_of([&] { (void)picture_of_jpeg({}, 64, 64, "a.jpg"); }).find("is no JPEG"),
-            std::string::npos);
-  for (std::size_t i = 2; i + 2 < jpeg.size(); ++i) {
-    std::vector<std::uint8_t> damaged = jpeg;
-    damaged[i] ^= 0x5a;
-    try {
-      EXPECT_EQ(picture_of_jpeg(damaged, 64, 64, "a.jpg").width, 64);
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("a.jpg"), std::string::npos);
-    }
-  }
 }
 
 }  // namespace

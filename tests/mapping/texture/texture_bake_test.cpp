@@ -9,9 +9,9 @@
 
 #include "mapping/texture/atlas_fill.hpp"
 #include "mapping/texture/exposure_gains.hpp"
-#include "mapping/texture/jpeg.hpp"
 #include "mapping/texture/view_alignment.hpp"
 #include "mapping/texture/view_selection.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 #include "tests/mapping/texture/texture_scene.hpp"
 
 namespace roomradar::texture_bake_test {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "mapping/texture/jpeg.hpp"
 #include "mapping/texture/surface_texture.hpp"
 #include "mapping/texture/texture_view.hpp"
+#include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/mesh.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"

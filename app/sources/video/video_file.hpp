@@ -4,11 +4,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/sources/video/video_codecs.hpp"
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
 
-/// A video, decoded by OpenCV's FFmpeg. Not thread safe.
+/// A video, decoded by the module for videos. Not thread safe.
 class VideoFile {
  public:
   /// Throws Error naming the file if it cannot be opened or a side is not in 1..16384.
@@ -25,9 +26,8 @@ class VideoFile {
   void read(std::size_t number, ColourImage& image);
 
  private:
-  struct Decoder;
   std::filesystem::path path_;
-  std::unique_ptr<Decoder> decoder_;
+  std::unique_ptr<VideoDecoder> decoder_;
   int width_px_ = 0, height_px_ = 0;
   std::size_t next_ = 0;
 };

@@ -1,0 +1,6 @@
+// opencv_video.hpp: the entry of the module for videos.
+#pragma once
+#include "app/sources/video/video_codecs.hpp"
+
+/// Returns the codecs, or nullptr if `version` is not the version that the module was built with.
+extern "C" const roomradar::VideoCodecs* roomradar_video_codecs(const char* version);
