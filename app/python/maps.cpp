@@ -1,9 +1,6 @@
 // maps.cpp: maps as objects, and the functions of `roomradar map`.
 #include "app/python/maps.hpp"
 
-#include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
-
 #include <algorithm>
 #include <vector>
 

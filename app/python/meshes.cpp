@@ -1,8 +1,6 @@
 // meshes.cpp: meshes from arrays, as arrays, from files and to files.
 #include "app/python/meshes.hpp"
 
-#include <pybind11/stl/filesystem.h>
-
 #include <cstring>
 #include <limits>
 #include <memory>

@@ -1,8 +1,6 @@
 // octree.cpp: octrees as arrays.
 #include "app/python/octree.hpp"
 
-#include <pybind11/stl/filesystem.h>
-
 #include <memory>
 #include <string>
 #include <string_view>

@@ -1,8 +1,6 @@
 // radar.cpp: queries with poses and directions from NumPy.
 #include "app/python/radar.hpp"
 
-#include <pybind11/stl.h>
-
 #include <cmath>
 #include <optional>
 #include <string>

@@ -1,9 +1,6 @@
 // scan.cpp: the prescan of `roomradar prescan`, with progress by callback and Ctrl-C.
 #include "app/python/scan.hpp"
 
-#include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
-
 #include <atomic>
 #include <filesystem>
 #include <memory>

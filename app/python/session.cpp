@@ -1,9 +1,6 @@
 // session.cpp: a session on a thread of its own, whose images are shared with NumPy.
 #include "app/python/session.hpp"
 
-#include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
-
 #include <cmath>
 #include <cstring>
 #include <filesystem>

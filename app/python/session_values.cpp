@@ -1,8 +1,6 @@
 // session_values.cpp: copies of the session's state, which stay valid while it goes on.
 #include "app/python/session_values.hpp"
 
-#include <pybind11/stl.h>
-
 #include "app/python/arrays.hpp"
 #include "app/session/frame_result.hpp"
 

@@ -1,9 +1,6 @@
 // simulator.cpp: simulated frames, their truth, and recordings of them.
 #include "app/python/simulator.hpp"
 
-#include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
-
 #include <memory>
 #include <string>
 

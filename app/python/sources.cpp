@@ -1,9 +1,6 @@
 // sources.cpp: opens sources, reads frames without the interpreter's lock.
 #include "app/python/sources.hpp"
 
-#include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
-
 #include <filesystem>
 #include <optional>
 #include <utility>

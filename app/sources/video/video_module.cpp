@@ -2,6 +2,7 @@
 #include "app/sources/video/video_module.hpp"
 
 #include <dlfcn.h>
+#include <link.h>
 
 #include <array>
 #include <filesystem>
@@ -21,10 +22,16 @@ constexpr char kFile[] = "roomradar-video.so";
 
 /// Returns the folder of the program or library that contains this function.
 fs::path own_folder() {
-  Dl_info own{};
+  Dl_info ignored{};
+  link_map* own = nullptr;
+  if (dladdr1(reinterpret_cast<const void*>(&own_folder), &ignored, reinterpret_cast<void**>(&own),
+              RTLD_DL_LINKMAP) == 0)
+    return {};
+  // The program itself has no name in the list of libraries, and dli_fname is the word by which it was
+  // called.
+  const bool is_program = own->l_name == nullptr || own->l_name[0] == '\0';
   std::error_code fault;
-  if (dladdr(reinterpret_cast<const void*>(&own_folder), &own) == 0 || own.dli_fname == nullptr) return {};
-  const fs::path file = fs::canonical(own.dli_fname, fault);
+  const fs::path file = fs::canonical(is_program ? "/proc/self/exe" : own->l_name, fault);
   return fault ? fs::path() : file.parent_path();
 }
 
