@@ -3,7 +3,7 @@
 #pragma once
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
-#include <pybind11/stl.h>  // in all sources: conversions must be the same everywhere
+#include <pybind11/stl.h>  // here for all sources: conversions must be the same everywhere
 #include <pybind11/stl/filesystem.h>
 
 #include <Eigen/Geometry>

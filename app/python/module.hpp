@@ -1,8 +1,6 @@
 // module.hpp: the Python module's classes and functions, in the order of their dependencies.
 #pragma once
 #include <pybind11/pybind11.h>
-#include <pybind11/stl.h>  // in all sources: conversions must be the same everywhere
-#include <pybind11/stl/filesystem.h>
 
 namespace roomradar::python {
 

@@ -1,8 +1,6 @@
 // look_alikes.cpp: the motion between the places that a refused join takes for one.
 #include "mapping/building/look_alikes.hpp"
 
-#include <algorithm>
-
 #include "mapping/localization/pose_hypothesis.hpp"
 
 namespace roomradar {
@@ -15,10 +13,7 @@ std::vector<LookAlike> find_look_alikes(std::span<const PlacedSubmap> submaps, s
   for (const GraphJoin& one : refused) {
     const PlacedSubmap &a = submaps[one.a], &b = submaps[one.b];
     if (a.part != part || b.part != part) continue;
-    const std::vector<KeyframeLink>& links = one.join.links;
-    const std::size_t count = std::min(links.size(), kMostPerJoin);
-    for (std::size_t i = 0; i < count; ++i) {
-      const KeyframeLink& link = links[i * links.size() / count];
+    for (const KeyframeLink& link : spread_evenly(one.join.links, kMostPerJoin)) {
       const Eigen::Isometry3d &T_world_a = a.T_building_keyframe[link.a],
                               &T_world_b = b.T_building_keyframe[link.b];
       const Eigen::Isometry3d T_b_a = T_world_b * link.T_a_b.inverse() * T_world_a.inverse();

@@ -132,14 +132,6 @@ void add_links(const Submap& a, const Submap& b, const Vote& vote, std::vector<K
   links.push_back({vote.a, vote.b, T_a_b, information.asDiagonal()});
 }
 
-/// Returns up to `count` of the votes, spread evenly over b's keyframes.
-std::vector<Vote> spread(const std::vector<Vote>& votes, std::size_t count) {
-  if (votes.size() <= count) return votes;
-  std::vector<Vote> chosen;
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(votes[i * votes.size() / count]);
-  return chosen;
-}
-
 /// Returns whether two submaps look the same around votes that are refused because they differ elsewhere.
 bool look_alike_near(const Submap& a, const Submap& b, const std::vector<Vote>& votes) {
   constexpr double kNear_m = 1.5, kMinRecognised = 0.7, kMinAgreement = 0.92;
@@ -166,14 +158,14 @@ SubmapJoin judged(const Submap& a, const Submap& b, const std::vector<Vote>& agr
   } else if (test.expected - test.recognised > std::max(1.0, config.max_different * test.expected)) {
     join.status = JoinStatus::kLooksDifferent;
   } else {
-    for (const Vote& vote : spread(agreeing, config.max_links)) add_links(a, b, vote, join.links);
+    for (const Vote& vote : spread_evenly(agreeing, config.max_links)) add_links(a, b, vote, join.links);
     join.status = join.links.size() >= 2 ? JoinStatus::kJoined : JoinStatus::kNotRecognised;
     if (join.status != JoinStatus::kJoined) join.links.clear();
   }
   const bool is_refused =
       join.status == JoinStatus::kContradicted || join.status == JoinStatus::kLooksDifferent;
   if (is_refused && look_alike_near(a, b, agreeing))
-    for (const Vote& vote : spread(agreeing, kLinksOfRefused))
+    for (const Vote& vote : spread_evenly(agreeing, kLinksOfRefused))
       join.links.push_back({vote.a, vote.b, vote.T_camera_a_camera_b});
   return join;
 }

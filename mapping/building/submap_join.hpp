@@ -1,6 +1,7 @@
 // submap_join.hpp: proves that two recordings show the same place, and measures their relative pose.
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -54,6 +55,15 @@ struct JoinConfig {
   double near_m = 6.0;          ///< farther from the links, drift of the submaps prevents a comparison
   std::size_t max_links = 60;   ///< the links are chosen evenly along b
 };
+
+/// Returns up to `count` of the values, evenly spread over them, in their order.
+template <typename Value>
+std::vector<Value> spread_evenly(const std::vector<Value>& values, std::size_t count) {
+  count = std::min(count, values.size());
+  std::vector<Value> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(values[i * values.size() / count]);
+  return chosen;
+}
 
 /// Compares two submaps at all pairs of keyframes that look similar. Returns one join for each place where
 /// they meet; if there is none, the reason. A join is proved by three tests: several pairs of keyframes agree
