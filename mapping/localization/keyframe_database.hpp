@@ -39,10 +39,10 @@ struct LookAlike {
 
 struct KeyframeDatabase {
   std::vector<MapKeyframe> keyframes;
-  std::vector<LookAlike> look_alikes;  ///< each pair of places in both directions; empty: none are known
+  std::vector<LookAlike> look_alikes{};  ///< each pair of places in both directions; empty: none are known
   /// Index of the descriptors of the first index.size() keyframes. May be empty: searches compare all
   /// features of keyframes that are not in the index.
-  FeatureIndex index;
+  FeatureIndex index{};
 };
 
 /// Adds all keyframes to the database's index that it lacks.

@@ -60,7 +60,9 @@ TEST(SmoothRemaining, StaysNearTheEstimateWhereWorkSlowsDownTowardsItsEnd) {
     const double estimate_s = kLeft[i] / kPer_s[i];
     const double shown_s = remaining.add(estimate_s, 5.0);
     EXPECT_GT(shown_s, 0.5 * estimate_s) << "line " << i;
-    if (i > 0) EXPECT_LT(shown_s, before_s + 3.0) << "line " << i;
+    if (i > 0) {
+      EXPECT_LT(shown_s, before_s + 3.0) << "line " << i;
+    }
     before_s = shown_s;
   }
 }
