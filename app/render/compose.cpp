@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "app/render/shadow_edges.hpp"
 #include "mapping/types/system/config_check.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -32,38 +33,45 @@ PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
   return pixels_of(bounds.cast<double>(), camera, T_camera_shadow, kNear_m);
 }
 
+PixelRect shadowed_pixels(std::span<const ShadowCaster> casters, const Intrinsics& camera,
+                          const Eigen::Isometry3d& T_world_camera) {
+  PixelRect rect;
+  for (const ShadowCaster& caster : casters)
+    if (caster.shadow != nullptr) rect = united(rect, shadowed_pixels(caster, camera, T_world_camera));
+  return rect;
+}
+
 std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
 }
 
-void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
-                 const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m, float strength,
-                 ColourImage& picture) {
-  const PixelRect rect = shadowed_pixels(caster, camera, T_world_camera);
+/// Multiplies light_left by the fraction of light that the object's shadow leaves, in pixels with depth.
+/// @param depth_m     depth of real surfaces in the pixels of `rect`
+/// @param light_left  of the same size
+void darken(const ShadowCaster& caster, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+            const DepthImage& depth_m, float strength, const PixelRect& rect, Image<float>& light_left) {
+  const PixelRect shadowed = shadowed_pixels(caster, camera, T_world_camera);
   const float directed_fraction = std::clamp(caster.directed_fraction, 0.0F, 1.0F) * std::min(1.0F, strength);
   // From pixel and depth directly to the shadow's frame, with world axes and its own origin.
   const Eigen::Matrix3f R_world_camera = T_world_camera.linear().cast<float>();
   const Eigen::Vector3f camera_from_object_m =
       (T_world_camera.translation() - origin_world(*caster.shadow, caster.T_world_object)).cast<float>();
   const Eigen::Vector3f step_x = R_world_camera.col(0) / static_cast<float>(camera.fx_px);
-  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+  for (int y = shadowed.y; y < shadowed.y + shadowed.height; ++y) {
     const Eigen::Vector3f ray_at_column_0 = R_world_camera * back_project(camera, 0.0, y, 1.0).cast<float>();
-    const float* depth_m = real_depth_m.row(y);
-    Rgb* pixels = picture.row(y);
-    for (int x = rect.x; x < rect.x + rect.width; ++x) {
-      if (!(depth_m[x] > 0.0F)) continue;
+    const float* row_m = depth_m.row(y - rect.y) - rect.x;
+    float* left = light_left.row(y - rect.y) - rect.x;
+    for (int x = shadowed.x; x < shadowed.x + shadowed.width; ++x) {
+      if (!(row_m[x] > 0.0F)) continue;
       const Eigen::Vector3f ray = ray_at_column_0 + static_cast<float>(x) * step_x;
-      const Eigen::Vector3f p_object_m = camera_from_object_m + depth_m[x] * ray;
+      const Eigen::Vector3f p_object_m = camera_from_object_m + row_m[x] * ray;
       const float taken = ambient_occlusion(*caster.shadow, p_object_m);
       const float in_shadow = directed_fraction > 0.0F
                                   ? light_occlusion(*caster.shadow, p_object_m, caster.to_light_world)
                                   : 0.0F;
       if (taken <= 0.0F && in_shadow <= 0.0F) continue;
       // A byte is about the square root of linear light.
-      const float left = (1.0F - strength * taken) * std::sqrt(1.0F - directed_fraction * in_shadow);
-      Rgb& pixel = pixels[x];
-      pixel = {to_byte(left * static_cast<float>(pixel.r)), to_byte(left * static_cast<float>(pixel.g)),
-               to_byte(left * static_cast<float>(pixel.b))};
+      left[x] *= (1.0F - strength * taken) * std::sqrt(1.0F - directed_fraction * in_shadow);
     }
   }
 }
@@ -124,25 +132,49 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
                             const OcclusionConfig& config) {
   const int margin = occlusion_margin_px(config);
   const bool has_objects = layer.rect.width > 0 && layer.rect.height > 0;
-  PixelRect rect = has_objects ? PixelRect{layer.rect.x - margin, layer.rect.y - margin,
-                                           layer.rect.width + 2 * margin, layer.rect.height + 2 * margin}
-                               : PixelRect{};
-  for (const ShadowCaster& caster : casters)
-    if (caster.shadow != nullptr) rect = united(rect, shadowed_pixels(caster, camera, T_world_camera));
-  return clamped(rect, camera.width_px, camera.height_px);
+  const PixelRect about_objects =
+      has_objects ? PixelRect{layer.rect.x - margin, layer.rect.y - margin, layer.rect.width + 2 * margin,
+                              layer.rect.height + 2 * margin}
+                  : PixelRect{};
+  return clamped(united(about_objects, shadowed_pixels(casters, camera, T_world_camera)), camera.width_px,
+                 camera.height_px);
 }
 
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
-                  std::span<const ShadowCaster> casters, float strength, ColourImage& picture) {
+                  std::span<const ShadowCaster> casters, const ComposeConfig& config, ColourImage& picture) {
   require_size("the background", background, camera.width_px, camera.height_px);
   require_size("the real depth", real_depth_m, camera.width_px, camera.height_px);
   picture.width = background.width;
   picture.height = background.height;
   picture.pixels = background.pixels;
-  for (const ShadowCaster& caster : casters)
-    if (caster.shadow != nullptr)
-      cast_shadow(caster, camera, T_world_camera, real_depth_m, strength, picture);
+  const PixelRect rect =
+      clamped(shadowed_pixels(casters, camera, T_world_camera), camera.width_px, camera.height_px);
+  const auto light_left_of = [&](const DepthImage& depth_m) {
+    Image<float> light_left(rect.width, rect.height, 1.0F);
+    for (const ShadowCaster& caster : casters)
+      if (caster.shadow != nullptr)
+        darken(caster, camera, T_world_camera, depth_m, config.shadow_strength, rect, light_left);
+    return light_left;
+  };
+  DepthImage rect_depth_m(rect.width, rect.height), aligned_m;
+  for (int y = 0; y < rect.height; ++y)
+    std::copy_n(real_depth_m.row(rect.y + y) + rect.x, rect.width, rect_depth_m.row(y));
+  Image<float> light_left = light_left_of(rect_depth_m);
+  align_shadow_edges(background, real_depth_m, rect, config.occlusion.edge_reach_px, light_left, aligned_m);
+  const Image<float> aligned_light_left = light_left_of(aligned_m);
+  for (std::size_t i = 0; i < aligned_m.pixels.size(); ++i)
+    if (aligned_m.pixels[i] > 0.0F) light_left.pixels[i] = aligned_light_left.pixels[i];
+  for (int y = 0; y < rect.height; ++y) {
+    const float* left = light_left.row(y);
+    Rgb* pixels = picture.row(rect.y + y) + rect.x;
+    for (int x = 0; x < rect.width; ++x) {
+      if (left[x] == 1.0F) continue;
+      pixels[x] = {to_byte(left[x] * static_cast<float>(pixels[x].r)),
+                   to_byte(left[x] * static_cast<float>(pixels[x].g)),
+                   to_byte(left[x] * static_cast<float>(pixels[x].b))};
+    }
+  }
 }
 
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,

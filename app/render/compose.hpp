@@ -43,7 +43,8 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
                             const OcclusionConfig& config);
 
 /// Copies the background and darkens it by the objects' shadows: in ambient light and, where a caster has
-/// one, in its main light. Does not draw the objects. The run time is that of one copy, plus a time
+/// one, in its main light. Along depth edges shadows end where colours change, see align_shadow_edges(). Does
+/// not draw the objects. The run time is that of one copy, plus a time
 /// proportional to the area of the shadows' rectangles.
 ///
 /// @param background       colour image of the camera, or result of shade_depth(). Must have the size of
@@ -53,12 +54,12 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 /// @param real_depth_m     depth of real surfaces in `camera`, with its size. Pixels with depth 0 get no
 ///                         shadow
 /// @param casters          objects that cast a shadow
-/// @param strength         see ComposeConfig::shadow_strength
+/// @param config           shadow_strength and occlusion.edge_reach_px are used
 /// @param[out] picture     resized to the size of `camera`; must not be `background`
 /// @throws Error if sizes differ
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
-                  std::span<const ShadowCaster> casters, float strength, ColourImage& picture);
+                  std::span<const ShadowCaster> casters, const ComposeConfig& config, ColourImage& picture);
 
 /// Blends the objects over an image that already contains their shadows.
 ///

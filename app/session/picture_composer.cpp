@@ -168,8 +168,7 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   real_depth_m_.resize(camera.width_px, camera.height_px);
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
   if (rect.width > 0 && rect.height > 0) scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);
-  cast_shadows(background_, camera, T_world_view, real_depth_m_, casters, config_.picture.shadow_strength,
-               picture_);
+  cast_shadows(background_, camera, T_world_view, real_depth_m_, casters, config_.picture, picture_);
   patches_.clear();
   for (const auto& object : objects_)
     if (rests_on_unknown(*object))

@@ -242,9 +242,11 @@ TEST(Compose, AShadowStaysUnderAnObjectThatTurnedALittleWhereverItsOriginIs) {
                                          .toRotationMatrix();
     caster.T_world_object.translation() =
         middle_world - caster.T_world_object.linear() * away_m.cast<double>();
+    ComposeConfig config;
+    config.shadow_strength = 1.0F;
     ColourImage picture;
     cast_shadows(ColourImage(64, 48, kGrey), kCamera, T_world_camera, DepthImage(64, 48, 1.0F), {&caster, 1},
-                 1.0F, picture);
+                 config, picture);
     return picture;
   };
   const ColourImage about_its_middle = picture_of({0, 0, 0}), far_off = picture_of({2, -1, 0.5F});
@@ -260,9 +262,8 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
   caster.T_world_object.translation() = Eigen::Vector3d(0.2, 0.1, 0.03);
   const DepthImage table_m(64, 48, 1.0F);
   const ColourImage grey(64, 48, kGrey);
-  constexpr float kStrength = ComposeConfig{}.shadow_strength;
   ColourImage picture;
-  cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, kStrength, picture);
+  cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, {}, picture);
   const int x = static_cast<int>(std::lround(60.0 * 0.2 + 31.5));
   const int y = static_cast<int>(std::lround(60.0 * -0.1 + 23.5));  // world y points up in the picture
   EXPECT_LT(picture.at(x, y).r, 60);
@@ -277,12 +278,53 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
       }
     }
   }
-  cast_shadows(grey, kCamera, T_world_camera, DepthImage(64, 48), {&caster, 1}, kStrength, picture);
+  cast_shadows(grey, kCamera, T_world_camera, DepthImage(64, 48), {&caster, 1}, {}, picture);
   EXPECT_EQ(picture.pixels, grey.pixels);  // no surface, no shadow
-  cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, 0.0F, picture);
+  ComposeConfig config;
+  config.shadow_strength = 0.0F;
+  cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, config, picture);
   EXPECT_EQ(picture.pixels, grey.pixels);
-  EXPECT_THROW(cast_shadows(grey, kCamera, T_world_camera, DepthImage(63, 48), {}, kStrength, picture),
-               Error);
+  EXPECT_THROW(cast_shadows(grey, kCamera, T_world_camera, DepthImage(63, 48), {}, {}, picture), Error);
+}
+
+TEST(Compose, AShadowEndsAtTheColourEdgeOfWhatStandsInIt) {
+  // A red box stands in the shadow, whose depth edge is ragged and up to 4 pixels from its colour edge.
+  const Eigen::Isometry3d T_world_camera = over_the_table();
+  const ContactShadow shadow = shadow_of(plate(0.2F, 0.0F));
+  ShadowCaster caster{&shadow, Eigen::Isometry3d::Identity()};
+  caster.T_world_object.translation() = Eigen::Vector3d(0.0, 0.0, 0.03);
+  constexpr int kEdge_px = 32;
+  constexpr Rgb kBoxColour{200, 40, 40};
+  DepthImage depth_m(64, 48, 1.0F);
+  ColourImage image(64, 48, kGrey);
+  for (int y = 0; y < 48; ++y) {
+    for (int x = kEdge_px; x < 64; ++x) image.at(x, y) = kBoxColour;
+    const int depth_edge_px = kEdge_px + (y * 7) % 9 - 4;
+    for (int x = depth_edge_px; x < 64; ++x) depth_m.at(x, y) = 0.6F;
+  }
+  const auto wrong_pixels = [&](int edge_reach_px) {
+    ComposeConfig config;
+    config.occlusion.edge_reach_px = edge_reach_px;
+    ColourImage picture;
+    cast_shadows(image, kCamera, T_world_camera, depth_m, {&caster, 1}, config, picture);
+    int wrong = 0;
+    for (int y = 20; y < 28; ++y) {
+      for (int x = kEdge_px - 5; x < kEdge_px + 5; ++x) {
+        const bool is_dark = 10 * picture.at(x, y).r < 8 * image.at(x, y).r;
+        wrong += is_dark != (x < kEdge_px) ? 1 : 0;
+      }
+    }
+    return wrong;
+  };
+  EXPECT_GT(wrong_pixels(0), 10);
+  EXPECT_EQ(wrong_pixels(5), 0);
+
+  // Without a difference of colour the shadow's edge stays within the band, and what has no depth stays lit.
+  image = ColourImage(64, 48, kGrey);
+  ColourImage picture;
+  cast_shadows(image, kCamera, T_world_camera, depth_m, {&caster, 1}, {}, picture);
+  EXPECT_LT(picture.at(kEdge_px - 12, 24).r, 0.8 * kGrey.r);
+  EXPECT_EQ(picture.at(kEdge_px + 12, 24), kGrey);
 }
 
 TEST(ShadeDepth, IsBrighterWhereTheSurfaceFacesTheCamera) {

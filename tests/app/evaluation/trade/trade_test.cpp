@@ -749,8 +749,7 @@ struct TwoSides {
     Occlusion occlusion;
     JudgedPicture judged{{}, {{0, T_world_teapot}}};
     cast_shadows(frame.colour, frame.colour_camera, Eigen::Isometry3d::Identity(), depth_m,
-                 std::array{ShadowCaster{&object->shadow, T_world_teapot}}, config.shadow_strength,
-                 judged.picture);
+                 std::array{ShadowCaster{&object->shadow, T_world_teapot}}, config, judged.picture);
     lay_objects(layer, depth_m, config.occlusion, occlusion, judged.picture);
     return judged;
   }
