@@ -26,7 +26,7 @@ constexpr std::uint8_t kNearEdge = 128, kNearShadowEdge = 255;
 /// sides differ in light, else with kNearEdge.
 MaskImage band_along_edges(const DepthImage& depth_m, const PixelRect& rect, int reach_px,
                            const Image<float>& light_left) {
-  constexpr float kLightJump = 0.02F;  // smaller differences of light are not visible
+  constexpr float kLightJump = 0.04F;  // smaller differences of light are hardly visible
   MaskImage band(rect.width, rect.height);
   const auto edge_between = [&](int x, int y, int xx, int yy) -> std::uint8_t {
     if (!band.contains(xx, yy)) return 0;
@@ -50,43 +50,60 @@ float squared_distance(const Rgb& a, const Rgb& b) {
   return static_cast<float>(r * r + g * g + blue * blue);
 }
 
-/// A pixel near the one that is judged, at an offset in units of the window.
-struct Neighbour {
-  float z_m, dx, dy, weight;
+/// A pixel away from depth edges.
+struct Sample {
+  int x, y;  ///< in the rectangle
+  float z_m;
+  Rgb colour;
 };
 
-/// Returns the depth at offset 0 of the plane through pixels of one surface, by weighted least squares:
-/// inverse depth is linear in the image. The result is within the range of the pixels' depths.
-/// @param surface  in ascending order of depth, not empty
-float depth_of_plane(std::span<const Neighbour> surface) {
-  constexpr double kLevel = 1e-3;  // without evidence, a surface faces the camera
-  Eigen::Matrix3d A = Eigen::Vector3d(0.0, kLevel, kLevel).asDiagonal();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  for (const Neighbour& pixel : surface) {
-    const Eigen::Vector3d row(1.0, static_cast<double>(pixel.dx), static_cast<double>(pixel.dy));
-    A += static_cast<double>(pixel.weight) * row * row.transpose();
-    b += static_cast<double>(pixel.weight / pixel.z_m) * row;
-  }
-  const auto z_m = static_cast<float>(1.0 / solve_symmetric(A, b)(0));
-  return std::clamp(z_m, surface.front().z_m, surface.back().z_m);
-}
+/// Weighted least squares of a plane through samples, whose inverse depth is linear in the image.
+struct Plane {
+  Eigen::Matrix3f A = Eigen::Matrix3f::Zero();
+  Eigen::Vector3f b = Eigen::Vector3f::Zero();
+  float nearest_m = 0.0F, farthest_m = 0.0F;
 
-/// Divides pixels into surfaces, between which there is a jump of depth, and returns the one of most weight.
-std::span<const Neighbour> heaviest_surface(std::vector<Neighbour>& pixels) {
-  std::sort(pixels.begin(), pixels.end(), [](const Neighbour& a, const Neighbour& b) {
-    return std::tie(a.z_m, a.dy, a.dx) < std::tie(b.z_m, b.dy, b.dx);
-  });
-  std::span<const Neighbour> heaviest;
-  float most = 0.0F;
-  for (std::size_t first = 0, end = 0; first < pixels.size(); first = end) {
-    float weight = pixels[first].weight;
-    for (end = first + 1; end < pixels.size() && !is_jump(pixels[end - 1].z_m, pixels[end].z_m); ++end)
-      weight += pixels[end].weight;
-    if (weight <= most) continue;
-    most = weight;
-    heaviest = std::span(pixels).subspan(first, end - first);
+  [[nodiscard]] float weight() const { return A(0, 0); }
+
+  /// Adds a sample at an offset in units of the window. Samples come in ascending order of depth.
+  void add(float dx, float dy, float z_m, float sample_weight) {
+    const Eigen::Vector3f row(1.0F, dx, dy);
+    A += sample_weight * row * row.transpose();
+    b += sample_weight / z_m * row;
+    if (nearest_m == 0.0F) nearest_m = z_m;
+    farthest_m = z_m;
   }
-  return heaviest;
+
+  /// Returns the depth at offset 0, within the range of the samples' depths.
+  [[nodiscard]] float depth_m() const {
+    constexpr double kLevel = 1e-3;  // without evidence, a surface faces the camera
+    Eigen::Matrix3d regular = A.cast<double>();
+    regular.diagonal().tail<2>().array() += kLevel;
+    const auto z_m = static_cast<float>(1.0 / solve_symmetric(regular, b.cast<double>())(0));
+    return std::clamp(z_m, nearest_m, farthest_m);
+  }
+};
+
+/// Returns the depth of the surface that a pixel belongs to, by its colour; 0 if no sample is similar.
+/// Surfaces are samples between which there is no jump of depth.
+/// @param samples  in ascending order of depth
+float depth_of_pixel(std::span<const Sample> samples, int x, int y, const Rgb& colour, int window_px) {
+  constexpr float kAlike2 = 2.0F * 144.0F;  // twice the variance of colour differences within a surface
+  constexpr float kUnlike = 5.0F;           // -log weight beyond which samples are ignored
+  const float unit = 1.0F / static_cast<float>(window_px);
+  Plane heaviest, plane;
+  for (const Sample& sample : samples) {
+    const float dx = static_cast<float>(sample.x - x) * unit, dy = static_cast<float>(sample.y - y) * unit;
+    const float unlike = squared_distance(sample.colour, colour) / kAlike2 + 0.5F * (dx * dx + dy * dy);
+    if (unlike > kUnlike) continue;
+    if (is_jump(plane.farthest_m, sample.z_m)) {
+      if (plane.weight() > heaviest.weight()) heaviest = plane;
+      plane = {};
+    }
+    plane.add(dx, dy, sample.z_m, std::exp(-unlike));
+  }
+  if (plane.weight() > heaviest.weight()) heaviest = plane;
+  return heaviest.weight() > 0.0F ? heaviest.depth_m() : 0.0F;
 }
 
 /// Sets each pixel with depth to the median of its neighbourhood of 3 x 3 pixels, of those with depth.
@@ -111,31 +128,38 @@ void remove_specks(DepthImage& depth_m) {
 
 void align_shadow_edges(const ColourImage& camera_image, const DepthImage& depth_m, const PixelRect& rect,
                         int reach_px, const Image<float>& light_left, DepthImage& aligned_m) {
-  constexpr int kStep_px = 3;                               // spacing of samples
-  constexpr float kAlike2 = 2.0F * 144.0F, kUnlike = 5.0F;  // -log weight beyond which pixels are ignored
+  constexpr int kStep_px = 3;  // spacing of samples
+  constexpr int kCell_px = 4;  // pixels of a cell share the samples
   aligned_m.resize(rect.width, rect.height);
   if (reach_px <= 0) return;
   const MaskImage band = band_along_edges(depth_m, rect, reach_px, light_left);
   const int window_px = 3 * reach_px;  // from one side of the band well beyond the other
-  const auto unit_px = static_cast<float>(window_px);
-  std::vector<Neighbour> pixels;
-  for (int y = 0; y < rect.height; ++y) {
-    for (int x = 0; x < rect.width; ++x) {
-      if (band.at(x, y) != kNearShadowEdge) continue;
-      const Rgb& colour = camera_image.at(rect.x + x, rect.y + y);
-      pixels.clear();
-      for (int v = y - window_px; v <= y + window_px; v += kStep_px) {
-        for (int u = x - window_px; u <= x + window_px; u += kStep_px) {
-          if (!band.contains(u, v) || band.at(u, v) != 0) continue;
-          const float z_m = depth_m.at(rect.x + u, rect.y + v);
-          if (!(z_m > 0.0F)) continue;
-          const float dx = static_cast<float>(u - x) / unit_px, dy = static_cast<float>(v - y) / unit_px;
-          const float unlike = squared_distance(camera_image.at(rect.x + u, rect.y + v), colour) / kAlike2 +
-                               0.5F * (dx * dx + dy * dy);
-          if (unlike < kUnlike) pixels.push_back({z_m, dx, dy, std::exp(-unlike)});
+  std::vector<Sample> samples;
+  const auto find_samples = [&](int x, int y) {
+    samples.clear();
+    for (int v = std::max(y - window_px, 0); v <= std::min(y + window_px, rect.height - 1); v += kStep_px) {
+      for (int u = std::max(x - window_px, 0); u <= std::min(x + window_px, rect.width - 1); u += kStep_px) {
+        const float z_m = depth_m.at(rect.x + u, rect.y + v);
+        if (band.at(u, v) == 0 && z_m > 0.0F)
+          samples.push_back({u, v, z_m, camera_image.at(rect.x + u, rect.y + v)});
+      }
+    }
+    std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
+      return std::tie(a.z_m, a.y, a.x) < std::tie(b.z_m, b.y, b.x);
+    });
+  };
+  for (int cell_y = 0; cell_y < rect.height; cell_y += kCell_px) {
+    for (int cell_x = 0; cell_x < rect.width; cell_x += kCell_px) {
+      bool has_samples = false;
+      for (int y = cell_y; y < std::min(cell_y + kCell_px, rect.height); ++y) {
+        for (int x = cell_x; x < std::min(cell_x + kCell_px, rect.width); ++x) {
+          if (band.at(x, y) != kNearShadowEdge) continue;
+          if (!has_samples) find_samples(cell_x + kCell_px / 2, cell_y + kCell_px / 2);
+          has_samples = true;
+          aligned_m.at(x, y) =
+              depth_of_pixel(samples, x, y, camera_image.at(rect.x + x, rect.y + y), window_px);
         }
       }
-      if (!pixels.empty()) aligned_m.at(x, y) = depth_of_plane(heaviest_surface(pixels));
     }
   }
   remove_specks(aligned_m);
