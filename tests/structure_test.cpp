@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 /// The rooms from the bottom up, a line per floor. A room may include itself, rooms of lower floors, and
 /// nothing else.
 const std::vector<std::vector<std::string>> kFloors = {
-    {"mapping/types/system"},
+    {"mapping/types/system", "mapping/types/json"},
     {"mapping/types"},
     {"mapping/types/codecs"},
     {"mapping/storage"},

@@ -1,7 +1,7 @@
 # Parsing the same headers again for each source took a fifth of the build time. Sources must still include what they
 # use: the Debian packages are built without precompiled headers, which reveals missing includes.
 set(usual_headers
-  <Eigen/Geometry> <nlohmann/json.hpp>
+  <Eigen/Geometry> ${PROJECT_SOURCE_DIR}/mapping/types/json/json_templates.hpp
   <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory> <optional>
   <random> <span> <string> <utility> <vector>)
 

@@ -16,7 +16,8 @@ struct PixelHit {
 };
 
 /// prepare() assigns the solids to image tiles once per frame. A ray then tests only the solids of its tile,
-/// nearest first. A ray through a point outside the image tests all solids in front of the camera.
+/// in the order in which its rays can meet them, until no other can be nearer. A ray through a point outside
+/// the image tests all solids in front of the camera.
 class ViewCaster {
  public:
   /// Assigns the solids to tiles. Ignores solids behind the camera. Reuses memory of earlier frames.
@@ -39,25 +40,30 @@ class ViewCaster {
     Eigen::Matrix3d R_solid_camera;
     /// Camera centre in the solid's frame, m.
     Eigen::Vector3d camera_solid;
-    /// Lower bound of the depths of the solid's points.
-    double nearest_m;
     /// Range of columns of tiles in which the solid may appear.
     int column_begin, column_end;
     /// Range of rows of tiles in which the solid may appear.
     int row_begin, row_end;
   };
-  [[nodiscard]] double entry(const Prepared& prepared, double x, double y) const;
-  [[nodiscard]] std::span<const int> candidates(double u_px, double v_px) const;
+  struct Candidate {
+    int solid;
+    /// Lower bound of the depths at which the tile's rays enter the solid.
+    double nearest_m;
+  };
+  /// Returns a lower bound of the depths at which a tile's rays enter a solid; infinity if none does.
+  [[nodiscard]] double nearest_in_tile_m(const Prepared& prepared, int column, int row) const;
+  [[nodiscard]] double entry(int solid, double x, double y) const;
+  [[nodiscard]] std::span<const Candidate> candidates(double u_px, double v_px) const;
 
   Intrinsics camera_;
   int columns_ = 0;
   int rows_ = 0;
   /// One entry per solid, in the order given.
   std::vector<Prepared> prepared_;
-  /// Indices of all solids in front of the camera, nearest first.
-  std::vector<int> nearest_first_;
-  /// Tiles, row by row: indices of each tile's solids, nearest first.
-  std::vector<std::vector<int>> tiles_;
+  /// All solids in front of the camera, nearest first.
+  std::vector<Candidate> nearest_first_;
+  /// Tiles, row by row: each tile's solids, nearest first.
+  std::vector<std::vector<Candidate>> tiles_;
 };
 
 }  // namespace roomradar
