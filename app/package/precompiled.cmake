@@ -24,7 +24,8 @@ function(roomradar_use_precompiled directory)
   foreach(target ${targets})
     get_target_property(type ${target} TYPE)
     if(type MATCHES "STATIC|EXECUTABLE")  # not plugins: they are position independent, these headers are not
-      if(type STREQUAL EXECUTABLE)
+      get_target_property(sources ${target} SOURCES)
+      if(type STREQUAL EXECUTABLE AND sources MATCHES "[.]cpp")
         target_link_libraries(${target} PRIVATE roomradar::json)  # json_templates.hpp leaves its templates to it
       endif()
       get_target_property(linked ${target} LINK_LIBRARIES)
