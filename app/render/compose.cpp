@@ -161,10 +161,12 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
   for (int y = 0; y < rect.height; ++y)
     std::copy_n(real_depth_m.row(rect.y + y) + rect.x, rect.width, rect_depth_m.row(y));
   Image<float> light_left = light_left_of(rect_depth_m);
-  align_shadow_edges(background, real_depth_m, rect, config.occlusion.edge_reach_px, light_left, aligned_m);
-  const Image<float> aligned_light_left = light_left_of(aligned_m);
-  for (std::size_t i = 0; i < aligned_m.pixels.size(); ++i)
-    if (aligned_m.pixels[i] > 0.0F) light_left.pixels[i] = aligned_light_left.pixels[i];
+  if (align_shadow_edges(background, rect, rect_depth_m, config.occlusion.edge_reach_px, light_left,
+                         aligned_m)) {
+    const Image<float> aligned_light_left = light_left_of(aligned_m);
+    for (std::size_t i = 0; i < aligned_m.pixels.size(); ++i)
+      if (aligned_m.pixels[i] > 0.0F) light_left.pixels[i] = aligned_light_left.pixels[i];
+  }
   for (int y = 0; y < rect.height; ++y) {
     const float* left = light_left.row(y);
     Rgb* pixels = picture.row(rect.y + y) + rect.x;

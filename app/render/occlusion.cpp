@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "app/render/edge_rules.hpp"
 #include "mapping/types/system/config_check.hpp"
 
 namespace roomradar {
@@ -86,10 +87,7 @@ void sum_about(const Image<std::uint8_t>& image, int reach, std::vector<int>& co
 /// Returns true if one of two adjacent pixels shows an occluding surface, the other does not, and there is a
 /// depth jump between them.
 bool is_edge(float a_m, float b_m, std::uint8_t hidden_a, std::uint8_t hidden_b) {
-  constexpr float kJump = 0.02F;  // fraction of the depth; a table seen at 20 degrees: 0.005 per pixel
-  if (std::abs(int{hidden_a} - int{hidden_b}) < 128) return false;
-  if (!(a_m > 0.0F && b_m > 0.0F)) return true;
-  return std::abs(a_m - b_m) > kJump * std::min(a_m, b_m);
+  return std::abs(int{hidden_a} - int{hidden_b}) >= 128 && is_depth_jump(a_m, b_m);
 }
 
 /// Colours on one side of an edge: an isotropic Gaussian.
@@ -227,21 +225,20 @@ void judge_alone(const ColourImage& camera_image, int reach_px, Occlusion& occlu
 /// Assigns adjacent pixels of similar colour to the same side: some rounds of mean field on a Potts model.
 void agree_with_neighbours(const ColourImage& camera_image, Occlusion& occlusion) {
   constexpr int kRounds = 4;
-  constexpr float kPull = 1.5F;             // weight of a neighbour of identical colour
-  constexpr float kAlike2 = 2.0F * 144.0F;  // twice the variance of colour differences within a surface
+  constexpr float kPull = 1.5F;  // weight of a neighbour of identical colour
   const PixelRect& rect = occlusion.rect;
   Image<float>& hidden = occlusion.unsoftened;
-  const auto colour_at = [&](int x, int y) { return as_vector(camera_image.at(rect.x + x, rect.y + y)); };
+  const auto colour_at = [&](int x, int y) { return camera_image.at(rect.x + x, rect.y + y); };
   for (const Occlusion::EdgePixel& pixel : occlusion.band)
     hidden.at(pixel.x, pixel.y) = 1.0F / (1.0F + std::exp(-pixel.odds));
   for (int round = 0; round < kRounds; ++round) {
     for (const Occlusion::EdgePixel& pixel : occlusion.band) {
-      const Eigen::Vector3f colour = colour_at(pixel.x, pixel.y);
+      const Rgb colour = colour_at(pixel.x, pixel.y);
       float odds = pixel.odds;
       for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}, std::pair{-1, 0}, std::pair{0, -1}}) {
         const int x = pixel.x + dx, y = pixel.y + dy;
         if (!hidden.contains(x, y)) continue;
-        const float alike = std::exp(-(colour_at(x, y) - colour).squaredNorm() / kAlike2);
+        const float alike = std::exp(-squared_distance(colour_at(x, y), colour) / kAlike2);
         odds += kPull * (0.3F + alike) * (2.0F * hidden.at(x, y) - 1.0F);
       }
       hidden.at(pixel.x, pixel.y) = 1.0F / (1.0F + std::exp(-odds));

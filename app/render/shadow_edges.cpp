@@ -1,4 +1,4 @@
-// shadow_edges.cpp: assigns pixels along the edges of shadows to the nearer or farther surface.
+// shadow_edges.cpp: assigns pixels along the edges of shadows to the surfaces around them.
 #include "app/render/shadow_edges.hpp"
 
 #include <Eigen/Core>
@@ -9,45 +9,34 @@
 #include <tuple>
 #include <vector>
 
+#include "app/render/edge_rules.hpp"
 #include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
 
-/// Returns true if the depths of two adjacent pixels belong to different surfaces.
-bool is_jump(float a_m, float b_m) {
-  constexpr float kJump = 0.02F;  // fraction of the depth; a table seen at 20 degrees: 0.005 per pixel
-  return std::abs(a_m - b_m) > kJump * std::min(a_m, b_m);
-}
-
 constexpr std::uint8_t kNearEdge = 128, kNearShadowEdge = 255;
 
-/// Marks the pixels of `rect` within reach_px of a depth edge: with kNearShadowEdge if pixels on its two
+/// Marks the pixels within reach_px of a depth edge: with kNearShadowEdge if pixels on its two
 /// sides differ in light, else with kNearEdge.
-MaskImage band_along_edges(const DepthImage& depth_m, const PixelRect& rect, int reach_px,
-                           const Image<float>& light_left) {
+MaskImage band_along_edges(const DepthImage& depth_m, int reach_px, const Image<float>& light_left) {
   constexpr float kLightJump = 0.04F;  // smaller differences of light are hardly visible
-  MaskImage band(rect.width, rect.height);
+  MaskImage band(depth_m.width, depth_m.height);
   const auto edge_between = [&](int x, int y, int xx, int yy) -> std::uint8_t {
     if (!band.contains(xx, yy)) return 0;
-    if (!is_jump(depth_m.at(rect.x + x, rect.y + y), depth_m.at(rect.x + xx, rect.y + yy))) return 0;
+    if (!is_depth_jump(depth_m.at(x, y), depth_m.at(xx, yy))) return 0;
     return std::abs(light_left.at(x, y) - light_left.at(xx, yy)) < kLightJump ? kNearEdge : kNearShadowEdge;
   };
-  for (int y = 0; y < rect.height; ++y) {
-    for (int x = 0; x < rect.width; ++x) {
+  for (int y = 0; y < band.height; ++y) {
+    for (int x = 0; x < band.width; ++x) {
       const std::uint8_t edge = std::max(edge_between(x, y, x + 1, y), edge_between(x, y, x, y + 1));
       if (edge == 0) continue;
-      const int first = std::max(x - reach_px + 1, 0), end = std::min(x + reach_px + 1, rect.width);
-      for (int v = std::max(y - reach_px + 1, 0); v < std::min(y + reach_px + 1, rect.height); ++v)
+      const int first = std::max(x - reach_px + 1, 0), end = std::min(x + reach_px + 1, band.width);
+      for (int v = std::max(y - reach_px + 1, 0); v < std::min(y + reach_px + 1, band.height); ++v)
         for (int u = first; u < end; ++u) band.at(u, v) = std::max(band.at(u, v), edge);
     }
   }
   return band;
-}
-
-float squared_distance(const Rgb& a, const Rgb& b) {
-  const int r = a.r - b.r, g = a.g - b.g, blue = a.b - b.b;
-  return static_cast<float>(r * r + g * g + blue * blue);
 }
 
 /// A pixel away from depth edges.
@@ -88,15 +77,14 @@ struct Plane {
 /// Surfaces are samples between which there is no jump of depth.
 /// @param samples  in ascending order of depth
 float depth_of_pixel(std::span<const Sample> samples, int x, int y, const Rgb& colour, int window_px) {
-  constexpr float kAlike2 = 2.0F * 144.0F;  // twice the variance of colour differences within a surface
-  constexpr float kUnlike = 5.0F;           // -log weight beyond which samples are ignored
+  constexpr float kUnlike = 5.0F;  // -log weight beyond which samples are ignored
   const float unit = 1.0F / static_cast<float>(window_px);
   Plane heaviest, plane;
   for (const Sample& sample : samples) {
     const float dx = static_cast<float>(sample.x - x) * unit, dy = static_cast<float>(sample.y - y) * unit;
     const float unlike = squared_distance(sample.colour, colour) / kAlike2 + 0.5F * (dx * dx + dy * dy);
     if (unlike > kUnlike) continue;
-    if (is_jump(plane.farthest_m, sample.z_m)) {
+    if (is_depth_jump(plane.farthest_m, sample.z_m)) {
       if (plane.weight() > heaviest.weight()) heaviest = plane;
       plane = {};
     }
@@ -126,20 +114,21 @@ void remove_specks(DepthImage& depth_m) {
 
 }  // namespace
 
-void align_shadow_edges(const ColourImage& camera_image, const DepthImage& depth_m, const PixelRect& rect,
+bool align_shadow_edges(const ColourImage& camera_image, const PixelRect& rect, const DepthImage& depth_m,
                         int reach_px, const Image<float>& light_left, DepthImage& aligned_m) {
   constexpr int kStep_px = 3;  // spacing of samples
   constexpr int kCell_px = 4;  // pixels of a cell share the samples
   aligned_m.resize(rect.width, rect.height);
-  if (reach_px <= 0) return;
-  const MaskImage band = band_along_edges(depth_m, rect, reach_px, light_left);
+  if (reach_px <= 0) return false;
+  const MaskImage band = band_along_edges(depth_m, reach_px, light_left);
+  bool has_edges = false;
   const int window_px = 3 * reach_px;  // from one side of the band well beyond the other
   std::vector<Sample> samples;
   const auto find_samples = [&](int x, int y) {
     samples.clear();
     for (int v = std::max(y - window_px, 0); v <= std::min(y + window_px, rect.height - 1); v += kStep_px) {
       for (int u = std::max(x - window_px, 0); u <= std::min(x + window_px, rect.width - 1); u += kStep_px) {
-        const float z_m = depth_m.at(rect.x + u, rect.y + v);
+        const float z_m = depth_m.at(u, v);
         if (band.at(u, v) == 0 && z_m > 0.0F)
           samples.push_back({u, v, z_m, camera_image.at(rect.x + u, rect.y + v)});
       }
@@ -155,14 +144,15 @@ void align_shadow_edges(const ColourImage& camera_image, const DepthImage& depth
         for (int x = cell_x; x < std::min(cell_x + kCell_px, rect.width); ++x) {
           if (band.at(x, y) != kNearShadowEdge) continue;
           if (!has_samples) find_samples(cell_x + kCell_px / 2, cell_y + kCell_px / 2);
-          has_samples = true;
+          has_samples = has_edges = true;
           aligned_m.at(x, y) =
               depth_of_pixel(samples, x, y, camera_image.at(rect.x + x, rect.y + y), window_px);
         }
       }
     }
   }
-  remove_specks(aligned_m);
+  if (has_edges) remove_specks(aligned_m);
+  return has_edges;
 }
 
 }  // namespace roomradar
