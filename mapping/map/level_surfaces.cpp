@@ -161,8 +161,8 @@ std::optional<double> floor_height_m(const KeyframeDatabase& keyframe_database,
   if (most_measured_m2 < kMinFloorArea_m2) return std::nullopt;
   // The lowest local maximum of sufficient area.
   for (const auto& [step, cells] : level_at) {
-    if (near_height(level_at, step).surface_m2 < kMinFloorShare * most_m2) continue;
     NearHeight best = near_height(level_at, step);
+    if (best.surface_m2 < kMinFloorShare * most_m2) continue;
     for (long other = step + 1; other <= step + 5; ++other) {
       if (!level_at.contains(other)) continue;
       const NearHeight near = near_height(level_at, other);
