@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Twice the variance of colour differences within a surface, summed over the channels.
+/// Twice the variance of colour differences within a surface.
 inline constexpr float kAlike2 = 2.0F * 144.0F;
 
 /// Returns the squared distance of two colours.
