@@ -17,6 +17,7 @@ the file: an event that stands below a later one waits for it. Positions are in 
   frame 0    add ball teapot density 600 friction 0.3 restitution 0.8   # kg/m3 (or mass, kg); 0..10; 0..1
   frame 10   drop pot view height 0.3         # on the free level place nearest to the view's middle
   frame 11   drop pot near 0.4 -0.1 0.7       # on the one nearest to this point, at most 25 cm away
+             # drop view and near: from 0.05 m instead where the object would topple or move away
   time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
   time 4     place pot 0.4 -0.1 0.9           # drop, place, throw may end: turned YAW PITCH ROLL
   time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5

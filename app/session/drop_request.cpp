@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "app/physics/physics.hpp"
 #include "app/physics/placement/placement.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -43,6 +44,45 @@ bool is_fall_free(const VirtualObject& object, const Eigen::Isometry3d& T_world_
                                    [](const SceneTree& s) { return s.kind == SurfaceKind::kStatic; });
   return below.status == ContactStatus::kContact &&
          below.touched == (has_map ? SurfaceKind::kStatic : SurfaceKind::kDynamic);
+}
+
+/// Simulates the fall against the surfaces as they are in this frame. Returns true if the object then is at
+/// rest, within 5 cm of its start seen from above and turned by at most 30 degrees.
+bool stays_after_fall(const VirtualObject& object, const Eigen::Isometry3d& T_world_start,
+                      const DropScene& scene) {
+  constexpr double kMostMoved_m = 0.05, kMostTurned_deg = 30.0;
+  constexpr double kStep_s = 1.0 / 30.0;
+  constexpr int kMostSteps = 90;
+  Body body = object.body;
+  body.T_world_object = T_world_start;
+  body.velocity_world_mps.setZero();
+  body.angular_velocity_world_rad_s.setZero();
+  body.asleep = false;
+  body.sleep_timer_s = 0.0;
+  body.supporting_bodies.clear();
+  const RadarScene surfaces{scene.surfaces, {}};
+  const CollisionQueries probe =
+      make_collision_queries(scene.radar, scene.proximity, object.model->shape.touched, surfaces);
+  const Eigen::Vector3d start_world = T_world_start * object.model->middle;
+  for (int step = 0; step < kMostSteps && !body.asleep; ++step) {
+    if (advance(body, kStep_s, probe, scene.physics).status != StepStatus::kMoved) return false;
+    const Eigen::Vector3d moved_m = body.T_world_object * object.model->middle - start_world;
+    const double turned_deg =
+        Eigen::AngleAxisd(body.T_world_object.linear() * T_world_start.linear().transpose()).angle() *
+        (180.0 / std::numbers::pi);
+    if (moved_m.head<2>().norm() > kMostMoved_m || turned_deg > kMostTurned_deg) return false;
+  }
+  return body.asleep;
+}
+
+/// Returns the end of a sentence that says why an object is dropped from less than the requested height.
+std::string note_of_height(double height_m, double requested_m) {
+  if (height_m == requested_m) return {};
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                " is dropped from %.3g m, since it would topple or move away if dropped from %.3g m",
+                height_m, requested_m);
+  return text.data();
 }
 
 /// Returns the end of a sentence: the reason why there is no place.
@@ -97,18 +137,36 @@ DropPosition find_drop_position(const VirtualObject& object, const DropRequest& 
                                 const DropScene& scene) {
   const Eigen::Matrix3d R_world_object = drop.R_world_object.value_or(object.body.T_world_object.linear());
   const Eigen::Vector3d to_middle = level_to_middle(object, R_world_object);
-  const auto is_free = [&](const Eigen::Vector3d& point_world) {
+  const auto start = [&](const Eigen::Vector3d& point_world, double height_m) {
     Eigen::Isometry3d T_world_start = Eigen::Isometry3d::Identity();
     T_world_start.linear() = R_world_object;
     T_world_start.translation() = point_world - to_middle;
-    T_world_start.translation().z() += drop.height_m - lowest_m(object, R_world_object);
-    return is_fall_free(object, T_world_start, drop.height_m, scene);
+    T_world_start.translation().z() += height_m - lowest_m(object, R_world_object);
+    return T_world_start;
+  };
+  constexpr int kMostTried = 6;
+  int tried = 0;
+  std::optional<Eigen::Vector3d> first_free;
+  double height_m = drop.height_m;
+  const auto is_free = [&](const Eigen::Vector3d& point_world) {
+    if (tried == kMostTried) return false;
+    if (!is_fall_free(object, start(point_world, drop.height_m), drop.height_m, scene)) return false;
+    if (!first_free) first_free = point_world;
+    ++tried;
+    for (height_m = drop.height_m;; height_m = kGentleDrop_m) {
+      if (stays_after_fall(object, start(point_world, height_m), scene)) return true;
+      if (height_m <= kGentleDrop_m) return false;
+    }
   };
   const double radius_m = footprint_radius_m(object, R_world_object);
   const Support support = find_support(seen_room_depth_m(expected, foreground), camera, T_world_camera,
                                        {radius_m, drop.near_world, is_free});
-  if (!support) return {std::nullopt, reason_of(support.status, radius_m)};
-  return {support.point_world - to_middle, {}};
+  if (support) return {support.point_world - to_middle, height_m, note_of_height(height_m, drop.height_m)};
+  if (first_free)
+    return {*first_free - to_middle, drop.height_m,
+            " may not stay where it is dropped: it topples, rolls or slides on every level surface that was "
+            "tried"};
+  return {std::nullopt, 0.0, reason_of(support.status, radius_m)};
 }
 
 }  // namespace roomradar

@@ -7,13 +7,18 @@
 #include <vector>
 
 #include "app/objects/virtual_object.hpp"
+#include "app/physics/physics_config.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/session_room.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/geometry/radar_scene.hpp"
+#include "radar/motion/proximity.hpp"
 
 namespace roomradar {
+
+/// Height of a drop in view from which the object stays where it would topple or roll away from a larger one.
+inline constexpr double kGentleDrop_m = 0.05;
 
 /// Request to drop an object from above a given position or from above a level surface in view.
 struct DropRequest {
@@ -22,7 +27,9 @@ struct DropRequest {
   /// Used without position_world. Set: the search takes the surface point nearest to near_world, at most 25
   /// cm away. Unset: the search takes the surface point nearest to the image centre.
   std::optional<Eigen::Vector3d> near_world{};
-  double height_m = 0.3;  ///< initial height of the object's lowest vertex above the position or surface
+  /// Initial height of the object's lowest vertex above the position or surface. Without position_world, the
+  /// object is dropped from kGentleDrop_m where it would not stay otherwise.
+  double height_m = 0.3;
   std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation
 };
 
@@ -38,11 +45,13 @@ struct WaitingDrop {
 /// for a surface supports.
 void require_small_enough(const VirtualObject& object, const DropRequest& drop);
 
-/// Surfaces of a frame, and the radar that checks whether an object's fall is unobstructed.
+/// Surfaces of a frame, and the queries and physics with which an object's fall is tried.
 struct DropScene {
   const SessionRoom& room;
   const std::vector<SceneTree>& surfaces;  ///< all surfaces that the object can touch
+  const PhysicsConfig& physics;
   CyberRadar& radar;
+  ProximityQuery& proximity;
 };
 
 /// Result of find_drop_position().
@@ -51,11 +60,16 @@ struct [[nodiscard]] DropPosition {
       /// Position of the object's origin for which its centre is above the surface point; z is the surface's
       /// height. Unset: no surface was found.
       position_world;
-  std::string why;  ///< reason why no surface was found, as the end of a sentence
+  double height_m = 0.0;  ///< at most DropRequest::height_m
+  /// End of a sentence: why no surface was found, or why the object may not stay or is dropped from a
+  /// smaller height. Empty: the drop is as requested.
+  std::string note;
 };
 
-/// Searches the view for a level surface of the static room on which the object can stand and onto which it
-/// can fall freely. Dynamic surfaces do not count.
+/// Searches the view for a level surface of the static room on which the object can stand, onto which it can
+/// fall freely and where it then stays. Dynamic surfaces do not count. Simulates a fall from drop.height_m,
+/// and from kGentleDrop_m if the object does not stay, for at most 6 places. If it stays in none of them, the
+/// first one is returned.
 /// @param camera                the depth camera
 /// @param expected, foreground results for the current frame
 DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,

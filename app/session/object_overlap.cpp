@@ -96,8 +96,9 @@ std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thr
                       : is_middle ? "that space was not scanned"
                                   : "a part of it would be in space that was not scanned") +
                      ", and there is no free place within 10 cm";
-  if (const auto far = free_pose_near(object, kSearched_m, way))
-    text += "; the nearest found is " + coordinates(far->T_world_object.translation());
+  const auto far = free_pose_near(object, kSearched_m, way);
+  text += far ? "; the nearest found is " + coordinates(far->T_world_object.translation())
+              : ", nor was one found within 1 m";
   throw PlaceRefused(text);
 }
 

@@ -15,9 +15,8 @@ ObjectSet::ObjectSet(GlContext& context, const FrameScene& scene, const SessionR
     : context_(context), scene_(scene), room_(room), config_(config), radar_(config.radar) {}
 
 VirtualObject& ObjectSet::named(const std::string& name) {
-  VirtualObject* found = find_object(objects_, name);
-  if (found == nullptr) throw Error("script: there is no object named " + name);
-  return *found;
+  if (VirtualObject* found = find_object(objects_, name)) return *found;
+  throw Error("script: there is no object named " + name);
 }
 
 void ObjectSet::require_new(const std::string& name) const {
@@ -129,7 +128,7 @@ void ObjectSet::remove(const std::string& name) {
 void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                                 const ExpectedView& expected, const FrameForeground& foreground,
                                 std::int64_t frame_number) {
-  constexpr std::int64_t kAgainAfter_frames = 10;  // a search takes some 10 ms
+  constexpr std::int64_t kAgainAfter_frames = 10;  // a search takes some 50 ms
   for (WaitingDrop& waiting : std::exchange(waiting_, {})) {
     if (frame_number < waiting.try_at_frame) {
       waiting_.push_back(std::move(waiting));
@@ -137,10 +136,12 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
     }
     DropRequest& drop = waiting.drop;
     VirtualObject& object = named(drop.name);
-    const std::vector<SceneTree> surfaces = scene_without(&object);
-    DropPosition found = find_drop_position(object, drop, frame.depth_camera, T_world_camera, expected,
-                                            foreground, {room_, surfaces, exact_radar_});
+    DropPosition found =
+        find_drop_position(object, drop, frame.depth_camera, T_world_camera, expected, foreground,
+                           {room_, scene_without(&object), config_.physics, exact_radar_, proximity_});
     if (found.position_world) {
+      if (!found.note.empty()) notices_.push_back({drop.name, found.note});
+      drop.height_m = found.height_m;
       drop.position_world = found.position_world;
       try {
         this->drop(drop, frame_number);
@@ -151,13 +152,12 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
     }
     if (drop.near_world) {
       object.why_not_in_room = "no place for its drop was found";
-      notices_.push_back({drop.name, " is not dropped: " + found.why});
+      notices_.push_back({drop.name, " is not dropped: " + found.note});
       continue;
     }
-    if (waiting.why.empty()) notices_.push_back({drop.name, " is not dropped so far: " + found.why});
-    waiting.why = std::move(found.why);
-    // staggered, so that not all search in one frame
-    waiting.try_at_frame = frame_number + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());
+    if (waiting.why.empty()) notices_.push_back({drop.name, " is not dropped so far: " + found.note});
+    waiting.why = std::move(found.note);
+    waiting.try_at_frame = frame_number + kAgainAfter_frames + std::ssize(waiting_);  // staggered
     waiting_.push_back(std::move(waiting));
   }
 }

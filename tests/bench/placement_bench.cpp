@@ -10,6 +10,7 @@
 //     stayed  asleep within 10 cm, horizontally, of the place where it was dropped
 //     refused no place was found; reasons are counted
 //     left    fell out of the map
+//   near    the same, dropped near a random point of the surfaces in view
 //   places  teapots of 5 to 30 cm, placed at random depths inside the surfaces in view, held for 1 s
 //     out     touches no surface after 0.5 s
 //     refused the call said why
@@ -121,7 +122,20 @@ double overlap_m(const Session& session, const VirtualObject& object, CyberRadar
   return deepest_m;
 }
 
-nlohmann::json drop_row(const Stage& stage, const Settings& settings) {
+/// Returns a random measured surface point of the frame, in the world, and its outward normal.
+std::optional<MeshHit> random_surface(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                                      const Session& session, CounterRandom& random) {
+  const Ray ray =
+      ray_through(frame.depth_camera, T_world_camera, random.uniform() * (frame.depth_camera.width_px - 1),
+                  random.uniform() * (frame.depth_camera.height_px - 1));
+  for (const SceneTree& surface : session.scene_without(nullptr))
+    if (surface.kind == SurfaceKind::kStatic) return hit_mesh(surface.instance, ray, 5.0);
+  return std::nullopt;
+}
+
+enum class DropWhere { kInView, kNearPoint };
+
+nlohmann::json drop_row(const Stage& stage, DropWhere where, const Settings& settings) {
   SessionConfig config;
   config.poses = stage.poses;
   config.make_picture = !settings.pictures.empty();
@@ -139,13 +153,23 @@ nlohmann::json drop_row(const Stage& stage, const Settings& settings) {
     const std::string name = "t" + std::to_string(i);
     session.add_object(name, object_mesh("teapot", size_m));
     const VirtualObject& object = *session.objects().back();
-    session.drop({.name = name});
     view.show(stage.views[i]);
+    DropRequest drop{.name = name};
+    if (where == DropWhere::kNearPoint) {
+      const FrameResult located = view.step();
+      const auto hit = located.status == FrameStatus::kDone
+                           ? random_surface(stage.views[i], located.T_world_camera, session, random)
+                           : std::nullopt;
+      if (hit) drop.near_world = hit->point_world;
+    }
+    session.drop(drop);
     std::optional<Vector3d> from_world;
     bool has_left = false, was_located = false;
+    std::string why_not;
     for (int step = 0; step < 300; ++step) {
       const FrameResult result = view.step();
       was_located = was_located || result.status == FrameStatus::kDone;
+      if (!from_world && !result.notices.empty()) why_not = result.notices.back().text;
       if (!from_world && object.in_room) from_world = object.body.T_world_object * object.model->middle;
       if (!from_world && step == 15) break;
       has_left = has_left || !result.departures.empty();
@@ -157,7 +181,7 @@ nlohmann::json drop_row(const Stage& stage, const Settings& settings) {
     if (!was_located)
       ++lost;
     else if (!from_world)
-      ++refused[session.waiting_drops().empty() ? "" : session.waiting_drops().front().why];
+      ++refused[why_not];
     else
       ++dropped, stayed += has_stayed, left += has_left, moved_mm.push_back(1e3 * moved_m);
     if (from_world && !has_stayed) {
@@ -178,7 +202,7 @@ nlohmann::json drop_row(const Stage& stage, const Settings& settings) {
     session.remove(name);
   }
   std::sort(moved_mm.begin(), moved_mm.end());
-  return {{"row", stage.name + "-drops"},
+  return {{"row", stage.name + (where == DropWhere::kInView ? "-drops" : "-near")},
           {"views", stage.views.size()},
           {"not_located", lost},
           {"dropped", dropped},
@@ -187,19 +211,6 @@ nlohmann::json drop_row(const Stage& stage, const Settings& settings) {
           {"moved_median_mm", moved_mm.empty() ? 0.0 : moved_mm[moved_mm.size() / 2]},
           {"refused", refused},
           {"failed", failed}};
-}
-
-/// Returns a random measured surface point of the frame, in the world, and its outward normal.
-std::optional<MeshHit> random_surface(const Stage& stage, const Frame& frame,
-                                      const Eigen::Isometry3d& T_world_camera, const Session& session,
-                                      CounterRandom& random) {
-  static_cast<void>(stage);
-  const Ray ray =
-      ray_through(frame.depth_camera, T_world_camera, random.uniform() * (frame.depth_camera.width_px - 1),
-                  random.uniform() * (frame.depth_camera.height_px - 1));
-  for (const SceneTree& surface : session.scene_without(nullptr))
-    if (surface.kind == SurfaceKind::kStatic) return hit_mesh(surface.instance, ray, 5.0);
-  return std::nullopt;
 }
 
 nlohmann::json place_row(const Stage& stage, const Settings& settings) {
@@ -222,7 +233,7 @@ nlohmann::json place_row(const Stage& stage, const Settings& settings) {
     view.show(frame);
     const FrameResult located = view.step();
     if (located.status != FrameStatus::kDone) continue;
-    const auto hit = random_surface(stage, frame, located.T_world_camera, session, random);
+    const auto hit = random_surface(frame, located.T_world_camera, session, random);
     if (!hit) continue;
     const double size_m = log_uniform(random, 0.05, 0.30);
     const std::string name = "t" + std::to_string(draw);
@@ -286,15 +297,17 @@ int bench(const Settings& settings) {
   nlohmann::json rows = nlohmann::json::array();
   const auto try_in = [&](const std::string& name, const auto& stage_of) {
     const bool drops = (name + "-drops").find(settings.only) != std::string::npos;
+    const bool near = (name + "-near").find(settings.only) != std::string::npos;
     const bool places = (name + "-places").find(settings.only) != std::string::npos;
-    if (!drops && !places) return;
+    if (!drops && !near && !places) return;
     const Stage stage = stage_of();
     const auto add = [&](const nlohmann::json& row) {
       rows.push_back(row);
       std::printf("%s\n", row.dump().c_str());
       std::fflush(stdout);
     };
-    if (drops) add(drop_row(stage, settings));
+    if (drops) add(drop_row(stage, DropWhere::kInView, settings));
+    if (near) add(drop_row(stage, DropWhere::kNearPoint, settings));
     if (places) add(place_row(stage, settings));
   };
   try_in("kitchen", [&] { return kitchen_stage(settings); });

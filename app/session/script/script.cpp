@@ -62,7 +62,7 @@ Eigen::Vector3d read_position(LineReader& line) {
 /// Reads the optional orientation at the end of a line.
 void read_turned(LineReader& line, ScriptEvent& event) {
   if (!line.take_if("turned")) return;
-  event.turned_deg = line.vector("the angles YAW PITCH ROLL (degrees), -360..360", 360.0);
+  event.turned_deg = line.vector("the angles YAW PITCH ROLL (degrees)", 360.0);
   const Eigen::Vector3d angles = event.turned_deg * (std::numbers::pi / 180.0);
   event.R_world_object = (Eigen::AngleAxisd(angles[0], Eigen::Vector3d::UnitZ()) *
                           Eigen::AngleAxisd(angles[1], Eigen::Vector3d::UnitY()) *
@@ -109,7 +109,8 @@ void read_add(LineReader& line, ScriptEvent& event) {
     } else if (!event.up && line.take_if("up")) {
       event.up = line.choice("the axis of the file that points up", kUpAxes);
     } else if (!read_material(line, event.material)) {
-      return;
+      line.fail(in_quotes(line.word("an option")) +
+                " is no option of add, or is there twice: size, up, mass or density, friction, restitution");
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "mapping/types/system/error.hpp"
 
@@ -62,8 +63,11 @@ double LineReader::whole_number(const char* wanted, double lowest, double highes
 }
 
 Eigen::Vector3d LineReader::vector(const char* wanted, double limit) {
+  std::ostringstream text;
+  text << wanted << ", each from -" << limit << " to " << limit;
+  const std::string wanted_each = text.str();
   Eigen::Vector3d value;
-  for (int axis = 0; axis < 3; ++axis) value[axis] = number(wanted, -limit, limit);
+  for (int axis = 0; axis < 3; ++axis) value[axis] = number(wanted_each.c_str(), -limit, limit);
   return value;
 }
 

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
+#include <tuple>
 
 #include "app/run/run_summary.hpp"
 #include "mapping/types/system/error.hpp"
@@ -920,6 +922,47 @@ TEST(Session, ADropNearAPointIsTriedOnceAndSaysWhyNot) {
   EXPECT_NE(result.notices[0].text.find("is not dropped: there is no free level circle of"),
             std::string::npos)
       << result.notices[0].text;
+}
+
+TEST(Session, ADropIsGentlerWhereTheObjectWouldTopple) {
+  StageTimes times;
+  const auto dropped_on = [&](float slope, const Mesh& mesh) {
+    SavedMap map = floor_map();
+    for (Eigen::Vector3f& vertex : map.mesh.vertices) vertex.z() = slope * vertex.x();
+    Session session(map, by_recorded_poses());
+    session.add_object("thing", mesh);
+    const Body& body = session.objects().front()->body;
+    session.drop({.name = "thing"});
+    std::string note;
+    std::optional<Eigen::Isometry3d> T_world_start;
+    for (int frame = 0; frame < 60; ++frame) {
+      const FrameResult result = session.step(depth_only(frame, kAtTheFloor), times);
+      for (const ObjectNotice& notice : result.notices) note += notice.name + notice.text;
+      if (!T_world_start && session.objects().front()->in_room) T_world_start = body.T_world_object;
+    }
+    EXPECT_TRUE(T_world_start);
+    const Eigen::Isometry3d T_end_start =
+        body.T_world_object.inverse() * T_world_start.value_or(body.T_world_object);
+    const double turned_deg = Eigen::AngleAxisd(T_end_start.linear()).angle() * 180.0 / std::numbers::pi;
+    return std::tuple{note, turned_deg, T_end_start.translation().norm()};
+  };
+  const auto box = [](float width_m) { return shapes::box({width_m, width_m, 0.16F}); };
+  {
+    const auto [note, turned_deg, moved_m] = dropped_on(0.0F, box(0.1F));
+    EXPECT_EQ(note, "");
+    EXPECT_LT(turned_deg, 1.0);
+  }
+  {
+    const auto [note, turned_deg, moved_m] = dropped_on(0.08F, box(0.1F));
+    EXPECT_EQ(note, "thing is dropped from 0.05 m, since it would topple or move away if dropped from 0.3 m");
+    EXPECT_LT(turned_deg, 6.0);
+    EXPECT_LT(moved_m, 0.06);
+  }
+  for (const Mesh& unsteady : {box(0.06F), shapes::ball(0.05F, 16, 24)}) {
+    const auto [note, turned_deg, moved_m] = dropped_on(0.12F, unsteady);
+    EXPECT_EQ(note.find("thing may not stay where it is dropped: it topples, rolls or slides"), 0U) << note;
+    EXPECT_GT(moved_m, 0.32);
+  }
 }
 
 TEST(Session, OverASeenFloorSolidUnknownSpaceChangesNothing) {
