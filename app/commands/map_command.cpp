@@ -26,12 +26,12 @@
 namespace roomradar {
 namespace {
 
-nlohmann::json json_of(const MapInfo& info, const std::vector<LevelSurface>& surfaces) {
+nlohmann::json json_of(const MapInfo& info, const std::vector<LevelSurface>& surfaces, const Mesh& mesh) {
   nlohmann::json json = nlohmann::json::parse(to_json(info));
   json["surfaces"] = nlohmann::json::array();
-  const std::optional<std::size_t> floor = floor_among(surfaces);
+  const std::vector<bool> is_floor = floor_among(surfaces, mesh);
   for (std::size_t i = 0; i < surfaces.size(); ++i)
-    json["surfaces"].push_back({{"floor", i == floor},
+    json["surfaces"].push_back({{"floor", static_cast<bool>(is_floor[i])},
                                 {"height_m", surfaces[i].height_m},
                                 {"area_m2", surfaces[i].area_m2},
                                 {"middle_m", to_json(surfaces[i].middle_world)}});
@@ -39,11 +39,11 @@ nlohmann::json json_of(const MapInfo& info, const std::vector<LevelSurface>& sur
 }
 
 /// Returns a line per level surface, from the lowest to the highest.
-std::string describe(std::vector<LevelSurface> surfaces) {
+std::string describe(std::vector<LevelSurface> surfaces, const Mesh& mesh) {
   if (surfaces.empty()) return "level surfaces  none of 0.05 m2 and more\n";
   std::sort(surfaces.begin(), surfaces.end(),
             [](const auto& a, const auto& b) { return a.height_m < b.height_m; });
-  const std::optional<std::size_t> floor = floor_among(surfaces);
+  const std::vector<bool> is_floor = floor_among(surfaces, mesh);
   const auto cm = [](double m) { return rounded(m, 2); };
   std::string text;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -51,9 +51,11 @@ std::string describe(std::vector<LevelSurface> surfaces) {
     std::array<char, 120> line{};
     std::snprintf(line.data(), line.size(), "%-16sz %.2f m, %.2f m2, middle at %.2f %.2f %.2f%s\n",
                   i == 0 ? "level surfaces" : "", cm(surfaces[i].height_m), surfaces[i].area_m2, cm(p.x()),
-                  cm(p.y()), cm(p.z()), i == floor ? " (floor)" : "");
+                  cm(p.y()), cm(p.z()), is_floor[i] ? " (floor)" : "");
     text += line.data();
   }
+  if (std::find(is_floor.begin(), is_floor.end(), true) == is_floor.end())
+    text += "                none is the floor: the map has surfaces below the lowest\n";
   return text;
 }
 
@@ -68,11 +70,12 @@ void export_page(const MapExportOptions& options) {
 int run(const MapInfoOptions& options) {
   if (is_building(options.map)) return run_on_building(options);
   const MapInfo info = load_map_info(options.map);
-  const std::vector<LevelSurface> surfaces = level_surfaces(load_map_mesh(options.map));
+  const Mesh mesh = load_map_mesh(options.map);
+  const std::vector<LevelSurface> surfaces = level_surfaces(mesh);
   if (options.json)
-    std::printf("%s\n", json_of(info, surfaces).dump(2).c_str());
+    std::printf("%s\n", json_of(info, surfaces, mesh).dump(2).c_str());
   else
-    std::printf("%s%s", describe(info).c_str(), describe(surfaces).c_str());
+    std::printf("%s%s", describe(info).c_str(), describe(surfaces, mesh).c_str());
   return 0;
 }
 

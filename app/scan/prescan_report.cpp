@@ -5,6 +5,9 @@
 #include <cstdio>
 
 #include "app/cli/report.hpp"
+#include "mapping/map/level_surfaces.hpp"
+#include "mapping/map/map_info.hpp"
+#include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
 namespace {
@@ -75,12 +78,15 @@ nlohmann::json held_out_json(const HeldOutScore& score) {
 
 namespace {
 
-std::string up_words(const std::string& source) {
-  if (source == to_string(UpSource::kNone)) return "up direction not known";
-  if (source == to_string(UpSource::kGiven)) return "up as given by --up";
-  if (source == to_string(UpSource::kAccelerometer)) return "up from gravity";
-  if (source == to_string(UpSource::kPlane)) return "up from a level surface";
-  return "up from " + source;
+/// Prints a line if the map has level surfaces, none of which is the floor.
+void print_floor(const Mesh& mesh_world) {
+  const std::vector<LevelSurface> surfaces = level_surfaces(mesh_world);
+  const std::vector<bool> is_floor = floor_among(surfaces, mesh_world);
+  if (surfaces.empty() || std::find(is_floor.begin(), is_floor.end(), true) != is_floor.end()) return;
+  const auto lowest = std::min_element(surfaces.begin(), surfaces.end(),
+                                       [](const auto& a, const auto& b) { return a.height_m < b.height_m; });
+  std::printf("the floor was not seen: the lowest level surface, at z = %.2f m, has others below it\n",
+              rounded(lowest->height_m, 2));
 }
 
 }  // namespace
@@ -88,10 +94,10 @@ std::string up_words(const std::string& source) {
 void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
                    const std::optional<HeldOutScore>& held_out) {
   const PrescanCounts& counts = scanned.counts;
-  std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, %s\n", options.map.c_str(),
+  std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, up %s\n", options.map.c_str(),
               static_cast<long long>(counts.frames_tracked), static_cast<long long>(counts.frames_read),
               static_cast<long long>(counts.frames_fused), scanned.map.mesh.triangles.size(),
-              up_words(scanned.map.info.up_source).c_str());
+              describe_up(scanned.map.info.up_source).c_str());
   if (!scanned.lost.empty()) {
     std::printf("frames without a pose:");
     constexpr std::size_t kShown = 5;
@@ -111,6 +117,7 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
     std::printf(
         "the up direction is not known: no gravity was recorded and no level surface was found; up is taken "
         "from the first camera. If that is wrong, scan again with --up X,Y,Z or --up camera\n");
+  print_floor(scanned.map.mesh);
   if (counts.trajectory_error)
     std::printf("trajectory against the recorded poses: RMSE %.1f mm, max %.1f mm\n",
                 1e3 * counts.trajectory_error->rmse_m, 1e3 * counts.trajectory_error->max_m);

@@ -65,17 +65,18 @@ double area_m2(const Mesh& mesh) {
 
 void count_holes(const SavedMap& map, MapDetails& details) {
   for (const Hole& hole : survey_coverage(map.octree, map.mesh, map.trajectory).holes) {
+    ++(is_inside_scan(hole) ? details.holes : details.outer_holes);
     if (!is_inside_scan(hole)) continue;
-    ++details.holes;
     details.largest_hole_m2 = std::max(details.largest_hole_m2, hole.area_m2);
   }
 }
 
 std::string holes_text(const MapDetails& details) {
-  if (details.holes == 0) return "none";
-  return std::to_string(details.holes) + (details.largest_hole_m2 >= 0.01
-                                              ? text_of(", the largest %.2f m\u00B2", details.largest_hole_m2)
-                                              : std::string());
+  const std::size_t all = details.holes + details.outer_holes;
+  if (all == 0) return "none";
+  std::string text = std::to_string(all) + ", " + std::to_string(details.holes) + " inside the scan";
+  if (details.largest_hole_m2 >= 0.01) text += text_of(", the largest %.2f m\u00B2", details.largest_hole_m2);
+  return text;
 }
 
 /// Returns a text of the first source and the number of the others.
@@ -142,7 +143,9 @@ MapDetails examine_map(const fs::path& folder, int width_px, Rgb ground) {
     details.picture = draw_changes(map.mesh, {}, width_px, ground);
     details.surface_m2 = area_m2(map.mesh);
     const std::vector<LevelSurface> surfaces = level_surfaces(map.mesh);
-    if (const auto floor = floor_among(surfaces)) details.floor_m2 = surfaces[*floor].area_m2;
+    const std::vector<bool> is_floor = floor_among(surfaces, map.mesh);
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+      if (is_floor[i]) details.floor_m2 = details.floor_m2.value_or(0.0) + surfaces[i].area_m2;
     count_holes(map, details);
   } catch (const std::exception& error) {
     details.fault = error.what();

@@ -28,7 +28,8 @@ struct MapDetails {
   ColourImage picture;             ///< the room obliquely from above
   double surface_m2 = 0.0;         ///< whole surface
   std::optional<double> floor_m2;  ///< floor; unset: none was found
-  std::size_t holes = 0;           ///< unobserved regions, without the scan's outer borders
+  std::size_t holes = 0;           ///< unobserved regions inside the scan
+  std::size_t outer_holes = 0;     ///< unobserved regions at the scan's outer borders
   double largest_hole_m2 = 0.0;
   std::string fault;  ///< sentence on why the fields above are incomplete; empty: they are complete
 };

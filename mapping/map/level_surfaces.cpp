@@ -17,6 +17,8 @@ namespace {
 constexpr double kCosLevel = 0.98481;   // 10 degrees
 constexpr double kSameHeight_m = 0.03;  // as a table top bends in a scan
 constexpr double kMinFloorShare = 0.1;  // of the largest surface: smaller and lower is a box on a ledge below
+constexpr double kBelowFloor_m = 0.15;  // noise, and reflections in a shiny floor, reach less or are few
+constexpr double kMostBelowFloor = 0.02;   // share of the mesh's area
 constexpr double kMinFloorArea_m2 = 0.05;  // of depth pixels; each keyframe counts
 constexpr double kCell_m = 0.2;            // within which a surface counts once, however often it was seen
 
@@ -67,6 +69,20 @@ LevelSurface surface_of(const std::vector<const LevelTriangle*>& triangles) {
     surface.middle_world = t->middle_world;
   }
   return surface;
+}
+
+/// Returns the share of the mesh's area that is lower than a height.
+double share_below(const Mesh& mesh, double height_m) {
+  double below_m2 = 0.0, all_m2 = 0.0;
+  for (const Triangle& triangle : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.vertices[triangle[0]].cast<double>();
+    const Eigen::Vector3d b = mesh.vertices[triangle[1]].cast<double>();
+    const Eigen::Vector3d c = mesh.vertices[triangle[2]].cast<double>();
+    const double area_m2 = 0.5 * (b - a).cross(c - a).norm();
+    all_m2 += area_m2;
+    if (mesh.origin.z() + (a + b + c).z() / 3.0 < height_m) below_m2 += area_m2;
+  }
+  return all_m2 > 0.0 ? below_m2 / all_m2 : 0.0;
 }
 
 /// Area of level depth pixels in a cell of kCell_m, by the cell's position on a level plane.
@@ -136,15 +152,16 @@ std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area
   return surfaces;
 }
 
-std::optional<std::size_t> floor_among(std::span<const LevelSurface> surfaces) {
-  std::optional<std::size_t> floor;
-  double largest_m2 = 0.0;
+std::vector<bool> floor_among(std::span<const LevelSurface> surfaces, const Mesh& mesh_world) {
+  std::vector<bool> is_floor(surfaces.size(), false);
+  double largest_m2 = 0.0, lowest_m = std::numeric_limits<double>::infinity();
   for (const LevelSurface& surface : surfaces) largest_m2 = std::max(largest_m2, surface.area_m2);
+  for (const LevelSurface& surface : surfaces)
+    if (surface.area_m2 >= kMinFloorShare * largest_m2) lowest_m = std::min(lowest_m, surface.height_m);
+  if (share_below(mesh_world, lowest_m - kBelowFloor_m) >= kMostBelowFloor) return is_floor;
   for (std::size_t i = 0; i < surfaces.size(); ++i)
-    if (surfaces[i].area_m2 >= kMinFloorShare * largest_m2 &&
-        (!floor || surfaces[i].height_m < surfaces[*floor].height_m))
-      floor = i;
-  return floor;
+    is_floor[i] = std::abs(surfaces[i].height_m - lowest_m) <= kSameHeight_m;
+  return is_floor;
 }
 
 std::optional<double> floor_height_m(const KeyframeDatabase& keyframe_database,

@@ -22,9 +22,11 @@ struct LevelSurface {
 /// of the most frequent height are counted. Surfaces under min_area_m2 are left out.
 std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area_m2 = 0.05);
 
-/// Returns the index of the floor: the lowest surface with at least a tenth of the largest surface's area.
-/// Returns nullopt if there is no surface.
-std::optional<std::size_t> floor_among(std::span<const LevelSurface> surfaces);
+/// Returns, per surface, true if it is a part of the floor: the lowest surface with at least a tenth of the
+/// largest surface's area, and all surfaces within 3 cm of its height. If at least 2 % of the mesh's area is
+/// more than 15 cm lower, that surface is a table or shelf, and no surface is a part of the floor.
+/// @param surfaces  level_surfaces() of the mesh, in any order
+std::vector<bool> floor_among(std::span<const LevelSurface> surfaces, const Mesh& mesh_world);
 
 /// Returns the height of the floor above the keyframes' world origin along `up_world`, m. The floor is the
 /// lowest height at which the keyframes' depth shows at least a tenth as much level surface as at the height

@@ -56,6 +56,13 @@ SurfaceConfig surface_config_of(const MapInfo& info) {
   return config;
 }
 
+std::string describe_up(const std::string& up_source) {
+  if (up_source == "accelerometer") return "from gravity";
+  if (up_source == "plane") return "from a level surface";
+  if (up_source == "given") return "as given by --up";
+  return up_source == "none" ? "not known" : up_source;
+}
+
 std::string describe(const MapInfo& info) {
   std::string text;
   const auto line = [&](const char* name, const std::string& value) {
@@ -67,7 +74,7 @@ std::string describe(const MapInfo& info) {
   line("resolution", resolution.data());
   line("frames",
        std::to_string(info.frames_fused) + " fused of " + std::to_string(info.frames_read) + " read");
-  line("up", info.up_source);
+  line("up", describe_up(info.up_source));
   line("octree", std::to_string(info.counts.occupied_leaves) + " occupied and " +
                      std::to_string(info.counts.free_leaves) + " free leaves, " +
                      std::to_string(info.counts.nodes) + " nodes, " + in_megabytes(info.counts.memory_bytes) +

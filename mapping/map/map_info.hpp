@@ -57,6 +57,10 @@ bool share_world(const MapInfo& a, const MapInfo& b);
 /// info.settings has one, else the default. Throws Error if the stored value is invalid.
 SurfaceConfig surface_config_of(const MapInfo& info);
 
+/// Returns where the up direction of a map is from, for a user: "from gravity", "from a level surface", "as
+/// given by --up", "not known", or the text itself if it is no MapInfo::up_source.
+std::string describe_up(const std::string& up_source);
+
 /// Returns the output of `roomradar map info`.
 std::string describe(const MapInfo& info);
 

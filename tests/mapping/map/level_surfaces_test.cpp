@@ -44,9 +44,28 @@ TEST(LevelSurfaces, AreListedBySizeAndTheLowestLargeOneIsTheFloor) {
   EXPECT_NEAR(surfaces[0].height_m, -0.02, 1e-6);
   EXPECT_NEAR(surfaces[1].height_m, 0.74, 1e-6);
   EXPECT_LT((surfaces[1].middle_world - Vector3d(0.95, 0.95, 0.74)).norm(), 0.06);
-  EXPECT_EQ(floor_among(surfaces), 0U);
+  EXPECT_EQ(floor_among(surfaces, mesh), (std::vector<bool>{true, false, false}));
   EXPECT_TRUE(level_surfaces(Mesh{}).empty());
-  EXPECT_EQ(floor_among({}), std::nullopt);
+  EXPECT_TRUE(floor_among({}, Mesh{}).empty());
+}
+
+TEST(LevelSurfaces, PiecesOfTheFloorAreFloorAndATableAloneIsNot) {
+  Mesh mesh;
+  add_level(mesh, Vector3d(0.0, 0.0, 0.01), 20);  // 4 m2
+  add_level(mesh, Vector3d(3.0, 0.0, 0.0), 10);   // 1 m2, on the other side of a table
+  add_level(mesh, Vector3d(5.0, 0.0, 0.0), 3);    // 0.09 m2
+  add_level(mesh, Vector3d(7.0, 0.0, 0.05), 10);  // a step
+  const std::vector<LevelSurface> pieces = level_surfaces(mesh);
+  ASSERT_EQ(pieces.size(), 4U);
+  const std::vector<bool> is_floor = floor_among(pieces, mesh);
+  for (std::size_t i = 0; i < pieces.size(); ++i) EXPECT_EQ(is_floor[i], pieces[i].height_m < 0.03) << i;
+
+  // The sides of something below the only level surface.
+  Mesh table;
+  add_level(table, Vector3d(0.0, 0.0, 0.7), 10);
+  EXPECT_EQ(floor_among(level_surfaces(table), table), std::vector<bool>{true});
+  add_level(table, Vector3d(0.0, 0.0, 0.0), 2, false);
+  EXPECT_EQ(floor_among(level_surfaces(table), table), std::vector<bool>{false});
 }
 
 TEST(LevelSurfaces, ASlopeIsNoneAndConnectedLevelsAreSplitByHeight) {
