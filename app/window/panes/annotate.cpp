@@ -29,9 +29,7 @@ void draw_label(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colo
   if (is_in_view)
     at = {shifted_inside(at.x, size.x, low.x + beside, high.x - beside),
           shifted_inside(at.y, size.y, low.y + above, high.y - above)};
-  draw.AddRectFilled({at.x - beside, at.y - above}, {at.x + size.x + beside, at.y + size.y + above},
-                     IM_COL32(16, 19, 24, 190), look::px(4.0F));
-  draw.AddText(fonts.small, fonts.small->FontSize, at, colour, text.c_str());
+  look::note(draw, at, text, colour, fonts);
 }
 
 }  // namespace

@@ -14,22 +14,14 @@ namespace {
 constexpr double kDragFrom_px = 4.0;  // pixels of the window; a shorter drag is a click
 constexpr double kWheel_m = 0.04;
 
-/// Draws a line of text that is legible on any picture.
-void draw_note(ImDrawList& draw, ImVec2 at, const std::string& text, const look::Fonts& fonts) {
-  const float shift = look::px(1.0F);
-  draw.AddText(fonts.small, fonts.small->FontSize, {at.x + shift, at.y + shift}, IM_COL32(0, 0, 0, 160),
-               text.c_str());
-  draw.AddText(fonts.small, fonts.small->FontSize, at, look::kText, text.c_str());
-}
-
 /// Draws the position under the mouse below the frame's number, because messages cover the bottom.
 void draw_position(ImDrawList& draw, const Area& image, const Eigen::Vector3d& p_world,
                    const look::Fonts& fonts) {
   const float margin = look::px(10.0F);
   const std::string position = position_words(p_world) + " m", advised = position + "   (Ctrl+C copies)";
   const float wide = fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e4F, 0.0F, advised.c_str()).x;
-  draw_note(draw, {image.x + margin, image.y + look::px(25.0F)},
-            wide + 2.0F * margin > image.width ? position : advised, fonts);
+  look::note(draw, {image.x + margin, image.y + look::px(26.0F)},
+             wide + 2.0F * margin > image.width ? position : advised, look::kText, fonts);
 }
 
 }  // namespace
@@ -64,7 +56,7 @@ void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Font
     std::array<char, 96> text{};
     std::snprintf(text.data(), text.size(), "frame %lld   %.1f s", static_cast<long long>(shown.source_frame),
                   shown.run_time_s);
-    draw_note(*draw, {image.x + look::px(10.0F), image.y + look::px(8.0F)}, text.data(), fonts);
+    look::note(*draw, {image.x + look::px(10.0F), image.y + look::px(8.0F)}, text.data(), look::kText, fonts);
     if (is_here && shown.pointed_world) draw_position(*draw, image, *shown.pointed_world, fonts);
   }
   look::end_pane();

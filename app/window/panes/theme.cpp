@@ -43,7 +43,9 @@ Fonts apply(float scale) {
   colours[ImGuiCol_Header] = part(IM_COL32(64, 196, 172, 60));
   colours[ImGuiCol_HeaderHovered] = part(IM_COL32(64, 196, 172, 40));
   colours[ImGuiCol_HeaderActive] = part(IM_COL32(64, 196, 172, 80));
-  colours[ImGuiCol_SliderGrab] = colours[ImGuiCol_SliderGrabActive] = part(kAccent);
+  // dark enough for the slider's text, which is drawn over it
+  colours[ImGuiCol_SliderGrab] = part(IM_COL32(38, 112, 99, 255));
+  colours[ImGuiCol_SliderGrabActive] = part(IM_COL32(46, 134, 118, 255));
   colours[ImGuiCol_CheckMark] = part(kAccent);
   style.ScaleAllSizes(scale);
 
@@ -101,6 +103,14 @@ void heading(const char* text, const Fonts& fonts) {
   ImGui::TextUnformatted(text);
   ImGui::PopStyleColor();
   ImGui::PopFont();
+}
+
+void note(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colour, const Fonts& fonts) {
+  const ImVec2 size = fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e4F, 0.0F, text.c_str());
+  const float beside = px(4.0F), above = px(1.0F);
+  draw.AddRectFilled({at.x - beside, at.y - above}, {at.x + size.x + beside, at.y + size.y + above},
+                     IM_COL32(16, 19, 24, 190), px(4.0F));
+  draw.AddText(fonts.small, fonts.small->FontSize, at, colour, text.c_str());
 }
 
 bool button(const char* label, const char* key, bool is_lit, ImVec2 size, bool enabled) {

@@ -42,6 +42,9 @@ void begin_cover(const char* name, float width, float height);
 /// Draws the small heading of a group.
 void heading(const char* text, const Fonts& fonts);
 
+/// Draws small text on a dark ground, legible on any picture or plot.
+void note(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colour, const Fonts& fonts);
+
 /// Draws a button, highlighted if is_lit. The name of its `key` follows the label in a dim colour. Returns
 /// true if the button was clicked.
 bool button(const char* label, const char* key, bool is_lit, ImVec2 size = {0, 0}, bool enabled = true);

@@ -83,8 +83,7 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
     std::snprintf(number.data(), number.size(), "%.3g ms", line.ms);
     const float y = y_of(static_cast<float>(line.ms));
     draw->AddLine({from.x, y}, {from.x + width, y}, line.colour, look::px(1.0F));
-    draw->AddText(fonts.small, fonts.small->FontSize, {from.x + look::px(5.0F), y - look::px(15.0F)},
-                  line.colour, number.data());
+    look::note(*draw, {from.x + look::px(5.0F), y - look::px(16.0F)}, number.data(), line.colour, fonts);
   }
 
   draw_legend({from.x + width + beside, from.y, legend, height}, median_ms, fonts);
