@@ -25,6 +25,7 @@ constexpr double kNew_px = 22.0;     // min difference from every earlier view
 constexpr int kDepthStep_px = 5;     // noise is correlated over some 3 pixels
 constexpr double kNearPlane = 0.06;  // fraction of the depth: larger than any sensor error
 constexpr std::size_t kLeastDepthSamples = 40;
+constexpr std::int64_t kMostWithoutColour_frames = 60;  // a live source's first frames may have none
 
 double distance_px(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
   double sum = 0.0;
@@ -130,6 +131,7 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
     }
     ++result.frames;
     if (frame.colour.empty()) {
+      if (result.frames == kMostWithoutColour_frames && result.first.colour.empty()) break;
       before.clear();
       progress(result);
       continue;
@@ -179,24 +181,29 @@ std::size_t count_tilted(const BoardViews& views) {
                     [&](const Eigen::Vector3d& normal) { return normal.dot(mean.normalized()) < cosine; }));
 }
 
+bool are_squares_off(const BoardViews& views) {
+  constexpr std::size_t kFew = 4;
+  return views.off_plane_ratios.size() >= kFew && views.off_plane_ratios.size() > views.views.size();
+}
+
 std::string advice_on(const BoardViews& views, const Board& board) {
-  constexpr std::int64_t kPatience_frames = 45;  // a second and a half
-  constexpr std::size_t kSome = 4;
+  constexpr std::int64_t kPatience_frames = 15;  // half a second
   if (views.with_board == 0)
     return views.frames < kPatience_frames
                ? ""
                : "no board of " + std::to_string(board.columns) + " by " + std::to_string(board.rows) +
-                     " inner corners is seen whole: count them, --columns and --rows say so";
+                     " inner corners is seen whole: count them, and give the numbers with --columns and "
+                     "--rows";
   if (views.still == 0)
     return views.with_board < kPatience_frames ? "" : "the board always moves: hold it still for a second";
-  if (views.off_plane_ratios.size() >= kSome && views.off_plane_ratios.size() > views.views.size()) {
-    std::array<char, 96> text{};
+  if (are_squares_off(views)) {
+    std::array<char, 128> text{};
     std::snprintf(text.data(), text.size(),
-                  "the squares seem to be %.3g m, not %.3g m: measure one, --square says so",
+                  "the squares seem to be %.3g m, not %.3g m: measure one, and give its side with --square",
                   median_of(views.off_plane_ratios) * board.square_m, board.square_m);
     return text.data();
   }
-  if (views.views.size() >= 2 * kSome && 3 * count_tilted(views) < views.views.size())
+  if (views.views.size() >= 8 && 3 * count_tilted(views) < views.views.size())
     return "tilt the board more, every way, by 30 to 50 degrees";
   return {};
 }

@@ -62,6 +62,10 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
 /// normal of all views.
 std::size_t count_tilted(const BoardViews& views);
 
+/// Returns true if the depth of several views, and of more than fit, shows that the squares have another size
+/// than Board::square_m.
+bool are_squares_off(const BoardViews& views);
+
 /// Returns a short text on the problem with the views found so far and its remedy. Returns an empty string if
 /// there is none. Problems are no checkerboard of that size, a checkerboard never held still, squares of
 /// another size, or too few tilted views.

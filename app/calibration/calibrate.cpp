@@ -116,13 +116,13 @@ void require_sure(const char* which, double focal_px, double sigma_px) {
 
 void require_views(const BoardViews& views, const Board& board) {
   if (views.views.size() >= kLeastViews) return;
-  if (views.off_plane_ratios.size() >= kLeastViews && views.off_plane_ratios.size() > views.views.size()) {
+  if (are_squares_off(views)) {
     const double ratio = median_of(views.off_plane_ratios);
     std::array<char, 160> sizes{};
     std::snprintf(
         sizes.data(), sizes.size(),
         "is %.3g times as far as squares of %g m would be; squares of %.3g m would fit. Measure one, "
-        "and say so by --square",
+        "and give its side with --square",
         ratio, board.square_m, ratio * board.square_m);
     throw Error("calibrate: the depth in " + std::to_string(views.off_plane_ratios.size()) +
                 " views of the board " + sizes.data());

@@ -27,8 +27,8 @@ struct ProgressState {
 /// appears only if the total is known and with_bar is true.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
-/// Speed of an operation, averaged over about the last 15 s, so that a single slow or fast step hardly
-/// affects the remaining time.
+/// Speed of an operation, averaged over about the last 15 s, or over the last half of its time if that is
+/// longer, so that a few slow or fast steps hardly affect the remaining time.
 class SmoothRate {
  public:
   /// Adds a number of steps that together took `seconds`.
@@ -38,6 +38,7 @@ class SmoothRate {
 
  private:
   double steps_ = 0.0, seconds_ = 0.0;  ///< sums with weights that decay with age
+  double total_s_ = 0.0;
 };
 
 /// Remaining time of an operation, smoothed so that it does not jump with the speed. Counts down between

@@ -45,25 +45,19 @@ void close_stream(OpenedRun& run) {
                  static_cast<long long>(lines.dropped()));
 }
 
-/// Returns true, with a message, if all objects that a run was to drop or place are still out of the room.
-bool says_nothing_dropped(const OpenedRun& run) {
-  if (run.options.window || run.check) return false;
+/// Returns why all objects that a run was to drop or place are still out of the room; empty if one was in it.
+std::string why_nothing_dropped(const OpenedRun& run) {
+  if (run.options.window || run.check) return {};
   for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kRemove) return false;  // an object may have been in the room
+    if (event.action == Action::kRemove) return {};  // an object may have been in the room
   const std::vector<WaitingDrop>& waiting = run.session->waiting_drops();
   for (const auto& object : run.session->objects())
-    if (object->in_room || object->departures > 0) return false;
-  if (waiting.empty() && run.totals.places_refused == 0) return false;
-  if (waiting.empty()) {
-    std::fprintf(stderr, "roomradar: %s: no object could be placed\n", run.options.source.c_str());
-    return true;
-  }
-  std::fprintf(
-      stderr,
-      "roomradar: %s: no object could be dropped: %s. Choose a place with --script and drop NAME at X Y Z; "
-      "`roomradar map info %s` lists the level surfaces\n",
-      run.options.source.c_str(), waiting.front().why.c_str(), run.options.map.c_str());
-  return true;
+    if (object->in_room || object->departures > 0) return {};
+  if (!waiting.empty())
+    return "no object could be dropped: " + waiting.front().why +
+           ". Choose a place with --script and drop NAME at X Y Z; `roomradar map info " + run.options.map +
+           "` lists the level surfaces";
+  return run.totals.places_refused > 0 ? "no object could be placed" : "";
 }
 
 /// Plays the run, saves, reports and prints its results; returns the exit status.
@@ -72,6 +66,12 @@ int play(OpenedRun& run) {
   const RunTotals& totals = run.totals;
   DeferredErrors faults;
   faults.attempt([&] { play_to_end(run); });
+  const std::string nothing_dropped =
+      totals.located > 0 && faults.first().empty() ? why_nothing_dropped(run) : "";
+  if (run.video && !nothing_dropped.empty()) {
+    run.video->discard();
+    run.video.reset();
+  }
   if (run.video) faults.attempt([&] { run.video->close(); });
   if (run.frames_csv) faults.attempt([&] { run.frames_csv->close(); });
   if (run.trajectory) faults.attempt([&] { run.trajectory->close(); });
@@ -97,7 +97,11 @@ int play(OpenedRun& run) {
   faults.attempt([&] { write_report(run.report, options.report); });
   print_summary(run);
   faults.throw_first();
-  if (totals.located > 0 && says_nothing_dropped(run)) return 1;
+  if (!nothing_dropped.empty()) {
+    std::fprintf(stderr, "roomradar: %s: %s%s\n", options.source.c_str(), nothing_dropped.c_str(),
+                 options.video.empty() ? "" : ("; " + options.video + " is not written").c_str());
+    return 1;
+  }
   if (totals.located > 0 || run.was_quit) return 0;
   if (options.poses == PoseOrigin::kRecorded) {
     std::fprintf(stderr, "roomradar: %s: no frame has a recorded pose; take --poses tracked\n",

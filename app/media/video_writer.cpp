@@ -147,4 +147,13 @@ void VideoWriter::close() {
                 s.partial.string());
 }
 
+void VideoWriter::discard() {
+  State& s = *state_;
+  if (std::exchange(s.is_closed, true) || s.frames_written == 0) return;
+  s.encoder.reset();
+  if (s.partial == s.path) return;  // a pipe or a device
+  std::error_code ignored;
+  std::filesystem::remove(s.partial, ignored);
+}
+
 }  // namespace roomradar

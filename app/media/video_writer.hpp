@@ -35,6 +35,9 @@ class VideoWriter {
   /// a call before any write, does nothing.
   void close();
 
+  /// Deletes the temporary file. An earlier video of the final name stays. Does nothing after close().
+  void discard();
+
   [[nodiscard]] std::int64_t frames_written() const;
 
  private:

@@ -33,6 +33,15 @@ Eigen::Vector3d camera_position_world(const Session& session) {
 
 namespace {
 
+/// Returns the memory of the unknown surface and its grid, and the temporary memory of its extraction, MB.
+double unknown_mb(const UnknownSurface& unknown) {
+  const Mesh& mesh = unknown.mesh_world;
+  const std::size_t bytes = mesh.vertices.size() * sizeof(mesh.vertices[0]) +
+                            mesh.triangles.size() * sizeof(mesh.triangles[0]) +
+                            unknown.unknown.memory_bytes() + unknown.memory_bytes;
+  return static_cast<double>(bytes) / 1e6;
+}
+
 /// Returns the viewpoint from which to scan the support of an object that rests on the border of unknown
 /// space; null for other objects, or if the support is hidden from all sides.
 nlohmann::json scan_from(const VirtualObject& object, const Session& session) {
@@ -113,7 +122,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"places_refused", totals.places_refused},
       {"contacts_by_kind", contacts_by_kind},
       {"unknown_triangles", session.unknown() ? session.unknown()->mesh_world.triangles.size() : 0},
-      {"unknown_mb", session.unknown() ? static_cast<double>(session.unknown()->memory_bytes) / 1e6 : 0.0},
+      {"unknown_mb", session.unknown() ? unknown_mb(*session.unknown()) : 0.0},
       {"deepest_penetration_m", totals.deepest_penetration_m},
       {"needed", to_json(totals.use)},
       {"objects", objects},

@@ -104,7 +104,8 @@ void print_object(const VirtualObject& object, const Session& session) {
               note_on(object));
 }
 
-void print_files(const RunOptions& options) {
+void print_files(const OpenedRun& run) {
+  const RunOptions& options = run.options;
   std::string files;
   const auto add =
       [&](const std::string& path) {  // a device, or a file that could not be written, is no result
@@ -113,7 +114,7 @@ void print_files(const RunOptions& options) {
         if (std::filesystem::is_regular_file(status) || std::filesystem::is_directory(status))
           files += (files.empty() ? "" : ", ") + path;
       };
-  add(options.video);
+  add(run.video ? options.video : "");
   add(options.pictures.empty() ? "" : options.pictures + "/");
   add(options.record_session.empty() ? "" : options.record_session + "/");
   add(options.save_map.empty() ? "" : options.save_map + "/");
@@ -138,7 +139,7 @@ void print_summary(const OpenedRun& run) {
   }
   print_changes(totals, *run.session);
   print_objects(*run.session);
-  print_files(run.options);
+  print_files(run);
 }
 
 void print_objects(const Session& session) {

@@ -13,7 +13,7 @@ void export_map(const std::filesystem::path& folder, const std::filesystem::path
   if (!octree && extension != ".ply" && extension != ".obj" && extension != ".stl" && extension != ".glb")
     throw Error(path.string() + ": the extension \"" + extension +
                 "\" is no format to export to; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
-                "the mesh");
+                "the mesh, .html for a page");
   require_outside_maps(path);
   if (extension == ".ot") return load_map_octree(folder).write_ot(path);
   if (extension == ".bt") return load_map_octree(folder).write_bt(path);

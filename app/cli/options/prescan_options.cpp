@@ -50,9 +50,9 @@ void add_options(CLI::App& command, PrescanOptions& options) {
   command
       .add_option_function<std::string>(
           "--up", [&options](const std::string& text) { options.up = parse_up(text); },
-          "up direction, where the source measures no gravity and shows no level surface: X,Y,Z in the\n"
-          "first camera's axes (x right, y down, z forward; with --poses recorded: the recording's), or\n"
-          "camera: the cameras' mean upright (default: gravity, otherwise level surfaces)")
+          "up direction, also where the source measures gravity: X,Y,Z in the first camera's axes\n"
+          "(x right, y down, z forward; with --poses recorded: the recording's), or camera: the cameras'\n"
+          "mean upright (default: gravity, otherwise level surfaces)")
       ->type_name("X,Y,Z|camera");
   command
       .add_option("--hold-out", options.hold_out,

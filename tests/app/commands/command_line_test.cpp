@@ -810,7 +810,7 @@ TEST_F(CommandLine, UpIsStatedWhereItIsNotKnown) {
   expect_fault(roomradar(scan + " --up 0,0,0"), 2, "must be camera, or a direction X,Y,Z");
   const Outcome scanned = roomradar(scan + " --up 0,-1,0");
   EXPECT_EQ(scanned.status, 0) << scanned.out;
-  expect_fault(roomradar("map info " + (folder_ / "up").string()), 0, "up              given");
+  expect_fault(roomradar("map info " + (folder_ / "up").string()), 0, "up              as given by --up");
 }
 
 TEST_F(CommandLine, ACameraThatIsHeldDoesNotRunForEver) {
@@ -820,7 +820,7 @@ TEST_F(CommandLine, ACameraThatIsHeldDoesNotRunForEver) {
   const std::string report = (folder_ / "hold.json").string();
   const Outcome held = roomradar("run 'sim:table?frames=10&width=160' --map " + map() + " --script " +
                                  script + " --report " + report);
-  expect_fault(held, 0, "the camera repeats its frames and the script has no event left");
+  expect_fault(held, 0, "the camera repeats its frames and no scripted event is left");
   expect_fault(held, 0, "hold.txt:3: is due before an event above it, and waits for that");
   EXPECT_NEAR(nlohmann::json::parse(read_text(report))["frames_read"].get<double>(), 6 + 150, 3);
 }
