@@ -49,7 +49,7 @@ std::string progress_line(const ProgressState& state, bool with_bar) {
 void SmoothRate::add(double steps, double seconds) {
   if (!(seconds > 0.0)) return;
   total_s_ += seconds;
-  const double kept = std::exp(-seconds / std::max(kRateOver_s, 0.5 * total_s_));
+  const double kept = std::exp(-seconds / std::max(kRateOver_s, 0.25 * total_s_));
   steps_ = kept * steps_ + steps;
   seconds_ = kept * seconds_ + seconds;
 }

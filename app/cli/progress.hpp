@@ -27,7 +27,7 @@ struct ProgressState {
 /// appears only if the total is known and with_bar is true.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
-/// Speed of an operation, averaged over about the last 15 s, or over the last half of its time if that is
+/// Speed of an operation, averaged over about the last 15 s, or over the last quarter of its time if that is
 /// longer, so that a few slow or fast steps hardly affect the remaining time.
 class SmoothRate {
  public:

@@ -76,8 +76,18 @@ TEST(SmoothRate, OneSlowSecondHardlyMovesTheRemainingTime) {
   EXPECT_NEAR(rate.per_s(), 20.0, 1e-9);
   rate.add(0.0, 1.0);  // a checkpoint
   EXPECT_GT(rate.per_s(), 18.0);
-  for (int i = 0; i < 600; ++i) rate.add(1.0, 0.1);  // the speed has halved for a minute
-  EXPECT_NEAR(rate.per_s(), 10.0, 0.3);
+  for (int i = 0; i < 1000; ++i) rate.add(1.0, 0.1);  // the speed has halved
+  EXPECT_NEAR(rate.per_s(), 10.0, 0.5);
+}
+
+TEST(SmoothRate, SlowAndFastPartsOfALongWorkHardlyMoveTheRemainingTime) {
+  SmoothRate rate;
+  for (int second = 0; second < 600; ++second) {
+    rate.add(second % 40 < 20 ? 5.0 : 35.0, 1.0);
+    if (second > 300) {
+      EXPECT_NEAR(rate.per_s(), 20.0, 4.0) << second;
+    }
+  }
 }
 
 }  // namespace

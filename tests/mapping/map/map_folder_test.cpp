@@ -563,8 +563,8 @@ TEST_F(MapFolder, EveryExportIsReadable) {
 
 TEST_F(MapFolder, TheDescriptionSaysWhatIsInIt) {
   const std::string text = describe(load_map_info(map_));
-  for (const char* word :
-       {"0.0234 m", "5 fused of 6 read", "plane", "triangles", "mesh.ply", "hold_out", "1 keyframes"})
+  for (const char* word : {"0.0234 m", "5 fused of 6 read", "from a level surface", "triangles", "mesh.ply",
+                           "hold_out", "1 keyframes"})
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
 }
 
