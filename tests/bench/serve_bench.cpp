@@ -18,6 +18,7 @@
 
 #include "app/cli/open_source.hpp"
 #include "mapping/types/frame_source.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
@@ -110,16 +111,14 @@ int run(const BenchOptions& options) {
   for (int client = 0; client < options.clients; ++client)
     clients.emplace_back([&, client] {
       Answers own_locates, own_files;
-      double due_locates = 0.0;
       for (int i = 0; i < requests; ++i) {
         const double due_s = (i + static_cast<double>(client) / options.clients) / options.rate_hz;
         const auto due =
             start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(due_s));
         std::this_thread::sleep_until(due);
         const auto at = static_cast<std::size_t>(i * options.clients + client);
-        due_locates += options.locates;
-        if (due_locates >= 1.0) {
-          due_locates -= 1.0;
+        // Clients do not know of each other: at fixed intervals, all would locate in the same moment.
+        if (CounterRandom(hash_of(0x6c6f6361, at), 0).uniform() < options.locates) {
           locate(options.port, bodies[at % bodies.size()], due, own_locates);
         } else {
           const auto answer = test::http_request(options.port, "GET", tiles[at % tiles.size()]);

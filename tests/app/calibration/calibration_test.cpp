@@ -329,7 +329,7 @@ TEST(BoardViews, AreOfTheWholeStillBoardWithItsDepthOnIt) {
   EXPECT_TRUE(wrong.views.empty());
   ASSERT_GE(wrong.off_plane_ratios.size(), 3U);
   for (const double ratio : wrong.off_plane_ratios) EXPECT_NEAR(ratio, 2.0, 0.1);
-  wrong.off_plane_ratios.resize(12, 2.0);
+  wrong.off_plane_ratios.resize(4, 2.0);
   EXPECT_NE(advice_on(wrong, Board{8, 6, 0.03}).find("the squares seem to be 0.06 m, not 0.03 m"),
             std::string::npos)
       << advice_on(wrong, Board{8, 6, 0.03});
@@ -354,6 +354,15 @@ TEST(BoardViews, WhatIsMissingIsSaidWhileItIsRead) {
         Eigen::AngleAxisd(0.6, Eigen::Vector3d(std::cos(i), std::sin(i), 0.0)) * Eigen::Vector3d::UnitZ();
   EXPECT_GE(count_tilted(views), 8U);
   EXPECT_EQ(advice_on(views, board), "");
+}
+
+TEST(BoardViews, ASourceWithoutColourIsNotReadToItsEnd) {
+  SimulatedSource source(parse_sim_spec("sim:board?colour=none&frames=80&width=80"));
+  int told = 0;
+  const std::string fault =
+      error_of([&] { (void)find_board_views(source, kBoard, 100, [&](const BoardViews&) { ++told; }); });
+  EXPECT_NE(fault.find("has no colour images"), std::string::npos) << fault;
+  EXPECT_EQ(told, 59);
 }
 
 TEST(BoardViews, RegisteredDepthIsNoticed) {

@@ -825,6 +825,18 @@ TEST_F(CommandLine, ACameraThatIsHeldDoesNotRunForEver) {
   EXPECT_NEAR(nlohmann::json::parse(read_text(report))["frames_read"].get<double>(), 6 + 150, 3);
 }
 
+TEST_F(CommandLine, ARunThatDroppedNothingSaysSoAndLeavesNoVideo) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::filesystem::path video = folder_ / "nothing.avi";
+  const Outcome run = roomradar("run 'sim:table?frames=10&width=160' --map " + map() +
+                                " --object teapot,size=1.9 --video " + video.string());
+  expect_fault(run, 1, "no object could be dropped: ");
+  expect_fault(run, 1, video.string() + " is not written");
+  EXPECT_FALSE(std::filesystem::exists(video));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+}
+
 TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
   const std::string to = " --map " + (folder_ / "unused").string();
   expect_fault(roomradar("prescan /no/such/folder" + to), 1, "/no/such/folder");
