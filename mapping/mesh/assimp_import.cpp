@@ -1,6 +1,8 @@
 // assimp_import.cpp: checks a file's claims, and works around assimp's faults.
 #include "mapping/mesh/assimp_import.hpp"
 
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -12,6 +14,7 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "mapping/types/system/error.hpp"
 
@@ -68,6 +71,49 @@ std::string ply_with_newline_to_drop(const std::filesystem::path& path) {
   return header + '\n' + rest.str();
 }
 
+// assimp counts a number without a digit before its point, such as ".5", as none, and leaves out lines that
+// begin with blanks. Returns the text of such an .obj without them and with "0.5"; empty for any other file.
+std::string obj_as_assimp_wants_it(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line, mended;
+  bool is_mended = false;
+  while (std::getline(file, line)) {
+    const std::size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+    line.erase(0, begin);
+    is_mended = is_mended || begin > 0;
+    if (line.starts_with('v'))  // v, vt or vn
+      for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+        const bool begins_number = line[i] == '.' && std::strchr(" \t+-", line[i - 1]) != nullptr &&
+                                   std::isdigit(static_cast<unsigned char>(line[i + 1])) != 0;
+        if (!begins_number) continue;
+        line.insert(i++, 1, '0');
+        is_mended = true;
+      }
+    mended.append(line).push_back('\n');
+  }
+  return is_mended ? mended : std::string();
+}
+
+/// Opens a text in place of one file, and all other files, such as materials, from disk.
+class MendedFile : public Assimp::DefaultIOSystem {
+ public:
+  MendedFile(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {}
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (file != path_) return DefaultIOSystem::Open(file, mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
+  }
+
+ private:
+  std::string path_, text_;
+};
+
+/// Returns a file's text as assimp reads it right; empty if the file itself is.
+std::string mended_text(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".ply") return ply_with_newline_to_drop(path);
+  return extension == ".obj" ? obj_as_assimp_wants_it(path) : std::string();
+}
+
 }  // namespace
 
 void fail_for_file(const std::filesystem::path& path, const std::string& fault) {
@@ -118,10 +164,9 @@ const aiScene& import_scene(Assimp::Importer& importer, const std::filesystem::p
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   constexpr unsigned kChecked = aiProcess_ValidateDataStructure | aiProcess_RemoveComponent;
-  const std::string mended = extension == ".ply" ? ply_with_newline_to_drop(path) : std::string();
-  const aiScene* scene = mended.empty()
-                             ? importer.ReadFile(path.string(), kChecked)
-                             : importer.ReadFileFromMemory(mended.data(), mended.size(), kChecked, "ply");
+  if (std::string mended = mended_text(path); !mended.empty())
+    importer.SetIOHandler(new MendedFile(path.string(), std::move(mended)));  // owned by the importer
+  const aiScene* scene = importer.ReadFile(path.string(), kChecked);
   // assimp treats a face without corners as a polygon and terminates the process when triangulating it.
   if (scene && has_empty_face(*scene)) fail_for_file(path, "has a face without corners; is it damaged?");
   if (scene)

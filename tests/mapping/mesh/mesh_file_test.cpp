@@ -203,6 +203,20 @@ TEST_F(MeshFile, TheOriginIsAddedBack) {
     ASSERT_LT((read.vertices[i].cast<double>() - mesh.origin - mesh.vertices[i].cast<double>()).norm(), 3e-5);
 }
 
+TEST_F(MeshFile, ObjNumbersMayBeginWithAPoint) {
+  const Mesh mesh = read_mesh(file("points.obj",
+                                   "# v.5 stays\n"
+                                   "v .5 -.25 0\nv 1. +.5 0\r\n  v\t.5 1e0 .125\n"
+                                   "vt .5 .5\nvn 0 0 1.\n"
+                                   "f 1/1/1 2/1/1 3/1/1\n"));
+  ASSERT_EQ(mesh.triangles.size(), 1U);
+  ASSERT_EQ(mesh.vertices.size(), 3U);
+  const Triangle t = mesh.triangles[0];
+  EXPECT_EQ(mesh.vertices[t[0]], Eigen::Vector3f(0.5F, -0.25F, 0.0F));
+  EXPECT_EQ(mesh.vertices[t[1]], Eigen::Vector3f(1.0F, 0.5F, 0.0F));
+  EXPECT_EQ(mesh.vertices[t[2]], Eigen::Vector3f(0.5F, 1.0F, 0.125F));
+}
+
 TEST_F(MeshFile, DegenerateTrianglesGoAndPolygonsAreCut) {
   const Mesh mesh = read_mesh(file("m.obj",
                                    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\n"
