@@ -371,6 +371,7 @@ TEST_F(CommandLine, UnknownSpaceIsSolidByDefaultAndNeedsTheMap) {
   EXPECT_EQ(report["settings"]["unknown"], "solid");
   EXPECT_EQ(report["stages"]["unknown"]["count"], 1);
   EXPECT_GT(report["unknown_triangles"], 100);
+  EXPECT_GT(report["unknown_mb"].get<double>(), 12e-6 * report["unknown_triangles"].get<double>());
   EXPECT_EQ(report["objects"][0]["began_in_unknown"], false);
   EXPECT_EQ(report["objects"][0]["rests_on"], "seen static");
   ASSERT_EQ(roomradar(run + " --surfaces skirt --report " + report_path.string()).status, 0);

@@ -1036,6 +1036,10 @@ TEST(Session, NothingIsPutIntoUnscannedSpaceUnlessItIsThrown) {
               session.place(name, {.position_world = {1.0, 0.0, -0.5}});
             }).find("the nearest"),
             std::string::npos);
+  EXPECT_NE(test::error_of([&] {
+              session.place(name, {.position_world = {20.0, 1.0, 1.0}});
+            }).find("within 10 cm, nor was one found within 1 m"),
+            std::string::npos);
   session.place(name, {.position_world = {1.0, 0.0, -0.5}, .velocity_world_mps = {0.0, 0.0, 4.0}});
   EXPECT_TRUE(pot.in_room);
   const FrameResult result = session.step(depth_only(0, kAtTheSky), times);
