@@ -181,7 +181,8 @@ void expect_good(const Outcome& outcome, double worse = 1.0) {
   EXPECT_LT(outcome.pose_m, 0.008 * worse);
   EXPECT_LT(outcome.moved, 0.002 * worse);
   EXPECT_TRUE(outcome.asleep);
-  EXPECT_GT(outcome.fell_m, 0.25);
+  // On a surface as uneven as a noisy sensor's, the pot would topple, and is dropped from 5 cm instead.
+  EXPECT_GT(outcome.fell_m, worse > 1.0 ? 0.04 : 0.25);
   EXPECT_LT(std::abs(outcome.gap_m), 0.006 * worse);
 }
 
