@@ -13,16 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-double surface_area_m2(const Mesh& mesh) {
-  double area = 0.0;
-  for (const Triangle& t : mesh.triangles) {
-    const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
-    area +=
-        0.5 * (mesh.vertices[t[1]].cast<double>() - a).cross(mesh.vertices[t[2]].cast<double>() - a).norm();
-  }
-  return area;
-}
-
 json array_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 template <typename... Values>

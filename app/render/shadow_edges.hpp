@@ -15,9 +15,8 @@ namespace roomradar {
 /// @param camera_image  colour image without shadows
 /// @param rect          rectangle of camera_image in which shadows may lie
 /// @param depth_m       depth of real surfaces in the pixels of `rect`; 0: no surface
-/// @param reach_px      max distance between an edge in the depth image and in the colour image, px; 0:
-/// nothing
-///                      is changed
+/// @param reach_px      max distance between an edge in the depth image and in the colour image, px.
+///                      0: nothing is changed
 /// @param light_left    fraction of light that the shadows leave in the pixels of `rect`, 0 to 1
 /// @param[out] aligned_m  corrected depth, with the size of `rect`; 0 in pixels that keep their depth
 /// @return false if no shadow ends at a depth edge, so that all pixels keep their depth

@@ -147,8 +147,7 @@ bool RunLoop::repeats_for_ever() {
   if (!repeats_from_s_) repeats_from_s_ = run_time_s_;
   if (run_time_s_ - std::max(*repeats_from_s_, last_event_s_) < kAfterLastEvent_s) return false;
   say("the camera repeats its frames and no scripted event is left: the run ends here; a quit event says "
-      "when "
-      "it should");
+      "when it should");
   return true;
 }
 

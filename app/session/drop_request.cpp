@@ -153,10 +153,11 @@ DropPosition find_drop_position(const VirtualObject& object, const DropRequest& 
     if (!is_fall_free(object, start(point_world, drop.height_m), drop.height_m, scene)) return false;
     if (!first_free) first_free = point_world;
     ++tried;
-    for (height_m = drop.height_m;; height_m = kGentleDrop_m) {
-      if (stays_after_fall(object, start(point_world, height_m), scene)) return true;
-      if (height_m <= kGentleDrop_m) return false;
-    }
+    const auto stays_from = [&](double from_m) {
+      height_m = from_m;
+      return stays_after_fall(object, start(point_world, from_m), scene);
+    };
+    return stays_from(drop.height_m) || (drop.height_m > kGentleDrop_m && stays_from(kGentleDrop_m));
   };
   const double radius_m = footprint_radius_m(object, R_world_object);
   const Support support = find_support(seen_room_depth_m(expected, foreground), camera, T_world_camera,

@@ -53,20 +53,13 @@ void add_maps_in(const fs::path& folder, std::vector<MapEntry>& maps) {
   }
 }
 
-double area_m2(const Mesh& mesh) {
-  double sum = 0.0;
-  for (const Triangle& triangle : mesh.triangles) {
-    const Eigen::Vector3f &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]],
-                          &c = mesh.vertices[triangle[2]];
-    sum += 0.5 * static_cast<double>((b - a).cross(c - a).norm());
-  }
-  return sum;
-}
-
 void count_holes(const SavedMap& map, MapDetails& details) {
   for (const Hole& hole : survey_coverage(map.octree, map.mesh, map.trajectory).holes) {
-    ++(is_inside_scan(hole) ? details.holes : details.outer_holes);
-    if (!is_inside_scan(hole)) continue;
+    if (!is_inside_scan(hole)) {
+      ++details.outer_holes;
+      continue;
+    }
+    ++details.holes;
     details.largest_hole_m2 = std::max(details.largest_hole_m2, hole.area_m2);
   }
 }
@@ -141,7 +134,7 @@ MapDetails examine_map(const fs::path& folder, int width_px, Rgb ground) {
   try {
     const SavedMap map = load_map(folder);
     details.picture = draw_changes(map.mesh, {}, width_px, ground);
-    details.surface_m2 = area_m2(map.mesh);
+    details.surface_m2 = surface_area_m2(map.mesh);
     const std::vector<LevelSurface> surfaces = level_surfaces(map.mesh);
     const std::vector<bool> is_floor = floor_among(surfaces, map.mesh);
     for (std::size_t i = 0; i < surfaces.size(); ++i)

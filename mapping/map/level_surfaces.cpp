@@ -73,16 +73,12 @@ LevelSurface surface_of(const std::vector<const LevelTriangle*>& triangles) {
 
 /// Returns the share of the mesh's area that is lower than a height.
 double share_below(const Mesh& mesh, double height_m) {
-  double below_m2 = 0.0, all_m2 = 0.0;
-  for (const Triangle& triangle : mesh.triangles) {
-    const Eigen::Vector3d a = mesh.vertices[triangle[0]].cast<double>();
-    const Eigen::Vector3d b = mesh.vertices[triangle[1]].cast<double>();
-    const Eigen::Vector3d c = mesh.vertices[triangle[2]].cast<double>();
-    const double area_m2 = 0.5 * (b - a).cross(c - a).norm();
-    all_m2 += area_m2;
-    if (mesh.origin.z() + (a + b + c).z() / 3.0 < height_m) below_m2 += area_m2;
+  double below_m2 = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    const float z_m = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]).z() / 3.0F;
+    if (mesh.origin.z() + static_cast<double>(z_m) < height_m) below_m2 += triangle_area_m2(mesh, t);
   }
-  return all_m2 > 0.0 ? below_m2 / all_m2 : 0.0;
+  return below_m2 > 0.0 ? below_m2 / surface_area_m2(mesh) : 0.0;
 }
 
 /// Area of level depth pixels in a cell of kCell_m, by the cell's position on a level plane.

@@ -21,6 +21,19 @@ struct Mesh {
   std::vector<Triangle> triangles;
 };
 
+/// Returns the area of a triangle of the mesh, m2.
+inline double triangle_area_m2(const Mesh& mesh, const Triangle& t) {
+  const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
+  return 0.5 * (mesh.vertices[t[1]].cast<double>() - a).cross(mesh.vertices[t[2]].cast<double>() - a).norm();
+}
+
+/// Returns the sum of the areas of all triangles, m2.
+inline double surface_area_m2(const Mesh& mesh) {
+  double sum_m2 = 0.0;
+  for (const Triangle& t : mesh.triangles) sum_m2 += triangle_area_m2(mesh, t);
+  return sum_m2;
+}
+
 /// Returns the mesh in the frame `to`. Vertices stay relative to a local origin.
 inline Mesh transformed(Mesh mesh, const Eigen::Isometry3d& T_to_mesh) {
   const Eigen::Matrix3f R = T_to_mesh.linear().cast<float>();
