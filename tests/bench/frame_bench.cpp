@@ -129,7 +129,7 @@ SavedMap map_of(const Scene& scene, const std::filesystem::path& maps) {
   return load_map(folder);
 }
 
-std::vector<Frame> frames_of(const Scene& scene) {
+std::vector<Frame> read_frames(const Scene& scene) {
   std::vector<Frame> frames;
   if (scene.run.starts_with("sim:")) {
     SimulatedSource source(parse_sim_spec(scene.run));
@@ -144,6 +144,16 @@ std::vector<Frame> frames_of(const Scene& scene) {
   if (pipe == nullptr) throw Error(scene.run + ": cannot be read");
   for (Frame frame; bench::read_frame(pipe, frame);) frames.push_back(frame);
   if (pclose(pipe) != 0) throw Error(scene.run + ": cannot be read");
+  return frames;
+}
+
+/// Throws Error if the source ends before the last frame.
+std::vector<Frame> frames_of(const Scene& scene) {
+  std::vector<Frame> frames = read_frames(scene);
+  const auto expected = static_cast<std::size_t>(scene.run_frames.last - scene.run_frames.first + 1);
+  if (frames.size() != expected)
+    throw Error(scene.run + ": has " + std::to_string(frames.size()) + " of the " + std::to_string(expected) +
+                " frames " + range_text(scene.run_frames) + " that scene " + scene.name + " needs");
   return frames;
 }
 
