@@ -7,10 +7,10 @@
 
 namespace roomradar {
 
-CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
-                                        const RadarScene& scene, double* spent_ms) {
+CollisionQueries make_collision_queries(CyberRadar& radar, const TriangleTree& object,
+                                        const RadarScene& scene, std::atomic<double>* spent_ms) {
   struct Spent {
-    double* spent_ms;
+    std::atomic<double>* spent_ms;
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     ~Spent() {
       if (spent_ms != nullptr) *spent_ms += ms_since(start);
@@ -26,13 +26,13 @@ CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field
                              SurfaceKindMask left_out, const TreeStates& trees,
                              std::vector<ClosestPoint>& points) {
     const Spent spent{spent_ms};
-    return field.near({&object, T_world_object}, scene, reach_m, left_out, trees, points);
+    return near_features({&object, T_world_object}, scene, reach_m, left_out, trees, points);
   };
   probe.free_time = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
                                   double duration_s, double keep_m, SurfaceKindMask left_out,
                                   const TreeStates& trees) {
     const Spent spent{spent_ms};
-    return field.free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out, trees);
+    return free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out, trees);
   };
   return probe;
 }

@@ -1,6 +1,7 @@
 // collision_queries.hpp: collision queries of a moving body against the scene.
 #pragma once
 #include <Eigen/Geometry>
+#include <atomic>
 #include <functional>
 #include <span>
 #include <vector>
@@ -26,15 +27,16 @@ struct SceneBody {
   double mass_ratio = 0.0;
 };
 
+/// Queries of one body. near() and free_time() of different bodies may run on two threads at the same time.
 struct CollisionQueries {
   /// First contact along a direction.
   DistanceQuery travel;
-  /// Closest features within reach_m; see ProximityQuery::near().
+  /// Closest features within reach_m; see near_features().
   std::function<SurfaceKindMask(const Eigen::Isometry3d& T_world_object, double reach_m,
                                 SurfaceKindMask left_out, const TreeStates& trees,
                                 std::vector<ClosestPoint>& points)>
       near;
-  /// Contact-free duration of a motion; see ProximityQuery::free_time().
+  /// Contact-free duration of a motion; see roomradar::free_time().
   std::function<FreeTime(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
                          double duration_s, double keep_m, SurfaceKindMask left_out, const TreeStates& trees)>
       free_time;
@@ -45,8 +47,8 @@ struct CollisionQueries {
 
 /// Returns queries of `object` against `scene`. All arguments passed by reference must outlive the returned
 /// queries.
-/// @param spent_ms  incremented by the duration of each query; may be null
-CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
-                                        const RadarScene& scene, double* spent_ms = nullptr);
+/// @param spent_ms  incremented by the duration of each query, on whichever thread; may be null
+CollisionQueries make_collision_queries(CyberRadar& radar, const TriangleTree& object,
+                                        const RadarScene& scene, std::atomic<double>* spent_ms = nullptr);
 
 }  // namespace roomradar

@@ -14,7 +14,7 @@ SurfaceKindMask query_near(MovingBody& moving, double reach_m, const TreeStates&
 
 /// Updates `near` of a body that has not moved: queries only the bodies that have moved.
 SurfaceKindMask query_moved(MovingBody& moving, double reach_m, const std::vector<bool>& has_moved,
-                            TreeStates& trees, std::vector<ClosestPoint>& found) {
+                            TreeStates& trees) {
   moving.near.resize(moving.near_found);
   std::erase_if(moving.near, [&](const ClosestPoint& p) {
     const std::size_t other = member_of(moving, p);
@@ -27,6 +27,7 @@ SurfaceKindMask query_moved(MovingBody& moving, double reach_m, const std::vecto
     is_any |= !trees.left_out[tree];
   }
   if (!is_any) return 0;
+  std::vector<ClosestPoint> found;
   const SurfaceKindMask crossed =
       moving.probe->near(moving.body->T_world_object, reach_m, moving.left_out, trees, found);
   moving.near.insert(moving.near.end(), found.begin(), found.end());
@@ -75,6 +76,48 @@ bool know_contacts(MovingBody& sleeper, double reach_m, ContactSystem& system) {
   return true;
 }
 
+/// Queries the features of all active bodies. Sets `near`, `near_found`, `crosses` and T_world_near.
+/// @return the active bodies, from the lowest up; some of them may cross a surface now
+std::vector<std::size_t> query_active(std::span<MovingBody> bodies, double margin_m, double reach_m,
+                                      ContactSystem& system) {
+  std::vector<bool> has_moved(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) has_moved[i] = must_be_queried(bodies[i], margin_m);
+  std::vector<std::size_t> active, rank(bodies.size(), kNoOther);
+  for (const std::size_t i : system.upwards) {
+    if (!is_active(bodies[i])) continue;
+    rank[i] = active.size();
+    active.push_back(i);
+  }
+  // A pair of active bodies is queried from the lower one, unless a surface crosses it.
+  const auto query = [&](std::size_t k, bool knows_crossings) {
+    MovingBody& moving = bodies[active[k]];
+    TreeStates trees;
+    for (const std::size_t other : moving.member_of_tree)
+      trees.left_out.push_back(other != kNoOther && rank[other] < k &&
+                               !(knows_crossings && bodies[other].crosses));
+    moving.crosses = (has_moved[active[k]] ? query_near(moving, reach_m, trees)
+                                           : query_moved(moving, reach_m, has_moved, trees)) != 0;
+    moving.near_found = moving.near.size();
+  };
+  const auto query_first = [&](std::size_t k) { query(k, false); };
+  if (WorkerThread* const worker = worker_for(active.size(), system); worker != nullptr)
+    worker->run_each(active.size(), query_first);
+  else
+    for (std::size_t k = 0; k < active.size(); ++k) query_first(k);
+  const auto crossing =
+      std::find_if(active.begin(), active.end(), [&](std::size_t i) { return bodies[i].crosses; });
+  if (crossing != active.end())
+    for (auto k = static_cast<std::size_t>(crossing - active.begin()) + 1; k < active.size(); ++k)
+      query(k, true);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!is_active(bodies[i]))
+      bodies[i].T_world_near.reset();
+    else if (has_moved[i])
+      bodies[i].T_world_near = bodies[i].body->T_world_object;
+  }
+  return active;
+}
+
 }  // namespace
 
 std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config,
@@ -82,7 +125,8 @@ std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConf
   constexpr double kTouchingBand = 0.5;  // fraction of the margin by which contacts may exceed it
   const double margin_m = config.contact_margin_m;
   const double reach_m = std::max((1.0 + kTouchingBand) * margin_m, 1e-6);
-  std::vector<bool> is_reached(bodies.size()), is_queried(bodies.size()), has_moved(bodies.size());
+  const std::vector<std::size_t> active = query_active(bodies, margin_m, reach_m, system);
+  std::vector<bool> is_reached(bodies.size());
   std::vector<std::size_t> reached;
   const auto reach_others_of = [&](const MovingBody& moving) {
     for (const ClosestPoint& p : moving.near) {
@@ -92,30 +136,10 @@ std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConf
       reached.push_back(other);
     }
   };
-  for (std::size_t i = 0; i < bodies.size(); ++i) has_moved[i] = must_be_queried(bodies[i], margin_m);
-  TreeStates trees;
-  std::vector<ClosestPoint> found;
-  for (const std::size_t i : system.upwards) {
-    MovingBody& moving = bodies[i];
-    if (!is_active(moving)) continue;
-    trees.left_out.assign(moving.member_of_tree.size(), false);
-    for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree)
-      trees.left_out[tree] =
-          moving.member_of_tree[tree] != kNoOther && is_queried[moving.member_of_tree[tree]];
-    moving.crosses = (has_moved[i] ? query_near(moving, reach_m, trees)
-                                   : query_moved(moving, reach_m, has_moved, trees, found)) != 0;
-    if (moving.crosses) continue;
-    is_queried[i] = true;
-    moving.near_found = moving.near.size();
-    add_limit(bodies, moving, margin_m, reach_m);
-    reach_others_of(moving);
-  }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    MovingBody& moving = bodies[i];
-    if (!is_active(moving))
-      moving.T_world_near.reset();
-    else if (has_moved[i])
-      moving.T_world_near = moving.body->T_world_object;
+  for (const std::size_t i : active) {
+    if (bodies[i].crosses) continue;
+    add_limit(bodies, bodies[i], margin_m, reach_m);
+    reach_others_of(bodies[i]);
   }
   for (std::size_t k = 0; k < reached.size(); ++k) {
     MovingBody& sleeper = bodies[reached[k]];

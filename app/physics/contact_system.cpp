@@ -84,6 +84,13 @@ bool is_hit(std::size_t index, const ContactSystem& system) {
 
 }  // namespace
 
+WorkerThread* worker_for(std::size_t queried_bodies, ContactSystem& system) {
+  constexpr std::size_t kFewest = 4;
+  if (queried_bodies < kFewest || system.is_one_thread) return nullptr;
+  if (!system.worker) system.worker = std::make_unique<WorkerThread>();
+  return system.worker.get();
+}
+
 bool is_active(const MovingBody& moving) {
   constexpr double kNoTime_s = 1e-12;
   return !moving.body->asleep && !moving.crosses && moving.left_s > kNoTime_s;

@@ -2,6 +2,8 @@
 // solver.
 #pragma once
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -12,6 +14,7 @@
 #include "app/physics/contact_solver.hpp"
 #include "app/physics/physics_config.hpp"
 #include "app/physics/sleeper_contacts.hpp"
+#include "mapping/types/system/worker_thread.hpp"
 
 namespace roomradar {
 
@@ -87,8 +90,14 @@ struct ContactSystem {
   std::vector<PastContact> past;  ///< contacts of the last support solve, for warm starts
   std::vector<SleeperContacts> sleepers;
   ContactSolver solver;
+  /// Shares the queries of many bodies; made when first needed. Results are the same without.
+  std::unique_ptr<WorkerThread> worker;
+  bool is_one_thread = false;        ///< true: no worker is made
   std::vector<std::size_t> upwards;  ///< scratch: indices of bodies by height
 };
+
+/// Returns the worker that shares the queries of so many bodies; null if one thread is as fast.
+WorkerThread* worker_for(std::size_t queried_bodies, ContactSystem& system);
 
 /// Returns true if the body is awake, has time left in the substep, and no surface intersects it.
 bool is_active(const MovingBody& moving);

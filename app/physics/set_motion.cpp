@@ -31,7 +31,7 @@ class MovingSet {
   MovingSet(const MovingSet&) = delete;
   MovingSet& operator=(const MovingSet&) = delete;
 
-  void move(std::vector<double>& gone_s);
+  void move(WorkerThread* worker, std::vector<double>& gone_s);
 
  private:
   std::span<MovingBody> bodies_;
@@ -39,10 +39,9 @@ class MovingSet {
   double keep_m_;
   std::vector<JointMover> movers_;     // in the order of the set
   std::vector<std::size_t> mover_of_;  // per body; kNoMover if it is not in the set
-  TreeStates trees_;                   // scratch
 
-  [[nodiscard]] JointMover::Free free_time(std::size_t mover, double duration_s);
-  [[nodiscard]] double free_time_beside(std::size_t mover, std::size_t stopped, double duration_s);
+  [[nodiscard]] JointMover::Free free_time(std::size_t mover, double duration_s) const;
+  [[nodiscard]] double free_time_beside(std::size_t mover, std::size_t stopped, double duration_s) const;
 };
 
 MovingSet::MovingSet(std::span<MovingBody> bodies, std::span<const std::size_t> set,
@@ -69,48 +68,49 @@ MovingSet::MovingSet(std::span<MovingBody> bodies, std::span<const std::size_t> 
 /// Returns how long a body moves free of contact with surfaces, bodies at rest, and members of its set. Each
 /// pair of members is tested once, from the body that spins faster: the bounds are tighter relative to the
 /// slower one.
-JointMover::Free MovingSet::free_time(std::size_t mover, double duration_s) {
+JointMover::Free MovingSet::free_time(std::size_t mover, double duration_s) const {
+  TreeStates trees;
   const MovingBody& moving = bodies_[set_[mover]];
   const RigidMotion motion = movers_[mover].motion;  // a copy: the same alignment in every run
   const double spins = motion.angular_rad_s.squaredNorm();
-  trees_.left_out.assign(moving.member_of_tree.size(), false);
-  trees_.motions.assign(moving.member_of_tree.size(), {});
+  trees.left_out.assign(moving.member_of_tree.size(), false);
+  trees.motions.assign(moving.member_of_tree.size(), {});
   for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree) {
     const std::size_t other = moving.member_of_tree[tree];
     if (other == kNoOther || !is_active(bodies_[other])) continue;
     if (mover_of_[other] == kNoMover) {  // their paths cannot meet
-      trees_.left_out[tree] = true;
+      trees.left_out[tree] = true;
       continue;
     }
     const JointMover& beside = movers_[mover_of_[other]];
     if (beside.has_stopped) continue;
     const double other_spins = beside.motion.angular_rad_s.squaredNorm();
-    trees_.left_out[tree] = other_spins > spins || (other_spins == spins && mover_of_[other] < mover);
-    trees_.motions[tree] = beside.motion;
+    trees.left_out[tree] = other_spins > spins || (other_spins == spins && mover_of_[other] < mover);
+    trees.motions[tree] = beside.motion;
   }
   const FreeTime time = moving.probe->free_time(moving.body->T_world_object, motion, duration_s, keep_m_,
-                                                moving.left_out, trees_);
+                                                moving.left_out, trees);
   const std::size_t limit =
       time.limit.kind == SurfaceKind::kNothing ? kNoOther : member_of(moving, time.limit);
   return {time, limit == kNoOther ? kNoMover : mover_of_[limit]};
 }
 
 /// Returns how long a body moves free of contact with a member that has stopped.
-double MovingSet::free_time_beside(std::size_t mover, std::size_t stopped, double duration_s) {
+double MovingSet::free_time_beside(std::size_t mover, std::size_t stopped, double duration_s) const {
+  TreeStates trees;
   const MovingBody& moving = bodies_[set_[mover]];
   const RigidMotion motion = movers_[mover].motion;  // as above
-  trees_.left_out.resize(moving.member_of_tree.size());
-  trees_.motions.clear();
+  trees.left_out.resize(moving.member_of_tree.size());
   for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree)
-    trees_.left_out[tree] = moving.member_of_tree[tree] != set_[stopped];
+    trees.left_out[tree] = moving.member_of_tree[tree] != set_[stopped];
   return moving.probe
       ->free_time(moving.body->T_world_object, motion, duration_s, keep_m_, ~bit_of(SurfaceKind::kObject),
-                  trees_)
+                  trees)
       .free_s;
 }
 
-void MovingSet::move(std::vector<double>& gone_s) {
-  move_to_contact(movers_);
+void MovingSet::move(WorkerThread* worker, std::vector<double>& gone_s) {
+  move_to_contact(movers_, worker);
   for (std::size_t k = 0; k < set_.size(); ++k) {
     gone_s[set_[k]] = movers_[k].gone_s;
     bodies_[set_[k]].limited_by = movers_[k].limited_by;
@@ -120,11 +120,11 @@ void MovingSet::move(std::vector<double>& gone_s) {
 }  // namespace
 
 std::vector<double> move_active(std::span<MovingBody> bodies, const std::vector<RigidMotion>& motions,
-                                double margin_m) {
+                                double margin_m, WorkerThread* worker) {
   std::vector<double> gone_s(bodies.size());
   const std::vector<PathBall> paths = paths_of(bodies, motions, margin_m);
   for (const std::vector<std::size_t>& set : sets_that_meet(paths))
-    MovingSet(bodies, set, motions, paths, margin_m).move(gone_s);
+    MovingSet(bodies, set, motions, paths, margin_m).move(worker, gone_s);
   return gone_s;
 }
 

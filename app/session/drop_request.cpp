@@ -61,8 +61,7 @@ bool stays_after_fall(const VirtualObject& object, const Eigen::Isometry3d& T_wo
   body.sleep_timer_s = 0.0;
   body.supporting_bodies.clear();
   const RadarScene surfaces{scene.surfaces, {}};
-  const CollisionQueries probe =
-      make_collision_queries(scene.radar, scene.proximity, object.model->shape.touched, surfaces);
+  const CollisionQueries probe = make_collision_queries(scene.radar, object.model->shape.touched, surfaces);
   const Eigen::Vector3d start_world = T_world_start * object.model->middle;
   for (int step = 0; step < kMostSteps && !body.asleep; ++step) {
     if (advance(body, kStep_s, probe, scene.physics).status != StepStatus::kMoved) return false;

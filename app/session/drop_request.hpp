@@ -51,7 +51,6 @@ struct DropScene {
   const std::vector<SceneTree>& surfaces;  ///< all surfaces that the object can touch
   const PhysicsConfig& physics;
   CyberRadar& radar;
-  ProximityQuery& proximity;
 };
 
 /// Result of find_drop_position().

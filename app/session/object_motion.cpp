@@ -128,14 +128,14 @@ bool grip(const SurfaceSweep& sweep, const Eigen::Vector3d& shift_world, const D
 
 /// Removes the inferred back from the object's scene if it engulfs the object.
 void leave_out_engulfing_back(DueObject& one, const AdvancedBody& advanced, PhysicsConfig config,
-                              CyberRadar& radar, ProximityQuery& proximity, double& radar_ms) {
+                              CyberRadar& radar, std::atomic<double>& radar_ms) {
   const auto back = std::find_if(one.scene.begin(), one.scene.end(), [](const SceneTree& surface) {
     return surface.kind == SurfaceKind::kInferredBack;
   });
   if (back == one.scene.end()) return;
   const RadarScene of_back{{&*back, 1}, {}};
   const CollisionQueries probe =
-      make_collision_queries(radar, proximity, one.object->model->shape.touched, of_back, &radar_ms);
+      make_collision_queries(radar, one.object->model->shape.touched, of_back, &radar_ms);
   config.max_depenetration_mps = max_push_mps(advanced, config);
   if (is_engulfed(*advanced.body, advanced.dt_s, probe.travel, config,
                   advanced.depenetration_directions_world))
@@ -207,8 +207,8 @@ bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scen
 }
 
 void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
-                     CyberRadar& radar, ProximityQuery& proximity, ContactSystem& contacts,
-                     ContactCounts& counts, double& radar_ms) {
+                     CyberRadar& radar, ContactSystem& contacts, ContactCounts& counts,
+                     std::atomic<double>& radar_ms) {
   std::vector<RadarScene> scenes;
   std::vector<CollisionQueries> probes;
   std::vector<AdvancedBody> advanced;
@@ -220,7 +220,7 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
   for (DueObject& one : due) {
     scenes.push_back({one.scene, {}});
     probes.push_back(
-        make_collision_queries(radar, proximity, one.object->model->shape.touched, scenes.back(), &radar_ms));
+        make_collision_queries(radar, one.object->model->shape.touched, scenes.back(), &radar_ms));
     probes.back().others = one.bodies;
     sweeps.push_back(moving == nullptr || one.is_undisturbed ? SurfaceSweep{} : sweep_near(one, *moving));
     Body& body = one.object->body;
@@ -250,7 +250,7 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
           !due[i].object->carried_to_world && grip(sweeps[i], -left_part * sweeps[i].way_world,
                                                    moving->dynamic_world(), due[i], advanced[i].dt_s, radar);
       advanced[i].is_carried = advanced[i].is_gripped || due[i].object->carried_to_world;
-      leave_out_engulfing_back(due[i], advanced[i], config, radar, proximity, radar_ms);
+      leave_out_engulfing_back(due[i], advanced[i], config, radar, radar_ms);
     }
     advance_together(advanced, config, contacts);
     keep_contacts(due, advanced);

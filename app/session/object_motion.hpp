@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -69,8 +70,8 @@ bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scen
 /// @param counts    incremented by the contacts of this call
 /// @param radar_ms  incremented by the duration of the radar's queries, ms
 void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
-                     CyberRadar& radar, ProximityQuery& proximity, ContactSystem& contacts,
-                     ContactCounts& counts, double& radar_ms);
+                     CyberRadar& radar, ContactSystem& contacts, ContactCounts& counts,
+                     std::atomic<double>& radar_ms);
 
 /// Returns one ball around each object in the room. Inside the balls, the dynamic mesh gets full resolution.
 std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTouching_m = 1e-6;
 
-bool overlap(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a, const TreeInstance& b) {
+bool overlap(CyberRadar& radar, const TreeInstance& a, const TreeInstance& b) {
   const SceneTree a_of_scene{a, SurfaceKind::kObject}, b_of_scene{b, SurfaceKind::kObject};
   const RadarScene scene_a{{&a_of_scene, 1}, {}}, scene_b{{&b_of_scene, 1}, {}};
   const auto has_inside = [&](const TreeInstance& object, const RadarScene& scene) {
@@ -25,20 +25,19 @@ bool overlap(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a, co
     return radar.query(query, scene).status == ContactStatus::kOverlap;
   };
   std::vector<ClosestPoint> unused;
-  return field.near(a, scene_b, kTouching_m, 0, unused) != 0 || has_inside(a, scene_b) ||
+  return near_features(a, scene_b, kTouching_m, 0, unused) != 0 || has_inside(a, scene_b) ||
          has_inside(b, scene_a);
 }
 
 /// Returns true if two bodies overlap by more than a shift by shift_m resolves. Bodies that only touch are
 /// separated by one of the two shifts. Bodies at exactly the same place have no crossing surfaces until
 /// shifted.
-bool share_space(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a, const TreeInstance& b,
-                 double shift_m) {
+bool share_space(CyberRadar& radar, const TreeInstance& a, const TreeInstance& b, double shift_m) {
   const auto overlap_shifted = [&](double by_m) {
     TreeInstance shifted = a;
     // unlikely to be parallel to an edge
     shifted.T_world_mesh.translation() += by_m * Eigen::Vector3d(0.31, 0.53, 0.79);
-    return overlap(radar, field, shifted, b);
+    return overlap(radar, shifted, b);
   };
   return overlap_shifted(shift_m) && overlap_shifted(-shift_m);
 }
@@ -68,15 +67,14 @@ std::optional<FreePose> free_pose_near(const VirtualObject& object, double max_m
   const auto is_known = [&](const Eigen::Isometry3d& T_world_object) {
     return !is_in_solid_unknown(way.room, object, T_world_object);
   };
-  return nearest_free_pose(instance_of(object), way.all, way.gap_m, max_m, is_known, way.radar,
-                           way.proximity);
+  return nearest_free_pose(instance_of(object), way.all, way.gap_m, max_m, is_known, way.radar);
 }
 
 }  // namespace
 
 std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thrown) {
   constexpr double kSaid_m = 0.005;  // less is a surface's noise
-  const bool crosses = is_crossed(instance_of(object), way.surfaces, way.proximity);
+  const bool crosses = is_crossed(instance_of(object), way.surfaces);
   if (!crosses && !is_in_solid_unknown(way.room, object)) return {};
   if (const auto free = free_pose_near(object, kWayOut_m, way)) {
     object.body.T_world_object = free->T_world_object;
@@ -120,7 +118,7 @@ bool is_still_too_long(VirtualObject& object, double waited_s) {
 std::string free_or_stuck(VirtualObject& object, const WayOut& way) {
   std::vector<SceneTree> lasting = way.all;  // dynamic surfaces go away, or push the object
   std::erase_if(lasting, [](const SceneTree& surface) { return is_moving_surface(surface.kind); });
-  if (!is_crossed(instance_of(object), lasting, way.proximity)) return {};
+  if (!is_crossed(instance_of(object), lasting)) return {};
   if (const auto free = free_pose_near(object, kWayOut_m, way)) {
     object.body.T_world_object = free->T_world_object;
     return " was stuck in a surface, and is moved out by " + millimetres(free->moved_m);
@@ -131,8 +129,7 @@ std::string free_or_stuck(VirtualObject& object, const WayOut& way) {
 }
 
 void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
-                       std::span<const SceneTree> room, double margin_m, CyberRadar& radar,
-                       ProximityQuery& proximity) {
+                       std::span<const SceneTree> room, double margin_m, CyberRadar& radar) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const TriangleTree& tree = object.model->shape.touched;
   const Eigen::Isometry3d T_world_asked = object.body.T_world_object;
@@ -143,7 +140,7 @@ void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<Vi
     for (const auto& other : objects) {
       const TreeInstance its{&other->model->shape.touched, other->body.T_world_object};
       if (other.get() == &object || !other->in_room ||
-          !share_space(radar, proximity, {&tree, T_world_raised}, its, margin_m))
+          !share_space(radar, {&tree, T_world_raised}, its, margin_m))
         continue;
       shared.push_back({its, SurfaceKind::kObject});
       top_m = std::max(top_m, its.T_world_mesh.translation().z() + highest_m(*other));
@@ -160,18 +157,18 @@ void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<Vi
   std::vector<ClosestPoint> closest_points;
   const bool is_in_the_way =
       radar.query({{&tree, T_world_asked}, up, raised_m}, {room, {}}).status == ContactStatus::kContact ||
-      proximity.near({&tree, T_world_raised}, {room, {}}, kTouching_m, 0, closest_points) != 0;
+      near_features({&tree, T_world_raised}, {room, {}}, kTouching_m, 0, closest_points) != 0;
   if (!is_in_the_way) object.body.T_world_object = T_world_raised;
 }
 
 double penetration_m(const VirtualObject& object, std::span<const SceneTree> scene,
-                     const Eigen::Vector3d& direction_world, CyberRadar& radar, ProximityQuery& proximity) {
+                     const Eigen::Vector3d& direction_world, CyberRadar& radar) {
   const TreeInstance instance{&object.model->shape.touched, object.body.T_world_object};
   const Contact below = radar.query({instance, direction_world, 0.01}, {scene, {}});
   if (below.status != ContactStatus::kOverlap) return 0.0;
   // An overlapping surface that crosses no part of the object is in a hollow, such as a handle.
   std::vector<ClosestPoint> unused;
-  const SurfaceKindMask crossed = proximity.near(instance, {scene, {}}, kTouching_m, 0, unused);
+  const SurfaceKindMask crossed = near_features(instance, {scene, {}}, kTouching_m, 0, unused);
   return (crossed & bit_of(below.touched)) != 0 ? std::max(0.0, -below.contact_distance_m) : 0.0;
 }
 

@@ -19,8 +19,7 @@ namespace roomradar {
 /// @param room      all surfaces that the object can touch, except other objects
 /// @param margin_m  gap to the objects below after the move, m. Smaller overlaps are ignored
 void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
-                       std::span<const SceneTree> room, double margin_m, CyberRadar& radar,
-                       ProximityQuery& proximity);
+                       std::span<const SceneTree> room, double margin_m, CyberRadar& radar);
 
 /// Thrown if an object cannot be placed because a surface intersects it.
 class PlaceRefused : public Error {
@@ -34,7 +33,6 @@ struct WayOut {
   std::vector<SceneTree> all;       ///< `surfaces` and the other objects
   double gap_m;                     ///< gap between object and surfaces after the move, m
   CyberRadar& radar;
-  ProximityQuery& proximity;
 };
 
 /// Moves an object to the nearest free pose within 10 cm. Does nothing unless a surface intersects the object
@@ -57,6 +55,6 @@ std::string free_or_stuck(VirtualObject& object, const WayOut& way);
 /// Returns the penetration depth of the scene's surfaces into the object along a direction, m, >= 0. A
 /// surface that only passes through a concavity of the object, such as a cup's handle, does not count.
 double penetration_m(const VirtualObject& object, std::span<const SceneTree> scene,
-                     const Eigen::Vector3d& direction_world, CyberRadar& radar, ProximityQuery& proximity);
+                     const Eigen::Vector3d& direction_world, CyberRadar& radar);
 
 }  // namespace roomradar

@@ -2,6 +2,7 @@
 #include "app/session/object_set.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "app/physics/physics.hpp"
@@ -59,8 +60,7 @@ void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
   if (state.R_world_object) object.body.T_world_object.linear() = *state.R_world_object;
   object.body.T_world_object.translation() = state.position_world;
   try {
-    raise_over_others(object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_,
-                      proximity_);
+    raise_over_others(object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_);
     const std::string moved = leave_surfaces(object, way_out_of(object), !state.velocity_world_mps.isZero());
     if (!moved.empty()) notices_.push_back({object.body.name, moved});
   } catch (const PlaceRefused&) {
@@ -82,8 +82,7 @@ void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
 }
 
 WayOut ObjectSet::way_out_of(const VirtualObject& object) {
-  return {room_,        scene_.surfaces(), scene_without(&object), config_.physics.contact_margin_m,
-          exact_radar_, proximity_};
+  return {room_, scene_.surfaces(), scene_without(&object), config_.physics.contact_margin_m, exact_radar_};
 }
 
 void ObjectSet::place(const std::string& name, const ObjectState& state) { put(take_over(name), state); }
@@ -138,7 +137,7 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
     VirtualObject& object = named(drop.name);
     DropPosition found =
         find_drop_position(object, drop, frame.depth_camera, T_world_camera, expected, foreground,
-                           {room_, scene_without(&object), config_.physics, exact_radar_, proximity_});
+                           {room_, scene_without(&object), config_.physics, exact_radar_});
     if (found.position_world) {
       if (!found.note.empty()) notices_.push_back({drop.name, found.note});
       drop.height_m = found.height_m;
@@ -164,7 +163,7 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
 
 ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes& times) {
   constexpr double kStuckLooksAfter_s = 0.5;  // overlaps are the most expensive contacts
-  double radar_ms = 0.0;
+  std::atomic<double> radar_ms = 0.0;
   std::vector<DueObject> due;
   for (std::size_t index = 0; index < objects_.size(); ++index) {
     VirtualObject* const object = objects_[index].get();
@@ -183,8 +182,8 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
     one.bodies = bodies_in(one.scene, objects_, *one.object);
   }
   ContactCounts counts;
-  advance_objects(due, has_map ? &scene_ : nullptr, config_.physics, radar_, proximity_, contact_system_,
-                  counts, radar_ms);
+  advance_objects(due, has_map ? &scene_ : nullptr, config_.physics, radar_, contact_system_, counts,
+                  radar_ms);
   const bool is_any_overlapped =  // an object shifted out of an overlap may overlap others now
       std::any_of(due.begin(), due.end(), [](const DueObject& one) { return one.was_overlapped; });
   for (const DueObject& one : due) {
@@ -207,8 +206,7 @@ std::vector<Departure> ObjectSet::end_departures() {
     if (departure->is_back) {  // others may have taken its place
       Body& body = object->body;
       const double z_m = body.T_world_object.translation().z();
-      raise_over_others(*object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_,
-                        proximity_);
+      raise_over_others(*object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_);
       body.asleep = body.T_world_object.translation().z() == z_m;
     }
     departures.push_back(std::move(*departure));
@@ -226,9 +224,8 @@ double ObjectSet::penetration_m() {
       std::erase_if(still, [](const SceneTree& surface) {
         return surface.kind != SurfaceKind::kStatic && surface.kind != SurfaceKind::kObject;
       });
-    deepest_m =
-        std::max(deepest_m, roomradar::penetration_m(*object, still, config_.physics.gravity_world_mps2,
-                                                     exact_radar_, proximity_));
+    deepest_m = std::max(deepest_m, roomradar::penetration_m(
+                                        *object, still, config_.physics.gravity_world_mps2, exact_radar_));
   }
   return deepest_m;
 }

@@ -106,7 +106,6 @@ class ObjectSet {
   std::vector<WaitingDrop> waiting_;
   CyberRadar radar_;
   std::uint64_t tested_before_ = 0;  ///< static triangles tested before the last set_radar()
-  ProximityQuery proximity_;
   std::vector<ObjectNotice> notices_;
   ContactSystem contact_system_;  ///< buffers of advance_objects()
   CyberRadar exact_radar_;        ///< used for drops, moves out of surfaces, and penetration_m()

@@ -277,8 +277,8 @@ struct TreeFreedom {
 }  // namespace
 
 FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                   const RadarScene& scene, SurfaceKindMask left_out, const TreeStates& trees,
-                   std::vector<PendingPair>& pending) {
+                   const RadarScene& scene, SurfaceKindMask left_out, const TreeStates& trees) {
+  thread_local std::vector<PendingPair> pending;  // scratch
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
   result.free_s = duration_s;

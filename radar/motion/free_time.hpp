@@ -5,7 +5,6 @@
 
 #include "radar/geometry/contact.hpp"
 #include "radar/geometry/radar_scene.hpp"
-#include "radar/geometry/tree_pairs.hpp"
 #include "radar/motion/closest_point.hpp"
 #include "radar/motion/time_of_impact.hpp"
 
@@ -41,9 +40,7 @@ struct TreeStates {
 ///
 /// @param keep_m    minimum distance to keep, m
 /// @param left_out  kinds of surfaces to ignore
-/// @param pending   scratch memory
 FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                   const RadarScene& scene, SurfaceKindMask left_out, const TreeStates& trees,
-                   std::vector<PendingPair>& pending);
+                   const RadarScene& scene, SurfaceKindMask left_out = 0, const TreeStates& trees = {});
 
 }  // namespace roomradar

@@ -68,14 +68,28 @@ std::vector<std::size_t> stop_at(double now_s, std::span<JointMover> movers,
   return stopped;
 }
 
+/// Bounds the free times of the movers whose bounds end now.
+/// @param due  scratch memory
+void bound_free_times(double now_s, std::span<JointMover> movers, std::vector<Progress>& progress,
+                      WorkerThread* worker, std::vector<std::size_t>& due) {
+  constexpr std::size_t kFewest = 3;  // fewer take less time than waking the worker
+  due.clear();
+  for (std::size_t i = 0; i < movers.size(); ++i)
+    if (!movers[i].has_stopped && progress[i].free_until_s <= now_s) due.push_back(i);
+  const auto bound = [&](std::size_t k) { bound_free_time(movers[due[k]], now_s, progress[due[k]]); };
+  if (worker != nullptr && due.size() >= kFewest) return worker->run_each(due.size(), bound);
+  for (std::size_t k = 0; k < due.size(); ++k) bound(k);
+}
+
 bool overlap(const PathBall& a, const PathBall& b) {
   return (a.centre_world - b.centre_world).norm() < a.radius_m + b.radius_m;
 }
 
 }  // namespace
 
-void move_to_contact(std::span<JointMover> movers) {
+void move_to_contact(std::span<JointMover> movers, WorkerThread* worker) {
   std::vector<Progress> progress;
+  std::vector<std::size_t> due;
   for (JointMover& mover : movers) {
     progress.push_back({.T_world_start = *mover.T_world_object});
     mover.gone_s = 0.0;
@@ -83,12 +97,10 @@ void move_to_contact(std::span<JointMover> movers) {
     mover.limited_by = {};
   }
   for (double now_s = 0.0;;) {
+    bound_free_times(now_s, movers, progress, worker, due);
     double next_s = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < movers.size(); ++i) {
-      if (movers[i].has_stopped) continue;
-      if (progress[i].free_until_s <= now_s) bound_free_time(movers[i], now_s, progress[i]);
-      next_s = std::min(next_s, progress[i].free_until_s);
-    }
+    for (std::size_t i = 0; i < movers.size(); ++i)
+      if (!movers[i].has_stopped) next_s = std::min(next_s, progress[i].free_until_s);
     if (next_s == std::numeric_limits<double>::infinity()) return;  // all have stopped
     now_s = next_s;
     for (std::size_t i = 0; i < movers.size(); ++i) {

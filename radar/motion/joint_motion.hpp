@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "mapping/types/system/worker_thread.hpp"
 #include "radar/motion/closest_point.hpp"
 #include "radar/motion/free_time.hpp"
 #include "radar/motion/time_of_impact.hpp"
@@ -36,7 +37,7 @@ struct JointMover {
   };
   /// Returns free_time() of the body at its present pose, for at most this duration, s. Treats movers that
   /// have stopped as at rest. Of two movers that still move, at least one must treat the other as a moving
-  /// obstacle.
+  /// obstacle. Calls of different movers must be safe on two threads at the same time.
   std::function<Free(double duration_s)> free_time;
   /// Returns the free time, s, with respect to the surfaces of one stopped mover only.
   std::function<double(std::size_t stopped, double duration_s)> free_time_beside;
@@ -51,7 +52,8 @@ struct JointMover {
 /// meets another one stops with it; the other bodies move on, past the two at rest. A body's free time is a
 /// lower bound. When it ends, only this body is queried again, at the poses of that moment. The body's motion
 /// ends when a query gains less than 2 % of its duration (the first query: nothing), or after 12 queries.
-void move_to_contact(std::span<JointMover> movers);
+/// @param worker  shares queries that are due at the same time, with the same results; may be null
+void move_to_contact(std::span<JointMover> movers, WorkerThread* worker = nullptr);
 
 /// Returns the connected components of overlapping balls, as indices in ascending order.
 std::vector<std::vector<std::size_t>> sets_that_meet(std::span<const PathBall> paths);

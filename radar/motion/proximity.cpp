@@ -46,9 +46,11 @@ bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const F
 
 }  // namespace
 
-SurfaceKindMask ProximityQuery::near(const TreeInstance& object, const RadarScene& scene, double reach_m,
-                                     SurfaceKindMask left_out, const TreeStates& states,
-                                     std::vector<ClosestPoint>& points) {
+SurfaceKindMask near_features(const TreeInstance& object, const RadarScene& scene, double reach_m,
+                              SurfaceKindMask left_out, const TreeStates& states,
+                              std::vector<ClosestPoint>& points) {
+  thread_local std::vector<PendingPair> pending;       // scratch
+  thread_local std::vector<ClosestPoint> found, kept;  // scratch
   points.clear();
   SurfaceKindMask crossed = 0;
   if (!is_usable(object) || !(reach_m > 0.0)) return crossed;
@@ -57,13 +59,13 @@ SurfaceKindMask ProximityQuery::near(const TreeInstance& object, const RadarScen
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
     if (states.is_left_out(number)) continue;
     if (are_farther_apart(object, tree.instance, reach_m)) continue;
-    found_.clear();
+    found.clear();
     TreePair trees(object, tree.instance);
     const FeatureCollector places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),
-                                  tree.kind, trees.T_world_frame,      found_};
+                                  tree.kind, trees.T_world_frame,      found};
     bool crosses = false;
     visit_pairs<PairOrder::kAny>(
-        trees, pending_,
+        trees, pending,
         [&](const PairBox& o, const PairBox& s) {
           return may_be_near(trees, o, s, places) ? 0.0F : kInfinity<float>;
         },
@@ -75,17 +77,11 @@ SurfaceKindMask ProximityQuery::near(const TreeInstance& object, const RadarScen
       crossed |= bit_of(tree.kind);
       continue;
     }
-    for (ClosestPoint& point : found_) point.tree = number;
-    keep_the_outermost(found_, kept_);
-    points.insert(points.end(), kept_.begin(), kept_.end());
+    for (ClosestPoint& point : found) point.tree = number;
+    keep_the_outermost(found, kept);
+    points.insert(points.end(), kept.begin(), kept.end());
   }
   return crossed;
-}
-
-FreeTime ProximityQuery::free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s,
-                                   double keep_m, const RadarScene& scene, SurfaceKindMask left_out,
-                                   const TreeStates& trees) {
-  return roomradar::free_time(object, motion, duration_s, keep_m, scene, left_out, trees, pending_);
 }
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// bench_times.hpp: CPU time of a thread, and quantiles of measurements.
+// bench_times.hpp: clocks, and quantiles of measurements.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,16 @@
 
 namespace roomradar::test {
 
-/// CPU time of the calling thread; equals wall-clock time on an otherwise idle machine.
-inline double thread_ms() {
+inline double clock_ms(clockid_t clock) {
   timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
+/// CPU time of the calling thread; equals wall-clock time on an otherwise idle machine.
+inline double thread_ms() { return clock_ms(CLOCK_THREAD_CPUTIME_ID); }
+/// CPU time of all threads of this process.
+inline double process_ms() { return clock_ms(CLOCK_PROCESS_CPUTIME_ID); }
+inline double wall_ms() { return clock_ms(CLOCK_MONOTONIC); }
 
 /// Quantile by nearest rank, `part` in 0..1; 0 for no values.
 inline double quantile(std::vector<double> values, double part) {

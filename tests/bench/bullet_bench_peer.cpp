@@ -129,17 +129,17 @@ Simulated simulate_with_bullet(const Surroundings& surroundings, const std::vect
   for (const Entry& entry : entries) bodies.push_back(body_of(entry, motion));
   Simulated result;
   std::vector<bool> is_present(entries.size());
-  ProximityQuery field;
   for (int frame = 0; frame < frames; ++frame) {
     const std::vector<Eigen::Isometry3d> T_world_object = poses_of(bodies, entries);
     for (std::size_t i = 0; i < entries.size(); ++i) {
       if (is_present[i] || entries[i].frame > frame) continue;
-      is_present[i] = is_place_free(entries[i], entries, T_world_object, is_present, field);
+      is_present[i] = is_place_free(entries[i], entries, T_world_object, is_present);
       if (is_present[i]) world.addRigidBody(bodies[i].body.get());
     }
-    const double start_ms = test::thread_ms();
+    const double start_ms = test::wall_ms(), cpu_ms = test::process_ms();
     world.stepSimulation(kBenchFrame_s, 2, 0.5 * kBenchFrame_s);
-    result.frames.samples_ms.push_back(test::thread_ms() - start_ms);
+    result.frames.samples_ms.push_back(test::wall_ms() - start_ms);
+    result.cpu.samples_ms.push_back(test::process_ms() - cpu_ms);
   }
   result.T_world_object = poses_of(bodies, entries);
   for (const PeerBody& peer : bodies) result.asleep += !peer.body->isActive();

@@ -29,7 +29,8 @@ struct Entry {
 };
 
 struct Simulated {
-  test::Times frames;                             ///< thread time of each frame's physics
+  test::Times frames;                             ///< wall-clock time of each frame's physics
+  test::Times cpu;                                ///< the same, CPU time of all threads
   std::vector<Eigen::Isometry3d> T_world_object;  ///< at the end, per entry
   int asleep = 0, entered = 0;                    ///< at the end
 };
@@ -38,8 +39,7 @@ struct Simulated {
 /// @param T_world_object  per entry
 /// @param is_present      per entry: it is in the scene
 bool is_place_free(const Entry& entry, const std::vector<Entry>& entries,
-                   const std::vector<Eigen::Isometry3d>& T_world_object, const std::vector<bool>& is_present,
-                   ProximityQuery& field);
+                   const std::vector<Eigen::Isometry3d>& T_world_object, const std::vector<bool>& is_present);
 
 /// The project's physics: all bodies advanced together.
 Simulated simulate(const Surroundings& surroundings, const std::vector<Entry>& entries, int frames);

@@ -93,7 +93,6 @@ void measure_rest(nlohmann::json& rows) {
       ball("ball", ball_mesh(0.04, 23)), plate("plate", box_mesh({0.2, 0.2, 0.01}));
   GlContext context;
   CyberRadar radar;
-  ProximityQuery field;
   std::printf("at rest on noisy depth, %d frames\n%-6s %-6s %-7s %9s %9s %6s %6s\n", kFrames, "room",
               "policy", "thing", "moves mm", "turns deg", "rests", "wakes");
   for (const char* name : {"table", "shelf", "wall"}) {
@@ -132,7 +131,7 @@ void measure_rest(nlohmann::json& rows) {
         const RadarScene scene{surfaces, {}};
         for (Lying& one : lying[policy]) {
           const StepReport report =
-              advance(one.body, kFrame_s, make_collision_queries(radar, field, one.thing->tree, scene), {});
+              advance(one.body, kFrame_s, make_collision_queries(radar, one.thing->tree, scene), {});
           if (one.body.asleep && one.at_rest_from < 0) one.at_rest_from = i;
           if (i < kSettle) continue;
           if (i == kSettle) one.lay = one.body.T_world_object;
@@ -226,7 +225,6 @@ void measure_throws(int throws, nlohmann::json& rows) {
     places.push_back({make_room(kRandomRoom, false, seed), {}});
   for (Place& place : places) place.tree.build_by_place(room_mesh(place.room));
   CyberRadar radar;
-  ProximityQuery field;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::normal_distribution<double> normal;
@@ -257,7 +255,7 @@ void measure_throws(int throws, nlohmann::json& rows) {
     const double energy_before = energy_of(body, config);
     const SceneTree tree{{&place.tree, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     const RadarScene scene{{&tree, 1}, {}};
-    CollisionQueries probe = make_collision_queries(radar, field, thing.tree, scene);
+    CollisionQueries probe = make_collision_queries(radar, thing.tree, scene);
     bool tunnelled = false;
     Vec3 met_world = Vec3::Zero();
     Eigen::Isometry3d T_followed = body.T_world_object;

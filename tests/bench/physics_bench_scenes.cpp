@@ -61,7 +61,7 @@ StepReport World::step(Body& body, const Thing& thing, double dt_s, const Physic
   for (std::size_t i = 0; i < trees_.size(); ++i)
     scene_.push_back({{&trees_[i], Eigen::Isometry3d::Identity()}, kinds_[i]});
   const RadarScene scene{scene_, {}};
-  return advance(body, dt_s, make_collision_queries(radar_, field_, thing.tree, scene), config);
+  return advance(body, dt_s, make_collision_queries(radar_, thing.tree, scene), config);
 }
 
 double energy_of(const Body& body, const PhysicsConfig& config) {

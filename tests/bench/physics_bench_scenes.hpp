@@ -42,7 +42,6 @@ class World {
   std::vector<SurfaceKind> kinds_;
   std::vector<SceneTree> scene_;
   CyberRadar radar_;
-  ProximityQuery field_;
 };
 
 /// Kinetic plus potential energy, J/kg, relative to the world's zero height.

@@ -106,15 +106,14 @@ double log_uniform(CounterRandom& random, double low, double high) {
   return std::exp(random.uniform(std::log(low), std::log(high)));
 }
 
-double overlap_m(const Session& session, const VirtualObject& object, CyberRadar& radar,
-                 ProximityQuery& proximity) {
+double overlap_m(const Session& session, const VirtualObject& object, CyberRadar& radar) {
   double deepest_m = 0.0;
   for (const SceneTree& surface : session.scene_without(&object)) {
     if (surface.kind != SurfaceKind::kStatic) continue;
     std::vector<ClosestPoint> unused;
     const RadarScene scene{{&surface, 1}, {}};
     const TreeInstance instance{&object.model->shape.touched, object.body.T_world_object};
-    if (proximity.near(instance, scene, 1e-6, 0, unused) == 0) continue;
+    if (near_features(instance, scene, 1e-6, 0, unused) == 0) continue;
     const Contact contact = radar.query({instance, -Vector3d::UnitZ(), 0.01}, scene);
     deepest_m =
         std::max(deepest_m, contact.status == ContactStatus::kOverlap ? -contact.contact_distance_m : 1e-3);
@@ -222,7 +221,6 @@ nlohmann::json place_row(const Stage& stage, const Settings& settings) {
   session.make_unknown_solid(times);
   HeldView view(session);
   CyberRadar radar;
-  ProximityQuery proximity;
   int placed = 0, free_at_once = 0, out = 0, silent = 0, named = 0;
   std::map<std::string, int> refused;
   nlohmann::json failed = nlohmann::json::array();
@@ -251,10 +249,10 @@ nlohmann::json place_row(const Stage& stage, const Settings& settings) {
       continue;
     }
     if ((object.body.T_world_object * object.model->middle - middle_world).norm() < 1e-9 &&
-        overlap_m(session, object, radar, proximity) == 0.0)
+        overlap_m(session, object, radar) == 0.0)
       ++free_at_once;
     for (int step = 0; step < 15; ++step) static_cast<void>(view.step());
-    const double deep_m = object.in_room ? overlap_m(session, object, radar, proximity) : 0.0;
+    const double deep_m = object.in_room ? overlap_m(session, object, radar) : 0.0;
     if (deep_m <= 1.5e-3) {
       ++out;
     } else {

@@ -66,7 +66,7 @@ class BodyGroup {
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t body = present[i];
       radar_scenes.push_back({scenes[i], {}});
-      probes.push_back(make_collision_queries(radar_, field_, trees_[body], radar_scenes[i]));
+      probes.push_back(make_collision_queries(radar_, trees_[body], radar_scenes[i]));
       probes[i].others = others[i];
       advanced.push_back({.body = &bodies[body],
                           .probe = &probes[i],
@@ -120,7 +120,6 @@ class BodyGroup {
   std::vector<TriangleTree> trees_;
   std::list<Surface> surfaces_;
   CyberRadar radar_;
-  ProximityQuery field_;
 };
 
 }  // namespace roomradar::test

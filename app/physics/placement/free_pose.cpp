@@ -31,9 +31,8 @@ Eigen::Isometry3d moved_by(const Eigen::Isometry3d& T, const Vec3& way) {
 
 class ExitSearch {
  public:
-  ExitSearch(const TreeInstance& object, std::span<const SceneTree> surfaces, double gap_m, CyberRadar& radar,
-             ProximityQuery& proximity)
-      : object_(object), surfaces_(surfaces), gap_m_(gap_m), radar_(radar), proximity_(proximity) {
+  ExitSearch(const TreeInstance& object, std::span<const SceneTree> surfaces, double gap_m, CyberRadar& radar)
+      : object_(object), surfaces_(surfaces), gap_m_(gap_m), radar_(radar) {
     // With one-sided surfaces, the way back meets fronts only.
     for (const SceneTree& surface : surfaces)
       fronts_.push_back({surface.instance, SurfaceKind::kInferredBack});
@@ -42,7 +41,7 @@ class ExitSearch {
   /// Returns true if nothing crosses the object after this way, or is nearer than the gap.
   bool is_clear(const Vec3& way) {
     const TreeInstance moved{object_.tree, moved_by(object_.T_world_mesh, way)};
-    const SurfaceKindMask crossed = proximity_.near(moved, {surfaces_, {}}, gap_m_, 0, near_);
+    const SurfaceKindMask crossed = near_features(moved, {surfaces_, {}}, gap_m_, 0, near_);
     return crossed == 0 && near_.empty();
   }
   /// Returns true if the way back from there meets the front of a surface first, or only edges.
@@ -61,26 +60,25 @@ class ExitSearch {
   std::span<const SceneTree> surfaces_;
   double gap_m_;
   CyberRadar& radar_;
-  ProximityQuery& proximity_;
   std::vector<SceneTree> fronts_;
   std::vector<ClosestPoint> near_;
 };
 
 }  // namespace
 
-bool is_crossed(const TreeInstance& object, std::span<const SceneTree> surfaces, ProximityQuery& proximity) {
+bool is_crossed(const TreeInstance& object, std::span<const SceneTree> surfaces) {
   constexpr double kTouching_m = 1e-6;
   std::vector<ClosestPoint> unused;
-  return proximity.near(object, {surfaces, {}}, kTouching_m, 0, unused) != 0;
+  return near_features(object, {surfaces, {}}, kTouching_m, 0, unused) != 0;
 }
 
 std::optional<FreePose> nearest_free_pose(const TreeInstance& object, std::span<const SceneTree> surfaces,
                                           double gap_m, double max_m,
                                           const std::function<bool(const Eigen::Isometry3d&)>& is_allowed,
-                                          CyberRadar& radar, ProximityQuery& proximity) {
+                                          CyberRadar& radar) {
   constexpr int kSteps = 20, kBisections = 5;
   const double step_m = max_m / kSteps;
-  ExitSearch search(object, surfaces, gap_m, radar, proximity);
+  ExitSearch search(object, surfaces, gap_m, radar);
   const std::vector<Vec3> all = directions();
   std::optional<FreePose> best;
   for (int step = 1; step <= kSteps && !best; ++step) {

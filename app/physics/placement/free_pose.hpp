@@ -13,7 +13,7 @@ namespace roomradar {
 
 /// Returns true if a surface intersects the object's surface. One-sided surfaces (inferred backs and the
 /// frontier of unknown space, see is_one_sided()) never count.
-bool is_crossed(const TreeInstance& object, std::span<const SceneTree> surfaces, ProximityQuery& proximity);
+bool is_crossed(const TreeInstance& object, std::span<const SceneTree> surfaces);
 
 struct FreePose {
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
@@ -33,6 +33,6 @@ struct FreePose {
 std::optional<FreePose> nearest_free_pose(const TreeInstance& object, std::span<const SceneTree> surfaces,
                                           double gap_m, double max_m,
                                           const std::function<bool(const Eigen::Isometry3d&)>& is_allowed,
-                                          CyberRadar& radar, ProximityQuery& proximity);
+                                          CyberRadar& radar);
 
 }  // namespace roomradar

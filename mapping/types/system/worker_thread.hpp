@@ -1,6 +1,7 @@
 // worker_thread.hpp: a worker thread that runs one task in parallel with the caller's.
 #pragma once
 #include <atomic>
+#include <cstddef>
 #include <exception>
 #include <thread>
 
@@ -30,6 +31,17 @@ class WorkerThread {
     finish();
     if (!fault) fault = fault_;
     if (fault) std::rethrow_exception(fault);
+  }
+
+  /// Calls work(i) for each i in 0..count-1, on both threads. Each i goes to the next idle thread, so results
+  /// must not depend on the order.
+  template <typename Work>
+  void run_each(std::size_t count, const Work& work) {
+    std::atomic<std::size_t> next = 0;
+    const auto take = [&] {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    };
+    run(take, take);
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "app/objects/teapot.hpp"
@@ -239,8 +240,7 @@ TEST(BodiesTogether, OneStandsStillThatIsNotNamedAsABody) {
   const std::vector<SceneTree> scene{{{&tree, T_world_other}, SurfaceKind::kObject}};
   const RadarScene radar_scene{scene, {}};
   CyberRadar radar;
-  ProximityQuery field;
-  const CollisionQueries probe = make_collision_queries(radar, field, tree, radar_scene);
+  const CollisionQueries probe = make_collision_queries(radar, tree, radar_scene);
   for (int i = 0; i < 15; ++i) static_cast<void>(advance(body, kFrame_s, probe, weightless(0.0)));
   EXPECT_LT(body.velocity_world_mps.norm(), 1e-6);
 }
@@ -333,7 +333,6 @@ TEST(BodiesTogether, AHandThatReachesIntoOneDoesNotPushItIntoAnotherThatLiesInIt
   const Vec3 to_hand = Vec3(0.96, 0.27, 0.0).normalized(), across(-to_hand.y(), to_hand.x(), 0.0);
   const SceneTree lies{{&teapot_tree, T_world_lies}, SurfaceKind::kObject};
   CyberRadar radar;
-  ProximityQuery field;
   std::vector<ClosestPoint> points;
   for (int place = 0; place < 36; ++place) {
     Eigen::Isometry3d T_world_fist = Eigen::Isometry3d::Identity();
@@ -344,12 +343,32 @@ TEST(BodiesTogether, AHandThatReachesIntoOneDoesNotPushItIntoAnotherThatLiesInIt
     Body body;
     body.mass = mass_properties(teapot, false);
     body.T_world_object = T_world_leans;
-    (void)advance(body, kFrame_s, make_collision_queries(radar, field, teapot_tree, radar_scene), {},
-                  {&to_hand, 1});
+    (void)advance(body, kFrame_s, make_collision_queries(radar, teapot_tree, radar_scene), {}, {&to_hand, 1});
     const SurfaceKindMask crossed =
-        field.near({&teapot_tree, body.T_world_object}, {{&lies, 1}, {}}, 1e-6, 0, points);
+        near_features({&teapot_tree, body.T_world_object}, {{&lies, 1}, {}}, 1e-6, 0, points);
     EXPECT_EQ(crossed, 0U) << place;
   }
+}
+
+TEST(BodiesTogether, AHeapIsTheSameToTheBitOnOneThreadAndOnTwo) {
+  const auto fall = [](bool is_one_thread) {
+    std::vector<Mesh> meshes;
+    for (int i = 0; i < 12; ++i) meshes.push_back(i % 3 == 0 ? utah_teapot(4, 0.06) : box(0.1, 0.08, 0.06));
+    test::BodyGroup group(meshes);
+    group.system.is_one_thread = is_one_thread;
+    group.add_surface(shapes::floor(2.0F, 0.0F));
+    for (int i = 0; i < 12; ++i)
+      group.put(static_cast<std::size_t>(i), {0.13 * (i % 3), 0.05 * (i % 2), 0.1 + 0.11 * (i / 3)});
+    group.run(1.5, {});
+    std::vector<Eigen::Matrix4d> poses;
+    for (const Body& body : group.bodies) poses.push_back(body.T_world_object.matrix());
+    return std::pair(poses, group.system.worker != nullptr);
+  };
+  const auto [alone, alone_has_worker] = fall(true);
+  const auto [shared, shared_has_worker] = fall(false);
+  EXPECT_FALSE(alone_has_worker);
+  EXPECT_TRUE(shared_has_worker);
+  EXPECT_EQ(alone, shared);
 }
 
 }  // namespace

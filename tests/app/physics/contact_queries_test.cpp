@@ -31,7 +31,7 @@ class TwoBalls : public ::testing::Test {
           points.push_back({Vec3(at.x(), at.y(), 0.0), Vec3::UnitZ(), over_floor_m, SurfaceKind::kStatic, 0});
         if (!trees.is_left_out(1) && apart_m <= reach_m)
           points.push_back({other + kRadius_m * from_other, from_other, apart_m, SurfaceKind::kObject, 1});
-        return SurfaceKindMask{0};
+        return i == crossing_ ? bit_of(SurfaceKind::kStatic) : SurfaceKindMask{0};
       };
       moving_[i].body = &bodies_[i];
       moving_[i].probe = &probes_[i];
@@ -53,6 +53,7 @@ class TwoBalls : public ::testing::Test {
   std::array<CollisionQueries, 2> probes_;
   std::array<MovingBody, 2> moving_;
   std::array<int, 2> queries_{};
+  std::size_t crossing_ = kNoOther;  ///< the ball that a wall crosses
   ContactSystem system_;
 };
 
@@ -80,6 +81,17 @@ TEST_F(TwoBalls, WhatMovedIsQueriedAgainAlsoForTheOther) {
   bodies_[1].T_world_object.translation().x() += 0.01;
   query();
   EXPECT_EQ(features(), 2U);  // they are apart
+}
+
+TEST_F(TwoBalls, APairIsNotLostWhenASurfaceCrossesTheLowerOne) {
+  crossing_ = 0;
+  query();
+  EXPECT_TRUE(moving_[0].crosses);
+  EXPECT_EQ(moving_[1].near.size(), 2U);  // floor and the crossed ball
+  crossing_ = kNoOther;
+  moving_[0].crosses = false;
+  query();
+  EXPECT_EQ(features(), 3U);
 }
 
 TEST_F(TwoBalls, APairIsNotLostWhenOneOfThemStops) {

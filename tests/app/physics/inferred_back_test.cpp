@@ -87,14 +87,13 @@ class InferredBack : public ::testing::Test {
                                                          body_.T_world_object.translation(), 0.25);
     const std::vector<SceneTree> back = {inferred()};
     const RadarScene of_back{back, {}};
-    const CollisionQueries back_probe = make_collision_queries(radar_, field_, cube_, of_back);
+    const CollisionQueries back_probe = make_collision_queries(radar_, cube_, of_back);
     if (!is_engulfed(body_, kFrame_s, back_probe.travel, {}, push.span())) scene.push_back(inferred());
     const RadarScene of_all{scene, {}};
-    return advance(body_, kFrame_s, make_collision_queries(radar_, field_, cube_, of_all), {}, push.span());
+    return advance(body_, kFrame_s, make_collision_queries(radar_, cube_, of_all), {}, push.span());
   }
 
   CyberRadar radar_;
-  ProximityQuery field_;
   Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();
   DynamicSurfaceScratch scratch_;
   DynamicSurface surface_;

@@ -71,11 +71,10 @@ class Surfaces {
     for (const Box& box : room.boxes) add(mesh_of(box), box.kind);
     radar_scene_.trees = scene_;
   }
-  CollisionQueries probe() { return make_collision_queries(radar_, field_, cube_, radar_scene_); }
+  CollisionQueries probe() { return make_collision_queries(radar_, cube_, radar_scene_); }
 
  private:
   CyberRadar radar_;
-  ProximityQuery field_;
   TriangleTree cube_;
   std::vector<TriangleTree> trees_;
   std::vector<SceneTree> scene_;

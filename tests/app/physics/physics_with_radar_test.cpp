@@ -66,8 +66,7 @@ class PhysicsWithRadar : public ::testing::Test {
     const RadarScene radar_scene{scene, {}};
     const PushDirections push =
         depenetration_directions({&hand_mesh_}, body_.T_world_object * Vec3(0, 0, 0.07), 0.25);
-    return advance(body_, kFrame_s, make_collision_queries(radar_, field_, teapot_, radar_scene), {},
-                   push.span());
+    return advance(body_, kFrame_s, make_collision_queries(radar_, teapot_, radar_scene), {}, push.span());
   }
   void set_hand(const Mesh& mesh) {
     hand_mesh_ = mesh;
@@ -83,7 +82,6 @@ class PhysicsWithRadar : public ::testing::Test {
   }
 
   CyberRadar radar_;
-  ProximityQuery field_;
   Mesh teapot_mesh_ = utah_teapot(8, 0.15);
   TriangleTree teapot_, table_, hand_;
   Mesh table_mesh_, hand_mesh_;

@@ -44,7 +44,7 @@ class Table {
     }
     const PushDirections push = depenetration_directions({&together}, centre_world(body), 0.3);
     const RadarScene radar_scene{scene, {}};
-    const CollisionQueries queries = make_collision_queries(radar_, field_, object_, radar_scene);
+    const CollisionQueries queries = make_collision_queries(radar_, object_, radar_scene);
     AdvancedBody advanced{.body = &body,
                           .probe = &queries,
                           .dt_s = kFrame_s,
@@ -62,7 +62,6 @@ class Table {
   std::vector<Mesh> finger_meshes_;
   std::vector<TriangleTree> trees_;
   CyberRadar radar_;
-  ProximityQuery field_;
   ContactSystem system_;
 };
 

@@ -97,7 +97,7 @@ class Stage {
     for (std::size_t i = 0; i < trees_.size(); ++i)
       scene.push_back({{&trees_[i], Eigen::Isometry3d::Identity()}, kinds_[i]});
     const RadarScene radar_scene{scene, {}};
-    return advance(body, dt_s, make_collision_queries(radar_, field_, object_, radar_scene), config, push);
+    return advance(body, dt_s, make_collision_queries(radar_, object_, radar_scene), config, push);
   }
   void run(Body& body, double seconds, const PhysicsConfig& config = {}) {
     for (double t = 0.0; t < seconds - 1e-9; t += kFrame_s) (void)step(body, kFrame_s, config);
@@ -111,7 +111,6 @@ class Stage {
   std::vector<TriangleTree> trees_;
   std::vector<SurfaceKind> kinds_;
   CyberRadar radar_;
-  ProximityQuery field_;
 };
 
 Mesh moved(Mesh mesh, const Vec3& by) {

@@ -67,7 +67,7 @@ class Falling {
   StepReport step(double dt_s, const PhysicsConfig& config = {}) {
     const std::vector<SceneTree> scene = {{{&floor_, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic}};
     const RadarScene radar_scene{scene, {}};
-    return advance(body, dt_s, make_collision_queries(radar_, field_, tree_, radar_scene), config);
+    return advance(body, dt_s, make_collision_queries(radar_, tree_, radar_scene), config);
   }
   [[nodiscard]] double height_m() const { return body.T_world_object.translation().z(); }
 
@@ -77,7 +77,6 @@ class Falling {
  private:
   TriangleTree tree_, floor_;
   CyberRadar radar_;
-  ProximityQuery field_;
 };
 
 TEST(Extremes, AMillionStepsOfASpinningBodyKeepARotation) {

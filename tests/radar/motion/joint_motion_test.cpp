@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -25,7 +26,6 @@ struct Two {
   TriangleTree trees[2];
   Eigen::Isometry3d T[2];
   RigidMotion motions[2];
-  ProximityQuery field;
 
   Two(const Mesh& one, const Mesh& other) : meshes{one, other} {
     for (int i = 0; i < 2; ++i) trees[i].build_by_place(meshes[i]);
@@ -38,7 +38,8 @@ struct Two {
   FreeTime free_time(double duration_s) {
     const SceneTree scene{{&trees[1], T[1]}, SurfaceKind::kObject};
     const TreeStates states{{}, {motions[1]}};
-    return field.free_time({&trees[0], T[0]}, motions[0], duration_s, kKeep_m, {{&scene, 1}, {}}, 0, states);
+    return roomradar::free_time({&trees[0], T[0]}, motions[0], duration_s, kKeep_m, {{&scene, 1}, {}}, 0,
+                                states);
   }
 };
 
@@ -155,8 +156,7 @@ struct Row {
   std::vector<TriangleTree> trees;
   std::vector<Eigen::Isometry3d> T;
   std::vector<JointMover> movers;
-  ProximityQuery field;
-  int queries = 0;
+  std::atomic<int> queries = 0;
 
   /// @param x_m, speed_mps  per box
   Row(const std::vector<double>& x_m, const std::vector<double>& speed_mps, double duration_s)
@@ -188,8 +188,8 @@ struct Row {
       states.left_out[k] = k == i || (only == kNoMover ? is_moving && k < i : k != only);
       if (is_moving) states.motions[k] = movers[k].motion;
     }
-    const FreeTime free =
-        field.free_time({&trees[i], T[i]}, movers[i].motion, duration_s, kKeep_m, {scene, {}}, 0, states);
+    const FreeTime free = roomradar::free_time({&trees[i], T[i]}, movers[i].motion, duration_s, kKeep_m,
+                                               {scene, {}}, 0, states);
     return {free, free.limit.kind == SurfaceKind::kNothing ? kNoMover : free.limit.tree};
   }
   [[nodiscard]] double gap_m(std::size_t i) const {
@@ -244,6 +244,19 @@ TEST(JointMotion, WhatIsFarFromThoseThatMetIsNotQueriedAgain) {
   Row two({-0.2, 0.2}, {2.0, -2.0}, 0.2);
   move_to_contact(two.movers);
   EXPECT_EQ(before, two.queries + 1);
+}
+
+TEST(JointMotion, AWorkerChangesNothing) {
+  const std::vector<double> x_m = {-0.2, 0.2, 0.5, 1.0, 1.3, 1.7, 2.2}, mps = {2, -2, -1, 1, -3, 0.5, -1};
+  Row alone(x_m, mps, 1.0), shared(x_m, mps, 1.0);
+  move_to_contact(alone.movers);
+  WorkerThread worker;
+  move_to_contact(shared.movers, &worker);
+  EXPECT_EQ(shared.queries, alone.queries);
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    EXPECT_EQ(shared.movers[i].gone_s, alone.movers[i].gone_s) << i;
+    EXPECT_EQ(shared.T[i].matrix(), alone.T[i].matrix()) << i;
+  }
 }
 
 TEST(JointMotion, PathsThatOverlapAreOneSet) {

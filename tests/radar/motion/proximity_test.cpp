@@ -21,7 +21,6 @@ struct Pair {
   Mesh object, scene;
   TriangleTree object_tree, scene_tree;
   SceneTree tree;
-  ProximityQuery field;
 
   Pair(const Mesh& object_mesh, const Mesh& scene_mesh, SurfaceKind kind = SurfaceKind::kStatic)
       : object(object_mesh), scene(scene_mesh) {
@@ -31,11 +30,11 @@ struct Pair {
   }
   [[nodiscard]] RadarScene radar_scene() const { return {{&tree, 1}, {}}; }
   SurfaceKindMask near(const Eigen::Isometry3d& T, double reach_m, std::vector<ClosestPoint>& points) {
-    return field.near({&object_tree, T}, radar_scene(), reach_m, 0, points);
+    return near_features({&object_tree, T}, radar_scene(), reach_m, 0, points);
   }
   FreeTime free_time(const Eigen::Isometry3d& T, const RigidMotion& motion, double duration_s,
                      double keep_m) {
-    return field.free_time({&object_tree, T}, motion, duration_s, keep_m, radar_scene());
+    return roomradar::free_time({&object_tree, T}, motion, duration_s, keep_m, radar_scene());
   }
   [[nodiscard]] double distance_m(const Eigen::Isometry3d& T) const {
     return exact_clearance(object, T, scene, Eigen::Isometry3d::Identity());
@@ -46,7 +45,7 @@ Eigen::Isometry3d at(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
-TEST(ProximityQuery, ABoxOverAFloorIsNearAtItsFourCorners) {
+TEST(Proximity, ABoxOverAFloorIsNearAtItsFourCorners) {
   Pair pair(shapes::box({0.2F, 0.3F, 0.1F}), shapes::floor(2.0F, 0.0F));
   std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(at(0, 0, 0.051), 0.002, points), 0U);
@@ -79,7 +78,7 @@ Mesh grid(std::uint32_t cells) {
   return mesh;
 }
 
-TEST(ProximityQuery, WhatTouchesExactlyIsNearAndKnowsItsSide) {
+TEST(Proximity, WhatTouchesExactlyIsNearAndKnowsItsSide) {
   std::vector<ClosestPoint> points;
   // On a floor and under a ceiling, with two triangles and with many: some of these have vertices under the
   // box's edges.
@@ -99,7 +98,7 @@ TEST(ProximityQuery, WhatTouchesExactlyIsNearAndKnowsItsSide) {
   }
 }
 
-TEST(ProximityQuery, RoundingDoesNotTurnTheNormalOfWhatTouches) {
+TEST(Proximity, RoundingDoesNotTurnTheNormalOfWhatTouches) {
   Pair pair(shapes::box({0.25F, 0.5F, 0.125F}), shapes::floor(2.0F, 0.0F));
   Eigen::Isometry3d T = at(0, 0, 0.0625);
   T.rotate(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
@@ -110,7 +109,7 @@ TEST(ProximityQuery, RoundingDoesNotTurnTheNormalOfWhatTouches) {
   for (const ClosestPoint& p : points) EXPECT_EQ(p.normal_world.z(), 1.0);
 }
 
-TEST(ProximityQuery, AnEdgeAcrossAnEdgeIsNearWhereTheyPass) {
+TEST(Proximity, AnEdgeAcrossAnEdgeIsNearWhereTheyPass) {
   // A box rotated so one of its edges is above an edge of another box, at right angles.
   Mesh ridge = shapes::box({4, 0.2F, 0.2F});
   Pair pair(shapes::box({0.2F, 4, 0.2F}), ridge);
@@ -127,17 +126,17 @@ TEST(ProximityQuery, AnEdgeAcrossAnEdgeIsNearWhereTheyPass) {
   }
 }
 
-TEST(ProximityQuery, WhatCrossesIsToldByItsKindAndGivesNoPoint) {
+TEST(Proximity, WhatCrossesIsToldByItsKindAndGivesNoPoint) {
   Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F), SurfaceKind::kDynamic);
   std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(at(0, 0, 0.05), 0.002, points), bit_of(SurfaceKind::kDynamic));
   EXPECT_TRUE(points.empty());
-  EXPECT_EQ(pair.field.near({&pair.object_tree, at(0, 0, 0.05)}, pair.radar_scene(), 0.002,
-                            bit_of(SurfaceKind::kDynamic), points),
+  EXPECT_EQ(near_features({&pair.object_tree, at(0, 0, 0.05)}, pair.radar_scene(), 0.002,
+                          bit_of(SurfaceKind::kDynamic), points),
             0U);
 }
 
-TEST(ProximityQuery, AOneSidedSurfaceIsNearFromItsOutsideOnly) {
+TEST(Proximity, AOneSidedSurfaceIsNearFromItsOutsideOnly) {
   std::vector<ClosestPoint> points;
   Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F), SurfaceKind::kUnknownFrontier);
   pair.near(at(0, 0, 0.101), 0.002, points);
@@ -148,7 +147,7 @@ TEST(ProximityQuery, AOneSidedSurfaceIsNearFromItsOutsideOnly) {
   EXPECT_EQ(pair.free_time(at(0, 0, -0.101), up, 1.0, 5e-4).free_s, 1.0);
 }
 
-TEST(ProximityQuery, TheNearestPointIsAsNearAsTheMeshes) {
+TEST(Proximity, TheNearestPointIsAsNearAsTheMeshes) {
   Pair pair(shapes::torus(14, 8, 0.1F, 0.03F, 0.01F), shapes::torus(20, 10, 0.3F, 0.08F, 0.02F));
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -174,7 +173,7 @@ TEST(ProximityQuery, TheNearestPointIsAsNearAsTheMeshes) {
   EXPECT_GT(near_ones, 10);
 }
 
-TEST(ProximityQuery, NoMotionIsFreeForLongerThanItIs) {
+TEST(Proximity, NoMotionIsFreeForLongerThanItIs) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const auto vector = [&](double size) {
@@ -210,7 +209,7 @@ struct Boards {
   Pair fine{shapes::box_of_cells({0.3F, 0.2F, 0.02F}, 13), shapes::box_of_cells({0.5F, 0.25F, 0.02F}, 11)};
 };
 
-TEST(ProximityQuery, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
+TEST(Proximity, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
   Boards boards;
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -246,7 +245,7 @@ TEST(ProximityQuery, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
   EXPECT_GT(crossed, 50);
 }
 
-TEST(ProximityQuery, NoFaceOfManyTrianglesIsPassed) {
+TEST(Proximity, NoFaceOfManyTrianglesIsPassed) {
   Boards boards;
   std::mt19937 random(10);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -272,7 +271,7 @@ TEST(ProximityQuery, NoFaceOfManyTrianglesIsPassed) {
   EXPECT_GT(stopped, 100);
 }
 
-TEST(ProximityQuery, AStraightFallIsFreeUntilItsKeptDistance) {
+TEST(Proximity, AStraightFallIsFreeUntilItsKeptDistance) {
   Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F));
   const RigidMotion fall{{0, 0, -2}, Vec3::Zero(), Vec3::Zero()};
   EXPECT_NEAR(pair.free_time(at(0, 0, 1.1), fall, 10.0, 5e-4).free_s, (1.0 - 5e-4) / 2.0, 1e-6);
@@ -280,7 +279,7 @@ TEST(ProximityQuery, AStraightFallIsFreeUntilItsKeptDistance) {
   EXPECT_EQ(pair.free_time(at(0, 0, 0.101), slide, 0.2, 5e-4).free_s, 0.2);
 }
 
-TEST(ProximityQuery, ATipOverAnEdgeIsFreeForAWholePiece) {
+TEST(Proximity, ATipOverAnEdgeIsFreeForAWholePiece) {
   // The box rotates about its lower edge, a margin above the floor: the gap shrinks only with the square of
   // the angle.
   Pair pair(shapes::box({0.1F, 0.1F, 0.4F}), shapes::floor(2.0F, 0.0F));
@@ -294,7 +293,7 @@ TEST(ProximityQuery, ATipOverAnEdgeIsFreeForAWholePiece) {
   EXPECT_GT(pair.free_time(T, motion, 1.0 / 60.0, 5e-4).free_s, 0.9 / 60.0);
 }
 
-TEST(ProximityQuery, RodsEndToEndAreNearAndAreMetFromFarAway) {
+TEST(Proximity, RodsEndToEndAreNearAndAreMetFromFarAway) {
   const Mesh rod = shapes::box({1.0F, 0.01F, 0.01F});
   Pair pair(rod, rod);
   std::vector<ClosestPoint> points;
@@ -314,7 +313,7 @@ TEST(ProximityQuery, RodsEndToEndAreNearAndAreMetFromFarAway) {
   EXPECT_LT(pair.free_time(at(3, 0, 0), round, 1.0, 0.001).free_s, 1.0);
 }
 
-TEST(ProximityQuery, NothingIsFreeForEverAndNonsenseIsRefused) {
+TEST(Proximity, NothingIsFreeForEverAndNonsenseIsRefused) {
   Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), Mesh{});
   std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(at(0, 0, 0), 0.01, points), 0U);

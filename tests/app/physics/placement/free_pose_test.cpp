@@ -21,7 +21,6 @@ struct Scene {
   std::vector<TriangleTree> trees;
   std::vector<SceneTree> surfaces;
   CyberRadar radar;
-  ProximityQuery proximity;
 
   explicit Scene(const std::vector<Mesh>& meshes, SurfaceKind kind = SurfaceKind::kStatic) {
     box_tree.build_by_place(shapes::box(Eigen::Vector3f::Constant(0.1F)));
@@ -38,7 +37,7 @@ struct Scene {
   }
   std::optional<FreePose> leave(const Vec3& middle, double max_m,
                                 const std::function<bool(const Eigen::Isometry3d&)>& is_allowed = {}) {
-    return nearest_free_pose(at(middle), surfaces, 0.001, max_m, is_allowed, radar, proximity);
+    return nearest_free_pose(at(middle), surfaces, 0.001, max_m, is_allowed, radar);
   }
 };
 
@@ -53,12 +52,12 @@ TEST(FreePose, ABoxInTheFloorRisesAndDoesNotFallThrough) {
   Scene scene({shapes::floor(2.0F, 0.0F)});
   // Its middle is below the floor: the shorter way would be down.
   for (const double middle_m : {0.04, 0.0, -0.02, -0.045}) {
-    EXPECT_TRUE(is_crossed(scene.at({0, 0, middle_m}), scene.surfaces, scene.proximity));
+    EXPECT_TRUE(is_crossed(scene.at({0, 0, middle_m}), scene.surfaces));
     const auto free = scene.leave({0, 0, middle_m}, 0.1);
     ASSERT_TRUE(free) << middle_m;
     EXPECT_NEAR(free->moved_m, 0.05 - middle_m, 0.0012 + 0.1 / 20 / 32);
     EXPECT_NEAR(free->T_world_object.translation().z(), 0.05, 0.0012 + 0.1 / 20 / 32);
-    EXPECT_FALSE(is_crossed({&scene.box_tree, free->T_world_object}, scene.surfaces, scene.proximity));
+    EXPECT_FALSE(is_crossed({&scene.box_tree, free->T_world_object}, scene.surfaces));
   }
 }
 
@@ -93,7 +92,7 @@ TEST(FreePose, KeepsToAllowedPoses) {
 
 TEST(FreePose, OneSidedSurfacesDoNotCross) {
   Scene scene({shapes::floor(2.0F, 0.0F)}, SurfaceKind::kUnknownFrontier);
-  EXPECT_FALSE(is_crossed(scene.at({0, 0, 0.0}), scene.surfaces, scene.proximity));
+  EXPECT_FALSE(is_crossed(scene.at({0, 0, 0.0}), scene.surfaces));
 }
 
 }  // namespace

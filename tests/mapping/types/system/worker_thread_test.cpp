@@ -23,6 +23,19 @@ TEST(WorkerThread, BothPiecesAreDoneWhenTheCallReturns) {
   }
 }
 
+TEST(WorkerThread, EachNumberIsWorkedOnOnceAndAFaultIsThrown) {
+  WorkerThread second;
+  for (const std::size_t count : {0U, 1U, 2U, 1000U}) {
+    std::vector<int> worked(count);
+    second.run_each(count, [&](std::size_t i) { ++worked[i]; });
+    EXPECT_EQ(worked, std::vector<int>(count, 1));
+  }
+  const auto breaks_at_7 = [](std::size_t i) {
+    if (i == 7) throw std::runtime_error("seven");
+  };
+  EXPECT_THROW(second.run_each(100, breaks_at_7), std::runtime_error);
+}
+
 TEST(WorkerThread, WhatEitherThrowsIsThrownAndTheNextCallIsAsEver) {
   WorkerThread second;
   const auto fault_of_run = [&](const auto& here, const auto& beside) -> std::string {
