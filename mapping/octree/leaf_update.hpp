@@ -88,7 +88,7 @@ class LeafUpdate {
   /// must hold for the node.
   /// @param hit  bit i: a ray ends in cell i
   /// @param refresh_colour  true: also updates colours of cells for which this frame's fraction of the weight
-  ///                        is below kSettledPart
+  ///                        is below kMinColourFraction
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
@@ -139,7 +139,7 @@ class LeafUpdate {
   // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
   // refresh. On a refresh, the measurement is weighted with this fraction. Smaller changes would be lost in
   // rounding to 8 bits.
-  static constexpr float kSettledPart = 1.0F / 8.0F;
+  static constexpr float kMinColourFraction = 1.0F / 8.0F;
 
   // Min distance, in voxels, at which a sample counts as behind a surface. Frames see past samples nearer to
   // the surface too often, because of noise and pose errors.
@@ -227,8 +227,8 @@ class LeafUpdate {
     select(sampled, sum, own_weight).store_rounded(block.weight);
     if (!has_colour_) return;
     unsigned take = which & (absolute(observed.distance_m) < colour_distance_m_).bits();
-    if (!refresh_colour) take &= ~block.coloured | (Float8(kSettledPart) <= part).bits();
-    if (take != 0) add_colours(block, observed.p_camera, max(part, kSettledPart), take);
+    if (!refresh_colour) take &= ~block.coloured | (Float8(kMinColourFraction) <= part).bits();
+    if (take != 0) add_colours(block, observed.p_camera, max(part, kMinColourFraction), take);
   }
 
   void add_colours(LeafBlock& block, const EightPoints<Float8>& p_camera, const Float8& part, unsigned take) {

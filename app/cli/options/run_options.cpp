@@ -100,9 +100,9 @@ void add_picture_options(CLI::App& command, RunOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--stream", options.stream,
-                  "write a line of JSON per frame: camera, objects, contacts, what moved, times; a file,\n"
-                  "a named pipe, or - for standard output. A slow reader loses lines, and never delays\n"
-                  "the run (default: not written)")
+                  "write a line of JSON per frame: camera, objects, contacts, dynamic surfaces, times;\n"
+                  "a file, a named pipe, or - for standard output. A slow reader loses lines, and never\n"
+                  "delays the run (default: not written)")
       ->type_name("FILE");
 }
 
