@@ -252,6 +252,7 @@ void bind_object_calls(py::class_<SessionRunner, RunnerPointer>& bound) {
 
 }  // namespace
 
+// One list of bindings, so it is not split.
 void bind_session(py::module_& module) {
   py::class_<SessionRunner, RunnerPointer> bound(
       module, "Session",

@@ -109,6 +109,7 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
   return result;
 }
 
+// Not split: the steps of a frame are to be read in their order in one place.
 FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   const auto handed_over = std::chrono::steady_clock::now();
   const FrameScene::RoomDrawn drawn_before = scene_.room_drawn();
