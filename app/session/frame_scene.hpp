@@ -104,7 +104,7 @@ class FrameScene {
   };
   [[nodiscard]] RoomDrawn room_drawn() const { return room_drawn_; }
   /// Cells of the last dynamic mesh, counted by kind and by fine region; kMap only.
-  [[nodiscard]] const DynamicCells& dynamic_cells() const { return dynamic_scratch_.cells; }
+  [[nodiscard]] const DynamicCells& dynamic_cells() const { return buffers_.dynamic.cells; }
 
   /// The last view rendered by render_expected().
   [[nodiscard]] const ExpectedView& expected() const { return expected_; }
@@ -131,13 +131,16 @@ class FrameScene {
   RoomDrawn room_drawn_;
   ForegroundState foreground_history_;
   FrameForeground foreground_;
-  DepthMeshScratch mesh_scratch_;
-  DynamicSurfaceScratch dynamic_scratch_;
   DynamicSurface dynamic_world_;
   std::vector<Eigen::Vector3d> points_world_, last_points_world_;
-  TriangleTree inferred_;                          ///< inferred backs; can be touched, but are never drawn
-  std::vector<MeshInstance> drawn_;                ///< buffer
-  std::vector<Eigen::AlignedBox3d> hidden_world_;  ///< buffer: bounds of tiles that are not loaded
+  TriangleTree inferred_;  ///< inferred backs; can be touched, but are never drawn
+  struct Buffers {
+    DepthMeshScratch mesh;
+    DynamicSurfaceScratch dynamic;
+    std::vector<MeshInstance> drawn;
+    std::vector<Eigen::AlignedBox3d> hidden_world;  ///< bounds of tiles that are not loaded
+  };
+  Buffers buffers_;
 
   void add_room(std::vector<MeshInstance>& drawn);
   void hide_unloaded(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);

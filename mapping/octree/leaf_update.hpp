@@ -50,20 +50,18 @@ class LeafUpdate {
         truncation_m_(config.truncation_voxels * cell_m_),
         colour_distance_m_(kColourCells * cell_m_),
         behind_(-kBehind_cells * cell_m_ / tree.units().distance_m),
-        hit_(in_steps(config.hit_log_odds)),
-        miss_(in_steps(config.miss_log_odds)),
-        min_(in_steps(config.min_log_odds)),
-        max_(in_steps(config.max_log_odds)) {
+        log_odds_{in_steps(config.hit_log_odds), in_steps(config.miss_log_odds),
+                  in_steps(config.min_log_odds), in_steps(config.max_log_odds)} {
     const ColourImage& colour = frame.colour;
     has_colour_ = !colour.empty() && colour.width == frame.colour_camera.width_px &&
                   colour.height == frame.colour_camera.height_px;
   }
 
   /// Returns a free cube at the minimum log-odds; further misses do not change it.
-  [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(min_)); }
+  [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(log_odds_.min)); }
   /// Returns the cube's state after one miss.
   [[nodiscard]] Slot missed(Slot cube) const {
-    const float after = std::max(static_cast<float>(cube.log_odds()) + miss_, min_);
+    const float after = std::max(static_cast<float>(cube.log_odds()) + log_odds_.miss, log_odds_.min);
     return Slot::cube(static_cast<LogOdds>(after == 0.0F ? 1.0F : after));
   }
 
@@ -166,8 +164,8 @@ class LeafUpdate {
 
   void add_log_odds(LeafBlock& block, unsigned hit, unsigned missed) const {
     const Float8 before = Float8::load(block.log_odds);
-    const Float8 after =
-        select(Float8::Mask::of_bits(hit), min(before + hit_, max_), max(before + miss_, min_));
+    const Float8 after = select(Float8::Mask::of_bits(hit), min(before + log_odds_.hit, log_odds_.max),
+                                max(before + log_odds_.miss, log_odds_.min));
     const Float8 known = select(after == Float8(0.0F), 1.0F, after);
     select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
   }
@@ -207,7 +205,7 @@ class LeafUpdate {
     const Float8 sum = own_weight + gained;
     const Float8 further = distance + (max(truncation, distance) - distance) * (gained / sum);
     const auto sampled = Float8(0.0F) < own_weight;
-    const auto forgotten = (Float8::load(block.log_odds) <= min_) & (truncation * 0.7F < further);
+    const auto forgotten = (Float8::load(block.log_odds) <= log_odds_.min) & (truncation * 0.7F < further);
     const auto kept = Float8::Mask::of_bits(sampled.bits() & ~forgotten.bits());
     select(kept, further, 0.0F).store_rounded(block.distance);
     select(kept, sum, 0.0F).store_rounded(block.weight);
@@ -273,8 +271,12 @@ class LeafUpdate {
   Pinhole camera_, colour_camera_;
   Eigen::Matrix4f T_colour_depth_;
   float truncation_m_, colour_distance_m_;
-  float behind_;                  // -kBehind_cells as distance, in units of BlockUnits::distance_m
-  float hit_, miss_, min_, max_;  // in units of BlockUnits::log_odds
+  float behind_;  // -kBehind_cells as distance, in units of BlockUnits::distance_m
+  // In units of BlockUnits::log_odds.
+  struct LogOddsSteps {
+    float hit, miss, min, max;
+  };
+  LogOddsSteps log_odds_;
   bool has_colour_ = false;
 };
 
