@@ -14,7 +14,8 @@
 
 namespace roomradar {
 
-/// Returns the weight of a measurement: the variance of one of weight 1 divided by its own, at most 1.
+/// Returns the weight of a measurement: kUnitWeightSigma_m squared divided by the measurement's variance, at
+/// most 1.
 inline float weight_at(const DepthNoise& noise, float depth_m) {
   const float ratio = kUnitWeightSigma_m / depth_sigma_m(noise, depth_m);
   return std::min(ratio * ratio, 1.0F);
@@ -102,11 +103,11 @@ class LeafUpdate {
     return pruned(node, block);
   }
 
-  /// Adds a miss to all voxels of a block, all of which a frame of this weight sees through. With `clear`,
-  /// the frame also sees through the space around the block. Then each sample's distance is averaged with the
-  /// truncation distance. The sample is erased once its voxel has the minimum log-odds and its distance
-  /// exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free space around
-  /// them.
+  /// Adds a miss to all voxels of a block, after a frame of this weight saw through all of them. With
+  /// `clear`, the frame also saw through the space around the block. Then each sample's distance is averaged
+  /// with the truncation distance. The sample is erased once its voxel has the minimum log-odds and its
+  /// distance exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free
+  /// space around them.
   ///
   /// Without `clear`, most samples are kept. Beside edges and on obliquely seen surfaces, seeing through a
   /// voxel is caused by noise more often than by a change. Samples behind a surface are different: frames see
