@@ -28,11 +28,9 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   room_.extent_m = extent_m(map);
   scene_.set_tiles(room_.tiles);
   if (!config.map_updates) return;
-  if (octree == nullptr || building_)
-    throw Error("commit changes: the session was given no octree to change");
+  if (octree == nullptr || building_) throw Error("commit changes: the session has no octree to change");
   if (config.scene.surfaces != SurfacePolicy::kMap)
-    throw Error(std::string("commit changes: with --surfaces ") +
-                std::string(to_string(config.scene.surfaces)) +
+    throw Error("commit changes: with --surfaces " + std::string(to_string(config.scene.surfaces)) +
                 " the map is not used, so no change can be committed; use --surfaces map");
   map_updater_ = std::make_unique<MapUpdater>(*octree, map.mesh, *config.map_updates);
 }
@@ -109,7 +107,6 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
   return result;
 }
 
-// Not split: the steps of a frame are to be read in their order in one place.
 FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   const auto handed_over = std::chrono::steady_clock::now();
   const FrameScene::RoomDrawn drawn_before = scene_.room_drawn();
