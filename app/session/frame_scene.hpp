@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "app/objects/shape.hpp"
+#include "app/session/frame_use.hpp"
+#include "app/session/session_config.hpp"
 #include "app/session/tiles/tile_window.hpp"
 #include "dynamic/foreground/foreground.hpp"
 #include "dynamic/surface/depth_mesh.hpp"
@@ -22,13 +24,6 @@
 #include "radar/gl/gpu_mesh.hpp"
 
 namespace roomradar {
-
-struct FrameSceneConfig {
-  SurfacePolicy surfaces = SurfacePolicy::kMap;
-  ForegroundConfig foreground = {};
-  DynamicSurfaceConfig moved = {};  ///< used with SurfacePolicy::kMap
-  DepthMeshConfig mesh = {};        ///< used with the other policies
-};
 
 /// Depth of the static room in a camera's image.
 struct ExpectedView {
@@ -98,10 +93,7 @@ class FrameScene {
   void render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                        const PixelRect& rect, DepthImage& depth_m);
 
-  /// Totals since construction: views rendered by render_expected(), and room triangles drawn in them.
-  struct RoomDrawn {
-    std::size_t views = 0, triangles = 0;
-  };
+  /// Totals since construction.
   [[nodiscard]] RoomDrawn room_drawn() const { return room_drawn_; }
   /// Cells of the last dynamic mesh, counted by kind and by fine region; kMap only.
   [[nodiscard]] const DynamicCells& dynamic_cells() const { return buffers_.dynamic.cells; }

@@ -109,7 +109,7 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
 
 FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   const auto handed_over = std::chrono::steady_clock::now();
-  const FrameScene::RoomDrawn drawn_before = scene_.room_drawn();
+  const RoomDrawn drawn_before = scene_.room_drawn();
   const std::uint64_t tested_before = objects_.static_triangles_tested();
   const double dt_s = seconds_since_last(whole.stamp_s);
   composer_.begin_frame(whole);

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,21 @@ struct TileChoiceConfig {
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const TileChoiceConfig& config);
+
+/// Settings of TileWindow.
+struct TileWindowConfig {
+  std::filesystem::path folder;  ///< the building's folder
+  BuildingInfo building;
+  TileChoiceConfig choice;
+  /// Limit of the process's memory that the choice of tiles tries to keep, bytes; 0: no limit.
+  std::size_t max_process_bytes = 0;
+  /// Time from the request for a tile to the first frame that uses it, s. A tile in view is used as soon as
+  /// it is loaded.
+  double apply_after_s = 0.5;
+  /// true: the frame in which a tile is due waits for the worker thread, so results are reproducible.
+  /// false: frames do not wait, and a tile is used as soon as it is loaded.
+  bool wait = true;
+};
 
 /// Returns the approximate memory of a tile in use, in bytes.
 std::size_t tile_bytes(const BuildingTile& tile, bool has_unknown);

@@ -23,20 +23,6 @@
 
 namespace roomradar {
 
-struct TileWindowConfig {
-  std::filesystem::path folder;  ///< the building's folder
-  BuildingInfo building;
-  TileChoiceConfig choice;
-  /// Limit of the process's memory that the choice of tiles tries to keep, bytes; 0: no limit.
-  std::size_t max_process_bytes = 0;
-  /// Time from the request for a tile to the first frame that uses it, s. A tile in view is used as soon as
-  /// it is loaded.
-  double apply_after_s = 0.5;
-  /// true: the frame in which a tile is due waits for the worker thread, so results are reproducible.
-  /// false: frames do not wait, and a tile is used as soon as it is loaded.
-  bool wait = true;
-};
-
 /// A tile in use.
 struct SessionTile {
   std::size_t index;  ///< in the building's tiles
