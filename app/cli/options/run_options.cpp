@@ -189,7 +189,8 @@ void complete_options(const CLI::App& command, RunOptions& options,
   if (const auto recorded = read_recorded(options.source))
     take_recorded_settings(command, *recorded, options);
   complete_quality(options.quality, options.preset, options.presets, options.fixed);
-  if (options.map.empty()) throw CLI::ValidationError("--map is missing: folder of a saved map; `roomradar prescan` makes one");
+  if (options.map.empty())
+    throw CLI::ValidationError("--map is missing: folder of a saved map; `roomradar prescan` makes one");
   if (command.count("--unknown") == 0 && options.surfaces != SurfacePolicy::kMap)
     options.unknown_is_solid = false;
   if (options.unknown_is_solid && options.surfaces != SurfacePolicy::kMap)
