@@ -121,7 +121,7 @@ TrajectoryError recorded_error(const std::map<std::string, PlacedFrames>& placed
 /// Puts a file of a job into the building under a name with its hash. A file of that name and size that is
 /// there stays.
 /// @param stem  folder in the building, and the name's begin
-ContentFile adopt(const fs::path& from, const fs::path& folder, const fs::path& stem,
+ContentFile store(const fs::path& from, const fs::path& folder, const fs::path& stem,
                   const std::string& extension, ContentHashes& hashes) {
   ContentFile file;
   file.sha256 = hashes.of(from);
@@ -136,8 +136,8 @@ ContentFile adopt(const fs::path& from, const fs::path& folder, const fs::path& 
   return file;
 }
 
-BuildingTile adopted_tile(const BuildingWork& work, const std::string& name, const json& facts,
-                          ContentHashes& hashes) {
+BuildingTile stored_tile(const BuildingWork& work, const std::string& name, const json& facts,
+                         ContentHashes& hashes) {
   const fs::path job = work.job(tile_job(tile_of_name(name)));
   const auto vector = [&](const char* key) {
     const json& value = facts.at(key);
@@ -149,14 +149,14 @@ BuildingTile adopted_tile(const BuildingWork& work, const std::string& name, con
   tile.surface_world = {vector("surface_min_m"), vector("surface_max_m")};
   tile.mesh_origin = vector("mesh_origin_m");
   const fs::path stem = fs::path(kTilesFolder) / name;
-  tile.octree = adopt(job / "tile.octree", work.folder, stem, ".octree", hashes);
-  tile.mesh = adopt(job / "tile.mesh", work.folder, stem, ".mesh", hashes);
-  tile.glb = adopt(job / "tile.glb", work.folder, stem, ".glb", hashes);
-  tile.unknown = adopt(job / "tile.unknown", work.folder, stem, ".unknown", hashes);
+  tile.octree = store(job / "tile.octree", work.folder, stem, ".octree", hashes);
+  tile.mesh = store(job / "tile.mesh", work.folder, stem, ".mesh", hashes);
+  tile.glb = store(job / "tile.glb", work.folder, stem, ".glb", hashes);
+  tile.unknown = store(job / "tile.unknown", work.folder, stem, ".unknown", hashes);
   return tile;
 }
 
-/// Returns whether the file has the name that adopt() gives to a recording's keyframes.
+/// Returns whether the file has the name that store() gives to a recording's keyframes.
 bool is_keyframe_file(const fs::path& path) {
   const std::string hash = path.stem().extension().string();  // with its dot
   return path.extension() == kKeyframeExtension && hash.size() == kHashDigits + 1 &&
@@ -275,7 +275,7 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   }
   result.recorded_error = recorded_error(placed_frames);
   show("place: " + std::to_string(placed_names.size()) + " of " + std::to_string(names.size()) +
-       " parts hang together, " +
+       " parts are connected, " +
        std::to_string(std::count(graph.is_used.begin(), graph.is_used.end(), true)) + " of " +
        std::to_string(joins.size()) + " joins agree");
 
@@ -294,14 +294,14 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
     const json facts =
         json::parse(read_bytes(work.job(tile_job(tile_of_name(name))) / "tile.json", "a tile's numbers"));
     if (facts.at("triangles").get<std::int64_t>() > 0)
-      result.info.tiles.push_back(adopted_tile(work, name, facts, hashes));
+      result.info.tiles.push_back(stored_tile(work, name, facts, hashes));
   }
   std::sort(result.info.tiles.begin(), result.info.tiles.end(),
             [](const BuildingTile& a, const BuildingTile& b) { return is_before(a.index, b.index); });
   for (BuildingRecording& recording : result.info.recordings)
     if (recording.frames_placed > 0)
       recording.keyframe_file =
-          adopt(work.job(fuse_job(recording.name)) / kPlacedKeyframesFile, work.folder,
+          store(work.job(fuse_job(recording.name)) / kPlacedKeyframesFile, work.folder,
                 fs::path(kRecordingsFolder) / recording.name, kKeyframeExtension, hashes);
   hashes.save();
   for (const auto& [recording, frames] : placed_frames)

@@ -1,4 +1,4 @@
-// building.hpp: one map of a building, from many recordings.
+// building.hpp: makes one map of a building from many recordings.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -18,12 +18,12 @@ namespace roomradar {
 /// "join", "fuse" or "tile".
 using RunStage = std::function<FarmState(const std::string& stage, const FarmPlan& plan)>;
 
-/// How many jobs a stage had, and how they ended.
+/// Number of a stage's jobs, by outcome, and their cost.
 struct StageCounts {
   std::string stage;
   std::size_t done = 0, present = 0, failed = 0;
   double wall_s = 0.0, cpu_s = 0.0;
-  double peak_mb = 0.0;  ///< of the job with the highest memory, 10^6 bytes
+  double peak_mb = 0.0;  ///< max memory of a job, 10^6 bytes
   std::vector<std::string> faults;
 };
 
@@ -31,7 +31,7 @@ struct JoinedPair {
   SubmapName a, b;
   SubmapJoin join;
   bool is_used = false;  ///< false: contradicts other joins, or was refused before
-  double off_m = 0.0;    ///< from the solution
+  double off_m = 0.0;    ///< see BuildingGraph::off_m
 };
 
 struct BuildingResult {
@@ -39,21 +39,21 @@ struct BuildingResult {
   std::vector<StageCounts> stages;
   std::vector<JoinedPair> joins;
   std::size_t kept = 0;  ///< submaps whose poses did not change since the last time
-  /// Error of all placed frames' positions against recorded poses, after one rigid alignment of the whole;
-  /// no poses if the recordings state none. The recorded poses must be in one world.
+  /// Position error of all placed frames against the recorded poses, after one rigid alignment. Has no poses
+  /// if the recordings state none. The recorded poses must be in one world.
   TrajectoryError recorded_error;
 };
 
-/// Makes a building's map, or brings it up to date:
-///   track     each recording alone: a submap
-///   retrieve  pairs of recordings that may show the same place
-///   join      proof that they do, and their relative pose
-///   (place)   all recordings in one world
-///   fuse      each recording's frames with its final poses, split into tiles
-///   tile      the parts of each tile added up; its surface
-/// What is there for the same inputs is not done again. Recordings that cannot be tracked, or that no other
-/// recording meets, are left out and listed. building.json is replaced at the end, then files of earlier
-/// tiles are deleted.
+/// Makes a building's map, or brings it up to date. The stages:
+///   track     tracks each recording alone, which gives its submaps
+///   retrieve  finds pairs of submaps that may show the same place
+///   join      proves that they show it, and measures their relative pose
+///   (place)   solves for the poses of all submaps in one world; not a job
+///   fuse      fuses each recording's frames with its final poses, and splits the result into tiles
+///   tile      adds up the parts of each tile, and extracts its surface
+/// Jobs whose inputs have not changed are not run again. Recordings that cannot be tracked, or that no join
+/// connects with the others, are left out and listed. At the end, building.json is replaced, then the files
+/// of earlier tiles are deleted.
 /// @param show  called with one sentence after each stage
 /// @throws Error if no recording can be tracked, a tile or a fusion fails, or a file cannot be written
 BuildingResult build_building(const BuildingWork& work, const RunStage& run_stage,

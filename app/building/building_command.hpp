@@ -13,18 +13,18 @@ namespace roomradar {
 
 struct BuildingOptions {
   std::string folder;
-  std::string recordings;  ///< list; see read_recording_list()
+  std::string recordings;  ///< path of the list; see read_recording_list()
   TileGrid grid;
   double deviation_m = 0.002;
   PoseOrigin poses = PoseOrigin::kTracked;
-  int processes = 0;  ///< jobs at a time; 0: one per processor
+  int processes = 0;  ///< max number of jobs at a time; 0: one per processor
   std::string report;
 };
 /// Adds the options with their help texts and checks.
 void add_options(CLI::App& command, BuildingOptions& options);
 /// Executes the command on this machine's processors. Returns the exit status.
 int run(const BuildingOptions& options);
-/// Executes it with jobs that `run_stage` runs.
+/// Executes the command; `run_stage` runs the jobs.
 int run_building(const BuildingOptions& options, const RunStage& run_stage);
 
 /// Adds the hidden command `building-step`, which the jobs call.

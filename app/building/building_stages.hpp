@@ -1,7 +1,7 @@
-// building_stages.hpp: the jobs of each stage, from recordings to tiles.
+// building_stages.hpp: lists the jobs of each stage, from recordings to tiles.
 //
-// Each stage is a manifest of jobs that do not depend on each other. What a stage's jobs read is known before
-// they begin, so a job is done again only if the content of its inputs changed.
+// Each stage is a manifest of jobs that do not depend on each other. All inputs of a job are named in the
+// manifest, so a job is run again only if the content of its inputs has changed.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -14,16 +14,16 @@
 
 namespace roomradar {
 
-/// A part of a recording; see TrackStep.
+/// Name of a submap; see TrackStep.
 struct SubmapName {
   std::string recording;
   int part = 0;
   [[nodiscard]] std::string name() const { return recording + "." + std::to_string(part); }
-  /// Folder relative to that of jobs.
+  /// Folder, relative to BuildingWork::jobs().
   [[nodiscard]] std::string folder() const { return "track-" + recording + "/" + std::to_string(part); }
 };
 
-/// Folders and settings of a building in the making.
+/// Folders and settings for making a building.
 struct BuildingWork {
   std::filesystem::path folder;             ///< of the building, absolute
   std::filesystem::path list_folder;        ///< of the list of recordings, absolute
@@ -32,7 +32,7 @@ struct BuildingWork {
   PoseOrigin poses = PoseOrigin::kTracked;
   double deviation_m = 0.002;
 
-  /// Folder with a folder per job.
+  /// Folder that contains one folder per job.
   [[nodiscard]] std::filesystem::path jobs() const { return folder / "work"; }
   [[nodiscard]] std::filesystem::path job(const std::string& name) const { return jobs() / name; }
   /// File with the keyframes' poses of a submap in the building.
@@ -49,26 +49,27 @@ inline std::string join_job(const SubmapName& a, const SubmapName& b) {
 inline std::string tile_job(const TileIndex& tile) { return "tile-" + name_of(tile); }
 inline constexpr const char* kRetrieveJob = "candidates";  // no folder may have the name of a step
 
-/// Returns the submaps of a recording that was tracked, in order of time.
+/// Returns the submaps of a tracked recording, in order of time.
 std::vector<SubmapName> submaps_of(const BuildingWork& work, const std::string& recording);
 
-/// The files to be added for each tile, by its name; relative to the folder of jobs, in order.
+/// Per tile name: the files to add up, in order, relative to BuildingWork::jobs().
 using PartsByTile = std::map<std::string, std::vector<std::string>>;
-/// Finds the parts that the recordings' fuse jobs wrote, of all tiles in which at least one has surface.
+/// Finds the files that the recordings' fuse jobs wrote, for all tiles in which a recording has surface.
 PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::string>& recordings);
 
-// Each function writes a stage's manifest to the folder of jobs and returns it. Throws Error if that fails.
+// Each function writes a stage's manifest to BuildingWork::jobs() and returns it. Throws Error if the
+// manifest cannot be written.
 
-/// A job per recording.
+/// One job per recording.
 Manifest track_stage(const BuildingWork& work);
 /// One job, which reads all submaps.
 Manifest retrieve_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps);
-/// A job per pair. CandidatePair counts in `submaps`.
+/// One job per pair. A CandidatePair holds indices in `submaps`.
 Manifest join_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps,
                     const std::vector<CandidatePair>& pairs);
-/// A job per recording, of those of its submaps that have a place in the building.
+/// One job per recording, for its submaps in `placed`.
 Manifest fuse_stage(const BuildingWork& work, const std::vector<SubmapName>& placed);
-/// A job per tile, of these parts.
+/// One job per tile.
 Manifest tile_stage(const BuildingWork& work, const PartsByTile& parts_of);
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// building_steps.hpp: the steps from recordings to tiles. Each is one job: it reads files and writes files,
-// and depends on nothing else.
+// building_steps.hpp: the steps from recordings to tiles. Each step is one job, which reads and writes files
+// and depends only on the files that it reads.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -13,8 +13,8 @@
 
 namespace roomradar {
 
-/// Tracks the camera of one recording. Writes a submap to out/0; where tracking was lost on the way, the rest
-/// to out/1 and so on.
+/// Tracks the camera of one recording. Writes a submap to out/0. After each loss of tracking, begins another
+/// submap, out/1 and so on; see split_at_losses().
 struct TrackStep {
   std::string source;
   PoseOrigin poses = PoseOrigin::kTracked;
@@ -29,20 +29,19 @@ struct RetrieveStep {
 };
 int run(const RetrieveStep& step);
 
-/// Compares two submaps. Writes out/joins.bin; see load_joins(). Depends on nothing but the two, so the
-/// other recordings may change.
+/// Compares two submaps. Writes out/joins.bin; see load_joins(). Depends only on these two submaps, so
+/// changes of other recordings do not require it again.
 struct JoinStep {
   std::filesystem::path a, b;  ///< folders of submaps
   std::filesystem::path out;
 };
 int run(const JoinStep& step);
 
-/// Fuses a recording's frames with their poses in the building, and splits the octree. Writes
-/// out/parts/TILE.octree for each tile in which the recording has surface, with a margin of
-/// kSurfaceReach_voxels, and out/margins/TILE.octree for each other tile in whose margin it has surface or
-/// that it saw through.
-/// Also writes out/keyframes.bin with the recording's placed keyframes at their poses in the building; see
-/// write_keyframe_database().
+/// Fuses a recording's frames with their poses in the building, and splits the octree into tiles with margins
+/// of kSurfaceReach_voxels. Writes out/parts/TILE.octree for each tile in which the recording has surface.
+/// Writes out/margins/TILE.octree for each other tile that the recording saw through, or in whose margin it
+/// has surface. Also writes out/keyframes.bin with the recording's placed keyframes at their poses in the
+/// building; see write_keyframe_database().
 struct FuseStep {
   std::string source;
   std::vector<std::filesystem::path> submaps;  ///< folders
@@ -57,11 +56,11 @@ inline constexpr const char* kPlacedKeyframesFile = "keyframes.bin";
 /// Max cells of a tile's unknown space: 2.5 MB of bits, cells of 2 cm in a tile of 5 m.
 inline constexpr double kTileUnknownCells = 2e7;
 
-/// Adds the parts of one tile, and extracts its surface and the border of its unknown space. Writes
-/// out/tile.octree (the tile's cube), tile.mesh, tile.glb and tile.unknown (of the cube alone, closed on all
-/// sides), or nothing but out/tile.json if the tile has no surface of its own.
+/// Adds up the parts of one tile, and extracts its surface and the border of its unknown space. Writes
+/// out/tile.json. If the tile has surface in its cube, also writes out/tile.octree (the tile's cube),
+/// tile.mesh, tile.glb and tile.unknown (the border within the cube, closed on all sides).
 struct TileStep {
-  std::string tile;                          ///< its name
+  std::string tile;                          ///< name of the tile
   std::vector<std::filesystem::path> parts;  ///< files, in the order in which they are added
   TileGrid grid;
   double deviation_m = 0.002;
@@ -70,14 +69,14 @@ struct TileStep {
 };
 int run(const TileStep& step);
 
-/// Reads pairs.json; submaps count as in RetrieveStep::submaps. Throws Error naming the file and the fault if
-/// it is missing or damaged.
+/// Reads pairs.json; the pairs hold indices in RetrieveStep::submaps. Throws Error naming the file and the
+/// fault if it is missing or damaged.
 std::vector<CandidatePair> read_pairs(const std::filesystem::path& file, std::size_t submaps);
 
 /// Writes a submap's keyframe poses in the building. Throws Error if the file cannot be written.
 void save_placed_keyframes(const std::vector<Eigen::Isometry3d>& T_building_keyframe,
                            const std::filesystem::path& path);
-/// Reads them. Throws Error naming the file and the fault if it is missing or damaged.
+/// Reads the keyframe poses. Throws Error naming the file and the fault if it is missing or damaged.
 std::vector<Eigen::Isometry3d> load_placed_keyframes(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -15,7 +15,7 @@ namespace roomradar {
 struct BuildingSummary {
   BuildingInfo info;
   std::int64_t triangles = 0;
-  std::uintmax_t bytes = 0;           ///< of all files that building.json lists
+  std::uintmax_t bytes = 0;           ///< size of all files that building.json lists
   Eigen::AlignedBox3d surface_world;  ///< bounding box of the surface, m; empty if there is no tile
   double surface_m2 = 0.0;
   std::vector<BuildingFloor> floors;  ///< from the lowest
@@ -27,7 +27,7 @@ BuildingSummary summarise_building(const std::filesystem::path& folder);
 
 /// Returns lines of text, for the user.
 std::string describe(const BuildingSummary& summary);
-/// Returns all of it as an object, without the files' hashes.
+/// Returns the summary as an object, without the files' hashes.
 nlohmann::json json_of(const BuildingSummary& summary);
 
 }  // namespace roomradar

@@ -7,7 +7,7 @@
 namespace roomradar {
 
 struct ListedRecording {
-  std::string name;    ///< in reports, and of its folder
+  std::string name;    ///< used in reports and in names of folders
   std::string source;  ///< as open_source() takes it; a file or folder is relative to the list's folder
 };
 

@@ -73,8 +73,8 @@ ROOMRADAR_API roomradar_status roomradar_radar_query_many(roomradar_radar* radar
                                                           const roomradar_shape* object,
                                                           const roomradar_query* queries, size_t count,
                                                           roomradar_contact* contacts);
-/* Queries a session's scene of the last frame: room, what moved, unknown space if solid, and all objects.
- * Exact. */
+/* Queries a session's scene of the last frame: room, dynamic surfaces, unknown space if solid, and all
+ * objects. Exact. */
 ROOMRADAR_API roomradar_status roomradar_session_query_shape(roomradar_session* session,
                                                              const roomradar_shape* object,
                                                              const roomradar_query* queries, size_t count,

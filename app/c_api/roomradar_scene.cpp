@@ -27,7 +27,7 @@ void require_watching(const SessionState& state) {
   if (!state.own_map)
     throw Refusal(
         ROOMRADAR_FAILED,
-        "the session adopts no changes; open it with roomradar_session_options::watches_changes = 1");
+        "the session commits no changes; open it with roomradar_session_options::watches_changes = 1");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-/* roomradar_scene.h: what a session knows of the room: expected depth, what moved, its mesh in blocks, and
- * changes that it adopts and saves. */
+/* roomradar_scene.h: what a session knows of the room: expected depth, dynamic pixels and surfaces, its
+ * mesh in blocks, and changes that are committed and saved. */
 #ifndef ROOMRADAR_SCENE_H
 #define ROOMRADAR_SCENE_H
 
@@ -17,15 +17,16 @@ extern "C" {
 ROOMRADAR_API roomradar_status roomradar_session_expected_depth(roomradar_session* session, float* depth_m,
                                                                 size_t capacity, size_t* needed,
                                                                 roomradar_camera* camera);
-/* Returns which pixels of the last located frame show what moved since the scan: 255, else 0.
+/* Returns which pixels of the last located frame are dynamic, i.e. show a surface that is not in
+ * the map: 255, else 0.
  * @param capacity  of mask, pixels
  * @param needed    width * height; 0 before the first located frame
  * @param width_px, height_px  may be null */
 ROOMRADAR_API roomradar_status roomradar_session_moved_mask(roomradar_session* session, uint8_t* mask,
                                                             size_t capacity, size_t* needed,
                                                             int32_t* width_px, int32_t* height_px);
-/* Returns the mesh of what moved, in the world: the seen surface, or its assumed back if is_back is 1. Its
- * version is the number of located frames. */
+/* Returns the mesh of the dynamic surfaces, in the world: the seen surfaces, or their assumed backs if
+ * is_back is 1. Its version is the number of located frames. */
 ROOMRADAR_API roomradar_status roomradar_session_moved_mesh(roomradar_session* session, int32_t is_back,
                                                             roomradar_mesh_buffers* mesh);
 /* Lists the blocks of the room's present surface. Blocks that have vanished stay, with 0 triangles. Fetch
@@ -35,22 +36,22 @@ ROOMRADAR_API roomradar_status roomradar_session_blocks(roomradar_session* sessi
                                                         size_t capacity, size_t* needed);
 ROOMRADAR_API roomradar_status roomradar_session_block_mesh(roomradar_session* session, uint64_t block_id,
                                                             roomradar_mesh_buffers* mesh);
-/* A change of the room that was adopted. */
+/* A change of the room that was committed. */
 typedef struct roomradar_change {
   int32_t is_removal; /* 0: something came; 1: something went */
   int64_t frame;      /* index of the first frame that used it */
   double stamp_s;
   double min_world_m[3], max_world_m[3]; /* bounds of what changed */
 } roomradar_change;
-/* Asks to adopt what stands still in view and is not in the map, and what is gone. Takes effect some frames
- * later. Needs roomradar_session_options::watches_changes. */
+/* Commits changes: objects that stand still in view and are not in the map, and objects that are gone.
+ * Takes effect some frames later. Needs roomradar_session_options::watches_changes. */
 ROOMRADAR_API roomradar_status roomradar_session_adopt(roomradar_session* session);
-/* Lists the changes adopted so far. */
+/* Lists the changes committed so far. */
 ROOMRADAR_API roomradar_status roomradar_session_changes(roomradar_session* session,
                                                          roomradar_change* changes, size_t capacity,
                                                          size_t* needed);
-/* Saves the room with the adopted changes as a map, as `roomradar run --save-map` does. Waits for a change
- * that is being adopted. A map in the folder is replaced, whole or not at all. Needs
+/* Saves the room with the committed changes as a map, as `roomradar run --save-map` does. Waits for a change
+ * that is being committed. A map in the folder is replaced, whole or not at all. Needs
  * roomradar_session_options::watches_changes. */
 ROOMRADAR_API roomradar_status roomradar_session_save(roomradar_session* session, const char* folder);
 

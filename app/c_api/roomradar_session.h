@@ -1,5 +1,5 @@
-/* roomradar_session.h: augmented reality in a saved room: frames in; camera pose, what moved and a composed
- * picture out. The saved map is not modified. */
+/* roomradar_session.h: augmented reality in a saved room: frames in; camera pose, dynamic surfaces and a
+ * composed picture out. The saved map is not modified. */
 #ifndef ROOMRADAR_SESSION_H
 #define ROOMRADAR_SESSION_H
 
@@ -18,7 +18,7 @@ typedef enum roomradar_poses {
 
 /* Surfaces that objects can touch. */
 typedef enum roomradar_surfaces {
-  ROOMRADAR_SURFACES_MAP = 0,   /* the saved room and what moved */
+  ROOMRADAR_SURFACES_MAP = 0,   /* the saved room and dynamic surfaces */
   ROOMRADAR_SURFACES_HOLES = 1, /* the frame's depth alone, open where nothing was measured */
   ROOMRADAR_SURFACES_SKIRT = 2,
   ROOMRADAR_SURFACES_BORDER = 3
@@ -30,9 +30,9 @@ typedef struct roomradar_session_options {
   int32_t surfaces;         /* a roomradar_surfaces */
   int32_t unknown_is_solid; /* 1: objects cannot enter unobserved space */
   int32_t has_no_picture;   /* 1: no picture is made; the engine draws */
-  int32_t watches_changes;  /* 1: lasting changes of the room can be adopted. Opens the map a second time */
-  double adopt_after_s;     /* 0: changes are adopted on request only; else after this time without motion */
-  int32_t may_adopt_late;   /* 1: a frame never waits for a change that is being adopted */
+  int32_t watches_changes;  /* 1: lasting changes of the room can be committed. Opens the map a second time */
+  double adopt_after_s;   /* 0: changes are committed on request only; else after this time without motion */
+  int32_t may_adopt_late; /* 1: a frame never waits for a change that is being committed */
   /* Settings that trade accuracy for time, by name: "depth_stride=2 radar=sampled". Names and values are
    * those of `roomradar run --help` and presets.json. Null: the defaults. */
   const char* quality;
@@ -58,15 +58,15 @@ typedef struct roomradar_frame_result {
   int32_t departures;       /* objects that fell out of the map and were returned or removed */
   int32_t notices;          /* sentences that wait in roomradar_session_notices() */
   uint64_t moved_pixels;    /* of the depth image, reduced by depth_stride */
-  uint64_t moved_triangles; /* of the mesh of what moved */
+  uint64_t moved_triangles; /* of the mesh of the dynamic surfaces */
   uint64_t room_version;    /* from 1; grows when the room's mesh changes */
   double frame_ms;          /* time of the whole frame */
   double contact_ms;        /* time until all objects had moved */
 } roomradar_frame_result;
 
-/* Processes one frame: locates the camera, finds what moved, moves the objects, composes the picture. A frame
- * whose images do not fit its cameras is ROOMRADAR_INVALID_ARGUMENT and changes nothing. `result` may be
- * null. */
+/* Processes one frame: locates the camera, finds dynamic pixels, moves the objects, composes the picture. A
+ * frame whose images do not fit its cameras is ROOMRADAR_INVALID_ARGUMENT and changes nothing. `result` may
+ * be null. */
 ROOMRADAR_API roomradar_status roomradar_session_step(roomradar_session* session,
                                                       const roomradar_frame* frame,
                                                       roomradar_frame_result* result);

@@ -21,7 +21,7 @@ std::vector<std::string> names_of(const std::vector<const CLI::App*>& commands) 
   return names;
 }
 
-/// Returns the words of a type such as "exact|sampled", and the usual words of some other options; otherwise
+/// Returns the words of a type such as "exact|sampled", and common values of some other options; otherwise
 /// an empty string.
 std::string choices_of(const CLI::Option& option) {
   if (option.check_name("--preset")) return "fast balanced accurate";

@@ -33,7 +33,7 @@ constexpr const char* kMeshes = "meshes";
 constexpr const char* kResults = "results.txt";
 constexpr const char* kFormat = "roomradar session";
 constexpr int kFormatVersion = 3;
-constexpr int kOldestVersion = 2;  // keeps the files of meshes, read as they were then
+constexpr int kOldestVersion = 2;  // such sessions keep the files of meshes
 constexpr std::uintmax_t kMaxSettingsBytes = 1U << 20U;
 
 Json read_settings(const fs::path& folder) {
@@ -98,7 +98,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunOptions& options, con
   if (options.commit_after_s) json["adopt_s"] = *options.commit_after_s;
   write_bytes(folder_ / kSettings, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   events_.open(folder_ / kEvents);
-  events_ << "# events of " << options.source << ", as they were applied\n" << std::flush;
+  events_ << "# events of " << options.source << ", as applied\n" << std::flush;
   require_written(events_, folder_ / kEvents);
   results_.open(folder_ / kResults);
   results_ << "# frame, fingerprint of the objects, fingerprint of the picture (0: none was made)\n"

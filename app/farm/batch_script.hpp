@@ -1,4 +1,4 @@
-// batch_script.hpp: scripts that run a plan's jobs by other programs.
+// batch_script.hpp: writes scripts by which other programs run a plan's jobs.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -13,9 +13,10 @@ enum class BatchForm {
   kSlurm,     ///< a bash script that submits arrays of jobs to Slurm
 };
 
-/// Returns a script that runs the jobs that are not present, each by `roomradar farm MANIFEST --out DIR --job
-/// NAME`, after the jobs that it needs. For Slurm, also writes the lists of names that the script reads to
-/// the results' folder. The script calls $ROOMRADAR if that is set, otherwise `program`.
+/// Returns a script that runs the jobs without results. It runs each job by `roomradar farm MANIFEST --out
+/// DIR
+/// --job NAME`, after the jobs that it needs. The script calls $ROOMRADAR if that is set, otherwise
+/// `program`. For Slurm, also writes lists of names, which the script reads, to the folder of the results.
 /// @throws Error if a list cannot be written
 std::string batch_script(const FarmPlan& plan, BatchForm form, const std::filesystem::path& program);
 

@@ -1,4 +1,4 @@
-// content_hashes.hpp: hashes of the contents of files and folders.
+// content_hashes.hpp: computes hashes of the contents of files and folders.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -7,26 +7,27 @@
 
 namespace roomradar {
 
-/// Hashes contents, and remembers each file's hash by its size and time of change, in memory and in a file.
+/// Hashes contents. Caches each file's hash in memory and in a file. The cached hash is valid while size and
+/// time of change are the same.
 class ContentHashes {
  public:
-  /// @param memory  file with the hashes of earlier runs; need not exist. Its format is checked, its hashes
-  ///                are not
+  /// @param memory  file with the hashes of earlier runs; need not exist. Its format is checked, but not its
+  ///                hashes
   explicit ContentHashes(std::filesystem::path memory);
 
   /// Returns the SHA-256 of a file's content, or of the names and contents of all files of a folder, in
   /// hexadecimal digits. Follows links. Throws Error if something cannot be read.
   std::string of(const std::filesystem::path& path);
-  /// Returns the size of all files hashed so far, bytes.
+  /// Returns the total size of the files hashed so far, bytes.
   [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
 
-  /// Writes the file if hashes were added. Ignores a failure: the next run then computes them again.
+  /// Writes the file if hashes were added. Ignores a failure: the next run then computes the hashes again.
   void save() const noexcept;
 
  private:
   struct Known {
     std::uintmax_t size = 0;
-    std::int64_t changed = 0;  ///< clock ticks of the file system
+    std::int64_t changed = 0;  ///< in clock ticks of the file system
     std::string sha256;
   };
   std::filesystem::path memory_;

@@ -14,21 +14,21 @@ namespace roomradar {
 /// State of a farm during or after its run.
 struct FarmState {
   Schedule schedule;
-  std::map<std::size_t, JobResult> results;  ///< of the jobs that ended in this run, by index
+  std::map<std::size_t, JobResult> results;  ///< results of jobs that ended in this run, by index
 };
 
-/// Returns why a job of the plan has no results, as a sentence; empty if it has. For a job that was skipped,
-/// the sentence names the job that failed and the command that runs it.
+/// Returns the reason why a job has no results, as a sentence; empty if it has results. For a skipped job,
+/// the sentence names the failed job and the command that runs it.
 std::string fault_of(const FarmPlan& plan, const FarmState& state, std::size_t job);
 
-/// Called after each job, with its index, on one thread at a time.
+/// Called with the index of each job after its end, on one thread at a time.
 using WatchFarm = std::function<void(const FarmState& state, std::size_t job)>;
 
-/// Runs the jobs that are not present, each in a process of its own. If a job fails, only the jobs that need
-/// it are skipped.
-/// @param processes     number of jobs at a time; at least 1
+/// Runs the jobs without results, each in its own process. If a job fails, only the jobs that need it are
+/// skipped.
+/// @param processes     max number of jobs at a time, >= 1
 /// @param program       file of the program that the jobs run
-/// @param is_cancelled  once it returns true, running jobs are killed and no other begins
+/// @param is_cancelled  once it returns true, running jobs are killed and no more jobs begin
 FarmState run_farm(const FarmPlan& plan, int processes, const std::filesystem::path& program,
                    const IsCancelled& is_cancelled, const WatchFarm& watch = {});
 

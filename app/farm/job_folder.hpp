@@ -1,7 +1,7 @@
-// job_folder.hpp: a job's folder, which appears as a whole or not at all.
+// job_folder.hpp: creates a job's folder atomically.
 //
-// NAME holds the results of a finished job and job.json, NAME.running those of a running or killed one,
-// NAME.failed those of the last failed one, and NAME.log what the command printed.
+// NAME contains job.json and the results of the finished job. NAME.running contains those of a running or
+// killed job, NAME.failed those of the last failed one. NAME.log contains the command's output.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -10,15 +10,15 @@
 
 namespace roomradar {
 
-/// Returns true if a folder holds the results of a job with this key.
+/// Returns true if a folder contains the results of a job with this key.
 bool is_done(const std::filesystem::path& folder, const std::string& key);
 
-/// Returns the reason why the job with this key failed last; nullopt if it did not fail, was cancelled, or is
-/// done since.
+/// Returns the reason of the last failure of the job with this key. Returns nullopt if the job did not fail,
+/// was cancelled, or has been done since.
 std::optional<std::string> failure_of(const std::filesystem::path& folder, const std::string& key);
 
-/// The folder NAME.running of one job. Only one process at a time can have it. The destructor renames it to
-/// NAME.failed unless commit() succeeded.
+/// The folder NAME.running of a job, locked by one process at a time. The destructor renames the folder to
+/// NAME.failed unless commit() has succeeded.
 class RunningFolder {
  public:
   /// Creates an empty NAME.running. Returns nullopt if another process runs the job. Throws Error if the
@@ -30,9 +30,9 @@ class RunningFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return running_; }
   /// Writes job.json and renames the folder to NAME, in place of an older one. Throws Error on failure.
-  /// @param command  the job's words, as information in job.json
+  /// @param command  the job's words, which are listed in job.json
   void commit(const std::string& key, const std::vector<std::string>& command);
-  /// Writes the reason of a failure, for failure_of(). Ignores errors: the job then counts as not run.
+  /// Stores the reason of a failure, for failure_of(). If this fails, the job counts as not run.
   void note_failure(const std::string& key, const std::string& fault) const noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// job_process.hpp: runs one job of a farm in a process of its own.
+// job_process.hpp: runs one job of a farm in its own process.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -12,17 +12,17 @@ struct JobResult {
   bool is_done = false;
   std::string fault;  ///< reason of a failure, as a sentence
   double wall_s = 0.0;
-  double cpu_s = 0.0;    ///< of all threads of the process
-  double peak_mb = 0.0;  ///< memory, 10^6 bytes
+  double cpu_s = 0.0;    ///< CPU time of the process
+  double peak_mb = 0.0;  ///< peak memory, 10^6 bytes
 };
 
-/// Returns true after the farm was asked to end. Called on several threads.
+/// Returns true once the farm should end. Called on several threads.
 using IsCancelled = std::function<bool()>;
 
 /// Runs a job in its folder, and waits for its end. Its output goes to NAME.log. The process is killed when
 /// the calling thread ends or `is_cancelled` returns true. Does not throw: a job that cannot be run counts as
 /// failed.
-/// @param program  file of the program, such as /proc/self/exe
+/// @param program  path of the program, such as /proc/self/exe
 JobResult run_job(const FarmPlan& plan, std::size_t job, const std::filesystem::path& program,
                   const IsCancelled& is_cancelled);
 

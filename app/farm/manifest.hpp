@@ -8,13 +8,13 @@
 
 namespace roomradar {
 
-/// One command of roomradar, whose results go to a folder of its own.
+/// A command of roomradar that writes its results to its own folder.
 struct Job {
-  std::string name;                ///< also the folder's name
-  double cost = 0.0;               ///< as stated, in any unit; 0: not stated
+  std::string name;                ///< also the name of the folder
+  double cost = 0.0;               ///< as stated in the manifest, in any unit; 0: not stated
   std::vector<std::string> words;  ///< command and arguments; placeholders are not replaced
-  std::vector<std::size_t> needs;  ///< indices of the jobs whose folders it reads; increasing
-  int line = 0;                    ///< in the manifest, from 1
+  std::vector<std::size_t> needs;  ///< indices of the jobs with folders that it reads; ascending
+  int line = 0;                    ///< line in the manifest, from 1
 };
 
 struct Manifest {
@@ -29,21 +29,21 @@ struct Manifest {
 ///     evening (cost 2): prescan recordings/evening --map {}/map
 ///     change: map diff {morning}/map {evening}/map --html {}/change.html
 ///
-/// {} stands for the job's own folder, and {NAME} for the folder of another job, which is run before this
-/// one. Words are separated by blanks; '...' and "..." keep blanks. A word that names an existing file or
-/// folder, relative to the manifest's folder, is an input. Empty lines and lines that begin with # are left
-/// out.
+/// {} stands for the job's own folder, and {NAME} for the folder of another job, which is run first. Words
+/// are separated by blanks; words in '...' or "..." may contain blanks. A word that names an existing file or
+/// folder, relative to the manifest's folder, is an input. Empty lines and lines that begin with # are
+/// ignored.
 ///
 /// @throws Error with file, line and fault if the file cannot be read, a line is not such a job, a name
-///         occurs twice or is unknown, jobs need each other in a circle, or a job writes nothing to {}
+///         occurs twice or is unknown, jobs need each other in a cycle, or a job writes nothing to {}
 Manifest read_manifest(const std::filesystem::path& path);
 
 /// Parses the text of a manifest; see read_manifest().
 /// @param path  for messages, and as Manifest::path
 Manifest parse_manifest(const std::string& text, const std::filesystem::path& path);
 
-/// Returns a word in quotation marks, as a manifest needs it. Placeholders stay placeholders. Throws Error if
-/// the word holds both kinds of quotation marks or a line end.
+/// Returns a word in quotation marks for a manifest. Placeholders remain placeholders. Throws Error if the
+/// word contains both kinds of quotation marks, or a line end.
 std::string quoted_word(const std::string& word);
 /// Returns a quoted word without placeholders: { and } are doubled.
 std::string quoted_literal(const std::string& text);
@@ -51,12 +51,12 @@ std::string quoted_literal(const std::string& text);
 /// Returns true if a job may have this name: 1 to 100 letters, digits, - _ . that begin with neither . nor -.
 bool is_job_name(std::string_view name);
 
-/// Returns the text without blanks, tabs and carriage returns at both ends.
+/// Returns the text without leading and trailing blanks, tabs and carriage returns.
 std::string_view trimmed(std::string_view text);
 
 /// A part of a word: text, or a placeholder.
 struct WordPart {
-  bool is_folder = false;  ///< a placeholder: `text` is a job's name, empty for the job itself
+  bool is_folder = false;  ///< true: a placeholder; `text` is a job's name, empty for the job itself
   std::string text;
 };
 /// Splits a word at its placeholders. {{ and }} stand for { and }.

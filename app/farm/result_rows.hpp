@@ -1,5 +1,5 @@
-// result_rows.hpp: rows of results as a JSON file. Jobs write such files, and the command that split its work
-// into these jobs reads them.
+// result_rows.hpp: rows of results as a JSON file. A command that splits its work into jobs reads the files
+// that the jobs write.
 #pragma once
 #include <exception>
 #include <filesystem>
@@ -11,17 +11,17 @@
 
 namespace roomradar {
 
-/// Returns the number, or "nan", "inf" or "-inf": JSON has no numbers that are not finite.
+/// Returns the number, or "nan", "inf" or "-inf", since JSON only has finite numbers.
 nlohmann::json json_number(double value);
-/// Returns the number that json_number() wrote. Throws an exception if the value is of another form.
+/// Returns the number that json_number() wrote. Throws an exception if the value has another form.
 double number_of(const nlohmann::json& value);
 
-/// Writes an array. Every number reads back as the same number. Throws Error if the file cannot be written.
+/// Writes an array. Numbers are read back exactly. Throws Error if the file cannot be written.
 /// @param kind  plural of the rows' name, such as "scenarios"
 void write_result_rows(const std::string& kind, const nlohmann::json& rows,
                        const std::filesystem::path& path);
 
-/// Returns the array that write_result_rows() wrote. Throws Error if the file cannot be read or is of another
+/// Returns the array that write_result_rows() wrote. Throws Error if the file cannot be read, or has another
 /// form or kind.
 nlohmann::json read_result_rows(const std::string& kind, const std::filesystem::path& path);
 

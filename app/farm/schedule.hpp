@@ -12,20 +12,20 @@ namespace roomradar {
 
 enum class JobState {
   kNotPlanned,
-  kWaiting,  ///< for a job that it needs, or for its turn
+  kWaiting,  ///< waits for a job that it needs, or for its turn
   kRunning,
-  kPresent,  ///< was done before
+  kPresent,  ///< had results before this run
   kDone,
-  kFailed,   ///< in this run, or before and not run again
+  kFailed,   ///< failed in this run, or before it and is not run again
   kSkipped,  ///< a job that it needs failed
 };
 
-/// Hands out the jobs of a plan, the most expensive first, and each after the jobs that it needs.
+/// Assigns the jobs of a plan, the most expensive first, and each after the jobs that it needs.
 class Schedule {
  public:
   explicit Schedule(const FarmPlan& plan);
 
-  /// Returns the next job, which counts as running from now on; nullopt if none can begin now.
+  /// Returns the next job, and marks it as running. Returns nullopt if no job can begin now.
   std::optional<std::size_t> next();
   /// Records the outcome of a running job. If it failed, the jobs that need it are skipped.
   void finish(std::size_t job, bool is_done);

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "app/objects/virtual_object.hpp"
+
 namespace roomradar {
 
 std::optional<Departure> end_departure(VirtualObject& object, double lowest_known_m) {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "app/objects/virtual_object.hpp"
-
 namespace roomradar {
+
+struct VirtualObject;
 
 /// An object that fell out of the map.
 struct Departure {

@@ -113,7 +113,7 @@ endforeach()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, libopenni2-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "roomradar")  # the module for videos
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-  "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, what moved, and frame sources.")
+  "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, dynamic surfaces, and frame sources.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libroomradar0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)

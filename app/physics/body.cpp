@@ -9,7 +9,7 @@ namespace roomradar {
 namespace {
 
 /// A freely rotating body: its angular momentum does not change.
-struct FreeSpin {
+struct FreeRotation {
   Eigen::Matrix3d inverse_inertia;  ///< in the body's axes, 1/m2
   Eigen::Vector3d momentum_world;
 
@@ -19,8 +19,8 @@ struct FreeSpin {
   /// Returns the derivative of the orientation by time.
   [[nodiscard]] Eigen::Vector4d rate(const Eigen::Vector4d& q_world_body) const {
     const Eigen::Quaterniond q(q_world_body);
-    const Eigen::Vector3d spin = angular_rad_s(q.normalized());
-    return 0.5 * (Eigen::Quaterniond(0.0, spin.x(), spin.y(), spin.z()) * q).coeffs();
+    const Eigen::Vector3d w = angular_rad_s(q.normalized());
+    return 0.5 * (Eigen::Quaterniond(0.0, w.x(), w.y(), w.z()) * q).coeffs();
   }
 };
 
@@ -44,14 +44,14 @@ Eigen::Vector3d mean_free_spin(const Body& body, const Eigen::Vector3d& angular_
   constexpr double kMaxSteps = 64.0;
   const double turn_rad = time_s * angular_rad_s.norm();
   if (!(turn_rad > 0.0)) return angular_rad_s;
-  const FreeSpin spin{body.mass.inertia_m2.inverse(), inertia_world_m2(body) * angular_rad_s};
+  const FreeRotation rotation{body.mass.inertia_m2.inverse(), inertia_world_m2(body) * angular_rad_s};
   const Eigen::Quaterniond q_before(body.T_world_object.linear());
   const int steps = static_cast<int>(std::clamp(std::ceil(turn_rad / kStep_rad), 1.0, kMaxSteps));
   const double h = time_s / steps;
   Eigen::Vector4d q = q_before.coeffs();
   for (int i = 0; i < steps; ++i) {  // Runge-Kutta, fourth order
-    const Eigen::Vector4d k1 = spin.rate(q), k2 = spin.rate(q + 0.5 * h * k1);
-    const Eigen::Vector4d k3 = spin.rate(q + 0.5 * h * k2), k4 = spin.rate(q + h * k3);
+    const Eigen::Vector4d k1 = rotation.rate(q), k2 = rotation.rate(q + 0.5 * h * k1);
+    const Eigen::Vector4d k3 = rotation.rate(q + 0.5 * h * k2), k4 = rotation.rate(q + h * k3);
     q = (q + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)).normalized();
   }
   const Eigen::AngleAxisd turned(Eigen::Quaterniond(q) * q_before.conjugate());

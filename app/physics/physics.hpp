@@ -38,7 +38,8 @@ struct AdvancedBody {
   std::function<void()> moved{};
   StepReport report{};  ///< out
   /// Out: closest features within contact distance before the body's last motion. Unchanged while it sleeps.
-  /// Of two bodies that move, only one has the features of the pair. `tree` is that of the probe's scene.
+  /// The features of a pair of moving bodies are listed for one of the two only. ClosestPoint::tree is the
+  /// index of a tree in the probe's scene.
   std::vector<ClosestPoint> near{};
 };
 

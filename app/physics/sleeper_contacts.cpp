@@ -12,12 +12,12 @@ bool recall_contacts(std::span<const SleeperContacts> known, const Body& body,
   if (own == known.end() || own->T_world_object.matrix() != body.T_world_object.matrix()) return false;
   near = own->near;
   for (std::size_t i = 0; i < near.size(); ++i) {
-    const SleeperContacts::Touched& touched = own->touched[i];
+    const SleeperContacts::ContactBody& contact = own->bodies[i];
     const auto other = std::find_if(others.begin(), others.end(),
-                                    [&](const SceneBody& one) { return one.body == touched.body; });
+                                    [&](const SceneBody& one) { return one.body == contact.body; });
     near[i].tree = static_cast<std::uint32_t>(other - others.begin());  // beyond the end: no body
-    if (touched.body == nullptr) continue;
-    if (other == others.end() || other->body->T_world_object.matrix() != touched.T_world_body.matrix())
+    if (contact.body == nullptr) continue;
+    if (other == others.end() || other->body->T_world_object.matrix() != contact.T_world_body.matrix())
       return false;
   }
   return true;
@@ -31,10 +31,10 @@ void remember_contacts(std::vector<SleeperContacts>& known, const Body& body,
   own->body = &body;
   own->T_world_object = body.T_world_object;
   own->near = near;
-  own->touched.clear();
+  own->bodies.clear();
   for (const ClosestPoint& p : near) {
     const Body* other = body_of(others, p);
-    own->touched.push_back({other, other != nullptr ? other->T_world_object : Eigen::Isometry3d::Identity()});
+    own->bodies.push_back({other, other != nullptr ? other->T_world_object : Eigen::Isometry3d::Identity()});
   }
 }
 

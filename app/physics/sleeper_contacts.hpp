@@ -11,14 +11,14 @@ namespace roomradar {
 
 /// Valid as long as neither the sleeping body nor a body that it touches has moved.
 struct SleeperContacts {
-  struct Touched {
+  struct ContactBody {
     const Body* body;  ///< null: static surface
     Eigen::Isometry3d T_world_body;
   };
   const Body* body = nullptr;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   std::vector<ClosestPoint> near;
-  std::vector<Touched> touched;  ///< per point of `near`
+  std::vector<ContactBody> bodies;  ///< per point of `near`
 };
 
 /// Returns the body that a point of the scene lies on; null: a surface.

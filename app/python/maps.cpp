@@ -152,6 +152,7 @@ void bind_parts(py::module_& module) {
 
 }  // namespace
 
+// One list of bindings, so it is not split.
 void bind_maps(py::module_& module) {
   bind_parts(module);
   py::class_<Map, MapPointer>(module, "Map",

@@ -202,10 +202,10 @@ void bind_contacts(py::module_& module) {
   py::enum_<SurfaceKind>(module, "SurfaceKind", py::arithmetic(), "Kind of a surface that can be touched.")
       .value("NOTHING", SurfaceKind::kNothing)
       .value("STATIC", SurfaceKind::kStatic, "the prescanned room")
-      .value("DYNAMIC", SurfaceKind::kDynamic, "what moved since the prescan")
+      .value("DYNAMIC", SurfaceKind::kDynamic, "a surface that is not in the map")
       .value("OBJECT", SurfaceKind::kObject, "a virtual object")
       .value("UNKNOWN_FRONTIER", SurfaceKind::kUnknownFrontier, "border of space that was not observed")
-      .value("INFERRED_BACK", SurfaceKind::kInferredBack, "assumed back of what moved");
+      .value("INFERRED_BACK", SurfaceKind::kInferredBack, "assumed back of a dynamic surface");
   py::enum_<ContactStatus>(module, "ContactStatus", py::arithmetic(), "Outcome of a radar query.")
       .value("NO_ANSWER", ContactStatus::kNoAnswer)
       .value("NO_TARGET", ContactStatus::kNoTarget, "no contact within the distance")

@@ -252,6 +252,7 @@ void bind_object_calls(py::class_<SessionRunner, RunnerPointer>& bound) {
 
 }  // namespace
 
+// One list of bindings, so it is not split.
 void bind_session(py::module_& module) {
   py::class_<SessionRunner, RunnerPointer> bound(
       module, "Session",
@@ -274,8 +275,8 @@ void bind_session(py::module_& module) {
             return without_gil([&] { return runner.step(frame); });
           },
           py::arg("frame"),
-          "Processes one frame: locates the camera, finds what moved, moves the objects, composes the "
-          "picture.\n"
+          "Processes one frame: locates the camera, finds dynamic pixels, moves the objects, composes "
+          "the picture.\n"
           "Overwrites the arrays of picture, moved_mask and expected_depth_m.")
       .def_property_readonly(
           "picture",
@@ -291,8 +292,9 @@ void bind_session(py::module_& module) {
             return view_of_image(
                 runner, [](Session& s) -> const MaskImage& { return s.scene().foreground().dynamic_mask; });
           },
-          "(H, W) uint8: 255 where the depth camera sees what moved since the scan, or None. A view, as "
-          "picture.")
+          "(H, W) uint8: 255 at dynamic pixels, which show a surface that is not in the map, or None. A "
+          "view, "
+          "as picture.")
       .def_property_readonly(
           "expected_depth_m",
           [](SessionRunner& runner) {
@@ -307,11 +309,11 @@ void bind_session(py::module_& module) {
               return std::make_shared<Mesh>(s.scene().dynamic_world().seen_world);
             });
           },
-          "Returns the surface of what moved, in the world. A copy.")
+          "Returns the dynamic surfaces, in the world. A copy.")
       .def("query", &query_scene, py::arg("object").none(false), py::arg("T_world_object"),
            py::arg("direction_world"), py::arg("distance_m"), py::kw_only(), py::arg("margin_m") = 0.0,
-           "Returns the Contact of a TriangleTree with everything in the room: map, what moved, and the "
-           "session's objects.")
+           "Returns the Contact of a TriangleTree with everything in the room: map, dynamic surfaces, and "
+           "the session's objects.")
       .def(
           "set_quality",
           [](SessionRunner& runner, const QualityValues& quality) {

@@ -44,7 +44,8 @@ bool is_within(const QualityField& field, int value) {
   std::string rule = field.unit;
   if (std::string_view(field.unit).find('|') == std::string_view::npos) {
     std::array<char, 64> range{};
-    std::snprintf(range.data(), range.size(), "within %.10g and %.10g", field.low, field.high);
+    std::snprintf(range.data(), range.size(), "within %.10g and %.10g%s", field.low, field.high,
+                  std::string_view(field.unit) == "M" ? " m" : "");
     rule = range.data();
   }
   throw Error(std::string(field.name) + " = " + std::string(word) + ": must be " + rule);

@@ -67,6 +67,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
                      1000},
         quality.fuse_every);
 }
+/// Not split: one call per field.
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, RunQuality>
 void visit_fields(Quality& quality, Visit&& visit) {

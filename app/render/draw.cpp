@@ -48,7 +48,7 @@ void main() {
 }
 )";
 
-// The estimated light of the room, or a usual one: ambient light, stronger from above, and one broad lamp.
+// The estimated light of the room, or a default one: ambient light, stronger from above, and one broad lamp.
 // Both with reflections on glaze. Highlight: normalised Blinn-Phong. Grazing reflection: Schlick's
 // approximation of the Fresnel term.
 constexpr const char* kFragmentShader = R"(

@@ -98,7 +98,7 @@ std::vector<float> weights_of(const std::vector<float>& scores) {
 }
 
 /// Returns the logarithm of the light's level and colour: the Minkowski norm of the hues' apparent albedos,
-/// compared with that of usual rooms. The colour is drawn towards neutral, since cameras balance white, and
+/// compared with that of typical rooms. The colour is drawn towards neutral, since cameras balance white, and
 /// since the things of a room are yellowish on average.
 /// @param mean   the mean lamp
 /// @param lamps  strength in each direction

@@ -68,9 +68,8 @@ nlohmann::json tile_results(const BuildingTracker& building) {
           {"places_ambiguous", building.ambiguous()}};
 }
 
-}  // namespace
-
-nlohmann::json results_of(const RunTotals& totals, const Session& session) {
+/// Returns the objects with their state at the run's end.
+nlohmann::json objects_of(const Session& session) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : session.objects()) {
     const Eigen::Matrix3d R_world_object = object->body.T_world_object.linear();
@@ -93,6 +92,12 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                        {"orientation_xyzw", to_json(Eigen::Quaterniond(R_world_object))},
                        {"turned_deg", turned_deg}});
   }
+  return objects;
+}
+
+}  // namespace
+
+nlohmann::json results_of(const RunTotals& totals, const Session& session) {
   nlohmann::json committed_changes = nlohmann::json::array();
   for (const CommittedChange& change : session.committed_changes())
     committed_changes.push_back({{"change", to_string(change.kind)},
@@ -125,7 +130,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"unknown_mb", session.unknown() ? unknown_mb(*session.unknown()) : 0.0},
       {"deepest_penetration_m", totals.deepest_penetration_m},
       {"needed", to_json(totals.use)},
-      {"objects", objects},
+      {"objects", objects_of(session)},
       {"adopted", committed_changes},
   };
   if (session.building() != nullptr) results.update(tile_results(*session.building()));

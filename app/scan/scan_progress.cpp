@@ -12,7 +12,7 @@
 namespace roomradar {
 namespace {
 
-constexpr const char* kLookedAt = "looked";  // the note of each frame in which ghosts are searched
+constexpr const char* kSearched = "searched";  // the note of each frame in which ghosts are searched
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void ScanProgress::show(const std::string& stage, const std::string& note) {
                      : "surface: is extracted; then what the scan missed is listed, and the map is saved");
     return;
   }
-  const bool is_again = stage == "ghosts" && note != kLookedAt;
+  const bool is_again = stage == "ghosts" && note != kSearched;
   if (const std::string title = is_again ? "fuse again" : stage; title != stage_) begin(title);
   if (stage == "fuse" && note == to_string(FuseStatus::kFused)) ++fused_;
   progress_->step(is_again && fused_ > 0 ? note + ", of at most " + std::to_string(fused_) : note);

@@ -40,98 +40,97 @@ double new_fraction(const Image<Knowledge>& knowledge) {
 ScanView::ScanView(ScanChannel& channel, std::size_t max_memory_bytes, std::filesystem::path folder,
                    std::optional<NextView> first_view)
     : channel_(channel),
-      max_memory_bytes_(max_memory_bytes),
-      folder_(std::move(folder)),
-      first_view_(std::move(first_view)),
+      counted_{max_memory_bytes, std::move(folder)},
+      search_{std::move(first_view)},
       thread_([this] { serve(); }) {}
 
 ScanView::~ScanView() {
   {
-    const std::lock_guard lock(mutex_);
-    is_closed_ = true;
+    const std::lock_guard lock(handover_.mutex);
+    handover_.is_closed = true;
   }
-  changed_.notify_all();
+  handover_.changed.notify_all();
   thread_.join();
 }
 
 void ScanView::measure_speed(const Frame& frame, const Tracking& tracking) {
   constexpr double kSmoothed_s = 0.15;
   if (!has_pose(tracking)) {
-    last_.reset();
+    scan_.last.reset();
     return;
   }
-  if (last_ && frame.stamp_s > last_->stamp_s) {
-    const double passed_s = frame.stamp_s - last_->stamp_s;
-    const Eigen::Isometry3d moved = last_->T_world_camera.inverse() * tracking.T_world_camera;
+  if (scan_.last && frame.stamp_s > scan_.last->stamp_s) {
+    const double passed_s = frame.stamp_s - scan_.last->stamp_s;
+    const Eigen::Isometry3d moved = scan_.last->T_world_camera.inverse() * tracking.T_world_camera;
     const double share = std::min(passed_s / kSmoothed_s, 1.0);
-    speed_mps_ += share * (moved.translation().norm() / passed_s - speed_mps_);
-    speed_rad_s_ += share * (Eigen::AngleAxisd(moved.linear()).angle() / passed_s - speed_rad_s_);
+    scan_.speed_mps += share * (moved.translation().norm() / passed_s - scan_.speed_mps);
+    scan_.speed_rad_s += share * (Eigen::AngleAxisd(moved.linear()).angle() / passed_s - scan_.speed_rad_s);
   }
-  last_ = Pose{frame.stamp_s, tracking.T_world_camera};
+  scan_.last = Pose{frame.stamp_s, tracking.T_world_camera};
 }
 
 void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) {
   constexpr std::size_t kRateOver = 30;
   const OdometrySnapshot& state = odometry.state();
-  ++frames_;
-  seen_s_.push_back(now_s());
-  if (seen_s_.size() > kRateOver) seen_s_.pop_front();
+  ++scan_.frames;
+  scan_.seen_s.push_back(now_s());
+  if (scan_.seen_s.size() > kRateOver) scan_.seen_s.pop_front();
   measure_speed(frame, tracking);
-  has_moved_ = correct(state, anchors_) || has_moved_;
+  scan_.has_moved = correct(state, scan_.anchors) || scan_.has_moved;
   {
-    const std::lock_guard lock(mutex_);
-    if (is_busy_ || work_) return;
+    const std::lock_guard lock(handover_.mutex);
+    if (handover_.is_busy || handover_.work) return;
   }
   Work work;
   work.frame = std::make_shared<Frame>(frame);
   work.tracking = tracking;
   work.facts = facts_of(frame, tracking);
-  work.facts.speed_mps = speed_mps_;
-  work.facts.speed_rad_s = speed_rad_s_;
-  if (tracking) work.anchor = anchor_for(frame.index, tracking.T_world_camera, state, anchors_);
-  work.T_world_anchor = anchors_.T_world_anchor;
-  work.has_moved = std::exchange(has_moved_, false);
+  work.facts.speed_mps = scan_.speed_mps;
+  work.facts.speed_rad_s = scan_.speed_rad_s;
+  if (tracking) work.anchor = anchor_for(frame.index, tracking.T_world_camera, state, scan_.anchors);
+  work.T_world_anchor = scan_.anchors.T_world_anchor;
+  work.has_moved = std::exchange(scan_.has_moved, false);
   work.is_located = state.located;
   work.path_world = path_of(state, tracking);
   if (tracking && wants_keyframes_.exchange(false)) work.keyframes = state.graph.keyframes;
-  work.counts.frames = frames_;
-  if (seen_s_.size() > 1)
-    work.counts.frames_per_s =
-        static_cast<double>(seen_s_.size() - 1) / std::max(seen_s_.back() - seen_s_.front(), 1e-6);
+  work.counts.frames = scan_.frames;
+  if (scan_.seen_s.size() > 1)
+    work.counts.frames_per_s = static_cast<double>(scan_.seen_s.size() - 1) /
+                               std::max(scan_.seen_s.back() - scan_.seen_s.front(), 1e-6);
   work.counts.keyframes = state.counts.keyframes;
   work.counts.loops = state.graph.loops_found;
   {
-    const std::lock_guard lock(mutex_);
-    work_ = std::move(work);
+    const std::lock_guard lock(handover_.mutex);
+    handover_.work = std::move(work);
   }
-  changed_.notify_all();
+  handover_.changed.notify_all();
 }
 
 void ScanView::forgot_frames(std::int64_t from_index) {
-  forget_frames_from(from_index, anchors_);
-  has_moved_ = true;
-  last_.reset();
+  forget_frames_from(from_index, scan_.anchors);
+  scan_.has_moved = true;
+  scan_.last.reset();
 }
 
 void ScanView::serve() {
-  for (std::unique_lock lock(mutex_);;) {
-    changed_.wait(lock, [&] { return work_ || is_closed_; });
-    if (is_closed_) return;
-    const Work work = *std::exchange(work_, std::nullopt);
-    is_busy_ = true;
+  for (std::unique_lock lock(handover_.mutex);;) {
+    handover_.changed.wait(lock, [&] { return handover_.work || handover_.is_closed; });
+    if (handover_.is_closed) return;
+    const Work work = *std::exchange(handover_.work, std::nullopt);
+    handover_.is_busy = true;
     lock.unlock();
     show(work);
     lock.lock();
-    is_busy_ = false;
+    handover_.is_busy = false;
   }
 }
 
 /// Estimates the up direction again whenever the number of frames has grown by half.
 void ScanView::estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  up_.add(frame, T_world_camera);
-  if (++up_frames_ < up_due_) return;
-  up_due_ += up_due_ / 2 + 1;
-  T_shown_world_ = level_rotation(up_.estimate().up_world);
+  up_.estimator.add(frame, T_world_camera);
+  if (++up_.frames < up_.due) return;
+  up_.due += up_.due / 2 + 1;
+  up_.T_shown_world = level_rotation(up_.estimator.estimate().up_world);
 }
 
 /// Starts computing the explored space and the next view on another thread, about once a second, and takes
@@ -140,38 +139,69 @@ void ScanView::explore(const Work& work) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kEvery = std::chrono::seconds(1);
   constexpr double kReached_m = 0.25, kReached_rad = 0.35;
-  if (search_.valid() && search_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    explored_ = search_.get();
-    holes_ = numbered(explored_.holes, holes_);
+  if (search_.running.valid() &&
+      search_.running.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    search_.last = search_.running.get();
+    search_.holes = numbered(search_.last.holes, search_.holes);
   }
-  if (!search_.valid() && !work.keyframes.empty()) {
-    searched_ = Clock::now();
-    search_ = std::async(std::launch::async, [keyframes = work.keyframes, T_shown_world = T_shown_world_,
-                                              T_world_camera = work.tracking.T_world_camera] {
-      lower_priority();
-      Explored explored;
-      explored.T_shown_world = T_shown_world;
-      explored.grid = explored_around(T_world_camera.translation(), keyframes, T_shown_world);
-      explored.next_view =
-          best_next_view(*explored.grid, T_shown_world * T_world_camera, Eigen::Vector3d::UnitZ());
-      explored.holes = holes_so_far(*explored.grid);
-      return explored;
-    });
+  if (!search_.running.valid() && !work.keyframes.empty()) {
+    search_.begun = Clock::now();
+    search_.running =
+        std::async(std::launch::async, [keyframes = work.keyframes, T_shown_world = up_.T_shown_world,
+                                        T_world_camera = work.tracking.T_world_camera] {
+          lower_priority();
+          Explored explored;
+          explored.T_shown_world = T_shown_world;
+          explored.grid = explored_around(T_world_camera.translation(), keyframes, T_shown_world);
+          explored.next_view =
+              best_next_view(*explored.grid, T_shown_world * T_world_camera, Eigen::Vector3d::UnitZ());
+          explored.holes = holes_so_far(*explored.grid);
+          return explored;
+        });
   }
-  if (!search_.valid() && Clock::now() - searched_ > kEvery) wants_keyframes_ = true;
+  if (!search_.running.valid() && Clock::now() - search_.begun > kEvery) wants_keyframes_ = true;
   const std::optional<NextView> next = next_view(work);
   if (!next || !work.tracking) return;
   const Eigen::Isometry3d left = next->T_world_camera.inverse() * shown_.T_world_camera;
   if (left.translation().norm() < kReached_m && Eigen::AngleAxisd(left.linear()).angle() < kReached_rad)
-    (first_view_ && work.is_located ? first_view_ : explored_.next_view).reset();
+    (search_.first_view && work.is_located ? search_.first_view : search_.last.next_view).reset();
 }
 
 /// Returns the view to go to, in the shown world.
 std::optional<NextView> ScanView::next_view(const Work& work) const {
-  if (!first_view_ || !work.is_located) return explored_.next_view;
-  NextView next = *first_view_;
-  next.T_world_camera = T_shown_world_ * next.T_world_camera;
+  if (!search_.first_view || !work.is_located) return search_.last.next_view;
+  NextView next = *search_.first_view;
+  next.T_world_camera = up_.T_shown_world * next.T_world_camera;
   return next;
+}
+
+/// Fills the window's content with the state after the frame.
+void ScanView::show_state(const Work& work) {
+  const Frame& frame = *work.frame;
+  shown_.frame_index = frame.index;
+  shown_.stamp_s = frame.stamp_s;
+  shown_.status = work.tracking.status;
+  shown_.fault = advice_.fault();
+  shown_.relative_speed = relative_speed(work.facts);
+  shown_.camera = frame.depth_camera;
+  shown_.path_world = work.path_world;
+  for (Eigen::Vector3f& position : shown_.path_world)
+    position = up_.T_shown_world.linear().cast<float>() * position;
+  shown_.next_view.reset();
+  if (const std::optional<NextView> next = next_view(work); next && work.tracking)
+    shown_.next_view =
+        ShownNextView{next->T_world_camera, way_to(*next, shown_.T_world_camera, Eigen::Vector3d::UnitZ())};
+  shown_.holes = search_.holes;
+  shown_.parts.clear();
+  for (const LiveModelPart& part : model_.parts())
+    if (part.anchor < work.T_world_anchor.size() && work.T_world_anchor[part.anchor])
+      shown_.parts.push_back({part.mesh_anchor, up_.T_shown_world * *work.T_world_anchor[part.anchor]});
+  shown_.counts = work.counts;
+  shown_.counts.seen_m2 = seen_.total_m2();
+  shown_.counts.well_known = counted_.well_known;
+  shown_.counts.table_tops_known = counted_.table_tops_known;
+  shown_.counts.memory_bytes = resident_bytes();
+  shown_.counts.left_s = counted_.forecast.left_s();
 }
 
 void ScanView::show(const Work& work) {
@@ -195,44 +225,22 @@ void ScanView::show(const Work& work) {
   } else if (!has_pose(work.tracking)) {
     mix_half(last_good_, shown_.picture);
   }
-  if (since_counted_++ % kCountedEvery == 0) {
-    well_known_ = knowledge_.well_known_fraction();
-    if (explored_.grid)
-      table_tops_known_ =
-          table_tops_known(model_.parts(), work.T_world_anchor, T_shown_world_, knowledge_, *explored_.grid);
-    forecast_.add(resources_now(now_s(), max_memory_bytes_, folder_));
+  if (counted_.since++ % kCountedEvery == 0) {
+    counted_.well_known = knowledge_.well_known_fraction();
+    if (search_.last.grid)
+      counted_.table_tops_known = table_tops_known(model_.parts(), work.T_world_anchor, up_.T_shown_world,
+                                                   knowledge_, *search_.last.grid);
+    counted_.forecast.add(resources_now(now_s(), counted_.max_memory_bytes, counted_.folder));
   }
-  shown_.T_world_camera = T_shown_world_ * T_world_camera;
+  shown_.T_world_camera = up_.T_shown_world * T_world_camera;
   explore(work);
   ScanFacts facts = work.facts;
-  if (explored_.grid && work.tracking)
-    facts.moved_fraction = moved_fraction(*explored_.grid, frame, explored_.T_shown_world * T_world_camera);
+  if (search_.last.grid && work.tracking)
+    facts.moved_fraction =
+        moved_fraction(*search_.last.grid, frame, search_.last.T_shown_world * T_world_camera);
   advice_.add(facts, frame.stamp_s);
 
-  shown_.frame_index = frame.index;
-  shown_.stamp_s = frame.stamp_s;
-  shown_.status = work.tracking.status;
-  shown_.fault = advice_.fault();
-  shown_.relative_speed = relative_speed(work.facts);
-  shown_.camera = frame.depth_camera;
-  shown_.path_world = work.path_world;
-  for (Eigen::Vector3f& position : shown_.path_world)
-    position = T_shown_world_.linear().cast<float>() * position;
-  shown_.next_view.reset();
-  if (const std::optional<NextView> next = next_view(work); next && work.tracking)
-    shown_.next_view =
-        ShownNextView{next->T_world_camera, way_to(*next, shown_.T_world_camera, Eigen::Vector3d::UnitZ())};
-  shown_.holes = holes_;
-  shown_.parts.clear();
-  for (const LiveModelPart& part : model_.parts())
-    if (part.anchor < work.T_world_anchor.size() && work.T_world_anchor[part.anchor])
-      shown_.parts.push_back({part.mesh_anchor, T_shown_world_ * *work.T_world_anchor[part.anchor]});
-  shown_.counts = work.counts;
-  shown_.counts.seen_m2 = seen_.total_m2();
-  shown_.counts.well_known = well_known_;
-  shown_.counts.table_tops_known = table_tops_known_;
-  shown_.counts.memory_bytes = resident_bytes();
-  shown_.counts.left_s = forecast_.left_s();
+  show_state(work);
   channel_.publish(shown_);
 }
 

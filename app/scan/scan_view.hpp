@@ -61,31 +61,30 @@ class ScanView final : public ScanObserver {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   };
 
-  // For the scan's thread.
-  Anchors anchors_;
-  bool has_moved_ = false;
-  std::optional<Pose> last_;
-  double speed_mps_ = 0.0, speed_rad_s_ = 0.0;
-  std::int64_t frames_ = 0;
-  std::deque<double> seen_s_;  ///< times at which the last frames arrived
-
-  // For the view's thread.
-  ScanChannel& channel_;
-  KnowledgeGrid knowledge_;
-  ObservedArea seen_;
-  ScanAdvice advice_;
-  ShownScan shown_;
-  ColourImage last_good_;
-  UpEstimator up_;
-  std::int64_t up_frames_ = 0, up_due_ = 1;
-  Eigen::Isometry3d T_shown_world_ = Eigen::Isometry3d::Identity();  ///< rotates up to +z
-  double well_known_ = 0.0;
-  std::optional<double> table_tops_known_;
-  std::int64_t since_counted_ = 0;  ///< frames since well_known_ was counted
-  const std::size_t max_memory_bytes_;
-  const std::filesystem::path folder_;
-  ResourceForecast forecast_;
-  LiveModel model_;
+  /// Used on the scan's thread.
+  struct Scan {
+    Anchors anchors;
+    bool has_moved = false;
+    std::optional<Pose> last;
+    double speed_mps = 0.0, speed_rad_s = 0.0;
+    std::int64_t frames = 0;
+    std::deque<double> seen_s;  ///< times at which the last frames arrived
+  };
+  /// Up direction, estimated again whenever the number of frames has grown by half.
+  struct Up {
+    UpEstimator estimator;
+    std::int64_t frames = 0, due = 1;
+    Eigen::Isometry3d T_shown_world = Eigen::Isometry3d::Identity();  ///< rotates up to +z
+  };
+  /// Numbers that are computed every 30 frames.
+  struct Counted {
+    const std::size_t max_memory_bytes;
+    const std::filesystem::path folder;
+    std::int64_t since = 0;  ///< frames since they were computed
+    double well_known = 0.0;
+    std::optional<double> table_tops_known{};
+    ResourceForecast forecast{};
+  };
   /// Result of a search for views and holes, in the shown world of its time.
   struct Explored {
     Eigen::Isometry3d T_shown_world = Eigen::Isometry3d::Identity();
@@ -93,22 +92,43 @@ class ScanView final : public ScanObserver {
     std::optional<NextView> next_view;
     std::vector<Hole> holes;
   };
-  Explored explored_;
-  std::vector<NumberedHole> holes_;
-  std::optional<NextView> first_view_;  ///< in the odometry's world
-  std::chrono::steady_clock::time_point searched_{};
-  std::future<Explored> search_;
+  struct Search {
+    std::optional<NextView> first_view;  ///< in the odometry's world
+    Explored last{};
+    std::vector<NumberedHole> holes{};
+    std::chrono::steady_clock::time_point begun{};
+    std::future<Explored> running{};
+  };
+  /// Passes work from the scan's thread to the view's; guarded by `mutex`.
+  struct Handover {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::optional<Work> work;
+    bool is_busy = false, is_closed = false;
+  };
+
+  Scan scan_;
+
+  // Used on the view's thread.
+  ScanChannel& channel_;
+  KnowledgeGrid knowledge_;
+  ObservedArea seen_;
+  ScanAdvice advice_;
+  ShownScan shown_;
+  ColourImage last_good_;
+  Up up_;
+  Counted counted_;
+  LiveModel model_;
+  Search search_;
 
   std::atomic<bool> wants_keyframes_ = true;
-  std::mutex mutex_;  ///< guards the members below
-  std::condition_variable changed_;
-  std::optional<Work> work_;
-  bool is_busy_ = false, is_closed_ = false;
+  Handover handover_;
   std::thread thread_;  ///< declared last because it uses the members above
 
   void measure_speed(const Frame& frame, const Tracking& tracking);
   void serve();
   void show(const Work& work);
+  void show_state(const Work& work);
   void explore(const Work& work);
   [[nodiscard]] std::optional<NextView> next_view(const Work& work) const;
   void estimate_up(const Frame& frame, const Eigen::Isometry3d& T_world_camera);

@@ -1,4 +1,4 @@
-// access.hpp: who may ask a server: its address, its token, and the names by which it is called.
+// access.hpp: access control of a server: its address, its token, and the host names it accepts.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -8,7 +8,7 @@ namespace roomradar {
 
 struct ListenAddress {
   std::string host = "127.0.0.1";  ///< IPv4 or IPv6 address, without brackets
-  int port = 0;                    ///< 0: any free one
+  int port = 0;                    ///< 0: any free port
 };
 /// Parses "ADDRESS:PORT" or "[ADDRESS]:PORT". `localhost` becomes 127.0.0.1. Throws Error naming the fault.
 ListenAddress parse_listen_address(const std::string& text);
@@ -19,12 +19,13 @@ bool is_loopback(const ListenAddress& address);
 /// naming the file and the fault, also if other users may read the file.
 std::string read_token(const std::filesystem::path& path);
 
-/// Returns true if the field Authorization is "Bearer TOKEN". Time does not depend on how much of it agrees.
+/// Returns true if the field Authorization is "Bearer TOKEN". The time does not depend on
+/// how many of the token's characters are right.
 bool has_token(std::string_view authorization, std::string_view token);
 
 /// Returns true if the field Host names this machine: 127.0.0.1, [::1] or localhost, with or without a port.
-/// A server on loopback refuses other names: a page in a browser could otherwise give itself a name that
-/// leads to it (DNS rebinding).
+/// A server on loopback refuses other names. Otherwise a page in a browser could reach it by a name of its
+/// own that resolves to this machine (DNS rebinding).
 bool is_local_name(std::string_view host);
 
 }  // namespace roomradar

@@ -6,10 +6,10 @@
 
 namespace roomradar {
 
-/// Where a map's world is on the earth (WGS 84).
+/// Position and heading of a map's world on the earth (WGS 84).
 struct GeoAnchor {
-  double latitude_deg = 0.0, longitude_deg = 0.0;  ///< of the world's origin
-  double height_m = 0.0;                           ///< of the world's origin, above the ellipsoid
+  double latitude_deg = 0.0, longitude_deg = 0.0;  ///< position of the world's origin
+  double height_m = 0.0;                           ///< height of the world's origin above the ellipsoid
   double heading_deg = 0.0;                        ///< direction of the world's +y axis, clockwise from north
 };
 

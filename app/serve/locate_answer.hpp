@@ -1,4 +1,4 @@
-// locate_answer.hpp: locates a frame in one or several maps, and puts the outcome into JSON.
+// locate_answer.hpp: locates a frame in one or several maps, and returns the result as JSON.
 #pragma once
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -30,8 +30,8 @@ struct SearchedMap {
 ///
 ///     {"found": false, "reason": "ambiguous", "sentence": "..."}
 ///
-/// Two maps that both show the place, neither with twice the inliers of the other, are ambiguous, too. Throws
-/// Error if a map's keyframes are missing or damaged.
+/// The result is also ambiguous if the frame is found in two maps, and neither has twice the inliers of the
+/// other. Throws Error if a map's keyframes are missing or damaged.
 nlohmann::json locate_in(std::span<const SearchedMap> maps, const Frame& frame,
                          const std::optional<GeoAnchor>& anchor);
 

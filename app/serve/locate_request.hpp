@@ -1,4 +1,4 @@
-// locate_request.hpp: the body of a request to locate a camera.
+// locate_request.hpp: parses the body of a request to locate a camera.
 #pragma once
 #include <cstddef>
 #include <string_view>
@@ -17,8 +17,8 @@ inline constexpr long kMaxLocatePixels = 2'500'000;  ///< per image; 1,920 x 1,0
 ///      "depth_bytes": 183042, "colour_bytes": 90211, "depth_units_per_m": 1000}\n
 ///     depth: grey PNG of 16 bit, 0: no measurement; colour: JPEG or PNG
 ///
-/// `camera` has the fields of camera.json; see read_camera_file(). Without `colour` and `T_colour_depth`
-/// there, the colour image has the depth image's size and view. `depth_units_per_m` may be missing: 1000, mm.
+/// `camera` has the fields of camera.json; see read_camera_file(). If it lacks `colour` and `T_colour_depth`,
+/// the colour image has the depth image's size and view. The default of `depth_units_per_m` is 1000 (mm).
 /// The body is not trusted: lengths, the images' sizes and the cameras are checked before pixels are decoded.
 /// @throws Error with a sentence for the client
 Frame parse_locate_request(std::string_view body);

@@ -1,4 +1,4 @@
-// map_requests.hpp: the answers to requests, apart from HTTP.
+// map_requests.hpp: answers requests, independently of HTTP.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -13,15 +13,15 @@
 namespace roomradar {
 
 struct Answer {
-  int status = 200;  ///< of HTTP
+  int status = 200;  ///< HTTP status
   std::string content_type = "application/json";
-  std::string body;                             ///< if there is no file
-  std::optional<std::filesystem::path> file{};  ///< is sent in place of a body
+  std::string body;                             ///< content, unless `file` is set
+  std::optional<std::filesystem::path> file{};  ///< sent instead of the body
   std::uintmax_t file_bytes = 0;
-  std::string etag{};  ///< without quotes; empty: none
+  std::string etag{};  ///< entity tag without quotes; empty: none
 };
 
-/// The maps that are served.
+/// The served maps.
 struct MapCatalogue {
   std::vector<std::unique_ptr<ServedMap>> maps;
   std::optional<GeoAnchor> anchor;
@@ -34,12 +34,12 @@ Answer error_answer(int status, const std::string& sentence);
 ///   /health                            {"status": "ok"}
 ///   /maps                              list of the maps
 ///   /maps/NAME                         facts, as `roomradar map info --json`
-///   /maps/NAME/tileset.json            of a building
-///   /maps/NAME/tiles/FILE              of a building
-///   /maps/NAME/mesh.ply, texture.jpg   of a room
+///   /maps/NAME/tileset.json            only for buildings
+///   /maps/NAME/tiles/FILE              only for buildings
+///   /maps/NAME/mesh.ply, texture.jpg   only for rooms
 /// Does not throw. Thread safe.
 /// @param path           decoded, without the query
-/// @param if_none_match  the field of the request; the answer's status is 304 if it has the content's tag
+/// @param if_none_match  the request's field; the status is 304 if it contains the content's tag
 Answer answer_get(const MapCatalogue& catalogue, std::string_view path, std::string_view if_none_match);
 
 /// Returns true for the paths that answer_locate() answers: /locate, /maps/NAME/locate.

@@ -102,7 +102,7 @@ void send(const Answer& answer, httplib::Response& response) {
 
 /// Makes the request's range one that the library can serve: it does not compare it with the content's size.
 /// Returns false if it begins behind the content, or if there are several, which could repeat a file often.
-bool settle_range(const httplib::Request& request, std::uintmax_t bytes) {
+bool make_range_valid(const httplib::Request& request, std::uintmax_t bytes) {
   if (request.ranges.empty()) return true;
   if (request.ranges.size() > 1 || bytes == 0) return false;
   auto& [first, last] = const_cast<httplib::Request&>(request).ranges.front();
@@ -177,7 +177,7 @@ struct MapServer::State {
       answer = answer_get(catalogue, request.path, request.get_header_value("If-None-Match"));
     if (answer.status == 401) response.set_header("WWW-Authenticate", "Bearer");
     const std::uintmax_t bytes = answer.file ? answer.file_bytes : answer.body.size();
-    if (answer.status == 200 && !settle_range(request, bytes))
+    if (answer.status == 200 && !make_range_valid(request, bytes))
       answer = error_answer(416, "the range is not in the content, or there are several");
     if (answer.status != 200) const_cast<httplib::Request&>(request).ranges.clear();  // for content only
     send(answer, response);

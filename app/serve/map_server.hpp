@@ -1,4 +1,4 @@
-// map_server.hpp: the HTTP server over the maps.
+// map_server.hpp: HTTP server for maps.
 #pragma once
 #include <memory>
 #include <string>
@@ -10,15 +10,16 @@ namespace roomradar {
 
 struct MapServerConfig {
   ListenAddress address;
-  std::string token;  ///< empty: none is asked for
+  std::string token;  ///< empty: requests need no token
   bool verbose = false;
-  int connections = 24;     ///< answered at a time; as many again wait, more wait in the system's queue
-  int locating = 0;         ///< frames located at a time; 0: one per processor
-  int locating_waits = 16;  ///< requests that wait for that; more are told to come back (503)
+  int connections = 24;     ///< max answered at a time; as many again wait, others in the system's queue
+  int locating = 0;         ///< max frames located at a time; 0: one per processor
+  int locating_waits = 16;  ///< max requests that wait to be located; others get status 503
 };
 
-/// Answers requests, each connection in one request: no client holds a thread while it asks nothing. Requests
-/// have limits of size (kMaxLocateBody_bytes) and of silence (5 s). Without cpp-httplib, making one throws.
+/// Answers requests. A connection is closed after one request, so idle clients hold no thread. Requests have
+/// a max size (kMaxLocateBody_bytes) and a max silence (5 s). The constructor throws Error in builds without
+/// cpp-httplib.
 class MapServer {
  public:
   /// Binds the address. Throws Error if it cannot be used.
@@ -28,7 +29,7 @@ class MapServer {
   MapServer& operator=(const MapServer&) = delete;
 
   [[nodiscard]] int port() const;
-  /// Answers requests until stop() is called; then finishes those that have begun.
+  /// Answers requests until stop() is called, then completes the requests that have begun.
   void run();
   /// May be called from another thread.
   void stop();

@@ -10,7 +10,7 @@ class App;
 namespace roomradar {
 
 struct ServeOptions {
-  std::vector<std::string> maps;  ///< folders
+  std::vector<std::string> maps;  ///< folders of maps
   std::string listen = "127.0.0.1:8080";
   bool allow_remote = false;
   std::string token_file;

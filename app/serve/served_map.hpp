@@ -1,4 +1,4 @@
-// served_map.hpp: one map as it is served, taken up again when it was replaced on disk.
+// served_map.hpp: a served map, which is read again after it was replaced on disk.
 #pragma once
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -14,32 +14,32 @@
 
 namespace roomradar {
 
-/// A tile, and the space it covers.
+/// A tile, and the bounding box of its surface.
 struct ServedTile {
   std::string name;
-  Eigen::AlignedBox3d box_world;  ///< of its surface, m
+  Eigen::AlignedBox3d box_world;  ///< bounding box of the surface, m
   std::string glb;                ///< path below the map, such as tiles/0_0_0.1234.glb
 };
 
-/// A map at one moment. Does not change; a map that was replaced on disk is another object.
+/// A map at one moment. Immutable: a map that was replaced on disk is another object.
 class MapSnapshot {
  public:
   /// Reads the map's description. Throws Error naming the file and the fault.
   explicit MapSnapshot(std::filesystem::path folder);
 
-  /// JSON text of all that `roomradar map info --json` says.
+  /// Output of `roomradar map info --json`.
   [[nodiscard]] const std::string& info_text() const { return info_text_; }
   /// Text of tileset.json; empty for the map of a room.
   [[nodiscard]] const std::string& tileset_text() const { return tileset_text_; }
   /// "building" or "room".
   [[nodiscard]] const std::string& kind() const { return kind_; }
   [[nodiscard]] const std::vector<ServedTile>& tiles() const { return tiles_; }
-  /// The files that may be served, by their path below the map. No other file ever is.
+  /// The files that may be served, by their path below the map. No other file is served.
   [[nodiscard]] const std::map<std::string, ContentFile>& files() const { return files_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// The keyframes, read at the first call, without what recognise_place() does not need. Thread safe. Throws
-  /// Error if they are missing or damaged.
+  /// The data of the keyframes that recognise_place() needs, read at the first call. Thread safe. Throws
+  /// Error if the keyframes are missing or damaged.
   [[nodiscard]] const KeyframeDatabase& keyframes() const;
 
  private:
@@ -56,17 +56,17 @@ class MapSnapshot {
   mutable std::unique_ptr<const KeyframeDatabase> keyframes_;
 };
 
-/// A map under its name. Thread safe.
+/// A map and its name. Thread safe.
 class ServedMap {
  public:
-  /// Reads the map. Throws Error naming the file and the fault, or if the folder's name is none for an
-  /// address.
+  /// Reads the map. Throws Error naming the file and the fault, also if the folder's name cannot be part of
+  /// an address.
   explicit ServedMap(const std::filesystem::path& folder);
 
-  /// Name in addresses: the folder's name.
+  /// Name in addresses, which is the folder's name.
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Returns the map as it is on disk. Reads it again if building.json or map.json was replaced since the
-  /// last call. Throws Error if the new one cannot be read.
+  /// Returns the current map. Reads it again if building.json or map.json was replaced since the last call.
+  /// Throws Error if the new map cannot be read.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> current();
 
  private:

@@ -17,7 +17,7 @@
 
 namespace roomradar {
 
-/// Height of a drop in view from which the object stays where it would topple or roll away from a larger one.
+/// Reduced height of a drop in view, used if the object would topple or roll away from the requested height.
 inline constexpr double kGentleDrop_m = 0.05;
 
 /// Request to drop an object from above a given position or from above a level surface in view.
@@ -28,7 +28,7 @@ struct DropRequest {
   /// cm away. Unset: the search takes the surface point nearest to the image centre.
   std::optional<Eigen::Vector3d> near_world{};
   /// Initial height of the object's lowest vertex above the position or surface. Without position_world, the
-  /// object is dropped from kGentleDrop_m where it would not stay otherwise.
+  /// height is reduced to kGentleDrop_m if the object would not stay otherwise.
   double height_m = 0.3;
   std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation
 };
@@ -45,7 +45,7 @@ struct WaitingDrop {
 /// for a surface supports.
 void require_small_enough(const VirtualObject& object, const DropRequest& drop);
 
-/// Surfaces of a frame, and the queries and physics with which an object's fall is tried.
+/// Surfaces of a frame, and the queries and physics that simulate an object's fall.
 struct DropScene {
   const SessionRoom& room;
   const std::vector<SceneTree>& surfaces;  ///< all surfaces that the object can touch

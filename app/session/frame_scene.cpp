@@ -28,9 +28,9 @@ FrameScene::FrameScene(GlContext& context, const Shape& room, const FrameSceneCo
 const ExpectedView& FrameScene::render_expected(const Intrinsics& camera,
                                                 const Eigen::Isometry3d& T_world_camera) {
   if (expected_.camera == camera && is_same_view(expected_.T_world_camera, T_world_camera)) return expected_;
-  drawn_.clear();
-  add_room(drawn_);
-  expected_.triangles = depth_pass_.render(drawn_, camera, T_world_camera, expected_.depth_m);
+  buffers_.drawn.clear();
+  add_room(buffers_.drawn);
+  expected_.triangles = depth_pass_.render(buffers_.drawn, camera, T_world_camera, expected_.depth_m);
   if (tiles_ != nullptr) hide_unloaded(camera, T_world_camera, expected_.depth_m);
   ++room_drawn_.views;
   room_drawn_.triangles += expected_.triangles;
@@ -49,11 +49,11 @@ void FrameScene::add_room(std::vector<MeshInstance>& drawn) {
 
 void FrameScene::hide_unloaded(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                                DepthImage& depth_m) {
-  hidden_world_.clear();
+  buffers_.hidden_world.clear();
   const std::vector<BuildingTile>& listed = tiles_->config().building.tiles;
   for (std::size_t i = 0; i < listed.size(); ++i)
-    if (!tiles_->loaded()[i]) hidden_world_.push_back(listed[i].surface_world);
-  hide_behind(hidden_world_, camera, T_world_camera, depth_m);
+    if (!tiles_->loaded()[i]) buffers_.hidden_world.push_back(listed[i].surface_world);
+  hide_behind(buffers_.hidden_world, camera, T_world_camera, depth_m);
 }
 
 void FrameScene::set_surfaces(SurfacePolicy surfaces) {
@@ -88,7 +88,7 @@ void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_wo
   if (config_.surfaces != SurfacePolicy::kMap) return mesh_all_pixels(frame, T_world_camera);
   config_.moved.noise = frame.depth_noise;
   mesh_dynamic(frame.depth_m, foreground.dynamic_mask, expected.depth_m, frame.depth_camera, T_world_camera,
-               fine, config_.moved, dynamic_scratch_, dynamic_world_);
+               fine, config_.moved, buffers_.dynamic, dynamic_world_);
   points_world_.swap(last_points_world_);
   dynamic_points(frame.depth_m, foreground.dynamic_mask, frame.depth_camera, T_world_camera, points_world_);
   inferred_.build_in_order(dynamic_world_.inferred_world);
@@ -97,7 +97,7 @@ void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_wo
 
 void FrameScene::mesh_all_pixels(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   config_.mesh.noise = frame.depth_noise;
-  mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh, mesh_scratch_,
+  mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh, buffers_.mesh,
              dynamic_world_.seen_world);
   moved_.set(dynamic_world_.seen_world, MeshUsage::kStreamed);
 }
@@ -123,9 +123,9 @@ std::vector<SceneTree> FrameScene::surfaces() const {
 
 void FrameScene::render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                                  const PixelRect& rect, DepthImage& depth_m) {
-  drawn_.assign(1, MeshInstance{&moved_.drawn, Eigen::Isometry3d::Identity()});
-  if (config_.surfaces == SurfacePolicy::kMap) add_room(drawn_);
-  depth_pass_.render(drawn_, camera, T_world_camera, rect, depth_m);
+  buffers_.drawn.assign(1, MeshInstance{&moved_.drawn, Eigen::Isometry3d::Identity()});
+  if (config_.surfaces == SurfacePolicy::kMap) add_room(buffers_.drawn);
+  depth_pass_.render(buffers_.drawn, camera, T_world_camera, rect, depth_m);
 }
 
 }  // namespace roomradar

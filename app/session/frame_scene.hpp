@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "app/objects/shape.hpp"
+#include "app/session/frame_use.hpp"
+#include "app/session/session_config.hpp"
 #include "app/session/tiles/tile_window.hpp"
 #include "dynamic/foreground/foreground.hpp"
 #include "dynamic/surface/depth_mesh.hpp"
@@ -22,13 +24,6 @@
 #include "radar/gl/gpu_mesh.hpp"
 
 namespace roomradar {
-
-struct FrameSceneConfig {
-  SurfacePolicy surfaces = SurfacePolicy::kMap;
-  ForegroundConfig foreground = {};
-  DynamicSurfaceConfig moved = {};  ///< used with SurfacePolicy::kMap
-  DepthMeshConfig mesh = {};        ///< used with the other policies
-};
 
 /// Depth of the static room in a camera's image.
 struct ExpectedView {
@@ -98,13 +93,10 @@ class FrameScene {
   void render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                        const PixelRect& rect, DepthImage& depth_m);
 
-  /// Totals since construction: views rendered by render_expected(), and room triangles drawn in them.
-  struct RoomDrawn {
-    std::size_t views = 0, triangles = 0;
-  };
+  /// Totals since construction.
   [[nodiscard]] RoomDrawn room_drawn() const { return room_drawn_; }
   /// Cells of the last dynamic mesh, counted by kind and by fine region; kMap only.
-  [[nodiscard]] const DynamicCells& dynamic_cells() const { return dynamic_scratch_.cells; }
+  [[nodiscard]] const DynamicCells& dynamic_cells() const { return buffers_.dynamic.cells; }
 
   /// The last view rendered by render_expected().
   [[nodiscard]] const ExpectedView& expected() const { return expected_; }
@@ -131,13 +123,16 @@ class FrameScene {
   RoomDrawn room_drawn_;
   ForegroundState foreground_history_;
   FrameForeground foreground_;
-  DepthMeshScratch mesh_scratch_;
-  DynamicSurfaceScratch dynamic_scratch_;
   DynamicSurface dynamic_world_;
   std::vector<Eigen::Vector3d> points_world_, last_points_world_;
-  TriangleTree inferred_;                          ///< inferred backs; can be touched, but are never drawn
-  std::vector<MeshInstance> drawn_;                ///< buffer
-  std::vector<Eigen::AlignedBox3d> hidden_world_;  ///< buffer: bounds of tiles that are not loaded
+  TriangleTree inferred_;  ///< inferred backs; can be touched, but are never drawn
+  struct Buffers {
+    DepthMeshScratch mesh;
+    DynamicSurfaceScratch dynamic;
+    std::vector<MeshInstance> drawn;
+    std::vector<Eigen::AlignedBox3d> hidden_world;  ///< bounds of tiles that are not loaded
+  };
+  Buffers buffers_;
 
   void add_room(std::vector<MeshInstance>& drawn);
   void hide_unloaded(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);

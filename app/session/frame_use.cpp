@@ -1,10 +1,13 @@
 // frame_use.cpp: reads the counts from the scene.
 #include "app/session/frame_use.hpp"
 
+#include "app/session/frame_scene.hpp"
+#include "app/session/session_room.hpp"
+
 namespace roomradar {
 
 FrameUse use_of(const SessionRoom& room, const FrameScene& scene, bool has_map,
-                const ForegroundCounts& foreground, const FrameScene::RoomDrawn& drawn_before,
+                const ForegroundCounts& foreground, const RoomDrawn& drawn_before,
                 std::uint64_t triangles_tested) {
   FrameUse use;
   use.room_triangles = room.shape.touched.triangle_count();

@@ -3,12 +3,18 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "app/session/frame_scene.hpp"
-#include "app/session/session_room.hpp"
 #include "dynamic/foreground/foreground.hpp"
 #include "dynamic/surface/dynamic_cells.hpp"
 
 namespace roomradar {
+
+class FrameScene;
+struct SessionRoom;
+
+/// Views of the room that a FrameScene rendered for the expected depth, and room triangles drawn in them.
+struct RoomDrawn {
+  std::size_t views = 0, triangles = 0;
+};
 
 /// Counts of one localised frame.
 struct FrameUse {
@@ -33,7 +39,7 @@ struct FrameUse {
 /// @param drawn_before      scene.room_drawn() before the frame
 /// @param triangles_tested  static triangles that the radar tested in this frame
 FrameUse use_of(const SessionRoom& room, const FrameScene& scene, bool has_map,
-                const ForegroundCounts& foreground, const FrameScene::RoomDrawn& drawn_before,
+                const ForegroundCounts& foreground, const RoomDrawn& drawn_before,
                 std::uint64_t triangles_tested);
 
 }  // namespace roomradar

@@ -29,7 +29,7 @@ bool holds_samples(const StaticMap& octree) {
 }  // namespace
 
 void require_valid(const MapUpdateConfig& config) {
-  const ConfigCheck require{"adopt"};
+  const ConfigCheck require{"map_update"};
   if (config.after_s)
     require(*config.after_s > 0.0 && *config.after_s <= 86400.0, "after_s", *config.after_s, "in 0..86400 s");
   require(config.asked_after_s > 0.0 && config.asked_after_s <= 60.0, "asked_after_s", config.asked_after_s,
@@ -43,7 +43,8 @@ MapUpdater::MapUpdater(StaticMap& octree, const Mesh& mesh, const MapUpdateConfi
   require_valid(config);
   if (!holds_samples(octree))
     throw Error(
-        "adopt: the map's octree holds no surface, so nothing can be added to it or carved from it; scan the "
+        "commit changes: the map's octree holds no surface, so nothing can be added to it or carved from it; "
+        "scan the "
         "room with `roomradar prescan`, or run without --commit-changes");
   measured_.views.resize(static_cast<std::size_t>(config.views));
 }
@@ -68,7 +69,8 @@ bool MapUpdater::is_due(const Frame& frame) {
 }
 
 void MapUpdater::finish() {
-  if (has_failed_) throw Error("adopt: a change could not be committed to the map, which is half changed");
+  if (has_failed_)
+    throw Error("commit changes: a change could not be committed to the map, which is half changed");
   if (!working_.valid()) return;
   has_failed_ = true;  // reset below unless get() throws
   room_ = working_.get();
@@ -100,7 +102,7 @@ void MapUpdater::look_for_changes(double stamp_s) {
   clock_.next_look_s = stamp_s + kLookEvery_s;
   double after_s = config_.after_s.value_or(config_.asked_after_s);
   if (asked_until_s_) after_s = std::min(after_s, config_.asked_after_s);
-  measured_.pending = tracker_.settled(after_s);
+  measured_.pending = tracker_.lasting_changes(after_s);
   if (measured_.pending.empty()) return;
   asked_until_s_.reset();
   measured_.view_count = 0;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/session/session_config.hpp"
 #include "dynamic/foreground/change_tracker.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/revision/refuse_region.hpp"
@@ -19,24 +20,6 @@
 #include "radar/geometry/triangle_tree.hpp"
 
 namespace roomradar {
-
-struct MapUpdateConfig {
-  /// Time without motion after which a change is committed to the map, s. Unset: changes are committed only
-  /// after ask().
-  std::optional<double> after_s;
-  /// after_s for changes requested by ask(), s. Long enough that objects in motion are not committed.
-  double asked_after_s = 0.5;
-  int views = 12;  ///< number of frames whose depth is fused to measure a change
-  /// Frames between the last measured frame and the first frame that uses the changed room.
-  int apply_after_frames = 15;
-  /// true: the frame in which the changed room is due waits for the worker thread. Results are then
-  /// reproducible. false: frames do not wait. The changed room may then take effect later.
-  bool wait = true;
-  ChangeTrackerConfig tracker;
-  SurfaceConfig surface;
-};
-/// Throws Error naming the field, its value and the rule.
-void require_valid(const MapUpdateConfig& config);
 
 /// A change that was fused into the room.
 struct CommittedChange {

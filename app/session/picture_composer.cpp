@@ -40,18 +40,20 @@ void PictureComposer::keep_colour(const Frame& frame, const Eigen::Isometry3d& T
   const Eigen::Isometry3d T_world_then =
       T_world_before_ ? pose_beside(*T_world_before_, T_world_camera, dt_s, frame.colour_after_depth_s)
                       : T_world_camera;
-  colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
-  background_ = frame.colour;
+  colour_.view = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
+  buffers_.background = frame.colour;
   estimate_light(frame, T_world_camera, dt_s);
-  if (const std::optional<float> noise = config_.picture.has_grain ? noise_of(background_) : std::nullopt)
-    noise_ += (noise_ > 0.0F ? renewed_fraction(dt_s, config_.picture.light) : 1.0F) * (*noise - noise_);
+  if (const std::optional<float> noise =
+          config_.picture.has_grain ? noise_of(buffers_.background) : std::nullopt)
+    light_.noise += (light_.noise > 0.0F ? renewed_fraction(dt_s, config_.picture.light) : 1.0F) *
+                    (*noise - light_.noise);
 }
 
 void PictureComposer::estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                                      double dt_s) {
   const ExpectedView& expected = scene_.expected();
   const MaskImage& dynamic_mask = scene_.foreground().dynamic_mask;
-  light_samples_.clear();
+  light_.samples.clear();
   Eigen::Vector3d place_world = Eigen::Vector3d::Zero();
   int placed = 0;
   for (const auto& object : objects_) {
@@ -62,17 +64,18 @@ void PictureComposer::estimate_light(const Frame& frame, const Eigen::Isometry3d
   if (placed == 0 || expected.depth_m.empty()) return;
   place_world /= placed;
   const LightConfig& config = config_.picture.light;
-  take_light_samples({background_, colour_view_->camera, colour_view_->T_world_view},
+  take_light_samples({buffers_.background, colour_.view->camera, colour_.view->T_world_view},
                      {expected.depth_m, expected.camera, T_world_camera, frame.depth_m, dynamic_mask},
-                     wanted_samples(!light_.light(), dt_s, config), light_position_, light_samples_);
+                     wanted_samples(!light_.estimator.light(), dt_s, config), light_.position,
+                     light_.samples);
   TreeInstance room;
   for (const SceneTree& surface : scene_.surfaces())
     if (surface.kind == SurfaceKind::kStatic) room = surface.instance;
-  for (LightSample& sample : light_samples_)
+  for (LightSample& sample : light_.samples)
     sample.reach =
         surface_reach(room, sample.p_world_m.cast<double>(), sample.normal_world.cast<double>(), place_world);
-  light_.add(light_samples_, place_world.cast<float>(), dt_s, config);
-  if (light_.light()) reaches_.update(objects_, room, dt_s, renewed_fraction(dt_s, config));
+  light_.estimator.add(light_.samples, place_world.cast<float>(), dt_s, config);
+  if (light_.estimator.light()) buffers_.reaches.update(objects_, room, dt_s, renewed_fraction(dt_s, config));
 }
 
 ShadowCaster PictureComposer::caster_of(const VirtualObject& object, const SplitLight* light) {
@@ -87,26 +90,26 @@ ShadowCaster PictureComposer::caster_of(const VirtualObject& object, const Split
 }
 
 void PictureComposer::find_feet(const ShownView& view) {
-  feet_.camera = view.camera;
-  feet_.planes.clear();
+  buffers_.feet.camera = view.camera;
+  buffers_.feet.planes.clear();
   const Eigen::Vector3d up_camera = view.T_world_view.linear().transpose() * Eigen::Vector3d::UnitZ();
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
     const double foot_m = object->body.T_world_object.translation().z() + lowest_m(*object);
-    feet_.planes.push_back(
+    buffers_.feet.planes.push_back(
         {up_camera.cast<float>(), static_cast<float>(view.T_world_view.translation().z() - foot_m)});
   }
 }
 
 void PictureComposer::begin_frame(const Frame& frame) {
-  frames_without_colour_ =
-      frame.colour.empty() ? std::min(frames_without_colour_ + 1, kColourLasts_frames + 1) : 0;
-  if (frames_without_colour_ > kColourLasts_frames) colour_view_.reset();
+  colour_.frames_without =
+      frame.colour.empty() ? std::min(colour_.frames_without + 1, kColourLasts_frames + 1) : 0;
+  if (colour_.frames_without > kColourLasts_frames) colour_.view.reset();
 }
 
 ShownView PictureComposer::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  if (colour_view_) return *colour_view_;
-  shade_depth(frame.depth_m, frame.depth_camera, background_);
+  if (colour_.view) return *colour_.view;
+  shade_depth(frame.depth_m, frame.depth_camera, buffers_.background);
   return {frame.depth_camera, T_world_camera};
 }
 
@@ -114,10 +117,10 @@ void PictureComposer::show_camera_alone(const Frame& frame) {
   shown_view_.reset();
   if (!frame.colour.empty()) {
     picture_ = frame.colour;
-    colour_view_.reset();  // older, and of unknown pose
-  } else if (colour_view_) {
-    picture_ = background_;
-  } else if (frames_without_colour_ > kColourLasts_frames || picture_.empty()) {
+    colour_.view.reset();  // older, and of unknown pose
+  } else if (colour_.view) {
+    picture_ = buffers_.background;
+  } else if (colour_.frames_without > kColourLasts_frames || picture_.empty()) {
     shade_depth(frame.depth_m, frame.depth_camera, picture_);
   }
 }
@@ -148,39 +151,44 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
 
   const bool has_shadows = config_.picture.shadow_strength > 0.0F;
   std::vector<DrawnObject> drawn;
-  object_lights_.clear();
-  object_lights_.reserve(objects_.size());  // drawn objects keep pointers
+  light_.objects.clear();
+  light_.objects.reserve(objects_.size());  // drawn objects keep pointers
   std::vector<ShadowCaster> casters;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const VirtualObject* object = objects_[i].get();
     if (!object->in_room) continue;
     drawn.push_back(drawn_object(*object, camera, T_world_view, config_.object_error_px));
-    if (const LightReach* reach = reaches_.of(i); colour_view_ && light_.light() && reach != nullptr) {
-      const RoomLight light = light_.light_at(*reach);
-      object_lights_.push_back({light, main_light(light)});
-      drawn.back().light = &object_lights_.back();
+    if (const LightReach* reach = buffers_.reaches.of(i);
+        colour_.view && light_.estimator.light() && reach != nullptr) {
+      const RoomLight light = light_.estimator.light_at(*reach);
+      light_.objects.push_back({light, main_light(light)});
+      drawn.back().light = &light_.objects.back();
     }
     if (has_shadows) casters.push_back(caster_of(*object, drawn.back().light));
   }
   drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // runs in parallel with real depth and shadows
 
   if (has_shadows) renew_a_shadow(may_refine_shadow);
-  real_depth_m_.resize(camera.width_px, camera.height_px);
+  buffers_.real_depth_m.resize(camera.width_px, camera.height_px);
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
-  if (rect.width > 0 && rect.height > 0) scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);
-  cast_shadows(background_, camera, T_world_view, real_depth_m_, casters, config_.picture, picture_);
-  patches_.clear();
+  if (rect.width > 0 && rect.height > 0)
+    scene_.render_surfaces(camera, T_world_view, rect, buffers_.real_depth_m);
+  cast_shadows(buffers_.background, camera, T_world_view, buffers_.real_depth_m, casters, config_.picture,
+               picture_);
+  buffers_.patches.clear();
   for (const auto& object : objects_)
     if (rests_on_unknown(*object))
-      patches_.push_back(
+      buffers_.patches.push_back(
           {support_point_world(*object),
            footprint_radius_m(*object, object->body.T_world_object.linear()) + kBesideObject_m});
-  hatch(patches_, camera, T_world_view, real_depth_m_, picture_);
+  hatch(buffers_.patches, camera, T_world_view, buffers_.real_depth_m, picture_);
   drawer_.finish(layer_);
   find_feet(*shown_view_);
-  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_, feet_, &background_);
+  lay_objects(layer_, buffers_.real_depth_m, config_.picture.occlusion, occlusion_, picture_, buffers_.feet,
+              &buffers_.background);
   ++pictures_;
-  if (colour_view_ && config_.picture.has_grain) add_grain(layer_, occlusion_, noise_, pictures_, picture_);
+  if (colour_.view && config_.picture.has_grain)
+    add_grain(layer_, occlusion_, light_.noise, pictures_, picture_);
 }
 
 }  // namespace roomradar

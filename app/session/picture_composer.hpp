@@ -55,42 +55,50 @@ class PictureComposer {
   [[nodiscard]] const ObjectLayer& layer() const { return layer_; }
   [[nodiscard]] const Occlusion& occlusion() const { return occlusion_; }
   /// The room's light as estimated from the colours so far; unset before the first colours.
-  [[nodiscard]] const std::optional<RoomLight>& room_light() const { return light_.light(); }
+  [[nodiscard]] const std::optional<RoomLight>& room_light() const { return light_.estimator.light(); }
   /// Standard deviation of the camera's brightness noise, in grey levels of 0..255; 0 before the first
   /// colours.
-  [[nodiscard]] float noise() const { return noise_; }
+  [[nodiscard]] float noise() const { return light_.noise; }
   /// Camera and pose of the picture. Unset before the first localised frame with a picture, and after a frame
   /// that is not localised.
   [[nodiscard]] const std::optional<ShownView>& shown_view() const { return shown_view_; }
 
  private:
+  static constexpr int kColourLasts_frames = 15;  ///< half a second at a Kinect's 30 frames/s
+  struct LastColour {
+    std::optional<ShownView> view;                 ///< unset if older than kColourLasts_frames
+    int frames_without = kColourLasts_frames + 1;  ///< number of frames since
+  };
+  struct Light {
+    LightEstimator estimator;
+    std::vector<LightSample> samples;  ///< buffer
+    std::uint64_t position = 0;        ///< position in the sequence of sampled pixels
+    std::vector<SplitLight> objects;   ///< buffer: light of each drawn object
+    float noise = 0.0F;                ///< standard deviation of the camera's noise, of 255; smoothed
+  };
+  struct Buffers {
+    /// Depth of the real surfaces in the picture's view, in the pixels around objects.
+    DepthImage real_depth_m;
+    std::vector<HatchedPatch> patches;  ///< hatched areas under objects that rest on unknown space
+    ObjectReaches reaches;              ///< in the order of the objects
+    Feet feet;
+    ColourImage background;
+  };
+
   FrameScene& scene_;
   const std::vector<std::unique_ptr<VirtualObject>>& objects_;
   const SessionConfig& config_;
   ObjectDrawer drawer_;
   ObjectLayer layer_;
   Occlusion occlusion_;
-  /// Depth of the real surfaces in the picture's view, in the pixels around objects.
-  DepthImage real_depth_m_;
   /// Pose of the previous frame; unset if it was not localised.
   std::optional<Eigen::Isometry3d> T_world_before_;
   std::optional<ShownView> shown_view_;
-  /// View of the last colour image; unset if older than 15 frames.
-  std::optional<ShownView> colour_view_;
-  static constexpr int kColourLasts_frames = 15;         ///< half a second at a Kinect's 30 frames/s
-  int frames_without_colour_ = kColourLasts_frames + 1;  ///< number of frames since the last colour image
-  /// Buffer: hatched areas under objects that rest on unknown space.
-  std::vector<HatchedPatch> patches_;
-  LightEstimator light_;
-  std::vector<LightSample> light_samples_;
-  float noise_ = 0.0F;                     ///< standard deviation of the camera's noise, of 255; smoothed
-  std::uint64_t pictures_ = 0;             ///< number of composed pictures; seed of the grain
-  std::uint64_t light_position_ = 0;       ///< position in the sequence of sampled pixels
-  ObjectReaches reaches_;                  ///< in the order of the objects
-  std::vector<SplitLight> object_lights_;  ///< buffer: light of each drawn object
-  Feet feet_;                              ///< buffer
-  std::size_t last_shadow_ = 0;            ///< index of the object whose shadow was recomputed last
-  ColourImage background_;
+  LastColour colour_;
+  Light light_;
+  Buffers buffers_;
+  std::uint64_t pictures_ = 0;   ///< number of composed pictures; seed of the grain
+  std::size_t last_shadow_ = 0;  ///< index of the object whose shadow was recomputed last
   ColourImage picture_;
 
   /// Returns the view of the last colour image, or that of the depth camera if there is none.
@@ -99,7 +107,7 @@ class PictureComposer {
   void estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
   /// Returns an object's shadow, in the light that arrives at it.
   [[nodiscard]] static ShadowCaster caster_of(const VirtualObject& object, const SplitLight* light);
-  /// Sets feet_ from the objects in the room.
+  /// Sets buffers_.feet from the objects in the room.
   void find_feet(const ShownView& view);
   /// Recomputes the contact shadow of one object that has rotated by more than 0.05 rad or has fallen asleep.
   void renew_a_shadow(bool may_refine);

@@ -28,10 +28,10 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   room_.extent_m = extent_m(map);
   scene_.set_tiles(room_.tiles);
   if (!config.map_updates) return;
-  if (octree == nullptr || building_) throw Error("adopt: the session was given no octree to change");
+  if (octree == nullptr || building_) throw Error("commit changes: the session has no octree to change");
   if (config.scene.surfaces != SurfacePolicy::kMap)
-    throw Error(std::string("adopt: with --surfaces ") + std::string(to_string(config.scene.surfaces)) +
-                " the map is not used, so no change can be adopted; use --surfaces map");
+    throw Error("commit changes: with --surfaces " + std::string(to_string(config.scene.surfaces)) +
+                " the map is not used, so no change can be committed; use --surfaces map");
   map_updater_ = std::make_unique<MapUpdater>(*octree, map.mesh, *config.map_updates);
 }
 
@@ -46,7 +46,7 @@ void Session::make_unknown_solid(StageTimes& times) {
     if (!room_.unknown && !room_.tiles) {
       if (map_updater_ && (last_stamp_s_ || !map_updater_->committed_changes().empty()))
         throw Error(
-            "unknown solid: changes are being adopted into the map; begin the run with --unknown solid");
+            "unknown solid: changes are being committed to the map; begin the run with --unknown solid");
       set_unknown(room_, map_);
       if (map_updater_) map_updater_->keep_up_unknown();
     }
@@ -65,7 +65,7 @@ void Session::make_unknown_free() {
 void Session::set_surfaces(SurfacePolicy surfaces) {
   if (surfaces != SurfacePolicy::kMap && map_updater_)
     throw Error("surfaces " + std::string(to_string(surfaces)) +
-                ": changes are being adopted into the map, which needs its surfaces");
+                ": changes are being committed to the map, which needs its surfaces");
   config_.scene.surfaces = surfaces;
   scene_.set_surfaces(surfaces);
 }
@@ -109,7 +109,7 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
 
 FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   const auto handed_over = std::chrono::steady_clock::now();
-  const FrameScene::RoomDrawn drawn_before = scene_.room_drawn();
+  const RoomDrawn drawn_before = scene_.room_drawn();
   const std::uint64_t tested_before = objects_.static_triangles_tested();
   const double dt_s = seconds_since_last(whole.stamp_s);
   composer_.begin_frame(whole);

@@ -148,7 +148,7 @@ class Session {
   std::int64_t frames_ = 0;  ///< number of localised frames
   std::optional<double> last_stamp_s_;
 
-  FrameResult pass_through(const Frame& frame, StageTimes& times);
+  FrameResult pass_through(const Frame& frame, StageTimes& times);  ///< not split: steps in their order
   /// Returns the time since the previous frame, s, >= 0; 0 for the first frame. Stores stamp_s.
   double seconds_since_last(double stamp_s);
   /// Begins a part of the frame: applies the quality scheduled for it, and calls config.watch.

@@ -7,13 +7,44 @@
 #include "app/quality/frame_load.hpp"
 #include "app/quality/quality.hpp"
 #include "app/render/compose.hpp"
-#include "app/session/frame_scene.hpp"
-#include "app/session/map_updater.hpp"
-#include "app/session/tiles/tile_window.hpp"
+#include "app/session/tiles/tile_choice.hpp"
+#include "dynamic/foreground/change_tracker_config.hpp"
+#include "dynamic/foreground/foreground_config.hpp"
+#include "dynamic/surface/depth_mesh.hpp"
+#include "dynamic/surface/dynamic_surface_config.hpp"
+#include "dynamic/surface/surface_policy.hpp"
+#include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/pose_origin.hpp"
-#include "radar/exact/cyber_radar.hpp"
+#include "radar/exact/radar_query.hpp"
 
 namespace roomradar {
+
+/// Settings of FrameScene.
+struct FrameSceneConfig {
+  SurfacePolicy surfaces = SurfacePolicy::kMap;
+  ForegroundConfig foreground = {};
+  DynamicSurfaceConfig moved = {};  ///< used with SurfacePolicy::kMap
+  DepthMeshConfig mesh = {};        ///< used with the other policies
+};
+
+/// Settings of MapUpdater.
+struct MapUpdateConfig {
+  /// Time without motion after which a change is committed to the map, s. Unset: changes are committed only
+  /// after ask().
+  std::optional<double> after_s;
+  /// after_s for changes requested by ask(), s. Long enough that objects in motion are not committed.
+  double asked_after_s = 0.5;
+  int views = 12;  ///< number of frames whose depth is fused to measure a change
+  /// Frames between the last measured frame and the first frame that uses the changed room.
+  int apply_after_frames = 15;
+  /// true: the frame in which the changed room is due waits for the worker thread. Results are then
+  /// reproducible. false: frames do not wait. The changed room may then take effect later.
+  bool wait = true;
+  ChangeTrackerConfig tracker;
+  SurfaceConfig surface;
+};
+/// Throws Error naming the field, its value and the rule.
+void require_valid(const MapUpdateConfig& config);
 
 struct SessionConfig {
   PoseOrigin poses = PoseOrigin::kTracked;

@@ -204,7 +204,7 @@ void ChangeTracker::add_points(const View& view) {
   }
 }
 
-std::vector<LastingChange> ChangeTracker::settled(double seconds) {
+std::vector<LastingChange> ChangeTracker::lasting_changes(double seconds) {
   std::vector<LastingChange> changes;
   const auto least_s = static_cast<float>(seconds);
   for (const LastingKind kind : {LastingKind::kCame, LastingKind::kWent}) {

@@ -34,13 +34,13 @@ class ChangeTracker {
 
   /// Returns the objects that were confirmed for at least this many seconds and are in view now. Later calls
   /// return an object again until it is forgotten, moves, or agrees with the expected depth.
-  [[nodiscard]] std::vector<LastingChange> settled(double seconds);
+  [[nodiscard]] std::vector<LastingChange> lasting_changes(double seconds);
 
   /// Returns the fraction of a change's points that have not been dropped.
   [[nodiscard]] double still_true(const LastingChange& change) const;
   /// Returns the fraction of a change's points that the last frame confirmed.
   [[nodiscard]] double seen_now(const LastingChange& change) const;
-  /// Drops a change's points, so settled() no longer returns the change.
+  /// Drops a change's points, so lasting_changes() no longer returns the change.
   void forget(const LastingChange& change);
 
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }

@@ -6,7 +6,7 @@
 namespace roomradar {
 
 void require_valid(const DynamicSurfaceConfig& config) {
-  const ConfigCheck require{"moved_surface"};
+  const ConfigCheck require{"dynamic_surface"};
   const auto require_sigmas = [&require](const char* field, float value) {
     require(value > 0.0F && value < 1e3F, field, value, "over 0 and under 1000");
   };

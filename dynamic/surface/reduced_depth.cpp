@@ -11,7 +11,7 @@ namespace roomradar {
 namespace {
 
 constexpr int kLeastSide_px = 32;
-constexpr float kJumpSigmas = 4.0F, kJumpIncidence_deg = 80.0F;  // as where what moved is meshed
+constexpr float kJumpSigmas = 4.0F, kJumpIncidence_deg = 80.0F;  // as in the mesh of dynamic surfaces
 
 /// The surface to which most of the inverse depths belong. An inverse depth of 0 means none.
 template <std::size_t kCount>

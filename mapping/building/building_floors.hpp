@@ -12,9 +12,9 @@ struct BuildingFloor {
   double area_m2 = 0.0;   ///< of the level surfaces within 10 cm of the height
 };
 
-/// Returns the floors, from the lowest. A floor is the height with the most area of level surface within 10
-/// cm, has at least a tenth of the largest floor's area, and is at least 2 m from floors with more area.
-/// Table tops and steps between two parts of a storey are thus no floors.
+/// Returns the floors, the lowest first. A floor is a height at which the area of level surfaces within 10 cm
+/// has a maximum. The area must be at least a tenth of the largest floor's, and floors with more area must be
+/// at least 2 m away. These limits exclude table tops, and steps within a storey.
 std::vector<BuildingFloor> floors_among(std::span<const LevelSurface> surfaces);
 
 }  // namespace roomradar

@@ -33,31 +33,31 @@ using TestOverlap =
 struct GraphConfig {
   /// Standard deviation of the relative pose of two successive keyframes of a submap.
   double step_sigma_m = 0.004, step_sigma_rad = 0.001;
-  /// A join is refused if it is off by more than this after the solution, in m; rotations count 1 m per rad
-  /// as seen from the keyframe.
+  /// Max median error of a join's links after the solution, m. A rotation error of 1 rad counts as 1 m. Joins
+  /// above the limit are refused.
   double max_off_m = 0.15;
   double keep_m = 0.01;
 };
 
 struct PlacedSubmap {
   std::vector<Eigen::Isometry3d> T_building_keyframe;  ///< one per keyframe
-  std::size_t part = 0;   ///< submaps with the same number are connected; 0: with the first
-  bool was_kept = false;  ///< has its earlier poses
+  std::size_t part = 0;   ///< number of its connected component; 0: that of the first submap
+  bool was_kept = false;  ///< true: it has its earlier poses
 };
 
 struct BuildingGraph {
   std::vector<PlacedSubmap> submaps;
   std::vector<bool> is_used;  ///< by join: false if it contradicts the others
   std::vector<double> off_m;  ///< by join: median distance of its links from the solution, m
-  std::size_t parts = 0;      ///< number of connected parts
+  std::size_t parts = 0;      ///< number of connected components
 };
 
-/// Solves for all keyframes' poses. The joins have the status kJoined. The world is that of the first submap,
-/// or of the kept ones. Chooses joins that do not contradict each other (join_choice.hpp), begins with a
-/// spanning tree of those with the most agreeing keyframes, then adds the others as robust constraints, and
-/// refuses those that remain off, the worst first, until all agree. Submaps that no join connects with the
-/// first form parts of their own, each in the world of its first submap. Deterministic. Source: Kümmerle et
-/// al., g2o, ICRA 2011 (pose graph).
+/// Solves for all keyframes' poses. All joins must have the status kJoined. First chooses joins that do not
+/// contradict each other (join_choice.hpp). Initial poses come from a spanning tree of the joins with the
+/// most agreeing keyframes. The other joins are then added as robust constraints. Joins with an error above
+/// max_off_m are refused, the worst first, until none is left. The world is that of the kept submaps, or of
+/// the first submap if none is kept. Each other connected component has the world of its first submap.
+/// Deterministic. Source: Kümmerle et al., g2o, ICRA 2011 (pose graph).
 BuildingGraph solve_building(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
                              const TestOverlap& test_overlap = {}, const GraphConfig& config = {});
 

@@ -26,8 +26,8 @@ struct BuildingTile {
   ContentFile octree;                 ///< StaticMap::write(); only the tile's cube
   ContentFile mesh;                   ///< write_tile_mesh()
   ContentFile glb;                    ///< the same mesh relative to mesh_origin, y up
-  /// write_unknown_surface(): border of unknown space within the cube, closed towards other tiles. Without a
-  /// name if the building was made by an earlier version.
+  /// write_unknown_surface(): border of unknown space within the cube, closed towards other tiles. The name
+  /// is empty if the building was made by an earlier version.
   ContentFile unknown;
   Eigen::Vector3d mesh_origin = Eigen::Vector3d::Zero();
 };
@@ -36,20 +36,21 @@ struct BuildingRecording {
   std::string name;
   std::string source;
   std::int64_t frames_read = 0, frames_tracked = 0, keyframes = 0;
-  /// Number of tracked frames whose place in the building is known. Only these are in the tiles. Others are
-  /// of a recording, or of a part of one after tracking was lost, that shows no place of another for certain.
+  /// Number of tracked frames with a pose in the building. Only these frames are fused into the tiles. A
+  /// recording, or its part after a loss of tracking, has none if no join connects it with the others.
   std::int64_t frames_placed = 0;
-  /// Placed keyframes with their poses in the building; see write_keyframe_database(). Without a name if none
-  /// is placed, or the building was made by an earlier version.
+  /// Placed keyframes with their poses in the building; see write_keyframe_database(). The name is empty if
+  /// none is placed, or the building was made by an earlier version.
   ContentFile keyframe_file{};
 };
 
-/// What building.json holds.
+/// Content of building.json.
 struct BuildingInfo {
   TileGrid grid;
   std::vector<BuildingRecording> recordings;
   std::vector<BuildingTile> tiles;  ///< in the order of is_before()
-  /// Found by joins that were refused. Empty if the building was made by an earlier version.
+  /// Pairs of places that look alike, see find_look_alikes(). Empty if the building was made by an earlier
+  /// version.
   std::vector<LookAlike> look_alikes;
 };
 
@@ -71,7 +72,7 @@ void write_building(const BuildingInfo& info, const std::filesystem::path& folde
 
 /// Writes a tile's mesh with a checksum. Throws Error if the file cannot be written.
 void write_tile_mesh(const Mesh& mesh, const std::filesystem::path& path);
-/// Reads it. Throws Error naming the file and the fault if it is missing or damaged.
+/// Reads a tile's mesh. Throws Error naming the file and the fault if it is missing or damaged.
 Mesh read_tile_mesh(const std::filesystem::path& path);
 
 }  // namespace roomradar

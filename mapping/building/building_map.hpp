@@ -22,10 +22,10 @@ Mesh load_building_mesh(const BuildingInfo& info, const std::filesystem::path& f
 StaticMap load_building_octree(const BuildingInfo& info, const std::filesystem::path& folder);
 
 /// Returns the keyframes of all placed recordings at their poses in the building, with an index of their
-/// features and without patches: as recognise_place() needs them. Throws Error if the building has none, as
-/// buildings made by an earlier version do.
-/// @param max_bytes  max memory of the result; 0: no limit. Keyframes whose view is similar to that of one
-///                   before them are left out until the rest fits
+/// features, as recognise_place() needs them, but without patches. Throws Error if the building has no
+/// keyframes, which is the case if it was made by an earlier version.
+/// @param max_bytes  max memory of the result; 0: no limit. To meet the limit, keyframes with a view similar
+///                   to an earlier keyframe's are left out
 KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const std::filesystem::path& folder,
                                          std::size_t max_bytes = 0);
 

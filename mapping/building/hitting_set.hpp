@@ -1,4 +1,4 @@
-// hitting_set.hpp: the cheapest elements that break every conflict.
+// hitting_set.hpp: minimum-cost hitting set: the cheapest elements that break every conflict.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -9,10 +9,10 @@ namespace roomradar {
 /// Elements that cannot all be right.
 using Conflict = std::vector<std::size_t>;
 
-/// Returns the elements, in order, that together have at least one of each conflict and the least sum of
-/// costs. Exact (branch and bound) up to a fixed number of steps, after which the best set found so far is
-/// returned. Deterministic. Conflicts must not be empty. Source: Reiter, A theory of diagnosis from first
-/// principles, Artificial Intelligence 1987.
+/// Returns the set of elements with the least sum of costs that contains an element of each conflict. The
+/// elements are in ascending order. Exact, by branch and bound. After a fixed number of steps, returns the
+/// best set found so far. Deterministic. Conflicts must not be empty. Source: Reiter, A theory of diagnosis
+/// from first principles, Artificial Intelligence 1987.
 /// @param costs  by element, each above 0
 std::vector<std::size_t> cheapest_hitting_set(std::span<const Conflict> conflicts,
                                               std::span<const double> costs);

@@ -10,15 +10,16 @@
 
 namespace roomradar {
 
-/// Returns for each join whether it is used. Joins contradict each other in two ways:
-///   - a cycle of joins that does not close, by more than drift explains;
-///   - joins that put two recordings at the same place, where their keyframes then show different things.
-///     This is how a room with a twin on another floor is found out: its corridor is another one.
-/// Refuses the joins that break all these conflicts at the least cost. A join costs more, the longer the way
-/// is along which the recordings agree, and the more of the surface agrees. A conflict of the second kind may
-/// also be left, at the cost of the keyframes that it concerns: a room can change between two recordings.
-/// @param test_overlap  how recordings are compared where the joins put them at the same place; empty: they
-///                      are not. It is called only for those that no used join has compared there
+/// Returns, per join, true if the join is used. There are two kinds of conflicts between joins:
+///   - a cycle of joins does not close, and drift does not explain the error;
+///   - joins place two recordings at the same place, but their keyframes there show different things. For
+///     example, a join mistakes a room for its twin on another floor, and the corridors outside differ.
+/// Refuses the joins that break all conflicts at the least cost. The cost of a join grows with the length of
+/// the path along which the recordings agree, and with the fraction of the surface that agrees. A conflict of
+/// the second kind may also remain, at a cost per keyframe involved, since a room can change between two
+/// recordings.
+/// @param test_overlap  compares two recordings that the joins place at the same place. Called only for pairs
+///                      that no used join has compared there. Empty: recordings are not compared
 /// Source: Sünderhauf and Protzel, Switchable constraints for robust pose graph SLAM, IROS 2012 (the
 /// problem); hitting_set.hpp (the solution).
 std::vector<bool> choose_joins(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,

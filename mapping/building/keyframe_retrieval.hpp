@@ -1,4 +1,4 @@
-// keyframe_retrieval.hpp: which recordings of a building may show the same place, and in which keyframes.
+// keyframe_retrieval.hpp: finds recordings of a building, and their keyframes, that may show the same place.
 #pragma once
 #include <cstddef>
 #include <utility>
@@ -17,9 +17,9 @@ struct CandidatePair {
 struct RetrievalConfig {
   double min_step = 0.25;       ///< min view_distance() of the keyframes of a submap that are compared
   int min_matches = 15;         ///< min number of features that match
-  std::size_t candidates = 24;  ///< keyframes of all other submaps that are compared with a keyframe
+  std::size_t candidates = 24;  ///< max keyframes of other submaps to compare with a keyframe
   std::size_t min_similar = 2;  ///< min CandidatePair::similar
-  std::size_t partners = 16;    ///< of a submap: those with most similar keyframes
+  std::size_t partners = 16;    ///< max pairs per submap, those with the most similar keyframes
 };
 
 /// Finds submaps with similar keyframes, by an index of their features. Submaps are added one after the
@@ -30,9 +30,9 @@ class KeyframeRetrieval {
 
   /// Compares a submap's keyframes with those added before, then adds them.
   void add(const Submap& submap);
-  /// Returns the pairs of submaps found so far, by number of the submap in the order in which they were
-  /// added. Keeps a pair if it is among the best of one of its submaps, so that the number of pairs grows
-  /// with that of submaps. Sorted by a, then b.
+  /// Returns the pairs of submaps found so far, sorted by a, then b. Submaps are numbered in the order in
+  /// which they were added. A pair is among the `partners` best pairs of one of its submaps, so the number of
+  /// pairs grows linearly with the number of submaps.
   [[nodiscard]] std::vector<CandidatePair> pairs() const;
   [[nodiscard]] std::size_t keyframes() const { return database_.keyframes.size(); }
 
@@ -47,12 +47,12 @@ class KeyframeRetrieval {
 struct SimilarConfig {
   double min_step = 0.25;        ///< min view_distance() of the keyframes of a submap that are compared
   int min_matches = 15;          ///< min number of features that match
-  std::size_t candidates = 8;    ///< keyframes of a that are compared with a keyframe of b
-  std::size_t per_keyframe = 2;  ///< of these, max number that are returned
+  std::size_t candidates = 8;    ///< max keyframes of a to compare with a keyframe of b
+  std::size_t per_keyframe = 2;  ///< max pairs to return per keyframe of b
 };
 
-/// Returns pairs of keyframes of two submaps (of a, of b) that look similar, sorted. Depends on nothing but
-/// the two submaps.
+/// Returns pairs of keyframes of two submaps (of a, of b) that look similar, sorted. Depends only on the
+/// two submaps.
 std::vector<std::pair<std::size_t, std::size_t>> similar_keyframes(const Submap& a, const Submap& b,
                                                                    const SimilarConfig& config = {});
 

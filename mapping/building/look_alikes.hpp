@@ -1,4 +1,4 @@
-// look_alikes.hpp: places of a building that look alike, from joins that were refused.
+// look_alikes.hpp: finds places of a building that look alike, from refused joins.
 #pragma once
 #include <span>
 #include <vector>
@@ -8,10 +8,11 @@
 
 namespace roomradar {
 
-/// Returns the places that refused joins take for one, in both directions: for each join up to 12, at
-/// keyframes spread along it. Leaves out joins of submaps in another part than `part`, and those that would
-/// move a place by less than 0.5 m and 0.5 rad: they are of one place, and only inaccurate.
-/// @param refused  joins that are not used, and those with another status than kJoined
+/// Returns pairs of places that look alike, in both directions: each refused join mistakes one place for the
+/// other. Returns at most 12 pairs per join, at links spread evenly along the join. Ignores joins outside the
+/// connected component `part`. Also ignores joins that would move a place by less than 0.5 m and 0.5 rad,
+/// since these are only inaccurate.
+/// @param refused  joins that are not used, and joins with a status other than kJoined
 std::vector<LookAlike> find_look_alikes(std::span<const PlacedSubmap> submaps, std::size_t part,
                                         std::span<const GraphJoin> refused);
 

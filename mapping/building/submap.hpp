@@ -1,4 +1,4 @@
-// submap.hpp: what tracking one recording of a building gives.
+// submap.hpp: trajectory and keyframes of one recording of a building.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -18,7 +18,7 @@ struct Submap {
   std::string source;  ///< name of the recording
   std::int64_t frames_read = 0;
   SensorTiming timing;
-  std::vector<TimedPose> trajectory;  ///< of the frames with a trusted pose, in order
+  std::vector<TimedPose> trajectory;  ///< poses of the frames with a trusted pose, in order
   std::vector<TimedPose> recorded;    ///< poses that the recording states, in its own world; empty: none
   KeyframeDatabase keyframes;         ///< in order of frame_index
 };
@@ -32,16 +32,16 @@ Submap load_submap(const std::filesystem::path& folder);
 /// Reads only submap.bin. Keyframes then have a frame index and a pose, but no features and no depth.
 Submap load_submap_poses(const std::filesystem::path& folder);
 
-/// Splits a submap where tracking was lost for more than `max_gap` frames: where the camera was found again
-/// is not certain enough for a building, whose rooms may look alike. Parts of fewer than min_frames frames,
-/// or without a keyframe, are left out.
+/// Splits a submap at each loss of tracking for more than `max_gap` frames. The relocalised pose after the
+/// loss is not certain enough, since rooms of a building may look alike. Drops parts with fewer than
+/// min_frames frames, and parts without a keyframe.
 std::vector<Submap> split_at_losses(const Submap& submap, std::int64_t max_gap, std::size_t min_frames);
 
-/// Returns the pose `part` (0 to 1) of the way from a to b, linear in position and slerp in rotation.
+/// Returns the pose at the fraction `part` (0 to 1) between a and b: linear in position, slerp in rotation.
 Eigen::Isometry3d pose_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double part);
 
-/// Moves the poses of all frames with the keyframes' poses: a frame between two keyframes gets the mean of
-/// their corrections, weighted by the number of frames to each.
+/// Moves the poses of all frames with the keyframes' poses. A frame between two keyframes gets the mean of
+/// their corrections, interpolated by frame index.
 /// @param T_world_keyframe  one new pose per keyframe of the submap
 /// @return the trajectory in the new world; empty if the submap has no keyframe
 std::vector<TimedPose> corrected_trajectory(const Submap& submap,

@@ -23,25 +23,26 @@ struct KeyframeLink {
 
 enum class JoinStatus {
   kJoined,
-  kNotRecognised,  ///< too few keyframes match, or they disagree
-  /// The keyframes match, but elsewhere one recording saw through what the other measured as surface.
+  kNotRecognised,  ///< too few keyframes match, or their relative poses disagree
+  /// The keyframes match, but elsewhere one recording sees through a surface that the other measured.
   kContradicted,
-  /// The keyframes match, but others look different although they would show the same place: another room
+  /// Some keyframes match, but others that would show the same place look different. Example: another room
   /// with the same furniture.
   kLooksDifferent,
 };
 
-/// Keyframes of two submaps that agree on where the submaps are to each other.
+/// Relative pose of two submaps, with the keyframe pairs that support it.
 struct SubmapJoin {
   JoinStatus status = JoinStatus::kNotRecognised;
-  /// If joined, refined by depth. If refused although the submaps look alike around the links, as the
-  /// features say, without information.
+  /// With kJoined: refined by depth. With another status: as estimated from features where the submaps look
+  /// alike, with `information` not set.
   std::vector<KeyframeLink> links;
-  /// Relative pose of the submaps' worlds near the links. Elsewhere, drift of both adds to it.
+  /// Relative pose of the submaps' worlds near the links. Its error grows with the distance from the links,
+  /// by the drift of both submaps.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   int agreeing = 0;        ///< pairs of keyframes whose features agree on T_a_b
   int expected = 0;        ///< keyframes of b that overlap enough with one of a to be recognised in it
-  int recognised = 0;      ///< of these, those that were recognised
+  int recognised = 0;      ///< number of expected keyframes that were recognised
   double agreement = 0.0;  ///< fraction of the common surface that is at the same place in both
 };
 /// Returns the end of a sentence for the user with the outcome and its numbers.
@@ -52,8 +53,8 @@ struct JoinConfig {
   int min_agreeing = 3;         ///< pairs of keyframes that agree on T_a_b
   double min_agreement = 0.75;  ///< see SubmapJoin::agreement
   double max_different = 0.25;  ///< max fraction of the expected keyframes that are not recognised
-  double near_m = 6.0;          ///< farther from the links, drift of the submaps prevents a comparison
-  std::size_t max_links = 60;   ///< the links are chosen evenly along b
+  double near_m = 6.0;          ///< max distance from the links to compare at; beyond, drift is too large
+  std::size_t max_links = 60;   ///< max links of a join, spread evenly along b
 };
 
 /// Returns up to `count` of the values, evenly spread over them, in their order.
@@ -65,11 +66,12 @@ std::vector<Value> spread_evenly(const std::vector<Value>& values, std::size_t c
   return chosen;
 }
 
-/// Compares two submaps at all pairs of keyframes that look similar. Returns one join for each place where
-/// they meet; if there is none, the reason. A join is proved by three tests: several pairs of keyframes agree
-/// on one relative pose by their features; the depth of the keyframes around agrees, and none sees through
-/// the other's surface; and keyframes that would show the same place are recognised in each other.
-/// Links are refined by aligning the keyframes' depth in both directions; links whose results differ are
+/// Compares two submaps at pairs of keyframes that look similar. Returns one join per place that both submaps
+/// show. If there is none, returns one join whose status is the reason. A join must pass three tests:
+///   1. Several pairs of keyframes agree on one relative pose by their features.
+///   2. The depth of nearby keyframes agrees, and none sees through the other submap's surface.
+///   3. Keyframes that would show the same place are recognised in each other.
+/// Links are refined by aligning the keyframes' depth in both directions. Links whose two results differ are
 /// dropped. Source: as registration.hpp; Chen and Medioni 1992 (alignment).
 std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,
                                      std::span<const std::pair<std::size_t, std::size_t>> keyframes,

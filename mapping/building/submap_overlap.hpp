@@ -1,4 +1,4 @@
-// submap_overlap.hpp: compares two submaps where a placement says that they show the same.
+// submap_overlap.hpp: compares two submaps where a placement lets them overlap.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// Keyframes of two submaps that have nearly the same view where a placement puts the submaps.
+/// Two keyframes of two submaps that have nearly the same view according to a placement.
 struct PredictedPair {
   std::size_t a = 0, b = 0;                                 ///< keyframes
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< predicted relative pose of the two cameras
@@ -19,15 +19,15 @@ struct PredictedPair {
 
 /// Adds the pairs of one keyframe of b with all keyframes of a that have nearly its view.
 /// @param T_a_keyframe  poses of a's keyframes in a's world
-/// @param T_a_b         predicted pose of the keyframe of b there
+/// @param T_a_b         predicted pose of the keyframe of b in a's world
 void predict_pairs(std::span<const Eigen::Isometry3d> T_a_keyframe, const Eigen::Isometry3d& T_a_b,
                    std::size_t b, double drift_m, std::vector<PredictedPair>& pairs);
 
-/// What keyframes of b show of the places where a's keyframes say that they are.
+/// Result of comparing keyframes of b with those of a at their predicted relative poses.
 struct PlacementTest {
   int expected = 0;    ///< keyframes of b that overlap enough with one of a to be recognised in it
-  int recognised = 0;  ///< of these, those that were recognised at the predicted pose
-  /// Most keyframes of b in a row, in order of time, that had to be recognised and none of which was.
+  int recognised = 0;  ///< number of expected keyframes that were recognised at the predicted pose
+  /// Max number of consecutive expected keyframes, in order of time, of which none was recognised.
   int longest_miss = 0;
   std::int64_t same = 0;     ///< pixels whose surface is at the same place in both
   std::int64_t through = 0;  ///< pixels where one saw through the other's surface
@@ -39,8 +39,8 @@ struct PlacementTest {
   }
 };
 
-/// Tests a placement by the depth and the features of predicted pairs: of each keyframe of b, those with the
-/// three most similar views. The pairs are in order of b.
+/// Tests a placement by the depth and the features of predicted pairs. Per keyframe of b, uses the three
+/// pairs with the most similar views. `pairs` must be in order of b.
 PlacementTest test_placement(const Submap& a, const Submap& b, std::span<const PredictedPair> pairs);
 
 }  // namespace roomradar

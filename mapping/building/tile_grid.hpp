@@ -12,8 +12,8 @@ namespace roomradar {
 /// Integer coordinates of a tile.
 using TileIndex = Eigen::Vector3i;
 
-/// A grid of cubes on the octree's voxels. Tile `index` begins at voxel index * edge_voxels, less a quarter
-/// of the edge along z: the floor, at z = 0, would otherwise be cut along its whole length.
+/// A grid of cubes on the octree's voxels. Tile `index` begins at voxel index * edge_voxels. Along z, it
+/// begins a quarter of an edge lower, so that no border of tiles cuts the floor at z = 0.
 struct TileGrid {
   double resolution_m = 0.01;  ///< edge of a voxel
   int edge_voxels = 512;       ///< a power of two, 64 to 4,096
@@ -30,8 +30,7 @@ Eigen::AlignedBox3d box_of(const TileGrid& grid, const TileIndex& tile);
 /// Returns the tile that contains a point.
 TileIndex tile_at(const TileGrid& grid, const Eigen::Vector3d& p_world);
 
-/// Returns the tiles that have a sample of the map within `margin_voxels` of their cubes, in order of z, y,
-/// x.
+/// Returns the tiles with a sample of the map within `margin_voxels` of their cubes, ordered by is_before().
 std::vector<TileIndex> tiles_of(const StaticMap& map, const TileGrid& grid, int margin_voxels);
 
 /// Returns the tiles that have a free or occupied voxel, in the same order.
@@ -42,7 +41,7 @@ bool is_before(const TileIndex& a, const TileIndex& b);
 
 /// Returns a tile's name, such as `3_-1_0`.
 std::string name_of(const TileIndex& tile);
-/// Returns the tile of a name. Throws Error if it is no tile's name.
+/// Returns the tile with this name. Throws Error if the name is not of this form.
 TileIndex tile_of_name(std::string_view name);
 
 }  // namespace roomradar

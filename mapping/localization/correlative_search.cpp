@@ -154,8 +154,8 @@ double mean_nearness(const ShapeGrid& grid, const std::vector<Vector3f>& points,
 }
 
 /// Refines a pose to bring its points nearer to surfaces (Gauss-Newton, six degrees of freedom).
-Eigen::Isometry3d settled(const ShapeGrid& grid, const std::vector<Vector3f>& points,
-                          Eigen::Isometry3d T_world_camera) {
+Eigen::Isometry3d refined_pose(const ShapeGrid& grid, const std::vector<Vector3f>& points,
+                               Eigen::Isometry3d T_world_camera) {
   constexpr int kIterations = 8;
   constexpr double kDamping = 0.02;  // of the mean diagonal: unconstrained directions stay
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -297,12 +297,12 @@ std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Int
     for (int axis = 0; axis < 3; ++axis)
       T_world_camera.translation()(axis) =
           grid.low(axis) + grid.cell_m * (vote.cell[static_cast<std::size_t>(axis)] + 0.5);
-    T_world_camera = settled(known.coarse, points, T_world_camera);
+    T_world_camera = refined_pose(known.coarse, points, T_world_camera);
     candidates.push_back({T_world_camera, mean_nearness(known.coarse, points, T_world_camera)});
   }
   keep_distinct(4 * most, candidates);
   for (ShapeCandidate& candidate : candidates) {
-    candidate.T_world_camera = settled(known.fine, more_points, candidate.T_world_camera);
+    candidate.T_world_camera = refined_pose(known.fine, more_points, candidate.T_world_camera);
     candidate.nearness = mean_nearness(known.fine, more_points, candidate.T_world_camera);
   }
   keep_distinct(most, candidates);

@@ -131,7 +131,7 @@ class BlockOctree {
 
   [[nodiscard]] double resolution_m() const { return resolution_m_; }
   [[nodiscard]] const BlockUnits& units() const { return units_; }
-  /// Returns the truncation distance of voxels at the least depth at which cells are coarse, in units of
+  /// Returns the truncation distance at the smallest measured depth for which cells are coarse, in units of
   /// BlockUnits::distance_m.
   [[nodiscard]] int voxel_band() const { return voxel_band_; }
   [[nodiscard]] std::size_t memory_bytes() const {

@@ -92,11 +92,11 @@ class Descent {
     InnerBlock made;
     if (!node.is_block()) made = opened(node);
     InnerBlock& block = node.is_block() ? tree_.inner(node) : made;
-    const unsigned settled = saturated_free(block);
-    unsigned free = cell.children.free & ~hits.mask & ~settled;
+    const unsigned saturated = saturated_free(block);
+    unsigned free = cell.children.free & ~hits.mask & ~saturated;
     unsigned split =
         hits.mask |
-        (0xFFU & ~(cell.children.nothing | cell.children.free | (cell.children.part_free & settled)));
+        (0xFFU & ~(cell.children.nothing | cell.children.free | (cell.children.part_free & saturated)));
     if ((free | split) == 0) return node;
 
     prefetch_children(block, free | split);
@@ -227,13 +227,13 @@ class Descent {
     return bits;
   }
   [[nodiscard]] unsigned saturated_free(const InnerBlock& block) const {
-    const Slot settled = voxels_.saturated_free();
+    const Slot saturated = voxels_.saturated_free();
     unsigned bits = 0;
-    for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i] == settled) << i;
+    for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i] == saturated) << i;
     return bits;
   }
 
-  // True in one frame of sixteen, in which even a settled colour is updated; the phase differs between
+  // True in one frame of sixteen, in which even a colour of much weight is updated; the phase differs between
   // blocks.
   [[nodiscard]] bool is_colours_turn(std::uint64_t code) const {
     return (((code * 0x9E37'79B9'7F4A'7C15U) >> 60U) + frame_index_) % 16 == 0;

@@ -14,7 +14,8 @@
 
 namespace roomradar {
 
-/// Returns the weight of a measurement: the variance of one of weight 1 divided by its own, at most 1.
+/// Returns the weight of a measurement: kUnitWeightSigma_m squared divided by the measurement's variance, at
+/// most 1.
 inline float weight_at(const DepthNoise& noise, float depth_m) {
   const float ratio = kUnitWeightSigma_m / depth_sigma_m(noise, depth_m);
   return std::min(ratio * ratio, 1.0F);
@@ -50,20 +51,18 @@ class LeafUpdate {
         truncation_m_(config.truncation_voxels * cell_m_),
         colour_distance_m_(kColourCells * cell_m_),
         behind_(-kBehind_cells * cell_m_ / tree.units().distance_m),
-        hit_(in_steps(config.hit_log_odds)),
-        miss_(in_steps(config.miss_log_odds)),
-        min_(in_steps(config.min_log_odds)),
-        max_(in_steps(config.max_log_odds)) {
+        log_odds_{in_steps(config.hit_log_odds), in_steps(config.miss_log_odds),
+                  in_steps(config.min_log_odds), in_steps(config.max_log_odds)} {
     const ColourImage& colour = frame.colour;
     has_colour_ = !colour.empty() && colour.width == frame.colour_camera.width_px &&
                   colour.height == frame.colour_camera.height_px;
   }
 
   /// Returns a free cube at the minimum log-odds; further misses do not change it.
-  [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(min_)); }
+  [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(log_odds_.min)); }
   /// Returns the cube's state after one miss.
   [[nodiscard]] Slot missed(Slot cube) const {
-    const float after = std::max(static_cast<float>(cube.log_odds()) + miss_, min_);
+    const float after = std::max(static_cast<float>(cube.log_odds()) + log_odds_.miss, log_odds_.min);
     return Slot::cube(static_cast<LogOdds>(after == 0.0F ? 1.0F : after));
   }
 
@@ -88,7 +87,7 @@ class LeafUpdate {
   /// must hold for the node.
   /// @param hit  bit i: a ray ends in cell i
   /// @param refresh_colour  true: also updates colours of cells for which this frame's fraction of the weight
-  ///                        is below kSettledPart
+  ///                        is below kMinColourFraction
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
@@ -104,11 +103,11 @@ class LeafUpdate {
     return pruned(node, block);
   }
 
-  /// Adds a miss to all voxels of a block, all of which a frame of this weight sees through. With `clear`,
-  /// the frame also sees through the space around the block. Then each sample's distance is averaged with the
-  /// truncation distance. The sample is erased once its voxel has the minimum log-odds and its distance
-  /// exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free space around
-  /// them.
+  /// Adds a miss to all voxels of a block, after a frame of this weight saw through all of them. With
+  /// `clear`, the frame also saw through the space around the block. Then each sample's distance is averaged
+  /// with the truncation distance. The sample is erased once its voxel has the minimum log-odds and its
+  /// distance exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free
+  /// space around them.
   ///
   /// Without `clear`, most samples are kept. Beside edges and on obliquely seen surfaces, seeing through a
   /// voxel is caused by noise more often than by a change. Samples behind a surface are different: frames see
@@ -139,7 +138,7 @@ class LeafUpdate {
   // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
   // refresh. On a refresh, the measurement is weighted with this fraction. Smaller changes would be lost in
   // rounding to 8 bits.
-  static constexpr float kSettledPart = 1.0F / 8.0F;
+  static constexpr float kMinColourFraction = 1.0F / 8.0F;
 
   // Min distance, in voxels, at which a sample counts as behind a surface. Frames see past samples nearer to
   // the surface too often, because of noise and pose errors.
@@ -166,8 +165,8 @@ class LeafUpdate {
 
   void add_log_odds(LeafBlock& block, unsigned hit, unsigned missed) const {
     const Float8 before = Float8::load(block.log_odds);
-    const Float8 after =
-        select(Float8::Mask::of_bits(hit), min(before + hit_, max_), max(before + miss_, min_));
+    const Float8 after = select(Float8::Mask::of_bits(hit), min(before + log_odds_.hit, log_odds_.max),
+                                max(before + log_odds_.miss, log_odds_.min));
     const Float8 known = select(after == Float8(0.0F), 1.0F, after);
     select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
   }
@@ -207,7 +206,7 @@ class LeafUpdate {
     const Float8 sum = own_weight + gained;
     const Float8 further = distance + (max(truncation, distance) - distance) * (gained / sum);
     const auto sampled = Float8(0.0F) < own_weight;
-    const auto forgotten = (Float8::load(block.log_odds) <= min_) & (truncation * 0.7F < further);
+    const auto forgotten = (Float8::load(block.log_odds) <= log_odds_.min) & (truncation * 0.7F < further);
     const auto kept = Float8::Mask::of_bits(sampled.bits() & ~forgotten.bits());
     select(kept, further, 0.0F).store_rounded(block.distance);
     select(kept, sum, 0.0F).store_rounded(block.weight);
@@ -227,8 +226,8 @@ class LeafUpdate {
     select(sampled, sum, own_weight).store_rounded(block.weight);
     if (!has_colour_) return;
     unsigned take = which & (absolute(observed.distance_m) < colour_distance_m_).bits();
-    if (!refresh_colour) take &= ~block.coloured | (Float8(kSettledPart) <= part).bits();
-    if (take != 0) add_colours(block, observed.p_camera, max(part, kSettledPart), take);
+    if (!refresh_colour) take &= ~block.coloured | (Float8(kMinColourFraction) <= part).bits();
+    if (take != 0) add_colours(block, observed.p_camera, max(part, kMinColourFraction), take);
   }
 
   void add_colours(LeafBlock& block, const EightPoints<Float8>& p_camera, const Float8& part, unsigned take) {
@@ -273,8 +272,12 @@ class LeafUpdate {
   Pinhole camera_, colour_camera_;
   Eigen::Matrix4f T_colour_depth_;
   float truncation_m_, colour_distance_m_;
-  float behind_;                  // -kBehind_cells as distance, in units of BlockUnits::distance_m
-  float hit_, miss_, min_, max_;  // in units of BlockUnits::log_odds
+  float behind_;  // -kBehind_cells as distance, in units of BlockUnits::distance_m
+  // In units of BlockUnits::log_odds.
+  struct LogOddsSteps {
+    float hit, miss, min, max;
+  };
+  LogOddsSteps log_odds_;
   bool has_colour_ = false;
 };
 

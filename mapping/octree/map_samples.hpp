@@ -1,5 +1,5 @@
-// map_samples.hpp: reads, revises and adds samples, voxel by voxel, whatever the size of their cells. Private
-// to StaticMap, whose functions of the same names call these.
+// map_samples.hpp: reads, revises and adds samples per voxel, in fine and coarse cells. Private to StaticMap,
+// whose functions of the same names call these.
 #pragma once
 #include <Eigen/Geometry>
 #include <functional>
@@ -18,7 +18,7 @@ void visit_samples(const BlockOctree& tree, const KeyRange& range,
 void visit_cells(const BlockOctree& tree, const KeyRange& range,
                  const std::function<void(const SurfaceSample&, int)>& visit);
 
-/// Refines coarse cells in which an action other than kKeep is returned for a voxel.
+/// Refines a coarse cell if `decide` returns an action other than kKeep for one of its voxels.
 void revise_samples(BlockOctree& tree, const FusionConfig& config, const KeyRange& range,
                     const std::function<SampleAction(const SurfaceSample&)>& decide);
 

@@ -161,9 +161,8 @@ class BlockReader {
   BlockReader(ColumnReader& in, const BlockUnits& file, BlockOctree& tree)
       : in_(in),
         tree_(tree),
-        log_odds_ratio_(file.log_odds / tree.units().log_odds),
-        distance_ratio_(file.distance_m / tree.units().distance_m),
-        weight_ratio_(file.weight / tree.units().weight) {
+        ratios_{file.log_odds / tree.units().log_odds, file.distance_m / tree.units().distance_m,
+                file.weight / tree.units().weight} {
     kinds_.items = in.take<std::uint16_t>("kinds of nodes");
     cubes_.items = in.take<std::int16_t>("log-odds of cubes");
     log_odds_.items = in.take<std::int16_t>("log-odds of cells");
@@ -244,8 +243,9 @@ class BlockReader {
       predict_.distance.add(i, distance);
       predict_.weight.add(i, weight);
       if (weight == 0) fault();
-      block.distance[i] = static_cast<std::int16_t>(rescaled(distance, distance_ratio_, -32767.0F, 32767.0F));
-      block.weight[i] = static_cast<std::uint16_t>(rescaled(weight, weight_ratio_, 1.0F, 65535.0F));
+      block.distance[i] =
+          static_cast<std::int16_t>(rescaled(distance, ratios_.distance, -32767.0F, 32767.0F));
+      block.weight[i] = static_cast<std::uint16_t>(rescaled(weight, ratios_.weight, 1.0F, 65535.0F));
       if ((coloured >> i & 1U) != 0) tree_.colours(block).colours[i] = take_colour(i);
     }
     block.coloured = static_cast<std::uint8_t>(coloured);
@@ -275,14 +275,18 @@ class BlockReader {
     return static_cast<int>(std::lround(std::clamp(static_cast<float>(value) * ratio, least, most)));
   }
   [[nodiscard]] LogOdds rescaled_log_odds(int value) const {
-    const int log_odds = rescaled(value, log_odds_ratio_, -32767.0F, 32767.0F);
+    const int log_odds = rescaled(value, ratios_.log_odds, -32767.0F, 32767.0F);
     if (log_odds == 0 && value != 0) return value < 0 ? -1 : 1;
     return static_cast<LogOdds>(log_odds);
   }
 
   ColumnReader& in_;
   BlockOctree& tree_;
-  float log_odds_ratio_, distance_ratio_, weight_ratio_;
+  /// Steps of the file's integers, divided by those of the tree.
+  struct StepRatios {
+    float log_odds, distance, weight;
+  };
+  StepRatios ratios_;
   Column<std::uint16_t> kinds_, distances_, weights_;
   Column<std::int16_t> cubes_, log_odds_;
   Column<std::uint8_t> sampled_, coloured_, red_, green_, blue_;

@@ -34,7 +34,7 @@ BrickNeighbourhood::BrickNeighbourhood(const TsdfBricks& bricks, std::size_t cen
             bricks.find(first + kBrickEdge * Eigen::Vector3i(x - 1, y - 1, z - 1));
 }
 
-BrickNeighbourhood::Place BrickNeighbourhood::place(const Eigen::Vector3i& relative) const {
+BrickNeighbourhood::SampleIndex BrickNeighbourhood::index_of(const Eigen::Vector3i& relative) const {
   const Eigen::Vector3i which = relative.unaryExpr([](int v) { return (v >> kBrickShift) + 1; });
   const Eigen::Vector3i offset = relative.unaryExpr([](int v) { return v & (kBrickEdge - 1); });
   return {around_[static_cast<std::size_t>((which.z() * 3 + which.y()) * 3 + which.x())],

@@ -66,13 +66,13 @@ class BrickNeighbourhood {
  public:
   BrickNeighbourhood(const TsdfBricks& bricks, std::size_t centre);
 
-  struct Place {
+  struct SampleIndex {
     std::size_t brick = TsdfBricks::kNone;
     std::size_t offset = 0;
   };
   /// Returns the brick and index of the voxel at `relative` from the centre brick's lowest voxel. Each
   /// coordinate must be in -kBrickEdge..2*kBrickEdge-1.
-  [[nodiscard]] Place place(const Eigen::Vector3i& relative) const;
+  [[nodiscard]] SampleIndex index_of(const Eigen::Vector3i& relative) const;
 
  private:
   std::array<std::size_t, 27> around_{};

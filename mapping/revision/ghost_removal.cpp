@@ -40,7 +40,7 @@ GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fus
   ChosenFrames chosen(source, fused, std::move(every_nth), times);
   for (std::size_t i = 0; chosen.next(frame, i);) {
     times.timed("ghosts", [&] { votes.look(frame, fused[i].T_world_camera); });
-    if (progress) progress("looked");
+    if (progress) progress("searched");
   }
 
   // Erase them, and all samples that they may have corrupted.

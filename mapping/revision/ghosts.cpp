@@ -131,6 +131,7 @@ GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
   absence_.resize(votes_.size());
 }
 
+// Not split: the vote of a voxel uses the projection, the windows and the margins of the frame.
 void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   const DepthImage& depth_m = frame.depth_m;
   if (!depth_fault_of(frame).empty()) return;

@@ -175,8 +175,8 @@ bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::u
     any = any || word != 0;
     row[i] |= word;
   };
-  const auto add_row = [&](const std::uint64_t* from, const std::uint64_t* barred) {
-    for (std::size_t i = 0; from && i < words; ++i) add(i, from[i] & ~barred[i]);
+  const auto add_row = [&](const std::uint64_t* from, const std::uint64_t* blocked_row) {
+    for (std::size_t i = 0; from && i < words; ++i) add(i, from[i] & ~blocked_row[i]);
   };
   add_row(source.y_before, bars.y_before);
   add_row(source.y_after, bars.y);
@@ -194,7 +194,7 @@ bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::u
 // Only the previous rows of two planes must be kept.
 void BitGrid::spread(const BitGrid* where, const std::array<BitGrid, 3>& blocked) {
   const std::size_t plane_words = words_a_row_ * static_cast<std::size_t>(size_.y());
-  std::vector<std::uint64_t> below, plane;  // z - 1 and z, as they were before
+  std::vector<std::uint64_t> below, plane;  // z - 1 and z before the operation
   for (int z = 0; z < size_.z(); ++z) {
     below.swap(plane);
     plane.assign(row(0, z), row(0, z) + plane_words);

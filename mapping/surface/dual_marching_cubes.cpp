@@ -154,7 +154,7 @@ class Net {
       for (int y = 0; y < kWindow; ++y)
         for (int x = 0; x < kWindow; ++x) {
           const Eigen::Vector3i at(x, y, z);
-          const auto [brick, offset] = around.place(at);
+          const auto [brick, offset] = around.index_of(at);
           const TsdfSample* sample =
               brick == TsdfBricks::kNone ? nullptr : &grid.bricks.bricks()[brick].samples[offset];
           WindowSample& own = window_[in_window(at)];
@@ -209,7 +209,7 @@ class Net {
   }
 
   static unsigned signs_at(const Grid& grid, const BrickNeighbourhood& around, const Eigen::Vector3i& cell) {
-    const auto [brick, offset] = around.place(cell);
+    const auto [brick, offset] = around.index_of(cell);
     return brick == TsdfBricks::kNone ? 0U : grid.cells[brick].signs[offset];
   }
 
@@ -308,7 +308,7 @@ class Net {
   // Vertex of the cell's sheet that crosses the edge along `axis` starting at corner `from`.
   static std::uint32_t vertex_across(const Grid& grid, const BrickNeighbourhood& around,
                                      const Eigen::Vector3i& cell, const Eigen::Vector3i& from, int axis) {
-    const auto [brick, offset] = around.place(cell);
+    const auto [brick, offset] = around.index_of(cell);
     if (brick == TsdfBricks::kNone) return kNoVertex;
     const unsigned signs = grid.cells[brick].signs[offset];
     if (signs == 0) return kNoVertex;

@@ -21,11 +21,12 @@ namespace roomradar {
 /// MICCAI 1998 (placement); Nielson, Dual Marching Cubes, IEEE Visualization 2004 (sheets); Wenger,
 /// Isosurfaces, CRC Press 2013, chapter 3 (manifold faces).
 ///
-/// Where the grids of a map meet, a cell consists of the eight samples around a corner of a voxel; one coarse
-/// sample may be several of these. A polygon around a crossing between two coarse samples has up to eight
-/// corners, since voxels may touch it. Hence there are no cracks. Only the choice of sheets at ambiguous
-/// faces between cells of different grids may differ. Source: Schaefer and Warren, Dual Marching Cubes:
-/// Primal Contouring of Dual Grids, Pacific Graphics 2004 (cells of a dual grid).
+/// Where the fine and the coarse grid of a map meet, a cell consists of the eight samples around a corner of
+/// a voxel. A coarse sample may be several of these eight. A polygon around a crossing between two coarse
+/// samples has up to eight corners, one per adjacent cell of either grid. Hence there are no cracks. Only the
+/// choice of sheets at ambiguous faces between cells of different grids may differ. Source: Schaefer and
+/// Warren, Dual Marching Cubes: Primal Contouring of Dual Grids, Pacific Graphics 2004 (cells of a dual
+/// grid).
 Mesh dual_marching_cubes(const TsdfLevels& levels, double resolution_m);
 
 }  // namespace roomradar

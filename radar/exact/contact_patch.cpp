@@ -104,7 +104,7 @@ void ContactPatch::add(const TriangleGap& gap, double contact_distance_m, double
   piece.kind = kind;
   piece.count = 0;
   for (std::size_t i = 0; i < gap.count; ++i) {
-    const TriangleGap::Place& p = gap.places[i];
+    const TriangleGap::Vertex& p = gap.vertices[i];
     if (i != gap.lowest && p.gap > contact_distance_m + equally_m) continue;
     piece.corners[piece.count++] = {p.x, p.y, p.scene_z};
   }

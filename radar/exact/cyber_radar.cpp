@@ -52,7 +52,7 @@ void CyberRadar::look(RadarSearch& search) {
   const double distance_m = search.query.distance_m;
   const SceneBound bound = bound_of(search);
   const bool may_stop_early = config_.mode == RadarMode::kSampled && !search.collects_backs;
-  int settled_count = 0;
+  int tested_count = 0;
   columns_.work = 0;
   backs_.clear();
   patch_.clear();
@@ -60,7 +60,7 @@ void CyberRadar::look(RadarSearch& search) {
   scene_.begin(bound, static_cast<float>(limit_m(search)), queue_.items());
   queue_.arrange();
   while (!queue_.empty() && !search.overlaps && queue_.least().low_m < limit_m(search)) {
-    const bool is_enough = may_stop_early && settled_count >= kSampledExactTests &&
+    const bool is_enough = may_stop_early && tested_count >= kSampledExactTests &&
                            search.best_m <= distance_m && queue_.least().low_m >= 0.0F;
     if (is_enough || (search.is_thick && search.best_m <= 0.0)) return;
     SceneItem item = queue_.pop();
@@ -86,7 +86,7 @@ void CyberRadar::look(RadarSearch& search) {
         continue;
       }
     }
-    ++settled_count;
+    ++tested_count;
     test_exactly(search, item, triangle);
   }
 }
@@ -192,14 +192,14 @@ Contact CyberRadar::nothing_found(const RadarSearch& search) const {
 }
 
 /// Returns a lower bound of the distance of every contact not found yet.
-double CyberRadar::least_unsettled_m(const RadarSearch& search) const {
+double CyberRadar::least_untested_m(const RadarSearch& search) const {
   if (search.is_cut_short) return 0.0;
   return queue_.empty() ? kInfinity<double> : std::max(queue_.least().low_m, 0.0F);
 }
 
 Contact CyberRadar::inflated_contact_of(const RadarSearch& search) const {
   Contact contact = nothing_found(search);
-  const double free_m = search.overlaps ? 0.0 : std::min(search.best_m, least_unsettled_m(search));
+  const double free_m = search.overlaps ? 0.0 : std::min(search.best_m, least_untested_m(search));
   if (free_m > search.query.distance_m) return contact;
   contact.status = ContactStatus::kContact;
   contact.contact_distance_m = contact.lower_m = free_m;
@@ -218,7 +218,7 @@ Contact CyberRadar::overlap_of(const RadarSearch& search) {
 
 Contact CyberRadar::contact_of(RadarSearch& search) {
   Contact contact = nothing_found(search);
-  contact.lower_m = std::min({search.best_m, least_unsettled_m(search), search.query.distance_m});
+  contact.lower_m = std::min({search.best_m, least_untested_m(search), search.query.distance_m});
   if (!(search.best_m <= search.query.distance_m)) return contact;
   contact.status = ContactStatus::kContact;
   contact.contact_distance_m = contact.upper_m = search.best_m;

@@ -125,7 +125,7 @@ class CyberRadar {
   void cut_short(RadarSearch& search);
   void leave(RadarSearch& search);
   [[nodiscard]] double limit_m(const RadarSearch& search) const;
-  [[nodiscard]] double least_unsettled_m(const RadarSearch& search) const;
+  [[nodiscard]] double least_untested_m(const RadarSearch& search) const;
   [[nodiscard]] Contact nothing_found(const RadarSearch& search) const;
   [[nodiscard]] Contact inflated_contact_of(const RadarSearch& search) const;
   [[nodiscard]] Contact overlap_of(const RadarSearch& search);

@@ -22,7 +22,7 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
         const FrameTriangle o = turned_triangle(object, i);
         TriangleGap gap;
         if (!find_gap(o, scene, gap)) return;
-        const TriangleGap::Place& p = gap.places[gap.lowest];
+        const TriangleGap::Vertex& p = gap.vertices[gap.lowest];
         scratch.spans.push_back({gap.low_m, gap.high_m, {p.x, p.y, p.scene_z}});
         if (at_m == 0.0) {
           crosses_now = crosses_now || classify_pair(o, scene, gap, touching_m) == PairContact::kCrossing;

@@ -82,7 +82,7 @@ bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleG
   if (o_sign == 0.0) sides_of(o, 1.0, s, 1e300, of_object);
 
   const auto put = [&](double x, double y, double scene_z, double object_z) {
-    gap.places[gap.count++] = {x, y, scene_z, scene_z - object_z};
+    gap.vertices[gap.count++] = {x, y, scene_z, scene_z - object_z};
   };
   for (std::size_t j = 0; j < 3; ++j) {
     if (s_sign != 0.0) {
@@ -106,11 +106,11 @@ bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleG
     }
   }
   if (gap.count == 0) return false;
-  gap.low_m = gap.high_m = gap.places[0].gap;
+  gap.low_m = gap.high_m = gap.vertices[0].gap;
   gap.lowest = 0;
   for (std::size_t i = 1; i < gap.count; ++i) {
-    if (gap.places[i].gap < gap.low_m) gap.low_m = gap.places[i].gap, gap.lowest = i;
-    gap.high_m = std::max(gap.high_m, gap.places[i].gap);
+    if (gap.vertices[i].gap < gap.low_m) gap.low_m = gap.vertices[i].gap, gap.lowest = i;
+    gap.high_m = std::max(gap.high_m, gap.vertices[i].gap);
   }
   return true;
 }

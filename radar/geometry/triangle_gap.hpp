@@ -21,13 +21,13 @@ inline constexpr double kEdgeOn = 1e-9;
 
 /// Gap between two triangles: height of the scene's triangle above the object's, along z, m. The gap is
 /// linear over the intersection of the two projected triangles. Its minimum low_m and maximum high_m are
-/// therefore at vertices of the intersection. `places` holds these vertices. They are vertices of one
+/// therefore at vertices of the intersection. `vertices` holds them: vertices of one
 /// triangle inside the other, and crossings of the triangles' edges.
 struct TriangleGap {
-  struct Place {
+  struct Vertex {
     double x, y, scene_z, gap;
   };
-  std::array<Place, 18> places;
+  std::array<Vertex, 18> vertices;
   std::size_t count = 0;
   double low_m = 0.0, high_m = 0.0;
   std::size_t lowest = 0;  ///< index of a vertex whose gap is low_m

@@ -178,14 +178,15 @@ RelativeMotion relative_motion(const TreeInstance& object, const RigidMotion& mo
   if (!is_tree_still) {
     // In the tree's frame, a point accelerates by the Coriolis and centrifugal terms of the tree's rotation.
     // Those of a common rotation about the object's centre cancel.
-    const Vec3& spin = tree_motion.angular_rad_s;
+    const Vec3& tree_rad_s = tree_motion.angular_rad_s;
     const Vec3 between = centre_world - tree.T_world_mesh * tree_motion.centre_object;
     const Vec3 apart_m_s = motion.linear_m_s - tree_motion.linear_m_s;
-    linear_world = apart_m_s - spin.cross(between);
-    angular_world -= spin;
-    accelerates_m_s2 = 2.0 * spin.norm() * angular_world.norm() * reach_m +
-                       (spin.cross(spin.cross(between)) - 2.0 * spin.cross(apart_m_s)).norm() +
-                       spin.squaredNorm() * apart_m_s.norm() * duration_s;
+    linear_world = apart_m_s - tree_rad_s.cross(between);
+    angular_world -= tree_rad_s;
+    accelerates_m_s2 =
+        2.0 * tree_rad_s.norm() * angular_world.norm() * reach_m +
+        (tree_rad_s.cross(tree_rad_s.cross(between)) - 2.0 * tree_rad_s.cross(apart_m_s)).norm() +
+        tree_rad_s.squaredNorm() * apart_m_s.norm() * duration_s;
   }
   const Eigen::Matrix3d R_frame_world = trees.T_world_frame.linear().transpose();
   const Vec3 angular = R_frame_world * angular_world;

@@ -105,7 +105,7 @@ void measure_watching(Rows& rows) {
       if (i >= kWarmUp) watching.samples_ms.push_back(thread_ms() - start_ms);
       if (i % 7 != 0) continue;
       const double look_ms = thread_ms();
-      things = tracker.settled(i + 7 < kFrames ? 1e3 : 5.0).size();
+      things = tracker.lasting_changes(i + 7 < kFrames ? 1e3 : 5.0).size();
       if (i >= kWarmUp) looking.samples_ms.push_back(thread_ms() - look_ms);
     }
     rows.push_back({{"work", "watching for what stays"},

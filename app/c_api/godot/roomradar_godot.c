@@ -237,7 +237,7 @@ static gdn_variant blocks(gdn_object* instance, void* data, void* self_, int cou
   return made;
 }
 
-/* moved(): the mesh of what moved in the last frame */
+/* moved(): the mesh of the dynamic surfaces in the last frame */
 static gdn_variant moved(gdn_object* instance, void* data, void* self_, int count, gdn_variant** arguments) {
   (void)instance, (void)data, (void)count, (void)arguments;
   return mesh_of(self_, moved_call, NULL);

@@ -105,7 +105,8 @@ void complete_options(const CLI::App& command, FallthroughOptions& options) {
                  {"--scenarios", "--seed", "--random-rooms", "--threads", "--maps", "--csv", "--html",
                   "--scenario", "--video", "--part", "--rows", "--jobs", "--job-size", "--processes"},
                  ": used only for simulated rooms, not with a SOURCE");
-  if (!options.source.empty() && options.map.empty()) throw CLI::RequiredError("--map");
+  if (!options.source.empty() && options.map.empty())
+    throw CLI::ValidationError("--map is missing: map of SOURCE's room; `roomradar prescan` makes one");
   if (options.scenario)
     refuse_given(command,
                  {"--scenarios", "--threads", "--csv", "--html", "--report", "--part", "--rows", "--jobs",

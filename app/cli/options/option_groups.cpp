@@ -24,6 +24,7 @@ struct CommandHelp {
   const char* examples;
 };
 
+/// Returns the groups and examples of all commands. One table, so it is not split.
 std::vector<CommandHelp> command_helps() {
   return {
       {"start",

@@ -28,6 +28,7 @@ GivenUp parse_up(const std::string& text) {
 
 }  // namespace
 
+// Not split: one call per option, in the order of the help.
 void add_options(CLI::App& command, PrescanOptions& options) {
   add_source_argument(command, options.source);
   command

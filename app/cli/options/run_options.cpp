@@ -100,9 +100,9 @@ void add_picture_options(CLI::App& command, RunOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--stream", options.stream,
-                  "write a line of JSON per frame: camera, objects, contacts, what moved, times; a file,\n"
-                  "a named pipe, or - for standard output. A slow reader loses lines, and never delays\n"
-                  "the run (default: not written)")
+                  "write a line of JSON per frame: camera, objects, contacts, dynamic surfaces, times;\n"
+                  "a file, a named pipe, or - for standard output. A slow reader loses lines, and never\n"
+                  "delays the run (default: not written)")
       ->type_name("FILE");
 }
 
@@ -189,7 +189,8 @@ void complete_options(const CLI::App& command, RunOptions& options,
   if (const auto recorded = read_recorded(options.source))
     take_recorded_settings(command, *recorded, options);
   complete_quality(options.quality, options.preset, options.presets, options.fixed);
-  if (options.map.empty()) throw CLI::RequiredError("--map");
+  if (options.map.empty())
+    throw CLI::ValidationError("--map is missing: folder of a saved map; `roomradar prescan` makes one");
   if (command.count("--unknown") == 0 && options.surfaces != SurfacePolicy::kMap)
     options.unknown_is_solid = false;
   if (options.unknown_is_solid && options.surfaces != SurfacePolicy::kMap)

@@ -82,7 +82,7 @@ RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mes
   const std::size_t start_bytes = resident_bytes();
   SessionConfig config;
   apply(setting.quality, config);
-  config.picture.light.samples_per_s = 0;  // PictureJudge draws in the usual light, without grain
+  config.picture.light.samples_per_s = 0;  // PictureJudge draws in the default light, without grain
   config.picture.has_grain = false;
   Session session(scene.map, config);
   for (int number = 0; number < setting.objects; ++number) session.add_object(std::to_string(number), object);

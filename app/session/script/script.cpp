@@ -126,6 +126,7 @@ void read_when(LineReader& line, ScriptEvent& event) {
   }
 }
 
+// Not split: one case per action.
 void read_action(LineReader& line, ScriptEvent& event) {
   event.action = line.choice("an action", kActions);
   if (has_object(event.action)) event.name = line.word("the object's name");
@@ -260,6 +261,7 @@ Script read_script(const std::filesystem::path& path, LastLine last_line) {
   return script;
 }
 
+// Not split: one case per action.
 std::string to_line(const ScriptEvent& event) {
   std::string line =
       event.frame ? "frame " + std::to_string(*event.frame) : "time" + number_word(*event.time_s);

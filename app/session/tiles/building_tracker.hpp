@@ -12,15 +12,16 @@
 
 namespace roomradar {
 
-/// Follows the camera as locate() does, but searches the building by recognise_place() instead of patches and
-/// shapes, whose cost grows with the building. A recognised place is used once its tiles are loaded and the
-/// frame, aligned with their surface, stays at that place. A place that looks like another is refused. A
-/// tracked pose that is doubtful is compared with the place that the frame shows: at once if the depth
-/// contradicts the pose, else after 3 frames, then every 5 frames.
+/// Tracks the camera as locate() does. Relocalises it in the building by recognise_place(), since the cost of
+/// patches and correlative search grows with the building. A recognised place is refused if it looks like
+/// another place. It becomes the pose once its tiles are loaded, and aligning the frame with their surface
+/// keeps it at that place.
 ///
-/// A pose is supported if depth constrains it and surface is loaded in a good part of the view, or if the
-/// frame shows that place. Others are followed for 0.15 s after the last supported one, then given up: their
-/// error grows with the camera's motion.
+/// A tracked pose is supported if depth constrains it and surface is loaded in a large fraction of the view,
+/// or if recognise_place() returns the same place. A doubtful pose is one that is not supported, or that the
+/// depth contradicts. The tracker compares a doubtful pose with the result of recognise_place(): at once if
+/// the depth contradicts the pose, otherwise after 3 frames, then every 5 frames. Poses without support are
+/// discarded 0.15 s after the last supported pose, since their error grows with the camera's motion.
 class BuildingTracker {
  public:
   /// Throws Error if the config is invalid. `context` must outlive the tracker.
@@ -43,7 +44,7 @@ class BuildingTracker {
   /// See TileWindow::has_fault().
   [[nodiscard]] bool has_fault() const { return tiles_.has_fault(); }
   std::string take_fault() { return tiles_.take_fault(); }
-  /// Numbers of untracked frames whose place was recognised, or refused because another fits as well.
+  /// Numbers of untracked frames whose place was recognised, and of those whose place was ambiguous.
   [[nodiscard]] std::int64_t recognised() const { return recognised_; }
   [[nodiscard]] std::int64_t ambiguous() const { return ambiguous_; }
 
@@ -51,14 +52,14 @@ class BuildingTracker {
   TileWindow tiles_;
   std::int64_t recognised_ = 0, ambiguous_ = 0;
   int doubtful_frames_ = 0;
-  bool is_contradicted_ = false;  ///< depth does not agree well with the last tracked pose
-  bool is_refuted_ = false;       ///< it agrees so badly that the pose is given up if no place is recognised
+  bool is_contradicted_ = false;       ///< the depth contradicts the last tracked pose
+  bool is_refuted_ = false;            ///< so clearly that the pose is discarded unless a place is recognised
   std::optional<double> supported_s_;  ///< stamp of the last frame whose pose was supported
   std::optional<Eigen::Isometry3d>
       T_world_place_;  ///< place recognised in the last frame, if it was untracked
 
-  /// Judges a tracked pose. Counts consecutive frames with a doubtful one: contradicted or not supported.
-  /// Returns true if it is supported by depth.
+  /// Judges a tracked pose, and counts consecutive frames with a doubtful pose. Returns true if depth
+  /// supports the pose.
   bool judge(const Frame& frame, const Tracking& tracking, const DepthImage& expected_m);
   [[nodiscard]] bool is_recheck_due() const;
   /// Returns true if the last supported pose is too old to follow a pose without support.

@@ -1,7 +1,8 @@
-// tile_choice.hpp: chooses the tiles of a building that are loaded round the camera.
+// tile_choice.hpp: chooses the tiles of a building to load around the camera.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -10,36 +11,50 @@
 namespace roomradar {
 
 struct TileChoiceConfig {
-  double reach_m = 8.0;       ///< tiles nearer to the camera are chosen; depth cameras measure up to 8 m
-  double keep_m = 2.0;        ///< a loaded tile stays chosen until it is this much farther away than reach_m
-  double ahead_s = 2.0;       ///< the camera's position after this time counts as well as the present one
-  bool has_unknown = true;    ///< tiles have their border of unknown space
-  std::size_t max_bytes = 0;  ///< max memory of the chosen tiles, and of loading one of them; 0: no limit
+  double reach_m = 8.0;       ///< max distance from the camera; depth cameras measure up to 8 m
+  double keep_m = 2.0;        ///< hysteresis: loaded tiles may be this much farther than reach_m
+  double ahead_s = 2.0;       ///< distances are also measured from the position predicted for this time
+  bool has_unknown = true;    ///< tiles include their border of unknown space
+  std::size_t max_bytes = 0;  ///< max memory of the chosen tiles and of loading one; 0: no limit
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const TileChoiceConfig& config);
+
+/// Settings of TileWindow.
+struct TileWindowConfig {
+  std::filesystem::path folder;  ///< the building's folder
+  BuildingInfo building;
+  TileChoiceConfig choice;
+  /// Limit of the process's memory that the choice of tiles tries to keep, bytes; 0: no limit.
+  std::size_t max_process_bytes = 0;
+  /// Time from the request for a tile to the first frame that uses it, s. A tile in view is used as soon as
+  /// it is loaded.
+  double apply_after_s = 0.5;
+  /// true: the frame in which a tile is due waits for the worker thread, so results are reproducible.
+  /// false: frames do not wait, and a tile is used as soon as it is loaded.
+  bool wait = true;
+};
 
 /// Returns the approximate memory of a tile in use, in bytes.
 std::size_t tile_bytes(const BuildingTile& tile, bool has_unknown);
 /// Returns the approximate memory that loading a tile takes in addition to tile_bytes(), in bytes.
 std::size_t loading_bytes(const BuildingTile& tile, bool has_unknown);
 
-/// Returns the distance (m) of a tile's surface from the camera, or from its position after ahead_s if that
-/// is nearer. The distance is that of the surface's bounding box.
+/// Returns the distance (m) of the bounding box of a tile's surface from the camera, or from the camera's
+/// position after ahead_s, whichever is less.
 double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position_world,
                        const Eigen::Vector3d& velocity_world_mps, const TileChoiceConfig& config);
 
-/// Returns the tiles whose surface may be in view: those whose bounding box at least 5 % of the rays from the
-/// camera to the points enter, those with the most rays first. While one of them is not loaded, nothing is
-/// known along these rays; see hide_behind().
+/// Returns the tiles with a surface that may be in view, by number of rays, largest first. At least 5 % of
+/// the rays from the camera to the points must enter the surface's bounding box. The depth along these rays
+/// is unknown until the tile is loaded; see hide_behind().
 std::vector<std::size_t> tiles_in_view(const BuildingInfo& building, const Eigen::Vector3d& position_world,
                                        std::span<const Eigen::Vector3d> points_world);
 
 /// Returns the indices of the chosen tiles in `building.tiles`: those in view first, then nearest first.
-/// Loaded tiles count as keep_m nearer than they are, so a camera that moves to and fro between two tiles
-/// does not exchange them. With max_bytes, the list ends before the first tile that does not fit. It may then
-/// be empty.
-/// @param in_view    tiles that are chosen wherever the camera is
+/// Loaded tiles count as keep_m nearer, so a camera that moves back and forth between two tiles does not swap
+/// them. With max_bytes, the list ends before the first tile that does not fit, and may be empty.
+/// @param in_view    tiles to choose at any distance
 /// @param is_loaded  by tile
 std::vector<std::size_t> choose_tiles(const BuildingInfo& building, const Eigen::Vector3d& position_world,
                                       const Eigen::Vector3d& velocity_world_mps,

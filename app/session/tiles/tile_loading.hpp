@@ -1,4 +1,4 @@
-// tile_loading.hpp: reads one tile of a building and builds what a session needs of it, on any thread.
+// tile_loading.hpp: reads one tile of a building and builds its trees, on any thread.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -19,8 +19,8 @@ struct LoadedTile {
   TriangleTree unknown_tree;
 };
 
-/// Reads a tile; its octree is not read. On faces of the cube behind which there is another tile, the border
-/// of unknown space is left open: the other tile has it where its own space is unknown.
+/// Reads a tile, without its octree. The border of unknown space is open on faces of the cube that adjoin
+/// another tile, since that tile contains the border there.
 ///
 /// Thread safe. Throws Error naming the file and the fault if a file is missing or damaged.
 /// @param tile         index in building.tiles

@@ -1,4 +1,4 @@
-// tile_window.hpp: the tiles of a building that are loaded round the camera, taken up between two frames.
+// tile_window.hpp: loads the tiles of a building around the camera, and puts them to use between frames.
 #pragma once
 #include <Eigen/Geometry>
 #include <chrono>
@@ -23,20 +23,6 @@
 
 namespace roomradar {
 
-struct TileWindowConfig {
-  std::filesystem::path folder;  ///< of the building
-  BuildingInfo building;
-  TileChoiceConfig choice;
-  /// The process's memory that the choice of tiles aims to stay below, in bytes; 0: no limit.
-  std::size_t max_process_bytes = 0;
-  /// Time from the request for a tile to the first frame that uses it, s. A tile in view is used as soon as
-  /// it is loaded.
-  double apply_after_s = 0.5;
-  /// true: the frame in which a tile is due waits for the worker thread. Results are then reproducible.
-  /// false: frames do not wait. A tile may then take effect earlier or later.
-  bool wait = true;
-};
-
 /// A tile in use.
 struct SessionTile {
   std::size_t index;  ///< in the building's tiles
@@ -50,16 +36,16 @@ struct SessionTile {
 
 struct TileCounts {
   std::int64_t loaded = 0, dropped = 0;
-  std::int64_t frames_over_33_ms = 0;  ///< frames to which taking up a tile added more than 33 ms
-  /// Stages: `frame`, the time that taking up or dropping tiles added to a frame; `blocked`, the time for
-  /// which a frame waited for the worker thread; `late`, the time for which a tile was in view but
-  /// not in use, one value per tile loaded.
+  std::int64_t frames_over_33_ms = 0;  ///< frames delayed by more than 33 ms by adding a tile
+  /// Stages: `frame`, the time per frame for adding and dropping tiles; `blocked`, the time per frame of
+  /// waiting for the worker thread; `late`, the time per loaded tile during which the tile was in view but
+  /// not in use.
   StageTimes times;
 };
 
-/// Loads tiles on a worker thread, one after the other, nearest first. A frame takes up at most one tile. A
-/// tile whose file is missing or damaged is left out for good, with a fault. Not thread safe: call all
-/// functions on the constructing thread, whose GL context is used.
+/// Loads tiles on a worker thread, one after the other, nearest first. Adds at most one tile per frame. A
+/// tile with a missing or damaged file is never tried again, and reported as a fault. Not thread safe: call
+/// all functions on the constructing thread, whose GL context is used.
 class TileWindow {
  public:
   /// Throws Error if a config is invalid. `context` must outlive the window.
@@ -68,15 +54,15 @@ class TileWindow {
   TileWindow(const TileWindow&) = delete;
   TileWindow& operator=(const TileWindow&) = delete;
 
-  /// Call before each frame. Drops tiles that are no longer chosen, and takes up a tile that is due. Returns
-  /// true if the surfaces have changed.
+  /// Call before each frame. Drops tiles that are no longer chosen, and adds a tile that is due. Returns true
+  /// if the surfaces have changed.
   bool begin_frame(double stamp_s);
-  /// Call with the camera's pose, or with that of a place where it may be. Chooses the tiles that hold the
-  /// frame's surfaces, those near the camera, and those on its way, and begins to load them.
+  /// Chooses the tiles that contain the frame's surfaces, those near the camera, and those on its way, and
+  /// begins to load them. Call with the camera's pose, or with a possible pose of an untracked camera.
   void follow(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Returns true if the tiles that hold the surfaces of a frame at this pose are loaded, as far as memory
-  /// allows. False if none of them can be loaded.
+  /// Returns true if the tiles that contain the surfaces of a frame at this pose are loaded, as far as memory
+  /// allows. Returns false if none of them can be loaded.
   [[nodiscard]] bool is_ready_for(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const;
   /// Returns true if all tiles of the building whose cubes intersect the box are loaded.
   [[nodiscard]] bool is_loaded(const Eigen::AlignedBox3d& box_world) const;
@@ -88,8 +74,8 @@ class TileWindow {
   /// By tile of the building.
   [[nodiscard]] const std::vector<bool>& loaded() const { return is_loaded_; }
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
-  /// Returns true if a tile could not be read, or the first time that memory does not suffice for a tile in
-  /// view, and take_fault() has not yet returned why.
+  /// Returns true if there is a fault that take_fault() has not returned: a tile that could not be read, or,
+  /// once, a tile in view for which memory does not suffice.
   [[nodiscard]] bool has_fault() const { return !fault_.empty(); }
   std::string take_fault() { return std::exchange(fault_, {}); }
 
@@ -114,7 +100,7 @@ class TileWindow {
   double position_stamp_s_ = 0.0, stamp_s_ = 0.0;
   Eigen::Vector3d velocity_world_mps_ = Eigen::Vector3d::Zero();
   bool has_told_memory_ = false;
-  std::string fault_;  ///< of the last tile; a frame takes up one tile
+  std::string fault_;  ///< fault of the last tile; a frame adds at most one tile
   TileCounts counts_;
 
   bool drop_unchosen();

@@ -1,4 +1,4 @@
-// unloaded_space.hpp: rays into tiles; removes expected depth behind tiles that are not loaded.
+// unloaded_space.hpp: removes expected depth behind tiles that are not loaded, by casting rays.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -13,8 +13,8 @@ namespace roomradar {
 double ray_entry(const Eigen::AlignedBox3d& box_world, const Eigen::Vector3d& from_world,
                  const Eigen::Vector3d& ray_world);
 
-/// Sets the depth to 0 where a pixel's ray enters one of the boxes before it reaches that depth. A surface in
-/// the box may be nearer than the depth, so nothing is known there.
+/// Sets a pixel's depth to 0 if its ray enters one of the boxes before it reaches that depth. A surface in
+/// the box may be nearer than the depth, so the depth is unknown there.
 /// @param boxes_world  bounding boxes of the surfaces of tiles that are not loaded
 /// @param camera       of the image
 void hide_behind(std::span<const Eigen::AlignedBox3d> boxes_world, const Intrinsics& camera,

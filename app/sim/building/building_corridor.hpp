@@ -1,4 +1,4 @@
-// building_corridor.hpp: a piece of a corridor, with what distinguishes it from the others.
+// building_corridor.hpp: makes a piece of a corridor, with furniture that distinguishes it from other pieces.
 #pragma once
 #include <cstdint>
 
@@ -7,12 +7,12 @@
 
 namespace roomradar {
 
-/// Max depth of anything that stands or hangs at a corridor's wall.
+/// Max depth of the furniture along a corridor's walls.
 inline constexpr double kCorridorFurniture_m = 0.45;
 
 /// Adds a piece of a corridor: its shell, a lamp, coloured frames around doorways, and pictures, boards,
-/// cupboards, benches, plants and the like along its walls. Colours and furniture are drawn by the building's
-/// seed, the floor and the piece; floor covering by floor.
+/// cupboards, benches, plants and the like along its walls. Colours and furniture are chosen at random by the
+/// building's seed, floor and piece, the floor covering by seed and floor.
 /// @param look  seed of its materials, different for each piece
 void add_corridor_piece(Room& room, const BuildingPlan& plan, int piece, int floor, std::uint32_t look);
 

@@ -118,8 +118,8 @@ std::vector<Pair> possible_pairs(const BuildingPlan& plan, const std::vector<Slo
 }
 
 void choose_twins(BuildingPlan& plan, std::vector<Pair> pairs) {
-  const int usual = std::min(2 * (plan.size.rooms / 10), most_alike(plan.size));
-  const auto count = static_cast<std::size_t>(plan.size.alike.value_or(usual) / 2);
+  const int default_alike = std::min(2 * (plan.size.rooms / 10), most_alike(plan.size));
+  const auto count = static_cast<std::size_t>(plan.size.alike.value_or(default_alike) / 2);
   std::sort(pairs.begin(), pairs.end(), [&plan](const Pair& a, const Pair& b) {
     const auto order = [&plan](const Pair& pair) { return hash_of(plan.seed, 0x7477696e, pair.first); };
     return order(a) < order(b);

@@ -20,7 +20,7 @@ struct BuildingSize {
 };
 /// Throws Error naming the value and its range if one is out of range.
 void require_valid(const BuildingSize& size);
-/// Returns the max number of rooms that can have a twin on the next floor, or on the same one if it is the
+/// Returns the max number of rooms that can have a twin on the next floor, or on the same floor if there is
 /// only one.
 int most_alike(const BuildingSize& size);
 
@@ -37,14 +37,14 @@ inline constexpr double kStairwellWidth_m = 2.0 * kFlightWidth_m + kFlightGap_m;
 
 struct PlannedRoom {
   int floor = 0;
-  Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();  ///< of the interior, x and y in the world
+  Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();  ///< middle of the interior, x and y in the world
   Eigen::Vector2d half_m = Eigen::Vector2d::Zero();    ///< half the size of the interior
-  int corridor = 0;                                    ///< the corridor its door leads to
-  bool is_north = false;                               ///< of the corridor
-  double door_aside_m = 0.0;                           ///< middle of its door, east of the room's middle
+  int corridor = 0;                                    ///< index of the corridor that the door leads to
+  bool is_north = false;                               ///< true: north of the corridor
+  double door_aside_m = 0.0;  ///< distance of the door's middle from the room's middle, to the east
   /// Seed of its furniture and materials. Rooms of equal seeds are equal up to a translation.
   std::uint64_t look_seed = 0;
-  /// Number of the room that looks alike; -1: none does.
+  /// Number of the room that looks the same; -1: none.
   int twin = -1;
 };
 
@@ -54,9 +54,9 @@ inline double door_x_m(const PlannedRoom& room) { return room.middle_m.x() + roo
 /// Opening in a side of a corridor's piece.
 struct PieceOpening {
   unsigned side = 0;                ///< 0 to 3: +y, -y, -x or +x
-  double from_m = 0.0, to_m = 0.0;  ///< along x or y in the world
+  double from_m = 0.0, to_m = 0.0;  ///< range along x or y in the world
   LeadsTo leads_to = LeadsTo::kPiece;
-  int number = 0;  ///< of the piece or stairs, or of the room on the lowest floor
+  int number = 0;  ///< number of the piece or stairs, or of the room on the lowest floor
 };
 
 /// A box-shaped piece of a corridor. All floors have the same pieces.
@@ -106,8 +106,8 @@ struct BuildingPlace {
   int floor = 0;
   int room = -1;  ///< number of the room: index in BuildingPlan::rooms; -1: a corridor or stairs
 };
-/// Returns the floor and room in whose interior, or the corridor or stairwell in which, the point lies; unset
-/// if it lies in none. Stairs belong to the floor below them.
+/// Returns the floor and room of a point in the interior of a room, a corridor or a stairwell; unset for
+/// other points. Stairs belong to the floor below them.
 std::optional<BuildingPlace> place_at(const BuildingPlan& plan, const Eigen::Vector3d& p_world);
 
 }  // namespace roomradar

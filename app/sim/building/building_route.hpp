@@ -1,4 +1,4 @@
-// building_route.hpp: a way through a building, built from straight lines and rounds.
+// building_route.hpp: builds a route through a building from straight lines and rounds.
 #pragma once
 #include <vector>
 
@@ -13,7 +13,8 @@ struct CorridorPlace {
   double x_m = 0.0;
 };
 
-/// A way under construction, as points about 5 cm apart. The view is along the way unless stated otherwise.
+/// A route under construction, as points about 5 cm apart. The camera looks along the route unless stated
+/// otherwise.
 struct Route {
   const BuildingPlan& plan;
   std::vector<WalkPoint> points = {};
@@ -22,8 +23,8 @@ struct Route {
   void line_to(const Eigen::Vector2d& to_m, double floor_m);
   /// Walks along corridors and stairs to the place. The route must end near a corridor's middle line.
   void walk_to(const CorridorPlace& from, const CorridorPlace& to);
-  /// Walks round a room, facing its middle. The route must end at the room's door, or be empty: then it
-  /// begins inside.
+  /// Walks round a room, facing its middle. The route must end at the room's door, or be empty. An empty
+  /// route begins inside the room.
   /// @param is_left  true: counter-clockwise
   /// @param leaves   true: ends before the door, with a view towards it
   void round(const PlannedRoom& room, bool is_left, bool leaves);
@@ -36,8 +37,9 @@ CorridorPlace before_door(const PlannedRoom& room);
 /// Returns the place before a stairwell's door.
 CorridorPlace before_stairs(const BuildingPlan& plan, const PlannedStairs& stairs, int floor);
 
-/// Returns the points of the route at equal times: smoothed over about 0.7 m, the view over 3 m, at up to
-/// 0.42 m/s, slower where the view turns by more than 24 degrees/s.
+/// Returns the points of the route at equal time steps. Positions are smoothed over about 0.7 m, view
+/// directions over 3 m. The speed is at most 0.42 m/s, and less where the view would turn by more than 24
+/// degrees/s.
 std::vector<WalkPoint> timed(const Route& route, double step_s);
 
 }  // namespace roomradar

@@ -9,7 +9,7 @@ namespace roomradar {
 
 /// An opening in a wall, from its foot up.
 struct WallOpening {
-  double from_m = 0.0, to_m = 0.0;  ///< along the wall's x axis
+  double from_m = 0.0, to_m = 0.0;  ///< range along the wall's x axis
   double high_m = 0.0;
 };
 
@@ -19,8 +19,8 @@ struct WallPaint {
 };
 inline constexpr double kDado_m = 1.1;
 
-/// Adds a wall of thickness kShellThickness_m. Its frame has its foot's inner edge as x axis, to the right as
-/// seen from inside, and -y into the room.
+/// Adds a wall of thickness kShellThickness_m. In the wall's frame, x is along the inner edge of the wall's
+/// foot, to the right as seen from inside. -y points into the room.
 /// @param openings  without overlap, at least kDado_m high
 void add_wall(Room& room, const Eigen::Isometry3d& T_world_wall, double from_m, double to_m, double height_m,
               std::vector<WallOpening> openings, const WallPaint& paint);

@@ -10,8 +10,8 @@ namespace roomradar {
 
 /// Textures with mip levels, and lighting on a coarse grid, for each face that is visible inside the room.
 /// Lighting includes the lamps' shadows (by ray casting) and ambient occlusion (from distances to the room's
-/// surface). Each face's textures and each node's light are computed when they are first seen: a whole room
-/// takes more than half a second.
+/// surface). The textures of a face and the light of a node are computed when they are first seen, since a
+/// whole room takes more than half a second.
 class SurfaceAppearance {
  public:
   /// Shows the room's solids. The room must outlive this.

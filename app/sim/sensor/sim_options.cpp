@@ -66,6 +66,7 @@ void set_building_option(SimOptions& options, std::string_view key, std::string_
   }
 }
 
+// Not split: one branch per key.
 void set_option(SimOptions& options, std::string_view key, std::string_view value) {
   if (key == "seed") {
     options.seed = number<std::uint64_t>(key, value, "a whole number, 0 or more");

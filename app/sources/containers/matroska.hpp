@@ -30,10 +30,10 @@ struct MatroskaAttachment {
 struct MatroskaIndex {
   std::vector<MatroskaTrack> tracks;
   std::vector<MatroskaAttachment> attachments;
-  std::vector<MatroskaBlock> blocks;  ///< in the file's order, without laced and incomplete ones
+  std::vector<MatroskaBlock> blocks;  ///< in the file's order, without laced and incomplete blocks
 };
 
-/// Returns true if the file begins as an EBML file does.
+/// Returns true if the file begins with an EBML header.
 [[nodiscard]] bool is_matroska(const std::filesystem::path& path);
 
 /// Walks the elements of the file and reads their headers; skips the data of blocks. A file that ends within

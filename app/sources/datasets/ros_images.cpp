@@ -227,7 +227,7 @@ double depth_unit_m(const MessageLog& log, const RosStream& depth) {
       const std::string bytes = log.read(entry);
       const auto unit_m = static_cast<double>(read_float(message(log, bytes, entry.topic)));
       if (unit_m > 0.0 && unit_m < 1.0) return std::round(unit_m * 1e9) / 1e9;  // stored as a float
-    } catch (const Error&) {                                                    // the usual unit then
+    } catch (const Error&) {                                                    // the default unit then
     }
     break;
   }

@@ -39,6 +39,33 @@ struct SensFrame {
   std::uint64_t colour_offset = 0, colour_bytes = 0, depth_bytes = 0;
 };
 
+/// Reads the heads of at most `count` frames from the offset `at` on, up to the last whole frame. Adds them
+/// to `frames`, and returns where their images are.
+std::vector<SensFrame> read_frames(const RandomAccessFile& file, const std::string& where, std::uint64_t at,
+                                   std::uint64_t count, std::vector<IndexedFrame>& frames) {
+  constexpr std::uint64_t kFrameHead_bytes = sizeof(Matrix4) + 4 * 8;
+  std::vector<SensFrame> places;
+  std::vector<double> stamps_s;
+  for (std::uint64_t i = 0; i < count && file.has(at, kFrameHead_bytes); ++i) {
+    const std::string bytes = file.read(at, kFrameHead_bytes);
+    ByteReader frame_reader(bytes, where);
+    const auto pose = frame_reader.number<Matrix4>();
+    (void)frame_reader.number<std::uint64_t>();  // stamp of the colour image
+    const auto stamp_us = frame_reader.number<std::uint64_t>();
+    SensFrame place{at + kFrameHead_bytes, frame_reader.number<std::uint64_t>(),
+                    frame_reader.number<std::uint64_t>()};
+    if (!file.has(place.colour_offset, place.colour_bytes) ||
+        !file.has(place.colour_offset + place.colour_bytes, place.depth_bytes))
+      break;
+    at = place.colour_offset + place.colour_bytes + place.depth_bytes;
+    frames.push_back({.has_colour = place.colour_bytes > 0, .T_world_camera = transform_of(pose)});
+    stamps_s.push_back(1e-6 * static_cast<double>(stamp_us));
+    places.push_back(place);
+  }
+  set_stamps(stamps_s, frames);
+  return places;
+}
+
 }  // namespace
 
 bool is_scannet_sens(const std::filesystem::path& path) {
@@ -78,27 +105,8 @@ IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
   if (T_device_colour && T_device_depth)
     recording.rig.T_colour_depth = T_device_colour->inverse() * *T_device_depth;
 
-  constexpr std::uint64_t kFrameHead_bytes = sizeof(Matrix4) + 4 * 8;
-  std::vector<SensFrame> places;
-  std::vector<double> stamps_s;
-  std::uint64_t at = 12 + name_bytes + kFixed_bytes;
-  for (std::uint64_t i = 0; i < count && file->has(at, kFrameHead_bytes); ++i) {
-    const std::string bytes = file->read(at, kFrameHead_bytes);
-    ByteReader frame_reader(bytes, where);
-    const auto pose = frame_reader.number<Matrix4>();
-    (void)frame_reader.number<std::uint64_t>();  // stamp of the colour image
-    const auto stamp_us = frame_reader.number<std::uint64_t>();
-    SensFrame place{at + kFrameHead_bytes, frame_reader.number<std::uint64_t>(),
-                    frame_reader.number<std::uint64_t>()};
-    if (!file->has(place.colour_offset, place.colour_bytes) ||
-        !file->has(place.colour_offset + place.colour_bytes, place.depth_bytes))
-      break;
-    at = place.colour_offset + place.colour_bytes + place.depth_bytes;
-    recording.frames.push_back({.has_colour = place.colour_bytes > 0, .T_world_camera = transform_of(pose)});
-    stamps_s.push_back(1e-6 * static_cast<double>(stamp_us));
-    places.push_back(place);
-  }
-  set_stamps(stamps_s, recording.frames);
+  const std::vector<SensFrame> places =
+      read_frames(*file, where, 12 + name_bytes + kFixed_bytes, count, recording.frames);
 
   const RawLayout depth_layout{recording.rig.depth_camera.width_px, recording.rig.depth_camera.height_px};
   recording.read_depth = [=](std::size_t frame, DepthImage& depth_m) {

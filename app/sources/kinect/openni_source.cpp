@@ -35,7 +35,8 @@ std::string uri_of(const std::string& device) {
   openni::OpenNI::enumerateDevices(&devices);
   if (*number < 0 || *number >= devices.getSize())
     throw Error("openni:" + device + ": is not plugged in; OpenNI2 finds " +
-                std::to_string(devices.getSize()) + " devices");
+                std::to_string(devices.getSize()) +
+                " devices, counted from 0. Plug it in, or give another number");
   return devices[static_cast<int>(*number)].getUri();
 }
 

@@ -62,13 +62,13 @@ void mark_chosen(ImDrawList& draw, const Snapshot& shown, const Area& image, dou
   const float gap = look::px(6.0F);
   const float left = image.x + low.x - gap, top = image.y + low.y - gap;
   const float right = image.x + high.x + gap, bottom = image.y + high.y + gap;
-  const float arm = std::clamp(0.22F * std::min(right - left, bottom - top), look::px(6.0F), look::px(18.0F));
+  const float leg = std::clamp(0.22F * std::min(right - left, bottom - top), look::px(6.0F), look::px(18.0F));
   const ImU32 colour = found->is_carried ? look::kWarn : look::kAccent;
   draw.PushClipRect({image.x, image.y}, {image.x + image.width, image.y + image.height}, true);
   for (const float x : {left, right}) {
     for (const float y : {top, bottom}) {
-      draw.AddLine({x, y}, {x + (x == left ? arm : -arm), y}, colour, look::px(2.0F));
-      draw.AddLine({x, y}, {x, y + (y == top ? arm : -arm)}, colour, look::px(2.0F));
+      draw.AddLine({x, y}, {x + (x == left ? leg : -leg), y}, colour, look::px(2.0F));
+      draw.AddLine({x, y}, {x, y + (y == top ? leg : -leg)}, colour, look::px(2.0F));
     }
   }
   draw_label(draw, {left + look::px(5.0F), bottom + look::px(7.0F)},

@@ -83,9 +83,9 @@ class Watched {
 TEST(ChangeTracker, WhatStaysIsFoundAfterItsTimeAndNotBefore) {
   Watched watched(room());
   watched.run(0.0, 3.6, test::nearest_of(room(), crate_at({0, 0, 0})));
-  EXPECT_TRUE(watched.tracker.settled(4.0).empty());
+  EXPECT_TRUE(watched.tracker.lasting_changes(4.0).empty());
   watched.run(3.6, 4.8, test::nearest_of(room(), crate_at({0, 0, 0})));
-  const std::vector<LastingChange> changes = watched.tracker.settled(4.0);
+  const std::vector<LastingChange> changes = watched.tracker.lasting_changes(4.0);
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_EQ(changes[0].kind, LastingKind::kCame);
   const Eigen::AlignedBox3d box = changes[0].box_world();
@@ -99,9 +99,9 @@ TEST(ChangeTracker, WhatStaysIsFoundAfterItsTimeAndNotBefore) {
 TEST(ChangeTracker, WhatWasTakenAwayIsFound) {
   Watched watched(test::nearest_of(room(), crate_at({0, 0, 0})));
   watched.run(0.0, 1.7, room());
-  EXPECT_TRUE(watched.tracker.settled(2.0).empty());
+  EXPECT_TRUE(watched.tracker.lasting_changes(2.0).empty());
   watched.run(1.7, 2.8, room());
-  const std::vector<LastingChange> changes = watched.tracker.settled(2.0);
+  const std::vector<LastingChange> changes = watched.tracker.lasting_changes(2.0);
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_EQ(changes[0].kind, LastingKind::kWent);
   EXPECT_LT((changes[0].box_world().center() - Vector3d(0, 0, 0.11)).norm(), 0.05);
@@ -111,7 +111,7 @@ TEST(ChangeTracker, AStripAlongAnEdgeHasNotGoneAndASmallBoxHas) {
   const auto gone = [](const Vector3d& low, const Vector3d& high) {
     Watched watched(test::nearest_of(room(), test::box(Eigen::AlignedBox3d(low, high))));
     watched.run(0.0, 2.0, room());
-    return watched.tracker.settled(1.0).size();
+    return watched.tracker.lasting_changes(1.0).size();
   };
   EXPECT_EQ(gone({-0.04, -0.04, 0.0}, {0.04, 0.04, 0.1}), 1U);
   EXPECT_EQ(gone({-0.4, 0.0, 0.3}, {0.4, 0.01, 0.34}), 0U);
@@ -124,7 +124,7 @@ TEST(ChangeTracker, WhatSwaysIsNeverFound) {
       const Vector3d hand(amplitude_m * std::sin(2.5 * t_s), amplitude_m * std::cos(2.5 * t_s), 0.2);
       return test::nearest_of(room(), test::sphere(hand, 0.06));
     });
-    EXPECT_TRUE(watched.tracker.settled(2.0).empty()) << amplitude_m;
+    EXPECT_TRUE(watched.tracker.lasting_changes(2.0).empty()) << amplitude_m;
   }
 }
 
@@ -136,9 +136,9 @@ TEST(ChangeTracker, AThingThatHoldsStillInPartIsNotFoundAsLongAsItHangsTogether)
   Watched watched(room());
   watched.run(0.0, 6.0,
               [&](double t_s) { return test::nearest_of(test::nearest_of(room(), held), hand_at(t_s)); });
-  EXPECT_TRUE(watched.tracker.settled(2.0).empty());
+  EXPECT_TRUE(watched.tracker.lasting_changes(2.0).empty());
   watched.run(6.0, 7.0, test::nearest_of(room(), held));
-  EXPECT_EQ(watched.tracker.settled(2.0).size(), 1U) << "let go";
+  EXPECT_EQ(watched.tracker.lasting_changes(2.0).size(), 1U) << "let go";
 }
 
 TEST(ChangeTracker, SomebodyWhoMovesElsewhereDoesNotKeepItFromBeingFound) {
@@ -147,7 +147,7 @@ TEST(ChangeTracker, SomebodyWhoMovesElsewhereDoesNotKeepItFromBeingFound) {
     const Scene person = test::sphere({0.5 * std::sin(t_s), 0.9, 0.5}, 0.25);
     return test::nearest_of(test::nearest_of(room(), crate_at({0, 0, 0})), person);
   });
-  const std::vector<LastingChange> changes = watched.tracker.settled(3.0);
+  const std::vector<LastingChange> changes = watched.tracker.lasting_changes(3.0);
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_LT(changes[0].box_world().max().y(), 0.15);
 }
@@ -160,9 +160,9 @@ TEST(ChangeTracker, TimeStandsStillWhileItIsHidden) {
   Watched watched(room());
   watched.run(0.0, 1.5, with_crate);
   watched.run(1.5, 5.0, behind_a_hand);
-  EXPECT_TRUE(watched.tracker.settled(2.0).empty()) << "hidden time does not count";
+  EXPECT_TRUE(watched.tracker.lasting_changes(2.0).empty()) << "hidden time does not count";
   watched.run(5.0, 5.9, with_crate);
-  ASSERT_EQ(watched.tracker.settled(2.0).size(), 1U) << "nor does it undo what was seen before";
+  ASSERT_EQ(watched.tracker.lasting_changes(2.0).size(), 1U) << "nor does it undo what was seen before";
 }
 
 TEST(ChangeTracker, WhatIsHiddenNowIsNotHandedOut) {
@@ -172,24 +172,24 @@ TEST(ChangeTracker, WhatIsHiddenNowIsNotHandedOut) {
   watched.run(3.0, 3.2, [&](double t_s) {
     return test::nearest_of(with_crate, test::sphere(pose_at(t_s) * Vector3d(0, 0, 0.6), 0.3));
   });
-  EXPECT_TRUE(watched.tracker.settled(2.0).empty());
+  EXPECT_TRUE(watched.tracker.lasting_changes(2.0).empty());
 }
 
 TEST(ChangeTracker, WhatGoesAgainIsNoLongerTrue) {
   Watched watched(room());
   watched.run(0.0, 2.5, test::nearest_of(room(), crate_at({0, 0, 0})));
-  const std::vector<LastingChange> changes = watched.tracker.settled(2.0);
+  const std::vector<LastingChange> changes = watched.tracker.lasting_changes(2.0);
   ASSERT_EQ(changes.size(), 1U);
   watched.run(2.5, 3.2, room());
   EXPECT_LT(watched.tracker.still_true(changes[0]), 0.05);
-  EXPECT_TRUE(watched.tracker.settled(2.0).empty());
+  EXPECT_TRUE(watched.tracker.lasting_changes(2.0).empty());
 }
 
 TEST(ChangeTracker, WhatTheModelHasByNowIsFoundNoMore) {
   const Scene with_crate = test::nearest_of(room(), crate_at({0, 0, 0}));
   Watched watched(room());
   watched.run(0.0, 2.5, with_crate);
-  ASSERT_EQ(watched.tracker.settled(2.0).size(), 1U);
+  ASSERT_EQ(watched.tracker.lasting_changes(2.0).size(), 1U);
   watched.learn(with_crate);
   watched.run(2.5, 3.2, with_crate);
   EXPECT_EQ(watched.tracker.point_count(), 0U);
@@ -199,21 +199,21 @@ TEST(ChangeTracker, WhatIsForgottenNeedsItsTimeAgain) {
   const Scene with_crate = test::nearest_of(room(), crate_at({0, 0, 0}));
   Watched watched(room());
   watched.run(0.0, 2.5, with_crate);
-  const std::vector<LastingChange> changes = watched.tracker.settled(2.0);
+  const std::vector<LastingChange> changes = watched.tracker.lasting_changes(2.0);
   ASSERT_EQ(changes.size(), 1U);
   watched.tracker.forget(changes[0]);
   EXPECT_EQ(watched.tracker.point_count(), 0U);
   EXPECT_EQ(watched.tracker.still_true(changes[0]), 0.0);
   watched.run(2.5, 4.0, with_crate);
-  EXPECT_TRUE(watched.tracker.settled(2.0).empty());
+  EXPECT_TRUE(watched.tracker.lasting_changes(2.0).empty());
   watched.run(4.0, 5.2, with_crate);
-  EXPECT_EQ(watched.tracker.settled(2.0).size(), 1U);
+  EXPECT_EQ(watched.tracker.lasting_changes(2.0).size(), 1U);
 }
 
 TEST(ChangeTracker, ThingsThatSettleTogetherAreHandedOutTogether) {
   Watched watched(test::nearest_of(room(), crate_at({0.4, 0.2, 0})));
   watched.run(0.0, 2.5, test::nearest_of(room(), crate_at({-0.3, 0, 0})));
-  std::vector<LastingChange> changes = watched.tracker.settled(2.0);
+  std::vector<LastingChange> changes = watched.tracker.lasting_changes(2.0);
   ASSERT_EQ(changes.size(), 2U);
   EXPECT_EQ(changes[0].kind, LastingKind::kCame);
   EXPECT_EQ(changes[1].kind, LastingKind::kWent);
@@ -233,7 +233,7 @@ TEST(ChangeTracker, NothingMeasuredAndALensThatIsCoveredAreNoChange) {
   // A hand over the lens of a moving camera moves with the camera.
   for (int i = 0; i < 40; ++i)
     tracker.update(covered, expected_m, labels_of(covered, expected_m), kCamera, pose_at(0.1 * i), 0.1 * i);
-  EXPECT_TRUE(tracker.settled(2.0).empty());
+  EXPECT_TRUE(tracker.lasting_changes(2.0).empty());
 }
 
 TEST(ChangeTracker, AJumpOfTheClockCountsAsHalfASecondAtMost) {
@@ -241,7 +241,7 @@ TEST(ChangeTracker, AJumpOfTheClockCountsAsHalfASecondAtMost) {
   Watched watched(room());
   watched.run(0.0, 0.5, with_crate);
   watched.run(100.0, 100.5, with_crate);
-  EXPECT_TRUE(watched.tracker.settled(2.0).empty());
+  EXPECT_TRUE(watched.tracker.lasting_changes(2.0).empty());
 }
 
 TEST(ChangeTracker, AStampThatIsNoNumberTakesNothingAway) {
@@ -255,7 +255,7 @@ TEST(ChangeTracker, AStampThatIsNoNumberTakesNothingAway) {
     for (int i = 0; i < 40; ++i)
       watched.tracker.update(depth_m, expected_m, labels, kCamera, pose_at(0.0),
                              i % 10 == 0 ? stamp_s : 0.1 * i);
-    EXPECT_EQ(watched.tracker.settled(2.0).size(), 1U) << stamp_s;
+    EXPECT_EQ(watched.tracker.lasting_changes(2.0).size(), 1U) << stamp_s;
   }
 }
 
@@ -286,7 +286,7 @@ TEST(ChangeTracker, NothingIsAllocatedFromTheSecondFrameOn) {
   bool found = false;
   for (std::size_t i = 1; i < 20; ++i) {
     tracker.update(depth_m[i], expected_m, labels[i], kCamera, pose_at(0.0), 0.1 * static_cast<double>(i));
-    found |= !tracker.settled(10.0).empty();
+    found |= !tracker.lasting_changes(10.0).empty();
   }
   EXPECT_EQ(test::allocations - before, 0U);
   EXPECT_FALSE(found);

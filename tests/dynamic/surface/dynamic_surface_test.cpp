@@ -510,7 +510,7 @@ TEST(DynamicSurface, ImpossibleSettingsAreNamed) {
     require_valid(config);
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("moved_surface.most_thickness_m = 0.001"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("dynamic_surface.most_thickness_m = 0.001"), std::string::npos)
         << error.what();
   }
   config = {};

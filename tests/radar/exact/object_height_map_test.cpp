@@ -31,7 +31,7 @@ Mesh splinters(int count, std::mt19937& random) {
   return mesh;
 }
 
-class FrontMapTest : public ::testing::Test {
+class ObjectHeightMapTest : public ::testing::Test {
  protected:
   std::mt19937 random{5};
   TriangleTree tree;
@@ -49,7 +49,7 @@ class FrontMapTest : public ::testing::Test {
   }
 };
 
-TEST_F(FrontMapTest, IsNowhereLowerThanTheObject) {
+TEST_F(ObjectHeightMapTest, IsNowhereLowerThanTheObject) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (const Mesh& mesh : meshes()) {
     for (const int resolution_px : {1, 7, 64, 500}) {
@@ -70,7 +70,7 @@ TEST_F(FrontMapTest, IsNowhereLowerThanTheObject) {
   }
 }
 
-TEST_F(FrontMapTest, ATriangleIsNoNearerThanItsBoundAndThatIsFinerThanItsBoxs) {
+TEST_F(ObjectHeightMapTest, ATriangleIsNoNearerThanItsBoundAndThatIsFinerThanItsBoxs) {
   int finer = 0, met = 0;
   for (const Mesh& mesh : meshes()) {
     for (const int resolution_px : {1, 24, 256}) {
@@ -103,7 +103,7 @@ TEST_F(FrontMapTest, ATriangleIsNoNearerThanItsBoundAndThatIsFinerThanItsBoxs) {
   EXPECT_GT(finer, met / 4);
 }
 
-TEST_F(FrontMapTest, AFlatTriangleOverABoxIsBoundedToAPixelsRounding) {
+TEST_F(ObjectHeightMapTest, AFlatTriangleOverABoxIsBoundedToAPixelsRounding) {
   TurnedTree object = turned(shapes::box({0.2F, 0.2F, 0.2F}));
   object.R_frame_mesh.setIdentity();
   ObjectHeightMap front;
@@ -116,7 +116,7 @@ TEST_F(FrontMapTest, AFlatTriangleOverABoxIsBoundedToAPixelsRounding) {
   EXPECT_GT(front.least_gap_under(slope), truth_m - 2.0 * 0.2 * 0.2 / 64);
 }
 
-TEST_F(FrontMapTest, WhatIsBesideTheObjectCannotBeMet) {
+TEST_F(ObjectHeightMapTest, WhatIsBesideTheObjectCannotBeMet) {
   const TurnedTree object = turned(shapes::ball(0.1F, 10, 12));
   ObjectHeightMap front;
   front.build(object, 32);
