@@ -7,6 +7,11 @@ list(APPEND targets roomradar_options roomradar_warnings)
 set_target_properties(roomradar_options PROPERTIES EXPORT_NAME options)
 set_target_properties(roomradar_warnings PROPERTIES EXPORT_NAME warnings)
 
+# Each Debian package has the licence in a folder of its own.
+function(install_licence package component)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} RENAME copyright COMPONENT ${component})
+endfunction()
+
 # The program.
 install(TARGETS roomradar COMPONENT program)
 install(TARGETS roomradar_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/roomradar COMPONENT program)
@@ -23,7 +28,7 @@ if(ROOMRADAR_HAS_WINDOW)
     COMPONENT program)
 endif()
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
+install_licence(roomradar program)
 
 # The library for C, engines and other languages, and what programs need to link it.
 set(components program development)
@@ -35,6 +40,8 @@ if(ROOMRADAR_WITH_C_API)
   file(RELATIVE_PATH prefix_of_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
   configure_file(app/package/roomradar.pc.in ${PROJECT_BINARY_DIR}/roomradar.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/roomradar.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT c_development)
+  install_licence(libroomradar0 library)
+  install_licence(libroomradar-c-dev c_development)
 endif()
 
 # The libraries: find_package(roomradar COMPONENTS ...); see roomradar-config.cmake.in.
@@ -54,6 +61,7 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/roomradar-config.cmake.i
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/roomradar-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar-config.cmake ${PROJECT_BINARY_DIR}/roomradar-config-version.cmake
   DESTINATION ${config_dir} COMPONENT development)
+install_licence(libroomradar-dev development)
 
 # The Python module. ROOMRADAR_PYTHON_DIR: where Debian's Python looks for modules, or the root of a wheel.
 if(ROOMRADAR_HAS_PYTHON)
@@ -70,7 +78,7 @@ if(ROOMRADAR_HAS_PYTHON)
   else()
     install(DIRECTORY app/python/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar COMPONENT python
       FILES_MATCHING PATTERN "*.py")
-    install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-roomradar RENAME copyright COMPONENT python)
+    install_licence(python3-roomradar python)
   endif()
 endif()
 
@@ -78,6 +86,7 @@ endif()
 if(ROOMRADAR_HAS_MPI)
   list(APPEND components mpi)
   install(TARGETS roomradar-mpi COMPONENT mpi)
+  install_licence(roomradar-mpi mpi)
 endif()
 
 set(CPACK_GENERATOR DEB)
