@@ -91,8 +91,8 @@ endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME roomradar)
+# The first line of a component's description is the package's summary: no common one is set.
 set(CPACK_PACKAGE_CONTACT "roomradar developers <roomradar@localhost>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "prescan a room with a Kinect, then run augmented reality in it")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL ${components})
@@ -104,12 +104,16 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # Mesa's EGL and its software renderer, for machines without a GPU; the Kinect's udev rules come with its library.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libfreenect-bin, fonts-dejavu-core")
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
-  "Keeps a scanned room as an octree on disk with a mesh, and lets virtual objects rest on, slide along and be stopped by its\n surfaces, also by those that the camera cannot see now.")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "prescan a room with a depth camera, then run augmented reality in it
+Keeps a scanned room as an octree on disk with a mesh, and lets virtual
+objects rest on, slide along and be stopped by its surfaces, also by those
+that the camera cannot see now.")
 set(CPACK_DEBIAN_MPI_PACKAGE_NAME roomradar-mpi)
 set(CPACK_DEBIAN_MPI_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "roomradar (= ${PROJECT_VERSION}), openmpi-bin")
-set(CPACK_COMPONENT_MPI_DESCRIPTION "Runs the jobs of `roomradar farm` on the ranks of an MPI program, under mpirun or srun.")
+set(CPACK_COMPONENT_MPI_DESCRIPTION "jobs of roomradar on several machines
+Runs the jobs of `roomradar farm` and `roomradar building` on the ranks of an
+MPI program, under mpirun or srun.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroomradar-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # zlib1g-dev: assimp's targets link it, libassimp-dev does not depend on it.
@@ -121,20 +125,22 @@ endforeach()
 # Component sources only.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, libopenni2-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "roomradar")  # the module for videos
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-  "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, what moved, and frame sources.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "augmented reality in scanned rooms: static C++ libraries and headers
+For programs in C++: maps of rooms, Cyber Radar, what moved, frame sources,
+and sessions with virtual objects.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libroomradar0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS "roomradar")  # the module for videos
-set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
-  "Shared library of roomradar with a C interface, for engines and other languages: saved rooms, sessions, radar.")
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "augmented reality in scanned rooms: shared library for C
+For engines and other languages: saved rooms, sessions, objects, radar.")
 set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_NAME libroomradar-c-dev)
 set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_C_DEVELOPMENT_PACKAGE_DEPENDS "libroomradar0 (= ${PROJECT_VERSION})")
-set(CPACK_COMPONENT_C_DEVELOPMENT_DESCRIPTION "Header files of roomradar's C interface, and its pkg-config file.")
+set(CPACK_COMPONENT_C_DEVELOPMENT_DESCRIPTION "augmented reality in scanned rooms: headers for C
+Header files of roomradar's C interface, and its pkg-config file.")
 if(ROOMRADAR_HAS_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-roomradar)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
@@ -146,7 +152,8 @@ if(ROOMRADAR_HAS_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
     ${CMAKE_CURRENT_LIST_DIR}/python/postinst ${CMAKE_CURRENT_LIST_DIR}/python/prerm)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
-    "Python module of roomradar: frame sources, scans, maps, augmented reality sessions, Cyber Radar and a simulator, with NumPy arrays.")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "augmented reality in scanned rooms: Python module
+Frame sources, scans, maps, augmented reality sessions, Cyber Radar and a
+simulator, with NumPy arrays.")
 endif()
 include(CPack)
