@@ -131,7 +131,14 @@ and sessions with virtual objects.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libroomradar0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
+# The package that dpkg-shlibdeps names for programs that link the library. CPack generates this file for all packages or none.
+if(ROOMRADAR_WITH_C_API)
+  get_target_property(soversion roomradar_c SOVERSION)
+  set(shlibs ${PROJECT_BINARY_DIR}/package/shlibs)
+  file(CONFIGURE OUTPUT ${shlibs} CONTENT "libroomradar @soversion@ libroomradar@soversion@ (>= @PROJECT_VERSION@)\n" @ONLY)
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${shlibs})
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+endif()
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS "roomradar")  # the module for videos
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "augmented reality in scanned rooms: shared library for C
