@@ -47,8 +47,13 @@ endif()
 # The libraries: find_package(roomradar COMPONENTS ...); see roomradar-config.cmake.in.
 install(TARGETS ${targets} EXPORT roomradar COMPONENT development)
 set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/roomradar)
+get_property(internal GLOBAL PROPERTY roomradar_internal_folders)
+set(excluded "")
+foreach(folder app/c_api app/package ${internal})
+  list(APPEND excluded PATTERN ${folder} EXCLUDE)
+endforeach()
 install(DIRECTORY mapping radar dynamic app DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.hpp"
-  PATTERN "app/c_api" EXCLUDE)
+  ${excluded})
 install(FILES ${PROJECT_BINARY_DIR}/generated/mapping/types/system/version.hpp
   DESTINATION ${header_dir}/mapping/types/system COMPONENT development)
 # Static libraries fit the OpenCV that they were built with: installed, they look for its libraries by name and version.
