@@ -123,8 +123,14 @@ std::vector<double> move_active(std::span<MovingBody> bodies, const std::vector<
                                 double margin_m, WorkerThread* worker) {
   std::vector<double> gone_s(bodies.size());
   const std::vector<PathBall> paths = paths_of(bodies, motions, margin_m);
-  for (const std::vector<std::size_t>& set : sets_that_meet(paths))
-    MovingSet(bodies, set, motions, paths, margin_m).move(worker, gone_s);
+  const std::vector<std::vector<std::size_t>> sets = sets_that_meet(paths);
+  const auto move_set = [&](std::size_t k, WorkerThread* shares) {
+    MovingSet(bodies, sets[k], motions, paths, margin_m).move(shares, gone_s);
+  };
+  if (worker != nullptr && sets.size() > 1)
+    worker->run_each(sets.size(), [&](std::size_t k) { move_set(k, nullptr); });
+  else
+    for (std::size_t k = 0; k < sets.size(); ++k) move_set(k, worker);
   return gone_s;
 }
 

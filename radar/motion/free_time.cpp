@@ -286,9 +286,9 @@ FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double
   // No point travels farther than its path. Pairs farther apart than twice keep_m may approach to keep_m.
   const double object_path_m = path_m(object, motion, duration_s);
   for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
+    if (trees.is_left_out(number)) continue;  // first: another thread may be moving it
     const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
-    if (trees.is_left_out(number)) continue;
     const RigidMotion tree_motion = number < trees.motions.size() ? trees.motions[number] : RigidMotion{};
     const double paths_m = object_path_m + path_m(tree.instance, tree_motion, duration_s);
     if (are_farther_apart(object, tree.instance, paths_m + 2.0 * keep_m)) continue;

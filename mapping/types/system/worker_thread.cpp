@@ -1,10 +1,14 @@
 // worker_thread.cpp: hands work to the worker thread and waits for it.
 #include "mapping/types/system/worker_thread.hpp"
 
+#include <pthread.h>
+
 namespace roomradar {
 
 WorkerThread::WorkerThread() {
-  if (std::thread::hardware_concurrency() > 1) thread_ = std::thread([this] { serve(); });
+  if (std::thread::hardware_concurrency() < 2) return;
+  if (sched_getaffinity(0, sizeof allowed_, &allowed_) != 0) CPU_ZERO(&allowed_);
+  thread_ = std::thread([this] { serve(); });
 }
 
 WorkerThread::~WorkerThread() {
@@ -19,8 +23,19 @@ void WorkerThread::start(Call call, const void* work) {
   work_ = work;
   fault_ = nullptr;
   if (!thread_.joinable()) return;
+  keep_apart();
   state_.store(kWork);
   state_.notify_one();
+}
+
+/// Linux wakes a thread where it ran last or on the waker's processor. If these are the same, a kernel with
+/// few processors does not look for an idle one, and the two tasks would take turns.
+void WorkerThread::keep_apart() {
+  const int here = sched_getcpu();
+  if (here < 0 || here >= CPU_SETSIZE || here != processor_.load()) return;
+  cpu_set_t others = allowed_;
+  CPU_CLR(here, &others);
+  if (CPU_COUNT(&others) > 0) pthread_setaffinity_np(thread_.native_handle(), sizeof others, &others);
 }
 
 void WorkerThread::finish() {
@@ -33,6 +48,7 @@ void WorkerThread::serve() {
     state_.wait(kIdle);
     if (state_.load() == kStop) return;
     do_work();
+    processor_.store(sched_getcpu());
     state_.store(kIdle);
     state_.notify_one();
   }

@@ -1,5 +1,7 @@
 // worker_thread.hpp: a worker thread that runs one task in parallel with the caller's.
 #pragma once
+#include <sched.h>
+
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -9,7 +11,7 @@ namespace roomradar {
 
 /// Owns a thread that sleeps between calls of run(). On a machine with one processor there is no thread, and
 /// the two tasks run one after the other. Results must not depend on the order of the tasks. Call run() from
-/// one thread only, and not from inside run().
+/// one thread only, and not from inside run(). The worker does not run on the caller's processor.
 class WorkerThread {
  public:
   WorkerThread();
@@ -51,10 +53,13 @@ class WorkerThread {
   std::atomic<int> state_{kIdle};
   Call call_ = nullptr;
   const void* work_ = nullptr;
-  std::exception_ptr fault_;  ///< thrown by the last call's beside()
-  std::thread thread_;        ///< declared last because it uses the members above
+  std::exception_ptr fault_;        ///< thrown by the last call's beside()
+  cpu_set_t allowed_{};             ///< processors that the constructing thread may use
+  std::atomic<int> processor_{-1};  ///< on which the worker ran last
+  std::thread thread_;              ///< declared last because it uses the members above
 
   void start(Call call, const void* work);
+  void keep_apart();
   void finish();
   void serve();
   void do_work() noexcept;

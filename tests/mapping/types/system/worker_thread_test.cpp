@@ -2,6 +2,7 @@
 #include "mapping/types/system/worker_thread.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <numeric>
 #include <stdexcept>
@@ -53,6 +54,27 @@ TEST(WorkerThread, WhatEitherThrowsIsThrownAndTheNextCallIsAsEver) {
   EXPECT_EQ(fault_of_run(fine, breaks_too), "beside");
   EXPECT_EQ(fault_of_run(breaks, breaks_too), "here");
   EXPECT_EQ(fault_of_run(fine, fine), "none");
+}
+
+TEST(WorkerThread, TheWorkerLeavesTheCallersProcessor) {
+  cpu_set_t all;
+  ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+  if (CPU_COUNT(&all) < 2) GTEST_SKIP() << "this machine has one processor";
+  WorkerThread second;
+  const int here = sched_getcpu();
+  cpu_set_t only_here;
+  CPU_ZERO(&only_here);
+  CPU_SET(here, &only_here);
+  ASSERT_EQ(sched_setaffinity(0, sizeof only_here, &only_here), 0);
+  const auto meet = [&] {
+    sched_setaffinity(0, sizeof only_here, &only_here);
+    sched_setaffinity(0, sizeof all, &all);  // may leave, but is still here
+  };
+  second.run([] {}, meet);
+  int there = here;
+  for (int i = 0; i < 3; ++i) second.run([] {}, [&] { there = sched_getcpu(); });
+  ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
+  EXPECT_NE(there, here);
 }
 
 TEST(WorkerThread, OneThatNeverWorkedEndsToo) { const WorkerThread second; }
