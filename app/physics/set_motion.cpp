@@ -1,6 +1,8 @@
 // set_motion.cpp: the queries of bodies that move as one set.
 #include "app/physics/set_motion.hpp"
 
+#include <list>
+
 #include "app/physics/contact_queries.hpp"
 #include "radar/motion/joint_motion.hpp"
 
@@ -31,7 +33,9 @@ class MovingSet {
   MovingSet(const MovingSet&) = delete;
   MovingSet& operator=(const MovingSet&) = delete;
 
-  void move(WorkerThread* worker, std::vector<double>& gone_s);
+  [[nodiscard]] std::span<JointMover> movers() { return movers_; }
+  /// Takes over how far the bodies have moved.
+  void end(std::vector<double>& gone_s);
 
  private:
   std::span<MovingBody> bodies_;
@@ -109,8 +113,7 @@ double MovingSet::free_time_beside(std::size_t mover, std::size_t stopped, doubl
       .free_s;
 }
 
-void MovingSet::move(WorkerThread* worker, std::vector<double>& gone_s) {
-  move_to_contact(movers_, worker);
+void MovingSet::end(std::vector<double>& gone_s) {
   for (std::size_t k = 0; k < set_.size(); ++k) {
     gone_s[set_[k]] = movers_[k].gone_s;
     bodies_[set_[k]].limited_by = movers_[k].limited_by;
@@ -123,14 +126,13 @@ std::vector<double> move_active(std::span<MovingBody> bodies, const std::vector<
                                 double margin_m, WorkerThread* worker) {
   std::vector<double> gone_s(bodies.size());
   const std::vector<PathBall> paths = paths_of(bodies, motions, margin_m);
-  const std::vector<std::vector<std::size_t>> sets = sets_that_meet(paths);
-  const auto move_set = [&](std::size_t k, WorkerThread* shares) {
-    MovingSet(bodies, sets[k], motions, paths, margin_m).move(shares, gone_s);
-  };
-  if (worker != nullptr && sets.size() > 1)
-    worker->run_each(sets.size(), [&](std::size_t k) { move_set(k, nullptr); });
-  else
-    for (std::size_t k = 0; k < sets.size(); ++k) move_set(k, worker);
+  const std::vector<std::vector<std::size_t>> members = sets_that_meet(paths);
+  std::list<MovingSet> sets;
+  std::vector<std::span<JointMover>> movers;
+  for (const std::vector<std::size_t>& set : members)
+    movers.push_back(sets.emplace_back(bodies, set, motions, paths, margin_m).movers());
+  move_to_contact(movers, worker);
+  for (MovingSet& set : sets) set.end(gone_s);
   return gone_s;
 }
 

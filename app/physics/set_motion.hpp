@@ -13,7 +13,7 @@ namespace roomradar {
 /// Bodies whose paths cannot meet are independent. Sets MovingBody::limited_by.
 /// @param motions   one per body; only those of active bodies are used
 /// @param margin_m  contact margin; approaching surfaces stop at half of it
-/// @param worker    shares the sets, or the queries of a single one, with the same results; may be null
+/// @param worker    shares the queries, with the same results; may be null
 /// @return per body the duration of its motion, s; 0 if it is not active
 std::vector<double> move_active(std::span<MovingBody> bodies, const std::vector<RigidMotion>& motions,
                                 double margin_m, WorkerThread* worker);

@@ -68,39 +68,20 @@ std::vector<std::size_t> stop_at(double now_s, std::span<JointMover> movers,
   return stopped;
 }
 
-/// Bounds the free times of the movers whose bounds end now.
-/// @param due  scratch memory
-void bound_free_times(double now_s, std::span<JointMover> movers, std::vector<Progress>& progress,
-                      WorkerThread* worker, std::vector<std::size_t>& due) {
-  constexpr std::size_t kFewest = 3;  // fewer take less time than waking the worker
-  due.clear();
-  for (std::size_t i = 0; i < movers.size(); ++i)
-    if (!movers[i].has_stopped && progress[i].free_until_s <= now_s) due.push_back(i);
-  const auto bound = [&](std::size_t k) { bound_free_time(movers[due[k]], now_s, progress[due[k]]); };
-  if (worker != nullptr && due.size() >= kFewest) return worker->run_each(due.size(), bound);
-  for (std::size_t k = 0; k < due.size(); ++k) bound(k);
-}
-
 bool overlap(const PathBall& a, const PathBall& b) {
   return (a.centre_world - b.centre_world).norm() < a.radius_m + b.radius_m;
 }
 
-}  // namespace
-
-void move_to_contact(std::span<JointMover> movers, WorkerThread* worker) {
-  std::vector<Progress> progress;
-  std::vector<std::size_t> due;
-  for (JointMover& mover : movers) {
-    progress.push_back({.T_world_start = *mover.T_world_object});
-    mover.gone_s = 0.0;
-    mover.has_stopped = false;
-    mover.limited_by = {};
-  }
-  for (double now_s = 0.0;;) {
-    bound_free_times(now_s, movers, progress, worker, due);
+/// Moves the bodies of a set. Their free times at the start are known.
+void advance_set(std::span<JointMover> movers, std::span<Progress> progress) {
+  double now_s = 0.0;
+  for (bool is_known = true;; is_known = false) {
     double next_s = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < movers.size(); ++i)
-      if (!movers[i].has_stopped) next_s = std::min(next_s, progress[i].free_until_s);
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+      if (movers[i].has_stopped) continue;
+      if (!is_known && progress[i].free_until_s <= now_s) bound_free_time(movers[i], now_s, progress[i]);
+      next_s = std::min(next_s, progress[i].free_until_s);
+    }
     if (next_s == std::numeric_limits<double>::infinity()) return;  // all have stopped
     now_s = next_s;
     for (std::size_t i = 0; i < movers.size(); ++i) {
@@ -121,6 +102,35 @@ void move_to_contact(std::span<JointMover> movers, WorkerThread* worker) {
       }
   }
 }
+
+template <typename Work>
+void for_each(std::size_t count, WorkerThread* worker, const Work& work) {
+  if (worker != nullptr && count > 1) return worker->run_each(count, work);
+  for (std::size_t i = 0; i < count; ++i) work(i);
+}
+
+}  // namespace
+
+void move_to_contact(std::span<const std::span<JointMover>> sets, WorkerThread* worker) {
+  std::vector<std::vector<Progress>> progress(sets.size());
+  std::vector<std::pair<std::size_t, std::size_t>> all;  // set and mover
+  for (std::size_t set = 0; set < sets.size(); ++set)
+    for (std::size_t i = 0; i < sets[set].size(); ++i) {
+      JointMover& mover = sets[set][i];
+      progress[set].push_back({.T_world_start = *mover.T_world_object});
+      mover.gone_s = 0.0;
+      mover.has_stopped = false;
+      mover.limited_by = {};
+      all.emplace_back(set, i);
+    }
+  for_each(all.size(), worker, [&](std::size_t k) {
+    const auto [set, i] = all[k];
+    bound_free_time(sets[set][i], 0.0, progress[set][i]);
+  });
+  for_each(sets.size(), worker, [&](std::size_t set) { advance_set(sets[set], progress[set]); });
+}
+
+void move_to_contact(std::span<JointMover> movers) { move_to_contact({&movers, 1}, nullptr); }
 
 std::vector<std::vector<std::size_t>> sets_that_meet(std::span<const PathBall> paths) {
   DisjointSets<std::size_t> meeting(paths.size());

@@ -52,8 +52,11 @@ struct JointMover {
 /// meets another one stops with it; the other bodies move on, past the two at rest. A body's free time is a
 /// lower bound. When it ends, only this body is queried again, at the poses of that moment. The body's motion
 /// ends when a query gains less than 2 % of its duration (the first query: nothing), or after 12 queries.
-/// @param worker  shares queries that are due at the same time, with the same results; may be null
-void move_to_contact(std::span<JointMover> movers, WorkerThread* worker = nullptr);
+/// @param sets    bodies of different sets do not meet (sets_that_meet())
+/// @param worker  shares the bodies' first queries, then the sets, with the same results; may be null
+void move_to_contact(std::span<const std::span<JointMover>> sets, WorkerThread* worker);
+/// Moves one set.
+void move_to_contact(std::span<JointMover> movers);
 
 /// Returns the connected components of overlapping balls, as indices in ascending order.
 std::vector<std::vector<std::size_t>> sets_that_meet(std::span<const PathBall> paths);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -246,17 +247,25 @@ TEST(JointMotion, WhatIsFarFromThoseThatMetIsNotQueriedAgain) {
   EXPECT_EQ(before, two.queries + 1);
 }
 
-TEST(JointMotion, AWorkerChangesNothing) {
+TEST(JointMotion, AWorkerAndOtherSetsChangeNothing) {
   const std::vector<double> x_m = {-0.2, 0.2, 0.5, 1.0, 1.3, 1.7, 2.2}, mps = {2, -2, -1, 1, -3, 0.5, -1};
-  Row alone(x_m, mps, 1.0), shared(x_m, mps, 1.0);
+  const std::vector<double> few_x_m = {0.0, 0.3, 0.9}, few_mps = {1.0, 0.0, -2.0};
+  Row alone(x_m, mps, 1.0), shared(x_m, mps, 1.0), few_alone(few_x_m, few_mps, 1.0),
+      few(few_x_m, few_mps, 1.0);
   move_to_contact(alone.movers);
+  move_to_contact(few_alone.movers);
   WorkerThread worker;
-  move_to_contact(shared.movers, &worker);
-  EXPECT_EQ(shared.queries, alone.queries);
-  for (std::size_t i = 0; i < x_m.size(); ++i) {
-    EXPECT_EQ(shared.movers[i].gone_s, alone.movers[i].gone_s) << i;
-    EXPECT_EQ(shared.T[i].matrix(), alone.T[i].matrix()) << i;
-  }
+  const std::array<std::span<JointMover>, 2> sets = {shared.movers, few.movers};
+  move_to_contact(sets, &worker);
+  const auto expect_same = [](const Row& row, const Row& expected) {
+    EXPECT_EQ(row.queries, expected.queries);
+    for (std::size_t i = 0; i < row.T.size(); ++i) {
+      EXPECT_EQ(row.movers[i].gone_s, expected.movers[i].gone_s) << i;
+      EXPECT_EQ(row.T[i].matrix(), expected.T[i].matrix()) << i;
+    }
+  };
+  expect_same(shared, alone);
+  expect_same(few, few_alone);
 }
 
 TEST(JointMotion, PathsThatOverlapAreOneSet) {
