@@ -131,8 +131,8 @@ endforeach()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libfreenect-dev, libopenni2-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "roomradar")  # the module for videos
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "augmented reality in scanned rooms: static C++ libraries and headers
-For programs in C++: maps of rooms, Cyber Radar, dynamic surfaces, frame sources,
-and sessions with virtual objects.")
+For programs in C++: maps of rooms, Cyber Radar, dynamic surfaces, frame
+sources, and sessions with virtual objects.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libroomradar0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)

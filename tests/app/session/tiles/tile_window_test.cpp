@@ -329,7 +329,7 @@ TEST(TileWindow, RefusesWhatOnlyARoomCanDo) {
   SessionConfig config = session_config(tiles, PoseOrigin::kTracked);
   config.map_updates.emplace();
   StaticMap octree(0.04);
-  EXPECT_NE(test::error_of([&] { Session(map, config, &octree); }).find("adopt"), std::string::npos);
+  EXPECT_NE(test::error_of([&] { Session(map, config, &octree); }).find("commit changes"), std::string::npos);
   TileWindowConfig wrong = tiles;
   wrong.apply_after_s = -1.0;
   EXPECT_THROW(Session(map, session_config(wrong, PoseOrigin::kTracked)), Error);
