@@ -99,11 +99,7 @@ std::vector<std::size_t> query_active(std::span<MovingBody> bodies, double margi
                                            : query_moved(moving, reach_m, has_moved, trees)) != 0;
     moving.near_found = moving.near.size();
   };
-  const auto query_first = [&](std::size_t k) { query(k, false); };
-  if (WorkerThread* const worker = worker_for(active.size(), system); worker != nullptr)
-    worker->run_each(active.size(), query_first);
-  else
-    for (std::size_t k = 0; k < active.size(); ++k) query_first(k);
+  run_each(worker_for(active.size(), system), active.size(), [&](std::size_t k) { query(k, false); });
   const auto crossing =
       std::find_if(active.begin(), active.end(), [&](std::size_t i) { return bodies[i].crosses; });
   if (crossing != active.end())

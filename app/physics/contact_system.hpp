@@ -96,7 +96,7 @@ struct ContactSystem {
   std::vector<std::size_t> upwards;  ///< scratch: indices of bodies by height
 };
 
-/// Returns the worker that shares the queries of so many bodies; null if one thread is as fast.
+/// Returns the worker to share this number of bodies' queries with; null if one thread is as fast.
 WorkerThread* worker_for(std::size_t queried_bodies, ContactSystem& system);
 
 /// Returns true if the body is awake, has time left in the substep, and no surface intersects it.

@@ -265,8 +265,9 @@ void Substep::move() {
   const std::vector<RigidMotion> planned = motions();
   std::vector<Eigen::Matrix3d> inertias_m2;
   for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(*moving.body));
+  const auto active = static_cast<std::size_t>(std::count_if(bodies_.begin(), bodies_.end(), is_active));
   const std::vector<double> gone_s =
-      move_active(bodies_, planned, config_.contact_margin_m, worker_for(bodies_.size(), system_));
+      move_active(bodies_, planned, config_.contact_margin_m, worker_for(active, system_));
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     MovingBody& moving = bodies_[i];
     if (!is_active(moving)) continue;

@@ -103,12 +103,6 @@ void advance_set(std::span<JointMover> movers, std::span<Progress> progress) {
   }
 }
 
-template <typename Work>
-void for_each(std::size_t count, WorkerThread* worker, const Work& work) {
-  if (worker != nullptr && count > 1) return worker->run_each(count, work);
-  for (std::size_t i = 0; i < count; ++i) work(i);
-}
-
 }  // namespace
 
 void move_to_contact(std::span<const std::span<JointMover>> sets, WorkerThread* worker) {
@@ -123,11 +117,11 @@ void move_to_contact(std::span<const std::span<JointMover>> sets, WorkerThread* 
       mover.limited_by = {};
       all.emplace_back(set, i);
     }
-  for_each(all.size(), worker, [&](std::size_t k) {
+  run_each(worker, all.size(), [&](std::size_t k) {
     const auto [set, i] = all[k];
     bound_free_time(sets[set][i], 0.0, progress[set][i]);
   });
-  for_each(sets.size(), worker, [&](std::size_t set) { advance_set(sets[set], progress[set]); });
+  run_each(worker, sets.size(), [&](std::size_t set) { advance_set(sets[set], progress[set]); });
 }
 
 void move_to_contact(std::span<JointMover> movers) { move_to_contact({&movers, 1}, nullptr); }

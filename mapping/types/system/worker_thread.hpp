@@ -65,4 +65,11 @@ class WorkerThread {
   void do_work() noexcept;
 };
 
+/// Calls work(i) for each i in 0..count-1, shared with the worker unless it is null.
+template <typename Work>
+void run_each(WorkerThread* worker, std::size_t count, const Work& work) {
+  if (worker != nullptr && count > 1) return worker->run_each(count, work);
+  for (std::size_t i = 0; i < count; ++i) work(i);
+}
+
 }  // namespace roomradar
