@@ -24,6 +24,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns fork(). With the address sanitizer returns -1: its allocator may be locked by another thread, and
+/// would stay locked in the child.
+pid_t fork_writer() {
+#ifdef __SANITIZE_ADDRESS__
+  return -1;
+#else
+  return ::fork();
+#endif
+}
+
 [[noreturn]] void fail(const fs::path& path, const std::string& fault) {
   throw Error(path.string() + ": " + fault);
 }
@@ -135,9 +145,9 @@ void Checkpoints::write(const std::string& stage, const WriteFiles& write_files)
     return;
   }
   const pid_t parent = ::getpid();
-  writer_ = ::fork();
+  writer_ = fork_writer();
   if (writer_ > 0) return;
-  if (writer_ < 0) {  // no memory for a child: the work has to wait
+  if (writer_ < 0) {  // no child, e.g. for want of memory: the work has to wait
     note_written(try_to_write(stage, write_files));
     return;
   }
