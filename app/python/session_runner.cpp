@@ -6,8 +6,6 @@
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/validity.hpp"
 
-#include <utility>
-
 namespace roomradar::python {
 namespace {
 
@@ -49,11 +47,9 @@ SessionRunner::~SessionRunner() {
 FrameResult SessionRunner::step(const Frame& frame) {
   return run([&](Session& session) {
     require_sizes_kept(frame);
-    const std::optional<ImageSizes> sizes_before = std::exchange(sizes_, sizes_of(frame));
+    if (fault_of(frame).empty()) sizes_ = sizes_of(frame);
     ++frames_;
-    const FrameResult result = session.step(frame, times_);
-    if (result.status == FrameStatus::kBadFrame) sizes_ = sizes_before;
-    return result;
+    return session.step(frame, times_);
   });
 }
 

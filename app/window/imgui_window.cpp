@@ -92,7 +92,8 @@ void show_until_closed(
     glfwGetFramebufferSize(window.get(), &width_px, &height_px);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, width_px, height_px);
-    glClearColor(0.063F, 0.075F, 0.094F, 1.0F);
+    const ImVec4 ground = ImGui::ColorConvertU32ToFloat4(look::kGround);
+    glClearColor(ground.x, ground.y, ground.z, ground.w);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(window.get());

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "app/window/panes/theme.hpp"
 #include "radar/gl/gl_program.hpp"
 
 namespace roomradar {
@@ -213,7 +214,8 @@ void OrbitCanvas::begin() {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
-  glClearColor(0.063F, 0.075F, 0.094F, 1.0F);
+  const ImVec4 ground = ImGui::ColorConvertU32ToFloat4(look::kGround);
+  glClearColor(ground.x, ground.y, ground.z, ground.w);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glUseProgram(program_);
   T_eye_world_ = eye_of(orbit).inverse();

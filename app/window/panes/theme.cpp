@@ -77,7 +77,7 @@ bool begin_pane(const char* name, const Area& area, ImU32 ground, bool scrolls) 
                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                            ImGuiWindowFlags_NoNav;
   if (scrolls) flags &= ~ImGuiWindowFlags_NoScrollbar;
-  if (ground == kGround) flags |= ImGuiWindowFlags_NoBackground;  // the window is cleared to it
+  if (ground == kGround) flags |= ImGuiWindowFlags_NoBackground;
   return ImGui::Begin(name, nullptr, flags);
 }
 

@@ -8,7 +8,7 @@
 
 namespace roomradar::look {
 
-inline constexpr ImU32 kGround = IM_COL32(16, 19, 24, 255);
+inline constexpr ImU32 kGround = IM_COL32(16, 19, 24, 255);  ///< to which the window is cleared
 inline constexpr ImU32 kPanel = IM_COL32(24, 28, 35, 255);
 inline constexpr ImU32 kRaised = IM_COL32(38, 44, 54, 255);
 inline constexpr ImU32 kLine = IM_COL32(48, 55, 67, 255);
@@ -31,7 +31,8 @@ Fonts apply(float scale);
 /// Converts a length in pixels at 96 dpi to window pixels, with the scale given to apply().
 float px(float length);
 
-/// Begins a pane that fills an area, without title and border. Always call end_pane() afterwards.
+/// Begins a pane that fills an area, without title and border. Always call end_pane() afterwards. A pane on
+/// kGround draws no background.
 bool begin_pane(const char* name, const Area& area, ImU32 ground = kPanel, bool scrolls = false);
 void end_pane();
 
