@@ -6,6 +6,7 @@
 
 #include "mapping/alignment/view.hpp"
 #include "mapping/types/linear_algebra.hpp"
+#include "mapping/types/simd8f.hpp"
 
 namespace roomradar {
 
@@ -54,7 +55,8 @@ struct MatchLimits {
 /// Geman-McClure weight of a residual: 1 at x = 0, 1/4 at 1, about x^-4 for large x.
 template <typename Real>
 Real robust_weight(Real x) {
-  const Real w = Real(1) / (Real(1) + x * x);
+  const Real one(1);
+  const Real w = one / (one + x * x);
   return w * w;
 }
 
@@ -62,10 +64,11 @@ Real robust_weight(Real x) {
 /// the distance to the reference's plane and, if exposure.known, the difference of intensity. They are
 /// linearised in the camera's twist in the camera frame.
 /// @param motion  motion of the points during their image's readout
-/// @param[in,out] pass sums to which the residuals are added. Only the upper triangle of H is filled
+/// @param[in,out] pass  sums to which the residuals are added. Only the upper triangle of H is filled
+/// @param arithmetic    all give the same result to the bit
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
-                  const RowMotion& motion, PointMatches& pass);
+                  const RowMotion& motion, PointMatches& pass, Arithmetic arithmetic = Arithmetic::kFastest);
 
 /// Computes the gain and offset that map the mean and standard deviation of the live intensities to those of
 /// the reference's intensities. `known` is false if there are too few correspondences.

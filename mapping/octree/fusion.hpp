@@ -7,12 +7,9 @@
 #include "mapping/octree/fusion_config.hpp"
 #include "mapping/octree/ray_endpoints.hpp"
 #include "mapping/types/frame.hpp"
+#include "mapping/types/simd8f.hpp"
 
 namespace roomradar {
-
-/// Version of the arithmetic on eight siblings: the fastest SIMD version that this compilation supports, or
-/// the portable version. Both give bit-identical results.
-enum class Arithmetic { kFastest, kPortable };
 
 /// Fuses the frame in one descent from the root. Call build_pyramid() and collect_hits() for this frame and
 /// `scratch` first. A node wholly in front of the measured depth is a miss as a whole. A node wholly occluded

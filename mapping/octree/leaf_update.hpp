@@ -8,7 +8,7 @@
 #include "mapping/octree/block_octree.hpp"
 #include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/node_visibility.hpp"
-#include "mapping/octree/simd8f.hpp"
+#include "mapping/types/simd8f.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/frame.hpp"
 

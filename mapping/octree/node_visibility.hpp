@@ -7,7 +7,7 @@
 
 #include "mapping/octree/block_octree.hpp"
 #include "mapping/octree/depth_pyramid.hpp"
-#include "mapping/octree/simd8f.hpp"
+#include "mapping/types/simd8f.hpp"
 #include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {

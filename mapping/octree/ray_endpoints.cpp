@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "mapping/octree/node_visibility.hpp"
-#include "mapping/types/morton.hpp"
+#include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "mapping/types/morton.hpp"
+#include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "mapping/types/morton.hpp"
 #include "mapping/types/validity.hpp"
+#include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "mapping/alignment/point_to_plane.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
 
@@ -62,6 +63,46 @@ TEST(Twist, LogIsTheInverseOfExp) {
   twist << 1.0, -2.0, 0.5, 0.3, -0.8, 0.1;
   EXPECT_TRUE(local(retract(twist)).isApprox(twist, 1e-12));
   EXPECT_TRUE(local(Eigen::Isometry3d::Identity()).isZero(1e-15));
+}
+
+/// Residuals of the step, of points in number no multiple of eight, with and without motion.
+PointMatches matches_of(Arithmetic arithmetic, const RowMotion& motion, std::size_t leave_out) {
+  Frame before = test::exact_frame(corner_with_ball(), kCamera, eye());
+  Frame frame = test::exact_frame(corner_with_ball(), kCamera, eye() * kStep);
+  test::paint(before, eye());
+  test::paint(frame, eye() * kStep);
+  const TargetView reference = reference_of(before, eye());
+  std::vector<SourcePoint> points = live_of(frame).levels[0];
+  points.resize(points.size() - leave_out);
+  PointMatches pass;
+  match_points(points, reference.levels[0], kStep, {0.1F, 0.5F, 0.2F}, {1.1F, -3.0F, true}, motion, pass,
+               arithmetic);
+  return pass;
+}
+
+TEST(MatchPoints, PlainAndFastestArithmeticGiveTheSameSumsBitForBit) {
+  RowMotion moving;
+  moving.linear_mps = {0.1F, 0.2F, -0.3F};
+  moving.angular_radps = {0.5F, -0.2F, 0.1F};
+  moving.row_s = 1e-4F;
+  moving.fy_px = 292.5F;
+  for (const RowMotion& motion : {RowMotion(), moving})
+    for (const std::size_t leave_out : {0U, 1U, 5U}) {
+      const PointMatches fastest = matches_of(Arithmetic::kFastest, motion, leave_out);
+      const PointMatches plain = matches_of(Arithmetic::kPortable, motion, leave_out);
+      EXPECT_GT(fastest.inliers, 1000U);
+      EXPECT_GT(fastest.colour.H(0, 0), 0.0);
+      EXPECT_EQ(fastest.depth.H, plain.depth.H);
+      EXPECT_EQ(fastest.depth.g, plain.depth.g);
+      EXPECT_EQ(fastest.depth.weight, plain.depth.weight);
+      EXPECT_EQ(fastest.colour.H, plain.colour.H);
+      EXPECT_EQ(fastest.colour.g, plain.colour.g);
+      EXPECT_EQ(fastest.met, plain.met);
+      EXPECT_EQ(fastest.inliers, plain.inliers);
+      EXPECT_EQ(fastest.squares, plain.squares);
+      EXPECT_EQ(fastest.n, plain.n);
+      EXPECT_EQ(fastest.live_live, plain.live_live);
+    }
 }
 
 TEST(MakeReference, PlanesLieOnTheSurface) {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "mapping/octree/static_map.hpp"
-#include "mapping/types/morton.hpp"
+#include "mapping/types/voxel_key.hpp"
 #include "tests/support/exact_depth.hpp"
 
 namespace roomradar::fusion_test {

@@ -1,6 +1,6 @@
-// simd8f.hpp: vector of eight floats, one per sibling voxel, in an AVX2 and a portable version. Both versions
-// give bit-identical results, since neither fuses multiply and add. Maps are therefore bit-identical on every
-// machine. Files that use them must be compiled with -ffp-contract=off.
+// simd8f.hpp: vector of eight floats, such as one per sibling voxel, in an AVX2 and a portable version. Both
+// versions give bit-identical results, since neither fuses multiply and add. Maps are therefore bit-identical
+// on every machine. Files that use them must be compiled with -ffp-contract=off.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -60,6 +60,14 @@ struct PortableFloat8 {
   static PortableFloat8 gather(const float* base, const PortableFloat8& index, const Mask& mask) {
     PortableFloat8 out;
     for (unsigned i = 0; i < 8; ++i) out.v[i] = mask.v[i] ? base[static_cast<int>(index.v[i])] : 0.0F;
+    return out;
+  }
+  /// Reads N = 4 or 8 floats of each row, and returns these N columns.
+  template <std::size_t N>
+  static std::array<PortableFloat8, N> columns(const std::array<const float*, 8>& rows) {
+    std::array<PortableFloat8, N> out;
+    for (std::size_t column = 0; column < N; ++column)
+      for (std::size_t row = 0; row < 8; ++row) out[column].v[row] = rows[row][column];
     return out;
   }
 };
@@ -174,6 +182,31 @@ struct Avx2Float8 {
   static Avx2Float8 gather(const float* base, const Avx2Float8& index, const Mask& mask) {
     return _mm256_mask_i32gather_ps(_mm256_setzero_ps(), base, _mm256_cvttps_epi32(index.v), mask.v, 4);
   }
+  template <std::size_t N>
+  static std::array<Avx2Float8, N> columns(const std::array<const float*, 8>& rows) {
+    static_assert(N == 4 || N == 8);
+    // Transposes four floats of each row.
+    const auto of_half = [&](std::size_t first) {
+      const auto rows_at = [&](std::size_t row) {
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[row] + first)),
+                                    _mm_loadu_ps(rows[row + 4] + first), 1);
+      };
+      const __m256 a = rows_at(0), b = rows_at(1), c = rows_at(2), d = rows_at(3);
+      const __m256 ab_low = _mm256_unpacklo_ps(a, b), ab_high = _mm256_unpackhi_ps(a, b);
+      const __m256 cd_low = _mm256_unpacklo_ps(c, d), cd_high = _mm256_unpackhi_ps(c, d);
+      return std::array<Avx2Float8, 4>{_mm256_shuffle_ps(ab_low, cd_low, _MM_SHUFFLE(1, 0, 1, 0)),
+                                       _mm256_shuffle_ps(ab_low, cd_low, _MM_SHUFFLE(3, 2, 3, 2)),
+                                       _mm256_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(1, 0, 1, 0)),
+                                       _mm256_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(3, 2, 3, 2))};
+    };
+    const std::array<Avx2Float8, 4> left = of_half(0);
+    if constexpr (N == 4) {
+      return left;
+    } else {
+      const std::array<Avx2Float8, 4> right = of_half(4);
+      return {left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3]};
+    }
+  }
 
  private:
   template <typename Int16>
@@ -215,6 +248,10 @@ inline Avx2Float8 select(const Avx2Mask8& mask, const Avx2Float8& yes, const Avx
 }
 
 #endif
+
+/// Version of the arithmetic on eight floats: the fastest that this compilation supports, or the portable
+/// one. Both give bit-identical results.
+enum class Arithmetic { kFastest, kPortable };
 
 /// Fastest version that this compilation supports.
 #if defined(__AVX2__)
