@@ -6,6 +6,7 @@
 
 #include "mapping/alignment/view_pyramid.hpp"
 #include "mapping/types/image.hpp"
+#include "mapping/types/simd8f.hpp"
 
 namespace roomradar {
 
@@ -31,8 +32,10 @@ struct TargetView {
 
 /// Fits a plane to each pixel's neighbourhood. A pixel gets no surface if it has no depth, or if its
 /// neighbourhood is not flat within the noise.
+/// @param arithmetic  all give the same result to the bit
 void make_target_view(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world_view,
-                      const ViewConfig& config, TargetView& reference);
+                      const ViewConfig& config, TargetView& reference,
+                      Arithmetic arithmetic = Arithmetic::kFastest);
 
 struct SourcePoint {
   Eigen::Vector3f p_camera;  ///< m

@@ -41,6 +41,11 @@ struct PortableFloat8 {
     for (unsigned i = 0; i < 8; ++i) out.v[i] = static_cast<float>(from[i]);
     return out;
   }
+  static PortableFloat8 load(const float* eight) {
+    PortableFloat8 out;
+    std::copy_n(eight, 8, out.v.begin());
+    return out;
+  }
   void store(std::array<float, 8>& to) const { to = v; }
   /// Stores the values rounded towards zero. Values must be within the range of int.
   void store_truncated(std::array<int, 8>& to) const {
@@ -109,6 +114,9 @@ inline PortableFloat8 max(const PortableFloat8& a, const PortableFloat8& b) {
 inline PortableFloat8 floor(const PortableFloat8& a) {
   return plain::each(a, a, [](float x, float) { return std::floor(x); });
 }
+inline PortableFloat8 sqrt(const PortableFloat8& a) {
+  return plain::each(a, a, [](float x, float) { return std::sqrt(x); });
+}
 /// Returns, per lane, the largest power of two that is at most |a|. Requires normal numbers (not zero,
 /// denormal, infinite or NaN).
 inline PortableFloat8 power_of_two_within(const PortableFloat8& a) {
@@ -160,7 +168,8 @@ struct Avx2Float8 {
   Avx2Float8() = default;
   Avx2Float8(__m256 all) : v(all) {}
   Avx2Float8(float all) : v(_mm256_set1_ps(all)) {}
-  static Avx2Float8 load(const std::array<float, 8>& from) { return _mm256_loadu_ps(from.data()); }
+  static Avx2Float8 load(const float* eight) { return _mm256_loadu_ps(eight); }
+  static Avx2Float8 load(const std::array<float, 8>& from) { return load(from.data()); }
   static Avx2Float8 load(const std::array<std::int16_t, 8>& from) {
     return _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(eight(from)));
   }
@@ -229,6 +238,7 @@ inline Avx2Float8 operator/(const Avx2Float8& a, const Avx2Float8& b) { return _
 inline Avx2Float8 min(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_min_ps(a.v, b.v); }
 inline Avx2Float8 max(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_max_ps(a.v, b.v); }
 inline Avx2Float8 floor(const Avx2Float8& a) { return _mm256_floor_ps(a.v); }
+inline Avx2Float8 sqrt(const Avx2Float8& a) { return _mm256_sqrt_ps(a.v); }
 inline Avx2Float8 power_of_two_within(const Avx2Float8& a) {
   return _mm256_and_ps(a.v, _mm256_castsi256_ps(_mm256_set1_epi32(0x7F80'0000)));
 }

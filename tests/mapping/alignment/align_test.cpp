@@ -65,6 +65,39 @@ TEST(Twist, LogIsTheInverseOfExp) {
   EXPECT_TRUE(local(Eigen::Isometry3d::Identity()).isZero(1e-15));
 }
 
+TEST(MakeReference, PlainAndFastestArithmeticMakeTheSameViewBitForBit) {
+  for (const Intrinsics& camera : {kCamera, Intrinsics{163, 121, 146.0, 146.0, 81.0, 60.0}}) {
+    Frame frame = test::exact_frame(corner_with_ball(), camera, eye());
+    test::paint(frame, eye());
+    test::add_depth_noise(frame, 7);
+    ViewPyramid pyramid;
+    make_pyramid(frame, {}, pyramid);
+    for (const bool is_noisy : {true, false}) {
+      ViewConfig config;
+      config.noisy = is_noisy;
+      TargetView fastest, plain;
+      make_target_view(pyramid, eye(), config, fastest, Arithmetic::kFastest);
+      make_target_view(pyramid, eye(), config, plain, Arithmetic::kPortable);
+      ASSERT_EQ(fastest.levels.size(), plain.levels.size());
+      for (std::size_t level = 0; level < plain.levels.size(); ++level) {
+        std::size_t planes = 0;
+        const auto& pixels = fastest.levels[level].pixels.pixels;
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+          const TargetPixel &a = pixels[i], &b = plain.levels[level].pixels.pixels[i];
+          planes += a.inverse_sigma_per_m > 0.0F ? 1 : 0;
+          ASSERT_EQ(a.normal, b.normal);
+          ASSERT_EQ(a.offset_m, b.offset_m);
+          ASSERT_EQ(a.inverse_sigma_per_m, b.inverse_sigma_per_m);
+          ASSERT_EQ(a.intensity, b.intensity);
+          ASSERT_EQ(a.gradient_u, b.gradient_u);
+          ASSERT_EQ(a.gradient_v, b.gradient_v);
+        }
+        EXPECT_GT(planes, pixels.size() / 3);
+      }
+    }
+  }
+}
+
 /// Residuals of the step, of points in number no multiple of eight, with and without motion.
 PointMatches matches_of(Arithmetic arithmetic, const RowMotion& motion, std::size_t leave_out) {
   Frame before = test::exact_frame(corner_with_ball(), kCamera, eye());
