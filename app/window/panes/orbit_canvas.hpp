@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -74,17 +75,25 @@ class OrbitCanvas {
   void draw(const DrawnMesh& mesh, const Eigen::Isometry3d& T_world_mesh, const Tint& tint,
             bool is_transparent_behind = false);
   void end();
+  /// Returns false for a while after a rendering, so that renderings take at most an eighth of the time: a
+  /// processor that renders in place of a GPU is needed elsewhere.
+  [[nodiscard]] bool is_due() const { return Clock::now() >= due_; }
 
-  /// Adds the texture to the window's drawing, over the area.
-  void show(const Area& area) const;
+  /// Adds the texture to the window's drawing, over the area. The canvas must exist until the window is drawn.
+  void show(const Area& area);
   /// Returns the projection of world points to the window, if the texture covers the area.
   [[nodiscard]] ToWindow to_window(const Area& area) const;
 
  private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begun_{}, due_{};  ///< of the last rendering; time from which on the next is due
   unsigned program_ = 0, framebuffer_ = 0, colour_ = 0, depth_ = 0;
   int width_px_ = 0, height_px_ = 0;
   Eigen::Isometry3d T_eye_world_ = Eigen::Isometry3d::Identity();
   Eigen::Matrix4d clip_from_eye_ = Eigen::Matrix4d::Identity();
+  Area shown_at_{};
+
+  void copy_to_window() const;
 };
 
 /// Returns the bounding box of a mesh in the world; empty if the mesh has no vertices.

@@ -53,19 +53,18 @@ void LiveModelView::upload(const ShownScan& shown) {
     drawn->upload(*part.mesh, /*changes_often=*/false);
   }
   std::erase_if(drawn_, [&](const auto& drawn) { return !present.contains(drawn.first); });
-  if (follows_) follow(shown);
   is_stale_ = true;
 }
 
 /// Moves the eye smoothly to a place behind and above the camera.
 void LiveModelView::follow(const ShownScan& shown) {
-  constexpr double kAhead_m = 1.2, kDistance_m = 3.2, kElevation_rad = 0.6, kShare = 0.15;
+  constexpr double kAhead_m = 1.2, kDistance_m = 3.2, kElevation_rad = 0.6, kSmoothed_s = 0.2;
   const Eigen::Vector3d ahead = shown.T_world_camera.linear().col(2);
   const Eigen::Vector3d target = shown.T_world_camera.translation() + kAhead_m * ahead;
   const double azimuth_rad = std::atan2(-ahead.y(), -ahead.x());
   Orbit& orbit = canvas_.orbit;
-  const bool is_first = drawn_.empty();
-  const double share = is_first ? 1.0 : kShare;
+  const double now_s = ImGui::GetTime();
+  const double share = 1.0 - std::exp((std::exchange(followed_s_, now_s) - now_s) / kSmoothed_s);
   orbit.target_world += share * (target - orbit.target_world);
   orbit.azimuth_rad += share * std::remainder(azimuth_rad - orbit.azimuth_rad, 2.0 * std::numbers::pi);
   orbit.elevation_rad += share * (kElevation_rad - orbit.elevation_rad);
@@ -79,7 +78,7 @@ void LiveModelView::look_at(const Mesh& mesh) {
   canvas_.orbit.target_world = box.center();
   canvas_.orbit.elevation_rad = 0.8;
   canvas_.orbit.distance_m = std::clamp(1.1 * box.diagonal().norm(), 1.0, 30.0);
-  is_stale_ = true;
+  is_steered_ = true;
 }
 
 void LiveModelView::draw(const Area& area, const ShownScan& shown, const look::Fonts& fonts) {
@@ -90,10 +89,12 @@ void LiveModelView::draw(const Area& area, const ShownScan& shown, const look::F
                              ImGuiButtonFlags_MouseButtonMiddle);
   if (canvas_.steer(area)) {
     follows_ = follows_ && !ImGui::IsItemActive();
-    is_stale_ = true;
+    is_steered_ = true;
   }
   const bool is_resized = canvas_.fit(static_cast<int>(area.width), static_cast<int>(area.height));
-  if (std::exchange(is_stale_, false) || is_resized) {
+  if (is_resized || is_steered_ || (is_stale_ && canvas_.is_due())) {
+    is_stale_ = is_steered_ = false;
+    if (follows_) follow(shown);
     canvas_.begin();
     for (const ShownPart& part : shown.parts)
       canvas_.draw(*drawn_.at(part.mesh), part.T_world_mesh, {{0.62F, 0.66F, 0.72F}, 0.1F},
