@@ -6,7 +6,7 @@
 namespace roomradar {
 namespace {
 
-constexpr int kEdge = 256;  // cells
+constexpr int kWidth = 256, kHeight = 96;  // cells
 constexpr double kFarthestCell_m = 5.0;
 // A Kinect measures between these depths. A ray without depth that crosses a cell between them means that the
 // cell cannot be measured from there.
@@ -18,16 +18,17 @@ constexpr std::uint8_t kManyTries = 24;
 
 ExplorationGrid::ExplorationGrid(const Eigen::Vector3d& centre_world)
     : first_((centre_world / kCell_m).array().floor().cast<int>().matrix() -
-             Eigen::Vector3i::Constant(kEdge / 2)),
-      cells_(static_cast<std::size_t>(kEdge * kEdge * kEdge), 0) {}
+             Eigen::Vector3i(kWidth, kWidth, kHeight) / 2),
+      cells_(static_cast<std::size_t>(kWidth * kWidth * kHeight), 0) {}
 
 Eigen::Vector3i ExplorationGrid::cell_of(const Eigen::Vector3d& p_world) const {
   return (p_world / kCell_m).array().floor().cast<int>().matrix() - first_;
 }
 
 std::int64_t ExplorationGrid::index_of(const Eigen::Vector3i& cell) {
-  if (!(cell.array() >= 0).all() || !(cell.array() < kEdge).all()) return -1;
-  return (static_cast<std::int64_t>(cell.z()) * kEdge + cell.y()) * kEdge + cell.x();
+  if (!(cell.array() >= 0).all() || !(cell.array() < Eigen::Array3i(kWidth, kWidth, kHeight)).all())
+    return -1;
+  return (static_cast<std::int64_t>(cell.z()) * kWidth + cell.y()) * kWidth + cell.x();
 }
 
 void ExplorationGrid::add(const StoredView& view, const Eigen::Isometry3d& T_world_camera) {

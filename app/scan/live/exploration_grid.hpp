@@ -17,7 +17,8 @@ enum class CellState : std::uint8_t {
   kUnmeasurable,  ///< unknown, although seen from near several times, such as glass or dark surfaces
 };
 
-/// A cube of cells of 10 cm, 25.6 m wide, centred at the camera. Takes 16 MB.
+/// A box of cells of 10 cm, 25.6 m wide and 9.6 m high, centred at the camera. The world's +z is up. Takes 6
+/// MB.
 class ExplorationGrid {
  public:
   static constexpr double kCell_m = 0.1;
