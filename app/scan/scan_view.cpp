@@ -9,6 +9,7 @@
 #include "app/scan/scan_picture.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/types/system/process_memory.hpp"
+#include "mapping/types/system/worker_thread.hpp"
 
 namespace roomradar {
 namespace {

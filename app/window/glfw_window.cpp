@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <set>
 
 #include "app/window/link/key_meant.hpp"
 #include "app/window/panes/window_layout.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/worker_thread.hpp"
 
 namespace roomradar {
 namespace {
@@ -52,6 +54,7 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "roomradar");
   // EGL if it works, as for the radar, so the process loads one driver; else the window system's own API.
   const auto [width_px, height_px] = first_size_px();
+  const std::set<pid_t> threads_before = threads_of_process();
   for (const int way : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, way);
     window_ = glfwCreateWindow(width_px, height_px, title.c_str(), nullptr, nullptr);
@@ -65,6 +68,9 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   }
   glfwSetWindowSizeLimits(window_, kLeastWidth_px, kLeastHeight_px, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(window_);
+  // Those of a renderer on the processor. Tracking and play do not wait for the drawing.
+  for (const pid_t thread : threads_of_process())
+    if (!threads_before.contains(thread)) lower_priority(thread);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {

@@ -1,15 +1,13 @@
 // live_model.cpp: the thread that fuses and extracts.
 #include "app/scan/live/live_model.hpp"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <iterator>
 #include <utility>
 
 #include "mapping/surface/surface_extraction.hpp"
+#include "mapping/types/system/worker_thread.hpp"
 
 namespace roomradar {
 namespace {
@@ -34,11 +32,6 @@ SurfaceConfig surface_config() {
 }
 
 }  // namespace
-
-void lower_priority() {
-  constexpr int kLow = 10;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLow);
-}
 
 LiveModel::LiveModel(double cell_m) : cell_m_(cell_m), thread_([this] { serve(); }) {}
 

@@ -16,9 +16,6 @@
 
 namespace roomradar {
 
-/// Lowers the priority of the calling thread, so that the tracking does not wait for it.
-void lower_priority();
-
 /// A part of the live model.
 struct LiveModelPart {
   std::size_t anchor = 0;                   ///< the part's coordinate frame moves with this anchor

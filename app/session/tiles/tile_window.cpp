@@ -1,15 +1,13 @@
 // tile_window.cpp: the state of each tile, from the request to the drop.
 #include "app/session/tiles/tile_window.hpp"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "mapping/types/system/config_check.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/process_memory.hpp"
+#include "mapping/types/system/worker_thread.hpp"
 
 namespace roomradar {
 namespace {
@@ -21,7 +19,7 @@ constexpr std::size_t kReserve_bytes = 30'000'000;  // images and buffers that f
 /// Loads a tile at low priority: frames go first.
 LoadedTile load_aside(const TileWindowConfig& config, std::size_t tile) {
   constexpr int kNice = 5;
-  static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));  // this thread only
+  lower_priority(0, kNice);
   LoadedTile loaded = load_tile(config.building, config.folder, tile, config.choice.has_unknown);
   release_unused_memory();
   return loaded;

@@ -2,8 +2,27 @@
 #include "mapping/types/system/worker_thread.hpp"
 
 #include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
 
 namespace roomradar {
+
+void lower_priority(pid_t thread, int nice) {
+  static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(thread != 0 ? thread : gettid()), nice));
+}
+
+std::set<pid_t> threads_of_process() {
+  std::set<pid_t> threads;
+  std::error_code fault;
+  for (std::filesystem::directory_iterator entry("/proc/self/task", fault), end; !fault && entry != end;
+       entry.increment(fault))
+    threads.insert(static_cast<pid_t>(std::atoi(entry->path().filename().c_str())));
+  return threads;
+}
 
 WorkerThread::WorkerThread() {
   if (std::thread::hardware_concurrency() < 2) return;

@@ -1,13 +1,24 @@
-// worker_thread.hpp: a worker thread that runs one task in parallel with the caller's.
+// worker_thread.hpp: a worker thread that runs one task in parallel with the caller's; priority of threads.
 #pragma once
 #include <sched.h>
+#include <sys/types.h>
 
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <set>
 #include <thread>
 
 namespace roomradar {
+
+/// Lowers the priority of a thread of this process, so that others do not wait for it. Threads that it starts
+/// later have the low priority, too. It cannot be raised again.
+/// @param thread  0: the calling thread
+/// @param nice    0: as usual; 19: lowest
+void lower_priority(pid_t thread = 0, int nice = 10);
+
+/// Returns the threads of this process.
+std::set<pid_t> threads_of_process();
 
 /// Owns a thread that sleeps between calls of run(). On a machine with one processor there is no thread, and
 /// the two tasks run one after the other. Results must not depend on the order of the tasks. Call run() from

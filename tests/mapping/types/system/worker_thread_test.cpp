@@ -3,10 +3,15 @@
 
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <future>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace roomradar::worker_thread_test {
@@ -54,6 +59,25 @@ TEST(WorkerThread, WhatEitherThrowsIsThrownAndTheNextCallIsAsEver) {
   EXPECT_EQ(fault_of_run(fine, breaks_too), "beside");
   EXPECT_EQ(fault_of_run(breaks, breaks_too), "here");
   EXPECT_EQ(fault_of_run(fine, fine), "none");
+}
+
+TEST(LowerPriority, ConcernsOneThread) {
+  const auto nice_of = [](pid_t thread) { return getpriority(PRIO_PROCESS, static_cast<id_t>(thread)); };
+  const int before = nice_of(gettid());
+  std::promise<pid_t> begun;
+  std::promise<void> end;
+  std::thread other([&] {
+    begun.set_value(gettid());
+    end.get_future().wait();
+  });
+  const pid_t thread = begun.get_future().get();
+  EXPECT_TRUE(threads_of_process().contains(thread));
+  EXPECT_TRUE(threads_of_process().contains(gettid()));
+  lower_priority(thread, std::min(before + 1, 19));
+  EXPECT_EQ(nice_of(thread), std::min(before + 1, 19));
+  EXPECT_EQ(nice_of(gettid()), before);
+  end.set_value();
+  other.join();
 }
 
 TEST(WorkerThread, TheWorkerLeavesTheCallersProcessor) {
