@@ -153,7 +153,7 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
     work.times.add_ms("track", work.track_ms[frame.index]);
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
     if (work.observer) {
-      work.observer->after_frame(frame, tracking, pass.odometry);
+      work.observer->after_frame(frame, tracking, pass.odometry, work.times);
       if (const double undo_s = work.observer->take_undo_s(); undo_s > 0.0)
         undo(work, pass, known, frame.stamp_s - undo_s);
     }

@@ -4,6 +4,7 @@
 
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/types/frame.hpp"
+#include "mapping/types/system/stage_times.hpp"
 
 namespace roomradar {
 
@@ -17,7 +18,9 @@ class ScanObserver {
   virtual ~ScanObserver() = default;
 
   /// Called after each readable frame, with its tracking result and the state of the odometry after it.
-  virtual void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) = 0;
+  /// @param times  stages "read" and "track" so far
+  virtual void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry,
+                           const StageTimes& times) = 0;
 
   /// Called after after_frame(). Returns the duration of the scan's end to undo, s by the frames' stamps; 0:
   /// none. After an undo, the camera must return to where it was at that time.

@@ -34,6 +34,7 @@ struct ShownNextView {
 struct ScanCounts {
   std::int64_t frames = 0;
   double frames_per_s = 0.0;
+  double read_ms = 0.0, track_ms = 0.0;  ///< per frame, smoothed; reading is the wait for a frame
   std::int64_t keyframes = 0;
   std::int64_t loops = 0;
   double seen_m2 = 0.0;

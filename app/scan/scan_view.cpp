@@ -70,13 +70,19 @@ void ScanView::measure_speed(const Frame& frame, const Tracking& tracking) {
   scan_.last = Pose{frame.stamp_s, tracking.T_world_camera};
 }
 
-void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) {
+void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry,
+                           const StageTimes& times) {
   constexpr std::size_t kRateOver = 30;
+  constexpr double kShare = 0.1;  // of the newest frame in the smoothed times
   const OdometrySnapshot& state = odometry.state();
   ++scan_.frames;
   scan_.seen_s.push_back(now_s());
   if (scan_.seen_s.size() > kRateOver) scan_.seen_s.pop_front();
   measure_speed(frame, tracking);
+  times.visit_newest([&](const std::string& stage, std::size_t /*count*/, double newest_ms) {
+    if (stage == "read") scan_.read_ms += kShare * (newest_ms - scan_.read_ms);
+    if (stage == "track") scan_.track_ms += kShare * (newest_ms - scan_.track_ms);
+  });
   scan_.has_moved = correct(state, scan_.anchors) || scan_.has_moved;
   {
     const std::lock_guard lock(handover_.mutex);
@@ -98,6 +104,8 @@ void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const O
   if (scan_.seen_s.size() > 1)
     work.counts.frames_per_s = static_cast<double>(scan_.seen_s.size() - 1) /
                                std::max(scan_.seen_s.back() - scan_.seen_s.front(), 1e-6);
+  work.counts.read_ms = scan_.read_ms;
+  work.counts.track_ms = scan_.track_ms;
   work.counts.keyframes = state.counts.keyframes;
   work.counts.loops = state.graph.loops_found;
   {

@@ -38,7 +38,8 @@ class ScanView final : public ScanObserver {
                     std::filesystem::path folder = ".", std::optional<NextView> first_view = {});
   ~ScanView() override;
 
-  void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) override;
+  void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry,
+                   const StageTimes& times) override;
   double take_undo_s() override { return channel_.take_undo_s(); }
   void forgot_frames(std::int64_t from_index) override;
 
@@ -68,7 +69,8 @@ class ScanView final : public ScanObserver {
     std::optional<Pose> last;
     double speed_mps = 0.0, speed_rad_s = 0.0;
     std::int64_t frames = 0;
-    std::deque<double> seen_s;  ///< times at which the last frames arrived
+    std::deque<double> seen_s;             ///< times at which the last frames arrived
+    double read_ms = 0.0, track_ms = 0.0;  ///< smoothed
   };
   /// Up direction, estimated again whenever the number of frames has grown by half.
   struct Up {

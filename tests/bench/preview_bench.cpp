@@ -74,8 +74,9 @@ class Watch final : public ScanObserver {
     if (settings.is_watched) view_.emplace(channel_);
   }
 
-  void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry) override {
-    if (view_) view_->after_frame(frame, tracking, odometry);
+  void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry,
+                   const StageTimes& times) override {
+    if (view_) view_->after_frame(frame, tracking, odometry, times);
     if (frames_++ == 0) first_stamp_s_ = frame.stamp_s;
     const double early_s = frame.stamp_s - first_stamp_s_ - since_s(begun_);
     if (early_s > 0.0 && early_s < 1.0) std::this_thread::sleep_for(std::chrono::duration<double>(early_s));

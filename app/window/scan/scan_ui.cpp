@@ -257,7 +257,8 @@ void ScanUi::draw_counts(const Area& area) {
     ImGui::PopFont();
     ImGui::EndGroup();
   };
-  fact(text_of("%.0f", counts.frames_per_s), "frames/s");
+  const std::string times = text_of("frames/s: read %.0f, track %.0f ms", counts.read_ms, counts.track_ms);
+  fact(text_of("%.0f", counts.frames_per_s), is_narrow ? "frames/s" : times.c_str());
   fact(text_of("%.1f m\u00B2", counts.seen_m2), "surface seen");
   fact(text_of("%.0f %%", 100.0 * counts.well_known), "of it known well");
   if (counts.table_tops_known) fact(text_of("%.0f %%", 100.0 * *counts.table_tops_known), "table tops");

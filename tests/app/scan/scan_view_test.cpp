@@ -55,13 +55,14 @@ TEST(ScanView, ShowsPictureTintModelPathAndCounts) {
   ScanChannel channel;
   const auto source = room(30);
   Odometry odometry;
+  StageTimes times;
   Frame frame;
   ShownScan shown;
   {
     ScanView view(channel);
     while (source->next(frame).status == ReadStatus::kFrame) {
-      const Tracking tracking = odometry.track(frame);
-      view.after_frame(frame, tracking, odometry);
+      const Tracking tracking = times.timed("track", [&] { return odometry.track(frame); });
+      view.after_frame(frame, tracking, odometry, times);
       // Slower than the view, so that it shows every frame, and longer than it waits between two meshes.
       std::this_thread::sleep_for(std::chrono::milliseconds(60));
     }
@@ -77,6 +78,7 @@ TEST(ScanView, ShowsPictureTintModelPathAndCounts) {
   EXPECT_GT(shown.parts.front().mesh->triangles.size(), 100U);
   EXPECT_GT(shown.counts.seen_m2, 1.0);
   EXPECT_GT(shown.counts.frames, 20);
+  EXPECT_GT(shown.counts.track_ms, 0.1);
   EXPECT_GT(shown.relative_speed, 0.0);
   // The world's +z is up: the camera's image rows go down.
   EXPECT_LT(shown.T_world_camera.linear().col(1).z(), -0.5);
@@ -85,7 +87,8 @@ TEST(ScanView, ShowsPictureTintModelPathAndCounts) {
 /// Undoes two seconds after frame 30.
 class UndoOnce final : public ScanObserver {
  public:
-  void after_frame(const Frame& frame, const Tracking& /*tracking*/, const Odometry& odometry) override {
+  void after_frame(const Frame& frame, const Tracking& /*tracking*/, const Odometry& odometry,
+                   const StageTimes& /*times*/) override {
     last_index = frame.index;
     for (const Keyframe& keyframe : odometry.state().graph.keyframes)
       EXPECT_TRUE(forgotten_from < 0 || keyframe.frame_index < forgotten_from || keyframe.frame_index > 30);

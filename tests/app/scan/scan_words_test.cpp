@@ -25,7 +25,7 @@ class Watched {
  public:
   std::optional<ScanFault> say(const Frame& frame) {
     std::this_thread::sleep_for(std::chrono::milliseconds(3));  // the view is done with the frame before
-    view_.after_frame(frame, odometry_.track(frame), odometry_);
+    view_.after_frame(frame, odometry_.track(frame), odometry_, {});
     const auto start = std::chrono::steady_clock::now();
     while (!channel_.take(shown_) && std::chrono::steady_clock::now() - start < std::chrono::seconds(5))
       std::this_thread::yield();
