@@ -53,11 +53,6 @@ double sum_of_lanes(const Float8& value) {
   return sum;
 }
 
-template <typename Float8>
-Float8 abs(const Float8& a) {
-  return max(a, Float8(0.0F) - a);
-}
-
 /// Normal equations of residuals r = r0 + J twist, J = (m, p x m), packed: 21 entries of J'wJ, 6 of J'wr.
 template <typename Float8>
 struct Normals {

@@ -40,11 +40,6 @@ Float8 load_row(const float* from, int count) {
   return Float8::load(lanes);
 }
 
-template <typename Float8>
-Float8 abs(const Float8& a) {
-  return max(a, Float8(0.0F) - a);
-}
-
 /// As depth_sigma_m().
 template <typename Float8>
 Float8 sigma_m(const DepthNoise& noise, const Float8& depth_m) {

@@ -111,6 +111,7 @@ inline PortableFloat8 min(const PortableFloat8& a, const PortableFloat8& b) {
 inline PortableFloat8 max(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x > y ? x : y; });
 }
+inline PortableFloat8 abs(const PortableFloat8& a) { return max(a, PortableFloat8(0.0F) - a); }
 inline PortableFloat8 floor(const PortableFloat8& a) {
   return plain::each(a, a, [](float x, float) { return std::floor(x); });
 }
@@ -237,6 +238,7 @@ inline Avx2Float8 operator*(const Avx2Float8& a, const Avx2Float8& b) { return _
 inline Avx2Float8 operator/(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_div_ps(a.v, b.v); }
 inline Avx2Float8 min(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_min_ps(a.v, b.v); }
 inline Avx2Float8 max(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_max_ps(a.v, b.v); }
+inline Avx2Float8 abs(const Avx2Float8& a) { return max(a, Avx2Float8(0.0F) - a); }
 inline Avx2Float8 floor(const Avx2Float8& a) { return _mm256_floor_ps(a.v); }
 inline Avx2Float8 sqrt(const Avx2Float8& a) { return _mm256_sqrt_ps(a.v); }
 inline Avx2Float8 power_of_two_within(const Avx2Float8& a) {
