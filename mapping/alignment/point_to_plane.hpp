@@ -54,7 +54,7 @@ struct MatchLimits {
 
 /// Geman-McClure weight of a residual: 1 at x = 0, 1/4 at 1, about x^-4 for large x.
 template <typename Real>
-Real robust_weight(Real x) {
+Real robust_weight(const Real& x) {
   const Real one(1);
   const Real w = one / (one + x * x);
   return w * w;
