@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <span>
 
 #include "mapping/alignment/point_to_plane.hpp"
 #include "tests/support/exact_depth.hpp"
@@ -98,19 +99,40 @@ TEST(MakeReference, PlainAndFastestArithmeticMakeTheSameViewBitForBit) {
   }
 }
 
-/// Residuals of the step, of points in number no multiple of eight, with and without motion.
-PointMatches matches_of(Arithmetic arithmetic, const RowMotion& motion, std::size_t leave_out) {
+struct MatchCase {
+  TargetView reference;
+  std::vector<SourcePoint> points;
+};
+MatchCase match_case() {
   Frame before = test::exact_frame(corner_with_ball(), kCamera, eye());
   Frame frame = test::exact_frame(corner_with_ball(), kCamera, eye() * kStep);
   test::paint(before, eye());
   test::paint(frame, eye() * kStep);
-  const TargetView reference = reference_of(before, eye());
-  std::vector<SourcePoint> points = live_of(frame).levels[0];
-  points.resize(points.size() - leave_out);
-  PointMatches pass;
-  match_points(points, reference.levels[0], kStep, {0.1F, 0.5F, 0.2F}, {1.1F, -3.0F, true}, motion, pass,
-               arithmetic);
-  return pass;
+  return {reference_of(before, eye()), live_of(frame).levels[0]};
+}
+
+void match(const MatchCase& of, std::span<const SourcePoint> points, const RowMotion& motion,
+           PointMatches& pass, Arithmetic arithmetic = Arithmetic::kFastest) {
+  match_points({points.begin(), points.end()}, of.reference.levels[0], kStep, {0.1F, 0.5F, 0.2F},
+               {1.1F, -3.0F, true}, motion, pass, arithmetic);
+}
+
+TEST(MatchPoints, CountsEachPointOnce) {
+  const MatchCase of = match_case();
+  const std::span<const SourcePoint> points = of.points;
+  PointMatches whole;
+  match(of, points, {}, whole);
+  EXPECT_GT(whole.inliers, 1000U);
+  for (const std::size_t at : {1U, 7U, 8U, 1029U}) {
+    PointMatches parts;
+    match(of, points.first(at), {}, parts);
+    match(of, points.subspan(at), {}, parts);
+    EXPECT_EQ(parts.met, whole.met);
+    EXPECT_EQ(parts.inliers, whole.inliers);
+    EXPECT_NEAR(parts.depth.weight, whole.depth.weight, 1e-5 * whole.depth.weight);
+    EXPECT_NEAR(parts.n, whole.n, 1e-5 * whole.n);
+    EXPECT_TRUE(parts.colour.H.isApprox(whole.colour.H, 1e-5));
+  }
 }
 
 TEST(MatchPoints, PlainAndFastestArithmeticGiveTheSameSumsBitForBit) {
@@ -119,10 +141,13 @@ TEST(MatchPoints, PlainAndFastestArithmeticGiveTheSameSumsBitForBit) {
   moving.angular_radps = {0.5F, -0.2F, 0.1F};
   moving.row_s = 1e-4F;
   moving.fy_px = 292.5F;
+  const MatchCase of = match_case();
   for (const RowMotion& motion : {RowMotion(), moving})
     for (const std::size_t leave_out : {0U, 1U, 5U}) {
-      const PointMatches fastest = matches_of(Arithmetic::kFastest, motion, leave_out);
-      const PointMatches plain = matches_of(Arithmetic::kPortable, motion, leave_out);
+      const auto points = std::span(of.points).first(of.points.size() - leave_out);
+      PointMatches fastest, plain;
+      match(of, points, motion, fastest, Arithmetic::kFastest);
+      match(of, points, motion, plain, Arithmetic::kPortable);
       EXPECT_GT(fastest.inliers, 1000U);
       EXPECT_GT(fastest.colour.H(0, 0), 0.0);
       EXPECT_EQ(fastest.depth.H, plain.depth.H);
