@@ -213,7 +213,6 @@ void match(const std::vector<SourcePoint>& points, const Matcher<Float8>& matche
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
                   const RowMotion& motion, PointMatches& pass, Arithmetic arithmetic) {
-  if (reference.pixels.empty()) return;
   if (arithmetic == Arithmetic::kFastest)
     match(points, Matcher<Float8>(reference, T_view_camera, limits, exposure, motion), pass);
   else

@@ -40,14 +40,6 @@ Float8 load_row(const float* from, int count) {
   return Float8::load(lanes);
 }
 
-/// As depth_sigma_m().
-template <typename Float8>
-Float8 sigma_m(const DepthNoise& noise, const Float8& depth_m) {
-  const Float8 beyond_m = max(depth_m - noise.from_m, 0.0F);
-  return Float8(noise.base_m) + Float8(noise.quadratic_per_m) * beyond_m * beyond_m +
-         Float8(noise.linear) * depth_m;
-}
-
 /// Fits planes to the samples on the surfaces of `count` pixels from (x, y) on. Each has (2 kHalf + 1)^2
 /// samples, `step` apart. None is found where there are too few samples, or if they are not coplanar within
 /// the noise.
@@ -96,7 +88,7 @@ Planes8<Float8> fit_planes(const Image<float>& inverse_depth, const DepthNoise& 
   const Float8 divisor = select(are_enough, determinant, one);
   const Float8 a = (cuq * cvv - cvq * cuv) / divisor, b = (cvq * cuu - cuq * cuv) / divisor;
   const Float8 residual = max(cqq - a * cuq - b * cvq, zero) * inverse_n;
-  const Float8 allowed = Float8(3.0F) * sigma_m(noise, one / select(are_enough, q0, one)) * q0 * q0;
+  const Float8 allowed = Float8(3.0F) * depth_sigmas_m(noise, one / select(are_enough, q0, one)) * q0 * q0;
   const Float8 value = q0 + (sq - a * su - b * sv) * inverse_n;
   const Float8 inverse_step = 1.0F / static_cast<float>(step);
   return {value, a * inverse_step, b * inverse_step,
@@ -138,7 +130,7 @@ void make_reference_level(const ViewPyramid::Level& level, const DepthNoise& noi
       const Float8 z_m = one / select(are_found, q, one);
       // Of the angle between normal and ray, times the ray's length at z = 1.
       const Float8 cosine = distance_m * q;
-      const Float8 along_m = cosine * sigma_m(noise, z_m);
+      const Float8 along_m = cosine * depth_sigmas_m(noise, z_m);
       const Float8 across_m = Float8(kLateralSigma_rad) * z_m * sqrt(max(one - cosine * cosine, zero));
       const Float8 inverse_sigma_per_m =
           one / sqrt(along_m * along_m + across_m * across_m + kDistortion_m * kDistortion_m);

@@ -8,9 +8,9 @@
 #include "mapping/octree/block_octree.hpp"
 #include "mapping/octree/cell_levels.hpp"
 #include "mapping/octree/node_visibility.hpp"
-#include "mapping/types/simd8f.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/frame.hpp"
+#include "mapping/types/simd8f.hpp"
 
 namespace roomradar {
 
@@ -76,10 +76,10 @@ class LeafUpdate {
     const Float8 depth_m = Float8::gather(frame_.depth_m.pixels.data(), v * camera_.width + u, seen);
     const auto measured = Float8(kLeastDepth_m) <= depth_m;
     const Float8 distance_m = depth_m - p_camera.z;
-    const Float8 sigma_m = sigma_of(depth_m);
+    const Float8 sigma_m = depth_sigmas_m(config_.noise, depth_m);
     const auto free = measured & (p_camera.z < min(depth_m, config_.max_range_m));
     const auto sampled = measured & (depth_m <= config_.max_range_m) &
-                         (absolute(distance_m) <= max(truncation_m_, sigma_m * config_.truncation_sigmas));
+                         (abs(distance_m) <= max(truncation_m_, sigma_m * config_.truncation_sigmas));
     return {p_camera, distance_m, sigma_m, free.bits(), sampled.bits()};
   }
 
@@ -148,15 +148,7 @@ class LeafUpdate {
   // half of the frames should disappear.
   static constexpr float kCancelled = 2.0F;
 
-  static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
   [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }
-
-  // Returns depth_sigma_m() of each element.
-  [[nodiscard]] Float8 sigma_of(const Float8& depth_m) const {
-    const DepthNoise& noise = config_.noise;
-    const Float8 beyond_m = max(depth_m - noise.from_m, 0.0F);
-    return beyond_m * beyond_m * noise.quadratic_per_m + noise.base_m + depth_m * noise.linear;
-  }
 
   static Float8 weight_of(const Float8& sigma_m) {
     const Float8 ratio = Float8(kUnitWeightSigma_m) / sigma_m;
@@ -225,7 +217,7 @@ class LeafUpdate {
     select(sampled, mean, distance).store_rounded(block.distance);
     select(sampled, sum, own_weight).store_rounded(block.weight);
     if (!has_colour_) return;
-    unsigned take = which & (absolute(observed.distance_m) < colour_distance_m_).bits();
+    unsigned take = which & (abs(observed.distance_m) < colour_distance_m_).bits();
     if (!refresh_colour) take &= ~block.coloured | (Float8(kMinColourFraction) <= part).bits();
     if (take != 0) add_colours(block, observed.p_camera, max(part, kMinColourFraction), take);
   }

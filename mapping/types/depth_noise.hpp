@@ -33,6 +33,13 @@ inline float depth_sigma_m(const DepthNoise& noise, float depth_m) {
   return noise.base_m + noise.quadratic_per_m * beyond_m * beyond_m + noise.linear * depth_m;
 }
 
+/// Returns depth_sigma_m() of each element of a vector of floats, such as Float8.
+template <typename Floats>
+Floats depth_sigmas_m(const DepthNoise& noise, const Floats& depth_m) {
+  const Floats beyond_m = max(depth_m - noise.from_m, 0.0F);
+  return beyond_m * beyond_m * noise.quadratic_per_m + noise.base_m + depth_m * noise.linear;
+}
+
 /// Standard deviation, m, of a measurement of weight 1 in a map: that of a Kinect v1 at 1 m.
 inline const float kUnitWeightSigma_m = depth_sigma_m(DepthNoise{}, 1.0F);
 
