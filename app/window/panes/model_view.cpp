@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "app/window/panes/annotate.hpp"
 #include "app/window/panes/orbit_canvas.hpp"
@@ -52,7 +51,6 @@ void draw_legend(ImDrawList& list, const Area& area, const look::Fonts& fonts) {
 
 struct ModelView::State {
   OrbitCanvas canvas;
-  bool is_stale = true, is_steered = false;
   bool is_placed = false;  ///< the orbit was set to show the room
   std::shared_ptr<const ShownRoom> room;
   DrawnMesh drawn_room, drawn_seen, drawn_inferred;
@@ -64,7 +62,7 @@ ModelView::~ModelView() = default;
 
 void ModelView::upload(const Snapshot& shown) {
   State& state = *state_;
-  state.is_stale = true;
+  state.canvas.content_changed();
   if (shown.room && shown.room != state.room) {
     state.room = shown.room;
     state.drawn_room.upload(shown.room->mesh, /*changes_often=*/false);
@@ -98,15 +96,13 @@ void ModelView::look_at_chosen(const Snapshot& shown) {
     if (object.name != shown.chosen || !object.in_room) continue;
     state_->canvas.orbit.target_world = object.T_world_object * object.box.center();
     state_->canvas.orbit.distance_m = std::clamp(5.0 * object.box.diagonal().norm(), 0.4, 5.0);
-    state_->is_steered = true;
+    state_->canvas.orbit_changed();
   }
 }
 
 void ModelView::render(int width_px, int height_px, const Snapshot& shown) {
   State& state = *state_;
-  const bool is_resized = state.canvas.fit(width_px, height_px);
-  if (!is_resized && !state.is_steered && !(state.is_stale && state.canvas.is_due())) return;
-  state.is_stale = state.is_steered = false;
+  if (!state.canvas.must_render(width_px, height_px)) return;
   OrbitCanvas& canvas = state.canvas;
   const Eigen::Isometry3d at_home = Eigen::Isometry3d::Identity();
   canvas.begin();
@@ -130,7 +126,7 @@ void ModelView::draw(const Area& area, const Snapshot& shown, const look::Fonts&
   ImGui::InvisibleButton("orbit", {area.width, area.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  state_->is_steered = state_->canvas.steer(area) || state_->is_steered;
+  state_->canvas.steer(area);
   render(width_px, height_px, shown);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   state_->canvas.show(area);

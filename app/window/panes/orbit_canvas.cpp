@@ -1,4 +1,4 @@
-// orbit_canvas.cpp: shaders, buffers and the mouse of a 3D view.
+// orbit_canvas.cpp: shaders, framebuffer and the mouse of a 3D view.
 #include "app/window/panes/orbit_canvas.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -87,68 +87,6 @@ Eigen::Isometry3d eye_of(const Orbit& orbit) {
   return T_world_eye;
 }
 
-DrawnMesh::DrawnMesh() {
-  glGenVertexArrays(1, &vertex_array_);
-  glGenBuffers(4, buffers_.data());
-}
-
-DrawnMesh::~DrawnMesh() {
-  glDeleteBuffers(4, buffers_.data());
-  glDeleteTextures(1, &texture_);
-  glDeleteVertexArrays(1, &vertex_array_);
-}
-
-void DrawnMesh::upload(const Mesh& mesh, bool changes_often) {
-  const auto fill = [&](GLenum target, unsigned buffer, const auto& values) {
-    glBindBuffer(target, buffer);
-    glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(values[0])), values.data(),
-                 changes_often ? GL_STREAM_DRAW : GL_STATIC_DRAW);
-  };
-  origin_ = mesh.origin;
-  has_colours_ = mesh.colours.size() == mesh.vertices.size() && !mesh.colours.empty();
-  index_count_ = static_cast<int>(mesh.triangles.size() * 3);
-  glBindVertexArray(vertex_array_);
-  fill(GL_ARRAY_BUFFER, buffers_[0], mesh.vertices);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-  glEnableVertexAttribArray(0);
-  if (has_colours_) {
-    fill(GL_ARRAY_BUFFER, buffers_[1], mesh.colours);
-    glVertexAttribPointer(1, 3, GL_UNSIGNED_BYTE, GL_TRUE, 0, nullptr);
-    glEnableVertexAttribArray(1);
-  } else {
-    glDisableVertexAttribArray(1);
-  }
-  fill(GL_ELEMENT_ARRAY_BUFFER, buffers_[2], mesh.triangles);
-  glBindVertexArray(0);
-}
-
-void DrawnMesh::upload_texture(const std::vector<Eigen::Vector2f>& points, const ColourImage& texture) {
-  glDeleteTextures(1, &texture_);
-  texture_ = 0;
-  glBindVertexArray(vertex_array_);
-  glDisableVertexAttribArray(2);
-  if (!points.empty() && !texture.empty()) {
-    constexpr int kLevels = 4;  // coarser ones would mix charts
-    glBindBuffer(GL_ARRAY_BUFFER, buffers_[3]);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(points.size() * sizeof(points[0])), points.data(),
-                 GL_STATIC_DRAW);
-    glVertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glEnableVertexAttribArray(2);
-    glGenTextures(1, &texture_);
-    glBindTexture(GL_TEXTURE_2D, texture_);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, texture.width, texture.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
-                 texture.pixels.data());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kLevels - 1);
-    glGenerateMipmap(GL_TEXTURE_2D);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  }
-  glBindVertexArray(0);
-}
-
 OrbitCanvas::OrbitCanvas() : program_(make_program("models", kVertexShader, kFragmentShader)) {}
 
 OrbitCanvas::~OrbitCanvas() {
@@ -181,9 +119,18 @@ bool OrbitCanvas::steer(const Area& area) {
         std::clamp(orbit.distance_m * std::pow(0.88, static_cast<double>(io.MouseWheel)), 0.1, 40.0);
     is_changed = true;
   }
+  if (is_changed) orbit_changed();
   return is_changed;
 }
 
+bool OrbitCanvas::must_render(int width_px, int height_px) {
+  const bool is_resized = fit(width_px, height_px);
+  if (!is_resized && !is_moved_ && !(is_stale_ && Clock::now() >= due_)) return false;
+  is_stale_ = is_moved_ = false;
+  return true;
+}
+
+/// Gives the texture this size. Returns true if it had another one.
 bool OrbitCanvas::fit(int width_px, int height_px) {
   if (width_px == width_px_ && height_px == height_px_) return false;
   width_px_ = width_px;
@@ -253,7 +200,7 @@ void OrbitCanvas::end() {
   due_ = now + std::min<Clock::duration>(7 * (now - begun_), kLongestWait);
 }
 
-// Copied, not drawn as an image: llvmpipe takes 17 ns per pixel of an image, which it filters and blends.
+// Copied, not drawn as an image: llvmpipe takes 10 ns per pixel of an image, which it filters and blends.
 void OrbitCanvas::show(const Area& area) {
   shown_at_ = area;
   ImGui::GetWindowDrawList()->AddCallback(

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/window/panes/annotate.hpp"
+#include "app/window/panes/drawn_mesh.hpp"
 #include "app/window/panes/window_layout.hpp"
 #include "mapping/types/mesh.hpp"
 
@@ -22,30 +23,6 @@ struct Orbit {
 };
 /// Returns the eye's pose: x right, y up, looking along -z (OpenGL).
 Eigen::Isometry3d eye_of(const Orbit& orbit);
-
-/// A mesh in the window's OpenGL context, which must be current for all calls.
-class DrawnMesh {
- public:
-  DrawnMesh();
-  ~DrawnMesh();
-  DrawnMesh(const DrawnMesh&) = delete;
-  DrawnMesh& operator=(const DrawnMesh&) = delete;
-
-  /// @param changes_often  true: the mesh is replaced every few frames
-  void upload(const Mesh& mesh, bool changes_often);
-  /// Adds a texture to the uploaded mesh, in place of colours. Removes it if there are no points.
-  /// @param points  one per vertex; (0, 0) is the texture's top left corner, (1, 1) its bottom right corner
-  void upload_texture(const std::vector<Eigen::Vector2f>& points, const ColourImage& texture);
-
- private:
-  friend class OrbitCanvas;
-  unsigned vertex_array_ = 0;
-  std::array<unsigned, 4> buffers_{};  // positions, colours, indices, texture points
-  unsigned texture_ = 0;               // 0: none
-  int index_count_ = 0;
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-  bool has_colours_ = false;
-};
 
 /// Colour of a mesh without colours; it is mixed into the colours of other meshes with weight `fraction`.
 /// Shading is lighter for a textured mesh, which has the room's light.
@@ -68,18 +45,22 @@ class OrbitCanvas {
   /// Dear ImGui frame, after the window's pane has begun. Returns true if the orbit has changed.
   bool steer(const Area& area);
 
-  /// Begins a rendering of this size, in pixels. Returns true if the size has changed since the last call.
-  bool fit(int width_px, int height_px);
+  /// Reports that what is drawn has changed. It is rendered again when that is due.
+  void content_changed() { is_stale_ = true; }
+  /// Reports that `orbit` has changed. The view is rendered again at once. steer() calls it.
+  void orbit_changed() { is_moved_ = true; }
+  /// Returns true if the view must be rendered now, by begin(), draw() and end(): after a change of the orbit
+  /// or the size, in pixels, at once; after a change of the content so that renderings take at most an eighth
+  /// of the time, since a processor that renders in place of a GPU is needed elsewhere.
+  bool must_render(int width_px, int height_px);
   void begin();
   /// @param is_transparent_behind  true: triangles that face away from the eye are not drawn
   void draw(const DrawnMesh& mesh, const Eigen::Isometry3d& T_world_mesh, const Tint& tint,
             bool is_transparent_behind = false);
   void end();
-  /// Returns false for a while after a rendering, so that renderings take at most an eighth of the time: a
-  /// processor that renders in place of a GPU is needed elsewhere.
-  [[nodiscard]] bool is_due() const { return Clock::now() >= due_; }
 
-  /// Adds the texture to the window's drawing, over the area. The canvas must exist until the window is drawn.
+  /// Adds the texture to the window's drawing, over the area. The canvas must exist until the window is
+  /// drawn.
   void show(const Area& area);
   /// Returns the projection of world points to the window, if the texture covers the area.
   [[nodiscard]] ToWindow to_window(const Area& area) const;
@@ -87,12 +68,14 @@ class OrbitCanvas {
  private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point begun_{}, due_{};  ///< of the last rendering; time from which on the next is due
+  bool is_stale_ = true, is_moved_ = false;
   unsigned program_ = 0, framebuffer_ = 0, colour_ = 0, depth_ = 0;
   int width_px_ = 0, height_px_ = 0;
   Eigen::Isometry3d T_eye_world_ = Eigen::Isometry3d::Identity();
   Eigen::Matrix4d clip_from_eye_ = Eigen::Matrix4d::Identity();
   Area shown_at_{};
 
+  bool fit(int width_px, int height_px);
   void copy_to_window() const;
 };
 

@@ -53,7 +53,7 @@ void LiveModelView::upload(const ShownScan& shown) {
     drawn->upload(*part.mesh, /*changes_often=*/false);
   }
   std::erase_if(drawn_, [&](const auto& drawn) { return !present.contains(drawn.first); });
-  is_stale_ = true;
+  canvas_.content_changed();
 }
 
 /// Moves the eye smoothly to a place behind and above the camera.
@@ -78,7 +78,7 @@ void LiveModelView::look_at(const Mesh& mesh) {
   canvas_.orbit.target_world = box.center();
   canvas_.orbit.elevation_rad = 0.8;
   canvas_.orbit.distance_m = std::clamp(1.1 * box.diagonal().norm(), 1.0, 30.0);
-  is_steered_ = true;
+  canvas_.orbit_changed();
 }
 
 void LiveModelView::draw(const Area& area, const ShownScan& shown, const look::Fonts& fonts) {
@@ -87,13 +87,8 @@ void LiveModelView::draw(const Area& area, const ShownScan& shown, const look::F
   ImGui::InvisibleButton("orbit", {area.width, area.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  if (canvas_.steer(area)) {
-    follows_ = follows_ && !ImGui::IsItemActive();
-    is_steered_ = true;
-  }
-  const bool is_resized = canvas_.fit(static_cast<int>(area.width), static_cast<int>(area.height));
-  if (is_resized || is_steered_ || (is_stale_ && canvas_.is_due())) {
-    is_stale_ = is_steered_ = false;
+  if (canvas_.steer(area)) follows_ = follows_ && !ImGui::IsItemActive();
+  if (canvas_.must_render(static_cast<int>(area.width), static_cast<int>(area.height))) {
     if (follows_) follow(shown);
     canvas_.begin();
     for (const ShownPart& part : shown.parts)

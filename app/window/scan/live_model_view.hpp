@@ -26,7 +26,6 @@ class LiveModelView {
   OrbitCanvas canvas_;
   std::map<std::shared_ptr<const Mesh>, std::unique_ptr<DrawnMesh>> drawn_;
   bool follows_ = true;
-  bool is_stale_ = true, is_steered_ = false;
   double followed_s_ = -1e3;  ///< time at which the eye last followed
 
   void follow(const ShownScan& shown);
