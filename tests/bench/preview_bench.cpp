@@ -7,11 +7,8 @@
 // When the map is finished, the model is moved into the map's world by the camera's pose in that frame, and
 // its vertices are measured against the map's surface. Loops that close meanwhile belong to the same row.
 // --unwatched scans without a view, to compare the peak of resident memory while tracking.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -19,19 +16,20 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <unordered_map>
 #include <vector>
 
+#include "app/cli/report.hpp"
 #include "app/scan/controlled_source.hpp"
 #include "app/scan/scan_view.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
+#include "mapping/mesh/mesh_distance.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/process_memory.hpp"
-#include "mapping/types/voxel_key.hpp"
 #include "tests/bench/bench_program.hpp"
+#include "tests/bench/bench_times.hpp"
 
 namespace roomradar {
 namespace {
@@ -51,13 +49,6 @@ struct Settings {
 
 double since_s(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Greatest resident memory of the process so far, MB.
-double peak_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 /// The model that the window showed some time after a loop closed.
@@ -85,7 +76,7 @@ class Watch final : public ScanObserver {
       if (!closed_) closed_ = {frame.index, Clock::now()};
     }
     if (closed_ && since_s(closed_->at) >= settings_.later_s && view_) keep();
-    peak_mb_ = peak_mb();
+    peak_mb_ = peak_rss_mb();
     if (settings_.frames > 0 && frames_ >= settings_.frames) channel_.request(ScanRequest::kFinish);
   }
 
@@ -119,59 +110,12 @@ class Watch final : public ScanObserver {
   std::optional<Closed> closed_;
 };
 
-/// Points on a surface, at most 6 mm apart, in cells.
-class SurfacePoints {
- public:
-  static constexpr double kReach_m = 0.08;
-
-  explicit SurfacePoints(const Mesh& mesh) {
-    for (const auto& triangle : mesh.triangles) {
-      const Vector3f a = mesh.vertices[triangle[0]], b = mesh.vertices[triangle[1]],
-                     c = mesh.vertices[triangle[2]];
-      const float edge_m = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
-      const int n = std::max(1, static_cast<int>(std::ceil(edge_m / 6e-3F)));
-      for (int i = 0; i <= n; ++i)
-        for (int j = 0; i + j <= n; ++j) {
-          const Vector3f p = a + (b - a) * (static_cast<float>(i) / static_cast<float>(n)) +
-                             (c - a) * (static_cast<float>(j) / static_cast<float>(n));
-          cells_[key(mesh.origin + p.cast<double>(), {0, 0, 0})].push_back((mesh.origin + p.cast<double>()));
-        }
-    }
-  }
-
-  /// Distance to the nearest point; kReach_m if there is none within it.
-  double distance_m(const Vector3d& p) const {
-    double nearest = kReach_m * kReach_m;
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z) {
-          const auto cell = cells_.find(key(p, {x, y, z}));
-          if (cell == cells_.end()) continue;
-          for (const Vector3d& q : cell->second) nearest = std::min(nearest, (p - q).squaredNorm());
-        }
-    return std::sqrt(nearest);
-  }
-
- private:
-  std::unordered_map<std::uint64_t, std::vector<Vector3d>> cells_;
-  static std::uint64_t key(const Vector3d& p, const Eigen::Vector3i& aside) {
-    const Vector3d cell = (p / kReach_m).array().floor();
-    return voxel_key((cell.cast<int>() + aside).eval());
-  }
-};
-
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 /// Prints a row per model kept, and adds it to `rows`.
 void judge(const std::string& source, const Watch& watch, const PrescanResult& scanned,
            nlohmann::json& rows) {
-  const SurfacePoints surface(scanned.map.mesh);
+  constexpr float kReach_m = 0.08F;
+  const Mesh& surface = scanned.map.mesh;
+  const MeshDistanceQuery query(surface, kReach_m);
   for (const Kept& model : watch.kept) {
     const auto pose =
         std::find_if(scanned.map.trajectory.begin(), scanned.map.trajectory.end(),
@@ -180,10 +124,13 @@ void judge(const std::string& source, const Watch& watch, const PrescanResult& s
     const Isometry3d T_map_shown = pose->T_world_camera * model.shown.T_world_camera.inverse();
     std::vector<double> distances_m;
     for (const ShownPart& part : model.shown.parts)
-      for (const Vector3f& vertex : part.mesh->vertices)
-        distances_m.push_back(surface.distance_m(T_map_shown * part.T_world_mesh *
-                                                 (part.mesh->origin + vertex.cast<double>())));
-    const double median_mm = 1e3 * quantile(distances_m, 0.5), p95_mm = 1e3 * quantile(distances_m, 0.95);
+      for (const Vector3f& vertex : part.mesh->vertices) {
+        const Vector3d p_map = T_map_shown * part.T_world_mesh * (part.mesh->origin + vertex.cast<double>());
+        const float distance_m = query.distance_m((p_map - surface.origin).cast<float>());
+        distances_m.push_back(static_cast<double>(std::min(distance_m, kReach_m)));
+      }
+    const double median_mm = 1e3 * test::quantile(distances_m, 0.5),
+                 p95_mm = 1e3 * test::quantile(distances_m, 0.95);
     std::printf(
         "%s: loop at frame %lld, %.2f s later, frame %lld: %zu parts, %zu vertices, to the map median "
         "%.1f mm, p95 %.1f mm\n",
