@@ -1,5 +1,6 @@
-// image_fuzz.cpp: depth and colour images, by the first byte.
+// image_fuzz.cpp: depth and colour images, kinds told apart by the first byte.
 #include "app/sources/formats/image_file.hpp"
+#include "app/sources/recordings/frame_images.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -8,6 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::filesystem::path path = test::file_with(test::as_text(data + 1, size - 1), "image");
   static DepthImage depth_m;
   static ColourImage colour;
+  static Frame frame;
   test::read_or_refuse([&] {
     switch (data[0]) {
       case 'm':
@@ -21,6 +23,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 'e':
         read_exact_depth_file(path, depth_m);
+        break;
+      case 'f':
+        read_frame_images(path, frame);
         break;
       default:
         read_colour_file(path, colour);

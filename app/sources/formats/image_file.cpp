@@ -169,17 +169,6 @@ void write_mask_file(const MaskImage& mask, const std::filesystem::path& path) {
   write_png<std::uint8_t>(mask, path);
 }
 
-void write_exact_depth_file(const DepthImage& depth_m, const std::filesystem::path& path) {
-  Image<std::uint16_t> halves(depth_m.width, 2 * depth_m.height);
-  for (int y = 0; y < depth_m.height; ++y)
-    for (int x = 0; x < depth_m.width; ++x) {
-      const auto bits = std::bit_cast<std::uint32_t>(depth_m.at(x, y));
-      halves.at(x, y) = static_cast<std::uint16_t>(bits >> 16);
-      halves.at(x, y + depth_m.height) = static_cast<std::uint16_t>(bits & 0xffff);
-    }
-  write_png(halves, path);
-}
-
 void read_exact_depth_file(const std::filesystem::path& path, DepthImage& depth_m) {
   const Image<std::uint16_t> halves = decode_16_bit_png(read_image_bytes(path), path.string());
   depth_m.resize(halves.width, halves.height / 2);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/sources/formats/image_file.hpp"
+#include "app/sources/recordings/frame_images.hpp"
 #include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -19,11 +20,19 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMagic = "RRSPOOL2";
 constexpr std::string_view kMagicWithoutSensor = "RRSPOOL1";
 
-fs::path depth_file(const fs::path& folder, std::size_t position) {
-  return folder / (std::to_string(position) + ".depth.png");
+fs::path images_file(const fs::path& folder, std::size_t position) {
+  return folder / (std::to_string(position) + ".images");
 }
-fs::path colour_file(const fs::path& folder, std::size_t position) {
-  return folder / (std::to_string(position) + ".colour.png");
+
+/// Reads the PNGs that earlier versions wrote instead of images_file().
+void read_png_images(const fs::path& folder, std::size_t position, Frame& frame) {
+  const fs::path depth = folder / (std::to_string(position) + ".depth.png");
+  const fs::path colour = folder / (std::to_string(position) + ".colour.png");
+  read_exact_depth_file(depth, frame.depth_m);
+  if (fs::exists(colour))
+    read_colour_file(colour, frame.colour);
+  else
+    frame.colour.resize(0, 0);
 }
 
 /// @param has_sensor  false: an entry of a list that was written before frames had a sensor's times and noise
@@ -129,11 +138,7 @@ void append_to_spool_list(SpoolEntry* entry, const fs::path& folder, std::ofstre
 }
 
 SpoolEntry write_spooled(const Frame& frame, const fs::path& folder, std::size_t position) {
-  write_exact_depth_file(frame.depth_m, depth_file(folder, position));
-  // A killed process may have left the colour image of a frame that is not in the list.
-  std::error_code fault;
-  fs::remove(colour_file(folder, position), fault);
-  if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder, position));
+  write_frame_images(frame, images_file(folder, position));
   SpoolEntry entry;
   copy_all_but_images(frame, entry.frame);
   return entry;
@@ -141,19 +146,14 @@ SpoolEntry write_spooled(const Frame& frame, const fs::path& folder, std::size_t
 
 ReadResult read_spooled(const SpoolEntry& entry, const fs::path& folder, std::size_t position, Frame& frame) {
   if (!entry.fault.empty()) return {ReadStatus::kSkipped, entry.fault};
-  DepthImage depth_m = std::move(frame.depth_m);
-  ColourImage colour = std::move(frame.colour);
-  read_exact_depth_file(depth_file(folder, position), depth_m);
-  const fs::path colour_path = colour_file(folder, position);
-  if (fs::exists(colour_path))
-    read_colour_file(colour_path, colour);
+  const fs::path images = images_file(folder, position);
+  if (fs::exists(images) || !fs::exists(folder / (std::to_string(position) + ".depth.png")))
+    read_frame_images(images, frame);
   else
-    colour.resize(0, 0);
-  frame = entry.frame;
-  frame.depth_m = std::move(depth_m);
-  frame.colour = std::move(colour);
+    read_png_images(folder, position, frame);
+  copy_all_but_images(entry.frame, frame);
   if (const std::string_view fault = fault_of(frame); !fault.empty())
-    throw Error(depth_file(folder, position).string() + ": is damaged: " + std::string(fault));
+    throw Error(images.string() + ": is damaged: " + std::string(fault));
   return {ReadStatus::kFrame, {}};
 }
 

@@ -135,12 +135,17 @@ bool SpooledSource::capture_one(Frame& frame) {
     append_to_spool_list(entry ? &*entry : nullptr, spool_.folder, spool_.list);
   const std::lock_guard lock(mutex_);
   waiting_.reset();
-  if (entry)
+  if (entry) {
     entries_.push_back(std::move(*entry));
-  else if (result.waiting)
+    if (result.status == ReadStatus::kFrame) {
+      newest_position_ = position;
+      std::swap(newest_, frame);
+    }
+  } else if (result.waiting) {
     waiting_ = std::move(result);
-  else
+  } else {
     at_end_ = true;
+  }
   changed_.notify_all();
   return !at_end_ && !stop_;
 }
@@ -158,8 +163,14 @@ ReadResult SpooledSource::next(Frame& frame) {
   }
   const std::size_t position = position_++;
   const SpoolEntry& entry = entries_[position];
+  const bool is_newest = newest_position_ == position;
+  if (is_newest) {
+    newest_position_.reset();
+    std::swap(frame, newest_);
+  }
   lock.unlock();
   changed_.notify_all();
+  if (is_newest) return {ReadStatus::kFrame, {}};
   try {
     return read_spooled(entry, spool_.folder, position, frame);
   } catch (const Error& fault) {

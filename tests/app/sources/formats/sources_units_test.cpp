@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <fstream>
 #include <future>
@@ -13,7 +14,9 @@
 #include "app/sources/formats/kinect_units.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/stamp_pairing.hpp"
+#include "app/sources/recordings/frame_images.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
+#include "mapping/types/codecs/png.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/app/sources/sources_support.hpp"
@@ -489,41 +492,52 @@ TEST(SpooledSource, AnImageThatIsNotItsCamerasIsNamed) {
   const std::filesystem::path folder = parent.path() / "spool";
   (void)read_all(*SpooledSource::kept(std::make_unique<MadeSource>(3, false), folder));
   Frame frame;
-  for (const DepthImage& damaged :
+  for (const DepthImage& depth_m :
        {DepthImage(3, 2, 1.0F), DepthImage(16, 12, -1.0F), DepthImage(16, 12, std::nanf("")),
         DepthImage(16, 12, std::numeric_limits<float>::infinity())}) {
-    write_exact_depth_file(damaged, folder / "1.depth.png");
+    Frame damaged = test::some_frame(1);
+    damaged.depth_m = depth_m;
+    write_frame_images(damaged, folder / "1.images");
     const auto source = SpooledSource::kept(nullptr, folder);
     EXPECT_EQ(source->next(frame).status, ReadStatus::kFrame);
     const ReadResult damage = source->next(frame);
     EXPECT_EQ(damage.status, ReadStatus::kSkipped);
-    EXPECT_TRUE(contains(damage.fault, "1.depth.png: is damaged")) << damage.fault;
+    EXPECT_TRUE(contains(damage.fault, "1.images: is damaged")) << damage.fault;
     EXPECT_EQ(source->next(frame).status, ReadStatus::kFrame) << "the next one is sound";
     EXPECT_EQ(frame.index, 2);
   }
 }
 
-TEST(SpooledSource, AFrameWithoutColourDoesNotTakeThatOfOneThatWasLost) {
-  struct Colourless final : FrameSource {
-    ReadResult next(Frame& frame) override {
-      if (read == 2) return {ReadStatus::kEnd, {}};
-      frame = test::some_frame(read++);
-      frame.colour.resize(0, 0);
-      return {ReadStatus::kFrame, {}};
-    }
-    bool rewind() override { return false; }
-    [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
-    [[nodiscard]] std::string name() const override { return "colourless"; }
-    int read = 0;
-  };
+/// Writes depth as earlier versions did: the floats' upper halves, and below them the lower halves.
+void write_halves(const DepthImage& depth_m, const std::filesystem::path& path) {
+  Image<std::uint16_t> halves(depth_m.width, 2 * depth_m.height);
+  const std::size_t count = depth_m.pixels.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto bits = std::bit_cast<std::uint32_t>(depth_m.pixels[i]);
+    halves.pixels[i] = static_cast<std::uint16_t>(bits >> 16);
+    halves.pixels[count + i] = static_cast<std::uint16_t>(bits);
+  }
+  const std::vector<std::uint8_t> png = encode_png(halves);
+  write_bytes(path, std::string(png.begin(), png.end()));
+}
+
+TEST(SpooledSource, ReadsTheImagesOfEarlierVersions) {
   const test::TemporaryFolder parent;
   const std::filesystem::path folder = parent.path() / "spool";
-  std::filesystem::create_directories(folder);
-  write_colour_file(test::some_frame(7).colour, folder / "1.colour.png");  // left by a killed process
-  (void)read_all(*SpooledSource::kept(std::make_unique<Colourless>(), folder));
-  const auto all = read_all(*SpooledSource::again(folder));
-  ASSERT_EQ(all.frames.size(), 2U);
-  for (const Frame& frame : all.frames) EXPECT_TRUE(frame.colour.empty());
+  const auto first = read_all(*SpooledSource::kept(std::make_unique<MadeSource>(3, false), folder));
+  for (const int i : {0, 1}) {
+    std::filesystem::remove(folder / (std::to_string(i) + ".images"));
+    write_halves(first.frames[static_cast<std::size_t>(i)].depth_m,
+                 folder / (std::to_string(i) + ".depth.png"));
+  }
+  write_colour_file(first.frames[0].colour, folder / "0.colour.png");
+  const auto again = read_all(*SpooledSource::again(folder));
+  ASSERT_EQ(again.frames.size(), 3U);
+  EXPECT_TRUE(again.frames[1].colour.empty());
+  for (const std::size_t i : {0U, 2U}) expect_same(again.frames[i], first.frames[i]);
+  EXPECT_EQ(again.frames[1].depth_m.pixels, first.frames[1].depth_m.pixels);
+  std::filesystem::remove(folder / "2.images");
+  EXPECT_TRUE(contains(read_all(*SpooledSource::again(folder)).faults.at(0), "2.images"));
 }
 
 TEST(SpooledSource, IsNotReadAheadByMoreThanAsked) {

@@ -175,7 +175,7 @@ TEST_F(KinectReplay, AScanWhoseDeviceIsGoneForGoodBecomesAMap) {
   test::write_text(script, scan +
                                " & pid=$!\n"
                                "until test -e '" +
-                               (unfinished / "spool" / "4.colour.png").string() +
+                               (unfinished / "spool" / "4.images").string() +
                                "'; do sleep 0.1; done\n"
                                "sleep 2\n"  // the list follows its images
                                "kill -KILL $pid; wait $pid\n");
