@@ -14,12 +14,26 @@ namespace {
 constexpr float kFarthest_m = 5.0F;
 constexpr float kWellKnown = 5.0F;  ///< times SurfaceConfig::min_weight
 
-std::uint64_t key_of(const Eigen::Vector3d& p) {
-  return voxel_key((p / KnowledgeGrid::kCell_m).array().floor().cast<int>().matrix().eval());
+/// Place of a cell: key of its block, and index in the block.
+struct CellPlace {
+  std::uint64_t block = 0;
+  std::size_t index = 0;
+};
+
+CellPlace place_of(const Eigen::Vector3d& p) {
+  constexpr int kSide = KnowledgeGrid::kBlockSide;
+  const Eigen::Vector3i cell = (p / KnowledgeGrid::kCell_m).array().floor().cast<int>();
+  const Eigen::Vector3i block = cell.unaryExpr([](int i) { return floor_div(i, kSide); });
+  const Eigen::Vector3i inside = cell - kSide * block;
+  return {voxel_key(block), static_cast<std::size_t>((inside.z() * kSide + inside.y()) * kSide + inside.x())};
 }
 
-Eigen::Vector3d centre_of(std::uint64_t cell) {
-  return KnowledgeGrid::kCell_m * (voxel_of(cell).cast<double>().array() + 0.5).matrix();
+Eigen::Vector3d centre_of(std::uint64_t block, std::size_t index) {
+  constexpr int kSide = KnowledgeGrid::kBlockSide;
+  const int i = static_cast<int>(index);
+  const Eigen::Vector3i cell =
+      kSide * voxel_of(block) + Eigen::Vector3i(i % kSide, i / kSide % kSide, i / (kSide * kSide));
+  return KnowledgeGrid::kCell_m * (cell.cast<double>().array() + 0.5).matrix();
 }
 
 /// Calls visit(column, row, point) for every kStep_px-th pixel with depth.
@@ -45,22 +59,29 @@ float weight_of(const Frame& frame, float depth_m) {
 
 }  // namespace
 
+void KnowledgeGrid::add_weight(Blocks& blocks, const Eigen::Vector3d& p, float weight) {
+  const auto [block, cell] = place_of(p);
+  blocks[block][cell] += weight;
+}
+
 void KnowledgeGrid::add(const Frame& frame, std::size_t anchor, const Eigen::Isometry3d& T_anchor_camera,
                         const Eigen::Isometry3d& T_world_anchor) {
   if (anchor >= in_anchor_.size()) in_anchor_.resize(anchor + 1);
-  Weights& own = in_anchor_[anchor];
+  Blocks& own = in_anchor_[anchor];
   visit_samples(frame, T_anchor_camera, [&](int, int, float depth_m, const Eigen::Vector3d& p_anchor) {
     const float weight = weight_of(frame, depth_m);
-    own[key_of(p_anchor)] += weight;
-    in_world_[key_of(T_world_anchor * p_anchor)] += weight;
+    add_weight(own, p_anchor, weight);
+    add_weight(in_world_, T_world_anchor * p_anchor, weight);
   });
 }
 
 void KnowledgeGrid::move(const AnchorPoses& T_world_anchor) {
   in_world_.clear();
   for (std::size_t i = 0; i < in_anchor_.size() && i < T_world_anchor.size(); ++i)
-    for (const auto& [cell, weight] : in_anchor_[i])
-      if (T_world_anchor[i]) in_world_[key_of(*T_world_anchor[i] * centre_of(cell))] += weight;
+    for (const auto& [block, weights] : in_anchor_[i])
+      for (std::size_t cell = 0; cell < weights.size(); ++cell)
+        if (T_world_anchor[i] && weights[cell] > 0.0F)
+          add_weight(in_world_, *T_world_anchor[i] * centre_of(block, cell), weights[cell]);
 }
 
 Image<Knowledge> KnowledgeGrid::knowledge_of(const Frame& frame,
@@ -75,17 +96,20 @@ Image<Knowledge> KnowledgeGrid::knowledge_of(const Frame& frame,
 
 Knowledge KnowledgeGrid::at(const Eigen::Vector3d& p_world) const {
   const float least = SurfaceConfig{}.min_weight;
-  const auto found = in_world_.find(key_of(p_world));
-  const float weight = found == in_world_.end() ? 0.0F : found->second;
+  const auto [block, cell] = place_of(p_world);
+  const auto found = in_world_.find(block);
+  const float weight = found == in_world_.end() ? 0.0F : found->second[cell];
   return weight < least ? Knowledge::kNew : weight < kWellKnown * least ? Knowledge::kThin : Knowledge::kWell;
 }
 
 double KnowledgeGrid::well_known_fraction() const {
   const float least = SurfaceConfig{}.min_weight;
   std::size_t known = 0, well = 0;
-  for (const auto& [cell, weight] : in_world_) {
-    known += weight >= least ? 1 : 0;
-    well += weight >= kWellKnown * least ? 1 : 0;
+  for (const auto& [block, weights] : in_world_) {
+    for (const float weight : weights) {
+      known += weight >= least ? 1 : 0;
+      well += weight >= kWellKnown * least ? 1 : 0;
+    }
   }
   return known > 0 ? static_cast<double>(well) / static_cast<double>(known) : 0.0;
 }

@@ -1,6 +1,7 @@
 // knowledge_grid.hpp: coarse grid of how well a running scan has measured each place.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
@@ -25,6 +26,7 @@ class KnowledgeGrid {
  public:
   static constexpr int kStep_px = 8;
   static constexpr double kCell_m = 0.04;
+  static constexpr int kBlockSide = 4;  ///< cells are stored in cubes of this many per side
 
   /// Adds a frame's measurements.
   /// @param anchor  index of the frame's anchor; the measurements move with it
@@ -44,9 +46,12 @@ class KnowledgeGrid {
   [[nodiscard]] double well_known_fraction() const;
 
  private:
-  using Weights = std::unordered_map<std::uint64_t, float>;  ///< by cell
-  std::vector<Weights> in_anchor_;
-  Weights in_world_;
+  using Weights = std::array<float, kBlockSide * kBlockSide * kBlockSide>;  ///< of a block's cells, x fastest
+  using Blocks = std::unordered_map<std::uint64_t, Weights>;
+  static void add_weight(Blocks& blocks, const Eigen::Vector3d& p, float weight);
+
+  std::vector<Blocks> in_anchor_;
+  Blocks in_world_;
 };
 
 }  // namespace roomradar
