@@ -29,9 +29,9 @@ void release_unused_memory() {
 
 void mmap_large_allocations() {
 #ifdef __GLIBC__
-  // Larger than what decoding one 640 x 480 image allocates, smaller than a keyframe's target view. By
-  // default glibc raises the threshold to the size of the last freed block.
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  // Larger than a 640 x 480 depth image, smaller than a keyframe's target view. By default glibc raises the
+  // threshold to the size of the last freed block.
+  ::mallopt(M_MMAP_THRESHOLD, 3 << 19);
 #endif
 }
 
