@@ -16,8 +16,8 @@ std::uint64_t machine_bytes();
 void release_unused_memory();
 
 /// Makes the whole process return allocations of 1.5 MB and more to the system as soon as they are freed
-/// (glibc only). Otherwise images and keyframes of many sizes fragment the heap. After 500 frames, 83 MB of the
-/// heap were unused and 55 MB in use. Costs 0.5 ms per frame of a prescan.
+/// (glibc only). Otherwise images and keyframes of many sizes fragment the heap. After 500 frames, 83 MB of
+/// the heap were unused and 55 MB in use. Costs 0.5 ms per frame of a prescan.
 void mmap_large_allocations();
 
 }  // namespace roomradar
