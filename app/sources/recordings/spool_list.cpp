@@ -1,6 +1,8 @@
 // spool_list.cpp: keeps images in files, and all else in a list.
 #include "app/sources/recordings/spool_list.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -17,8 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "RRSPOOL2";
-constexpr std::string_view kMagicWithoutSensor = "RRSPOOL1";
+constexpr std::string_view kMagic = "RRSPOOL3";
+/// Of lists with PNGs, which may be without the sensor's times and noise, and of lists with PNGs.
+constexpr std::array<std::string_view, 2> kEarlierMagics{"RRSPOOL1", "RRSPOOL2"};
 
 fs::path images_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".images");
@@ -93,7 +96,8 @@ SpoolList read_spool_list(const fs::path& folder) {
   ByteReader list(bytes, path.string());
   std::string magic(kMagic.size(), '\0');
   list.raw(magic.data(), magic.size());
-  if (magic != kMagic && magic != kMagicWithoutSensor)
+  if (magic != kMagic &&
+      std::find(kEarlierMagics.begin(), kEarlierMagics.end(), magic) == kEarlierMagics.end())
     list.fail("is no list of spooled frames, or of another version");
   SpoolList left;
   serialize(list, left.name);

@@ -1,8 +1,9 @@
 // spool_list.hpp: files of a spool (a frame cache on disk), that is, a list of the frames and their images.
 //
-// The list, list.bin, begins with "RRSPOOL1" and the source's name. For each frame follow the size of its
+// The list, list.bin, begins with "RRSPOOL3" and the source's name. For each frame follow the size of its
 // entry in bytes (u32) and the entry. A size of 0 marks the end of the source. The images are in N.images,
-// counted from 0 (frame_images.hpp); earlier versions wrote N.depth.png and N.colour.png.
+// counted from 0 (frame_images.hpp); lists that begin with "RRSPOOL1" or "RRSPOOL2" may have
+// N.depth.png and N.colour.png.
 #pragma once
 #include <cstdint>
 #include <filesystem>
