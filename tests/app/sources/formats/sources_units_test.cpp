@@ -540,6 +540,31 @@ TEST(SpooledSource, ReadsTheImagesOfEarlierVersions) {
   EXPECT_TRUE(contains(read_all(*SpooledSource::again(folder)).faults.at(0), "2.images"));
 }
 
+TEST(SpooledSource, AFrameWithoutColourDoesNotTakeThatOfOneThatWasLost) {
+  struct Colourless final : FrameSource {
+    ReadResult next(Frame& frame) override {
+      if (read == 2) return {ReadStatus::kEnd, {}};
+      frame = test::some_frame(read++);
+      frame.colour.resize(0, 0);
+      return {ReadStatus::kFrame, {}};
+    }
+    bool rewind() override { return false; }
+    [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
+    [[nodiscard]] std::string name() const override { return "colourless"; }
+    int read = 0;
+  };
+  const test::TemporaryFolder parent;
+  const std::filesystem::path folder = parent.path() / "spool";
+  std::filesystem::create_directories(folder);
+  // Left by killed processes of an earlier version and of this one.
+  write_colour_file(test::some_frame(7).colour, folder / "1.colour.png");
+  write_frame_images(test::some_frame(7), folder / "1.images");
+  (void)read_all(*SpooledSource::kept(std::make_unique<Colourless>(), folder));
+  const auto all = read_all(*SpooledSource::again(folder));
+  ASSERT_EQ(all.frames.size(), 2U);
+  for (const Frame& frame : all.frames) EXPECT_TRUE(frame.colour.empty());
+}
+
 TEST(SpooledSource, IsNotReadAheadByMoreThanAsked) {
   struct Counted final : FrameSource {
     explicit Counted(std::atomic<int>& frames) : read(frames) {}
