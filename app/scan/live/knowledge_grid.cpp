@@ -77,11 +77,13 @@ void KnowledgeGrid::add(const Frame& frame, std::size_t anchor, const Eigen::Iso
 
 void KnowledgeGrid::move(const AnchorPoses& T_world_anchor) {
   in_world_.clear();
-  for (std::size_t i = 0; i < in_anchor_.size() && i < T_world_anchor.size(); ++i)
+  for (std::size_t i = 0; i < in_anchor_.size() && i < T_world_anchor.size(); ++i) {
+    if (!T_world_anchor[i]) continue;
     for (const auto& [block, weights] : in_anchor_[i])
       for (std::size_t cell = 0; cell < weights.size(); ++cell)
-        if (T_world_anchor[i] && weights[cell] > 0.0F)
+        if (weights[cell] > 0.0F)
           add_weight(in_world_, *T_world_anchor[i] * centre_of(block, cell), weights[cell]);
+  }
 }
 
 Image<Knowledge> KnowledgeGrid::knowledge_of(const Frame& frame,

@@ -169,17 +169,20 @@ void write_mask_file(const MaskImage& mask, const std::filesystem::path& path) {
   write_png<std::uint8_t>(mask, path);
 }
 
+void require_depth(const DepthImage& depth_m, const std::string& name) {
+  for (const float depth : depth_m.pixels)
+    if (!(depth >= 0.0F && std::isfinite(depth)))
+      throw Error(name + ": is damaged: a pixel holds " + std::to_string(depth) + " m");
+}
+
 void read_exact_depth_file(const std::filesystem::path& path, DepthImage& depth_m) {
   const Image<std::uint16_t> halves = decode_16_bit_png(read_image_bytes(path), path.string());
   depth_m.resize(halves.width, halves.height / 2);
   for (int y = 0; y < depth_m.height; ++y)
-    for (int x = 0; x < depth_m.width; ++x) {
-      float& depth = depth_m.at(x, y);
-      depth = std::bit_cast<float>(static_cast<std::uint32_t>(halves.at(x, y)) << 16 |
-                                   halves.at(x, y + depth_m.height));
-      if (!(depth >= 0.0F && std::isfinite(depth)))
-        throw Error(path.string() + ": is damaged: a pixel holds " + std::to_string(depth) + " m");
-    }
+    for (int x = 0; x < depth_m.width; ++x)
+      depth_m.at(x, y) = std::bit_cast<float>(static_cast<std::uint32_t>(halves.at(x, y)) << 16 |
+                                              halves.at(x, y + depth_m.height));
+  require_depth(depth_m, path.string());
 }
 
 }  // namespace roomradar

@@ -50,6 +50,8 @@ void write_colour_file(const ColourImage& colour, const std::filesystem::path& p
 /// Writes an 8 bit grey PNG. Throws Error as write_depth_file() does.
 void write_mask_file(const MaskImage& mask, const std::filesystem::path& path);
 
+/// Throws Error naming `name` if a depth is negative or not finite.
+void require_depth(const DepthImage& depth_m, const std::string& name);
 /// Reads a lossless depth image that an earlier version wrote: a 16 bit PNG of twice the height. Its top half
 /// contains the upper 16 bits of each pixel's float, its bottom half the lower 16 bits.
 void read_exact_depth_file(const std::filesystem::path& path, DepthImage& depth_m);

@@ -3,7 +3,6 @@
 
 #include <zstd.h>
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -11,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/sources/formats/image_file.hpp"
 #include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -57,14 +57,21 @@ void take_size(ByteReader& in, Image<Pixel>& image) {
   if (image.width != width || image.height != height) image.resize(width, height);
 }
 
-void pack(const void* bytes, std::size_t count, const fs::path& path, FileBytes& out) {
-  const std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
-  if (!context) throw std::bad_alloc();
-  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kZstdLevel);
-  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+using Compressor = std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)>;
+
+Compressor make_compressor() {
+  Compressor zstd(ZSTD_createCCtx(), ZSTD_freeCCtx);
+  if (!zstd) throw std::bad_alloc();
+  ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_compressionLevel, kZstdLevel);
+  ZSTD_CCtx_setParameter(zstd.get(), ZSTD_c_checksumFlag, 1);
+  return zstd;
+}
+
+void pack(const Compressor& zstd, const void* bytes, std::size_t count, const fs::path& path,
+          FileBytes& out) {
   const std::size_t begin = out.size + sizeof(std::uint64_t);
   const std::size_t size =
-      ZSTD_compress2(context.get(), out.bytes.get() + begin, out.capacity - begin, bytes, count);
+      ZSTD_compress2(zstd.get(), out.bytes.get() + begin, out.capacity - begin, bytes, count);
   if (ZSTD_isError(size) != 0)
     throw Error(path.string() + ": zstd cannot compress an image: " + ZSTD_getErrorName(size));
   const auto stored = std::uint64_t{size};
@@ -74,7 +81,6 @@ void pack(const void* bytes, std::size_t count, const fs::path& path, FileBytes&
 
 void unpack(ByteReader& in, void* bytes, std::size_t count) {
   const auto stored = in.number<std::uint64_t>();
-  in.require(stored, 1);
   const std::string_view packed = in.take(stored);
   const std::size_t size = ZSTD_decompress(bytes, count, packed.data(), packed.size());
   if (ZSTD_isError(size) != 0 || size != count) in.fail("is damaged: an image cannot be unpacked");
@@ -115,10 +121,11 @@ void write_frame_images(const Frame& frame, const fs::path& path) {
   out.put(kImagesMagic.data(), kImagesMagic.size());
   put_size(frame.depth_m, path, out);
   put_size(frame.colour, path, out);
-  pack(frame.depth_m.pixels.data(), depth_bytes, path, out);
+  const Compressor zstd = make_compressor();
+  pack(zstd, frame.depth_m.pixels.data(), depth_bytes, path, out);
   const auto planes = std::make_unique_for_overwrite<std::uint8_t[]>(colour_bytes);
   to_planes(frame.colour, planes.get());
-  pack(planes.get(), colour_bytes, path, out);
+  pack(zstd, planes.get(), colour_bytes, path, out);
   write_bytes(path, {out.bytes.get(), out.size});
 }
 
@@ -135,9 +142,7 @@ void read_frame_images(const fs::path& path, Frame& frame) {
   unpack(in, planes.get(), colour_bytes);
   in.require_end();
   from_planes(planes.get(), frame.colour);
-  for (const float depth_m : frame.depth_m.pixels)
-    if (!(depth_m >= 0.0F && std::isfinite(depth_m)))
-      in.fail(("is damaged: a pixel holds " + std::to_string(depth_m) + " m").c_str());
+  require_depth(frame.depth_m, path.string());
 }
 
 }  // namespace roomradar

@@ -15,7 +15,7 @@ namespace roomradar {
 /// same take 32 ms. Throws Error if the file cannot be written or an image has a side above 16,384 px.
 void write_frame_images(const Frame& frame, const std::filesystem::path& path);
 
-/// Reads images that write_frame_images() wrote. Takes about 3 ms at 640 x 480 pixels. Throws Error naming
+/// Reads images that write_frame_images() wrote. Takes about 4 ms at 640 x 480 pixels. Throws Error naming
 /// the file if it is missing or damaged, or if a depth is negative or not finite.
 /// @param[out] frame  its images; all else stays
 void read_frame_images(const std::filesystem::path& path, Frame& frame);

@@ -20,22 +20,29 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "RRSPOOL3";
-/// Of lists with PNGs, which may be without the sensor's times and noise, and of lists with PNGs.
+/// Of lists whose frames may have PNGs, and may lack the sensor's times and noise.
 constexpr std::array<std::string_view, 2> kEarlierMagics{"RRSPOOL1", "RRSPOOL2"};
 
 fs::path images_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".images");
 }
 
-/// Reads the PNGs that earlier versions wrote instead of images_file().
-void read_png_images(const fs::path& folder, std::size_t position, Frame& frame) {
-  const fs::path depth = folder / (std::to_string(position) + ".depth.png");
-  const fs::path colour = folder / (std::to_string(position) + ".colour.png");
-  read_exact_depth_file(depth, frame.depth_m);
-  if (fs::exists(colour))
-    read_colour_file(colour, frame.colour);
+/// Reads the images of a frame, or the PNGs that an earlier version wrote instead. Returns the path of the
+/// file that holds the depth.
+fs::path read_images(const fs::path& folder, std::size_t position, Frame& frame) {
+  const fs::path images = images_file(folder, position);
+  const fs::path depth_png = folder / (std::to_string(position) + ".depth.png");
+  if (fs::exists(images) || !fs::exists(depth_png)) {
+    read_frame_images(images, frame);
+    return images;
+  }
+  read_exact_depth_file(depth_png, frame.depth_m);
+  const fs::path colour_png = folder / (std::to_string(position) + ".colour.png");
+  if (fs::exists(colour_png))
+    read_colour_file(colour_png, frame.colour);
   else
     frame.colour.resize(0, 0);
+  return depth_png;
 }
 
 /// @param has_sensor  false: an entry of a list that was written before frames had a sensor's times and noise
@@ -150,11 +157,7 @@ SpoolEntry write_spooled(const Frame& frame, const fs::path& folder, std::size_t
 
 ReadResult read_spooled(const SpoolEntry& entry, const fs::path& folder, std::size_t position, Frame& frame) {
   if (!entry.fault.empty()) return {ReadStatus::kSkipped, entry.fault};
-  const fs::path images = images_file(folder, position);
-  if (fs::exists(images) || !fs::exists(folder / (std::to_string(position) + ".depth.png")))
-    read_frame_images(images, frame);
-  else
-    read_png_images(folder, position, frame);
+  const fs::path images = read_images(folder, position, frame);
   copy_all_but_images(entry.frame, frame);
   if (const std::string_view fault = fault_of(frame); !fault.empty())
     throw Error(images.string() + ": is damaged: " + std::string(fault));
