@@ -27,14 +27,6 @@ std::size_t cell_of(const VoxelIndex& voxel) {
   return half(0) | half(1) << 1U | half(2) << 2U;
 }
 
-// Sets the bits of a brick's voxels that are in a box, borders included.
-void set_box(const VoxelIndex& low, const VoxelIndex& high, std::bitset<512>& bits) {
-  const VoxelIndex from = low.cwiseMax(0), to = high.cwiseMin(kBrickEdge - 1);
-  for (int z = from.z(); z <= to.z(); ++z)
-    for (int y = from.y(); y <= to.y(); ++y)
-      for (int x = from.x(); x <= to.x(); ++x) bits.set(brick_offset({x, y, z}));
-}
-
 struct Rectangle {
   int left = 0, top = 0, right = -1, bottom = -1;  // borders included
 };
@@ -73,20 +65,71 @@ std::optional<Rectangle> covered_by(const VoxelIndex& first, double resolution_m
 
 }  // namespace
 
+GhostZone::BitsOfBricks GhostZone::bits_of(std::initializer_list<std::span<const VoxelIndex>> sets) {
+  BitsOfBricks bits;
+  for (const auto& voxels : sets) {
+    VoxelBits* own = nullptr;  // voxels come brick by brick
+    VoxelIndex first = VoxelIndex::Zero();
+    for (const VoxelIndex& voxel : voxels) {
+      if (!own || brick_of(voxel) != first) {
+        first = brick_of(voxel);
+        own = &bits[voxel_key(first)];
+      }
+      own->set(offset_of(voxel));
+    }
+  }
+  return bits;
+}
+
+GhostZone::VoxelBits GhostZone::near_in_brick(const VoxelIndex& first, const BitsOfBricks& set) {
+  std::array<const VoxelBits*, kCellsRound> round{};  // the brick and those around it
+  bool any = false;
+  for (int i = 0; i < kCellsRound; ++i) {
+    const auto found = set.find(voxel_key(first + kBrickEdge * neighbour_offset(i)));
+    if (found == set.end()) continue;
+    round[static_cast<std::size_t>(i)] = &found->second;
+    any = true;
+  }
+  VoxelBits near;
+  if (!any) return near;
+  const auto byte_at = [&](int brick_x, int y, int z) -> unsigned {  // of a row, bit x
+    const VoxelBits* const bits = round[static_cast<std::size_t>(
+        brick_x + 3 * ((y + kBrickEdge) / kBrickEdge + 3 * ((z + kBrickEdge) / kBrickEdge)))];
+    return bits ? static_cast<unsigned>(bits->planes[z & 7] >> 8 * (y & 7) & 0xFFU) : 0U;
+  };
+  for (int z = -kNear; z < kBrickEdge + kNear; ++z) {
+    std::uint64_t plane = 0;
+    for (int y = -kNear; y < kBrickEdge + kNear; ++y) {
+      // The row from x = -kNear on, and what is within kNear of it.
+      const unsigned row = byte_at(0, y, z) >> (8 - kNear) | byte_at(1, y, z) << kNear |
+                           (byte_at(2, y, z) & ((1U << kNear) - 1U)) << (8 + kNear);
+      unsigned wide = row;
+      for (int step = 1; step <= kNear; ++step) wide |= row << step | row >> step;
+      const std::uint64_t byte = wide >> kNear & 0xFFU;
+      for (int at = std::max(y - kNear, 0); at <= std::min(y + kNear, kBrickEdge - 1); ++at)
+        plane |= byte << 8 * at;
+    }
+    for (int at = std::max(z - kNear, 0); at <= std::min(z + kNear, kBrickEdge - 1); ++at)
+      near.planes[static_cast<std::size_t>(at)] |= plane;
+  }
+  return near;
+}
+
 GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
     : resolution_m_(resolution_m) {
-  const auto mark = [this](const VoxelIndex& ghost, std::bitset<512> Marks::*bits) {
+  const auto mark = [this](const VoxelIndex& ghost, VoxelBits Marks::*bits) {
     const auto found = marks_.find(voxel_key(brick_of(ghost)));
     if (found != marks_.end() && found->second.ghost_cells.test(cell_of(ghost))) {
       (found->second.*bits).set(offset_of(ghost));
       return;
     }
     for (int i = 0; i < kCellsRound; ++i) {
-      const VoxelIndex step = neighbour_offset(i);
-      const VoxelIndex first = brick_of(ghost) + kBrickEdge * step;
+      const VoxelIndex first = brick_of(ghost) + kBrickEdge * neighbour_offset(i);
       if (marks_.try_emplace(voxel_key(first)).second) bricks_.push_back(first);
-      const VoxelIndex neighbour = ghost + kCellEdge * step;
-      marks_[voxel_key(brick_of(neighbour))].cells.set(cell_of(neighbour));
+    }
+    for (int i = 0; i < kCellsRound; ++i) {
+      const VoxelIndex neighbour = ghost + kCellEdge * neighbour_offset(i);
+      marks_.at(voxel_key(brick_of(neighbour))).cells.set(cell_of(neighbour));
     }
     Marks& own = marks_.at(voxel_key(brick_of(ghost)));
     own.ghost_cells.set(cell_of(ghost));
@@ -94,30 +137,15 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
   };
   for (const VoxelIndex& ghost : verdicts.ghosts) mark(ghost, &Marks::ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark(absent, &Marks::absent);
-  // The marks of a brick and of the 26 around it; null: not in the zone. Voxels come brick by brick.
-  std::array<Marks*, kCellsRound> round{};
-  std::optional<VoxelIndex> middle;
-  const auto mark_near = [&](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
-    if (const VoxelIndex first = brick_of(voxel); first != middle) {
-      for (int i = 0; i < kCellsRound; ++i) {
-        const auto found = marks_.find(voxel_key(first + kBrickEdge * neighbour_offset(i)));
-        round[static_cast<std::size_t>(i)] = found == marks_.end() ? nullptr : &found->second;
-      }
-      middle = first;
-    }
-    for (int i = 0; i < kCellsRound; ++i) {
-      Marks* const marks = round[static_cast<std::size_t>(i)];
-      const VoxelIndex in_brick = voxel - *middle - kBrickEdge * neighbour_offset(i);
-      if (marks) set_box(in_brick.array() - kNear, in_brick.array() + kNear, marks->*bits);
-    }
-  };
-  for (const VoxelIndex& ghost : verdicts.ghosts) mark_near(ghost, &Marks::near_ghost);
-  for (const VoxelIndex& absent : verdicts.absent) mark_near(absent, &Marks::near_ghost);
-  for (const VoxelIndex& still : verdicts.still) mark_near(still, &Marks::near_still);
-  for (const VoxelIndex& unseen : verdicts.unseen) {
-    const auto found = marks_.find(voxel_key(brick_of(unseen)));
-    if (found != marks_.end()) found->second.unseen.set(offset_of(unseen));
-    mark_near(unseen, &Marks::near_unseen);
+  const BitsOfBricks removed = bits_of({verdicts.ghosts, verdicts.absent});
+  const BitsOfBricks still = bits_of({verdicts.still});
+  const BitsOfBricks unseen = bits_of({verdicts.unseen});
+  for (const VoxelIndex& first : bricks_) {
+    Marks& marks = marks_.at(voxel_key(first));
+    marks.near_ghost = near_in_brick(first, removed);
+    marks.near_still = near_in_brick(first, still);
+    marks.near_unseen = near_in_brick(first, unseen);
+    if (const auto found = unseen.find(voxel_key(first)); found != unseen.end()) marks.unseen = found->second;
   }
 }
 

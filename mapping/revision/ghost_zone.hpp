@@ -1,8 +1,11 @@
 // ghost_zone.hpp: the space around removed voxels in which samples are erased and measured again.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <bitset>
 #include <cstdint>
+#include <initializer_list>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -38,15 +41,27 @@ class GhostZone {
   void mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m) const;
 
  private:
+  // Set of voxels of a brick: bit x + 8 y of plane z.
+  struct VoxelBits {
+    std::array<std::uint64_t, 8> planes{};
+    void set(std::size_t offset) { planes[offset / 64] |= std::uint64_t{1} << offset % 64; }
+    [[nodiscard]] bool test(std::size_t offset) const {
+      return (planes[offset / 64] >> offset % 64 & 1U) != 0;
+    }
+  };
+  using BitsOfBricks = std::unordered_map<std::uint64_t, VoxelBits>;  // by the brick's key
+  static BitsOfBricks bits_of(std::initializer_list<std::span<const VoxelIndex>> sets);
+  // Returns the brick's voxels that are at most two voxels from one of the set.
+  static VoxelBits near_in_brick(const VoxelIndex& first, const BitsOfBricks& set);
   struct Marks {
     std::bitset<8> cells;        // which of a brick's 2^3 cells are in the zone
     std::bitset<8> ghost_cells;  // which of these contain a ghost
-    std::bitset<512> ghost;
-    std::bitset<512> absent;
-    std::bitset<512> near_ghost;
-    std::bitset<512> near_still;
-    std::bitset<512> unseen;
-    std::bitset<512> near_unseen;
+    VoxelBits ghost;
+    VoxelBits absent;
+    VoxelBits near_ghost;
+    VoxelBits near_still;
+    VoxelBits unseen;
+    VoxelBits near_unseen;
   };
   [[nodiscard]] const Marks* marks_of(const VoxelIndex& voxel) const;
 

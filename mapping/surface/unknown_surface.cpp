@@ -110,13 +110,15 @@ BitGrid reachable(BitGrid free, const BitGrid& unknown, const std::array<BitGrid
 Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, std::array<BitGrid, 3>& blocked,
                   const CellGrid& grid) {
   VoxelFaceMesher mesher(grid);
-  for (int axis = 0; axis < 3; ++axis)
+  VoxelFaces faces;
+  for (faces.axis = 0; faces.axis < 3; ++faces.axis)
     for (const int step : {1, -1}) {
-      BitGrid faces = reached;
-      BitGrid& bars = blocked[static_cast<std::size_t>(axis)];
-      if (step < 0) bars.shift(axis, -1);
-      faces.shift(axis, step).subtract(bars) &= unknown;
-      mesher.add({std::move(faces), axis, step});
+      faces.step = step;
+      faces.cells = reached;  // in the memory of the last ones
+      BitGrid& bars = blocked[static_cast<std::size_t>(faces.axis)];
+      if (step < 0) bars.shift(faces.axis, -1);
+      faces.cells.shift(faces.axis, step).subtract(bars) &= unknown;
+      mesher.add(faces);
     }
   return mesher.take();
 }

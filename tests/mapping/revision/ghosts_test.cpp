@@ -242,6 +242,42 @@ TEST(Ghosts, OccupiedVoxelsWithoutASampleGoWithWhatTheyTouch) {
   EXPECT_EQ(fate_at({40, 0, 0}, 0.0F), SampleAction::kKeep);
 }
 
+TEST(Ghosts, TheZoneReachesTwoVoxelsAcrossTheBordersOfBricks) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> at(-20, 20);
+  const auto voxels = [&](int count) {
+    std::vector<VoxelIndex> made;
+    while (count-- > 0) made.emplace_back(at(random), at(random), at(random));
+    return made;
+  };
+  const GhostVotes::Verdicts verdicts{voxels(40), voxels(20), voxels(60), voxels(60)};
+  const GhostZone zone(verdicts, kResolution_m);
+  const auto is_near = [](const VoxelIndex& voxel, const std::vector<VoxelIndex>& set, int most) {
+    return std::any_of(set.begin(), set.end(), [&](const VoxelIndex& other) {
+      return (other - voxel).cwiseAbs().maxCoeff() <= most;
+    });
+  };
+  int unknown = 0;
+  for (int z = -24; z <= 24; ++z)
+    for (int y = -24; y <= 24; ++y)
+      for (int x = -24; x <= 24; ++x) {
+        SurfaceSample sample;  // occupied, but not measured
+        sample.voxel = {x, y, z};
+        sample.occupancy = Occupancy::kOccupied;
+        const bool near_removed =
+            is_near(sample.voxel, verdicts.ghosts, 2) || is_near(sample.voxel, verdicts.absent, 2);
+        const bool near_kept =
+            is_near(sample.voxel, verdicts.still, 2) || is_near(sample.voxel, verdicts.unseen, 2);
+        const bool becomes_unknown =
+            !is_near(sample.voxel, verdicts.ghosts, 0) &&
+            (is_near(sample.voxel, verdicts.absent, 0) || (near_removed && !near_kept));
+        ASSERT_EQ(zone.fate_of(sample) == SampleAction::kUnknown, becomes_unknown)
+            << x << " " << y << " " << z;
+        unknown += becomes_unknown;
+      }
+  EXPECT_GT(unknown, 500);
+}
+
 // The map contains an earlier scan; the image border of this scan's frames cuts the surface that they see
 // through.
 TEST(Ghosts, SurfaceOfAnEarlierScanThatNoFrameMeasuresAnewStays) {
