@@ -171,5 +171,21 @@ TEST(Structure, NoUnitHasMoreThanFourHundredLinesAndEachHasAHeader) {
   }
 }
 
+TEST(Structure, EveryRoomHasAShortReadmeThatNamesItsUnits) {
+  std::map<std::string, std::set<std::string>> units;
+  for (const Source& source : sources_of_the_house())
+    units[source.room].insert(fs::path(source.path).stem().generic_string());
+  for (const auto& [room, names] : units) {
+    std::ifstream file(fs::path(ROOMRADAR_SOURCE_DIR) / room / "README.md");
+    ASSERT_TRUE(file) << room;
+    std::string text;
+    int lines = 0;
+    for (std::string line; std::getline(file, line); ++lines) text += line + "\n";
+    EXPECT_LE(lines, 30) << room;
+    for (const std::string& name : names)
+      EXPECT_NE(text.find("`" + name), std::string::npos) << room << " does not name " << name;
+  }
+}
+
 }  // namespace
 }  // namespace roomradar::structure_test
