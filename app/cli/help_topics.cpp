@@ -27,7 +27,7 @@ the file: an event that stands below a later one waits for it. Positions are in 
   time 5.9   release pot velocity 0 0 0
   time 5.9   material pot mass 2 friction 0.1 # what is not named stays as it is
   time 6     remove pot
-  time 7     adopt                            # what stands still in view becomes part of the room
+  time 7     commit                           # what stands still in view becomes part of the room
   frame 200  surfaces skirt                   # holes, skirt, border or map
   frame 210  unknown solid                    # or free
   frame 220  radar sampled 64                 # exact or sampled; pixels

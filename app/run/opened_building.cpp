@@ -23,7 +23,7 @@ void require_possible_in_building(const RunOptions& options, const Script& scrip
   constexpr const char* kRoomsOnly = "changes can be committed to the map of a room only";
   if (options.commit_after_s) refuse("--commit-changes", kRoomsOnly);
   if (!options.save_map.empty()) refuse("--save-map", kRoomsOnly);
-  if (commits) refuse("adopt event", kRoomsOnly);
+  if (commits) refuse("commit event", kRoomsOnly);
   if (options.poses == PoseOrigin::kRecorded)
     refuse("--poses recorded", "its world is not that of a recording; leave the option out");
 }

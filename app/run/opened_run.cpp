@@ -89,7 +89,7 @@ void require_can_save_map(const RunOptions& options, const Script& script) {
   if (!options.commit_after_s && !has(script, Action::kCommit))
     throw Error(
         "--save-map " + options.save_map +
-        ": nothing would change in the map; add --commit-changes SECONDS, or an adopt event to the script");
+        ": nothing would change in the map; add --commit-changes SECONDS, or a commit event to the script");
   require_can_become_map(options.save_map,
                          {options.report, options.frames_csv, options.trajectory, options.stream,
                           options.video, options.pictures, options.record_session});

@@ -90,7 +90,7 @@ void Session::set_quality_from(FramePart part, const RunQuality& quality) {
 }
 
 void Session::commit_changes() {
-  if (!map_updater_) throw Error("script: adopt: this session does not watch for changes");
+  if (!map_updater_) throw Error("script: commit: this session does not watch for changes");
   map_updater_->ask();
 }
 

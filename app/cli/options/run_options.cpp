@@ -48,7 +48,7 @@ void add_world_options(CLI::App& command, RunOptions& options) {
       .add_option(
           "--commit-changes", options.commit_after_s,
           "add objects to this run's copy of the map, or remove them, once observed unchanged for this\n"
-          "many seconds; the saved map is not modified (default: only on adopt events of the script)")
+          "many seconds; the saved map is not modified (default: only on commit events of the script)")
       ->check(within(0.5, 86400.0, "seconds"))
       ->type_name("SECONDS");
   command

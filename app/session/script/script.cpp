@@ -21,7 +21,7 @@ constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxAngular_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
 
-constexpr std::array<Word<Action>, 16> kActions = {{{"add", Action::kAdd},
+constexpr std::array<Word<Action>, 17> kActions = {{{"add", Action::kAdd},
                                                     {"place", Action::kPlace},
                                                     {"drop", Action::kDrop},
                                                     {"throw", Action::kThrow},
@@ -35,7 +35,8 @@ constexpr std::array<Word<Action>, 16> kActions = {{{"add", Action::kAdd},
                                                     {"radar", Action::kRadar},
                                                     {"quality", Action::kQuality},
                                                     {"camera", Action::kCamera},
-                                                    {"adopt", Action::kCommit},
+                                                    {"commit", Action::kCommit},
+                                                    {"adopt", Action::kCommit},  // of scripts of earlier versions
                                                     {"quit", Action::kQuit}}};
 constexpr std::array<Word<SurfacePolicy>, 4> kSurfaces = {{{"holes", SurfacePolicy::kHoles},
                                                            {"skirt", SurfacePolicy::kSkirt},

@@ -38,7 +38,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     time 5.9   release pot velocity 0 0 0
 ///     time 5.9   material pot mass 2 friction 0.1       what is not named stays; also density, restitution
 ///     time 6     remove pot
-///     time 7     adopt                           objects in view that stand still are added to the map
+///     time 7     commit                          objects in view that stand still are added to the map
 ///     frame 200  surfaces skirt                   holes, skirt, border or map
 ///     frame 210  unknown solid                    or free
 ///     frame 220  radar sampled 64                 mode exact or sampled; resolution in pixels

@@ -31,7 +31,7 @@ time 2.5   drop pot at 0.4 -0.1 0.75
 time 4     place pot 0.4 -0.1 0.9
 time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 5e-1
 frame 200  remove pot
-time 8     adopt
+time 8     commit
 time 9     turn pot 0 0 -45.5
 frame 250  carry pot 0.4 -0.1 1
 frame 251  release pot velocity 0.1 0 0
@@ -57,6 +57,13 @@ TEST(Script, AnObjectMayBeAddedWithASizeAndAnAxisThatPointsUp) {
   for (const char* bad : {"up sideways", "up", "size 0.9 size 0.8", "up y up z", "upright"})
     EXPECT_THROW(parse_script(std::string("frame 0 add chair chair.obj ") + bad + "\n", "test"), Error)
         << bad;
+}
+
+TEST(Script, ReadsTheNameThatCommitHadBefore) {
+  const Script script = parse_script("time 8 adopt", "events.txt");
+  ASSERT_EQ(script.events.size(), 1U);
+  EXPECT_EQ(script.events[0].action, Action::kCommit);
+  EXPECT_EQ(to_line(script.events[0]), "time 8 commit");
 }
 
 TEST(Script, ReadsEachAction) {
@@ -210,7 +217,7 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 throw pot 0 0 1 speed 1 0 0", "'velocity' is wanted"},
       {"frame 1 throw pot 0 0 1 velocity 1000 0 0",
        "'1000' is out of range for a velocity X Y Z (m/s), each from -100 to 100"},
-      {"frame 1 adopt cup", "too much"},
+      {"frame 1 commit cup", "too much"},
       {"frame 1 remove cup", "no object 'cup'"},
       {"frame 1 add pot teapot", "added in line 1 already"},
       {"frame 1 add cup teapot size 0", "'0' is out of range"},
