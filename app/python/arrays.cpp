@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "mapping/types/system/format_number.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar::python {
@@ -250,6 +251,11 @@ py::array_t<double> array_of(const Eigen::AlignedBox3d& box) {
 const std::string& required_text(const std::string& text, const char* name) {
   if (text.find('\0') != std::string::npos) throw py::value_error(std::string(name) + ": holds a zero byte");
   return text;
+}
+
+std::string text_of_point(const Eigen::Vector3d& point_m) {
+  return "(" + format_readable(point_m.x(), 3) + ", " + format_readable(point_m.y(), 3) + ", " +
+         format_readable(point_m.z(), 3) + ") m";
 }
 
 py::str text_of(const std::string& text) {

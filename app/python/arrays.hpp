@@ -75,6 +75,9 @@ py::array_t<double> array_of(const Eigen::AlignedBox3d& box);
 /// Python's paths.
 py::str text_of(const std::string& text);
 
+/// Returns a position as text, "(0.4, -0.1, 0.75) m".
+std::string text_of_point(const Eigen::Vector3d& point_m);
+
 /// Returns the text. Throws ValueError if it contains a zero byte, since messages would end there.
 const std::string& required_text(const std::string& text, const char* name);
 

@@ -10,6 +10,7 @@
 #include "app/python/maps.hpp"
 #include "app/session/frame_scene.hpp"
 #include "mapping/localization/locator.hpp"
+#include "mapping/types/system/format_number.hpp"
 #include "mapping/types/validity.hpp"
 #include "radar/gl/gl_thread.hpp"
 
@@ -110,7 +111,11 @@ void bind_locator(py::module_& module) {
       .def_readonly("inlier_fraction", &Tracking::inlier_fraction)
       .def_readonly("overlap", &Tracking::overlap)
       .def_readonly("unconstrained_dofs", &Tracking::unconstrained_dofs)
-      .def("__bool__", [](const Tracking& tracking) { return static_cast<bool>(tracking); });
+      .def("__bool__", [](const Tracking& tracking) { return static_cast<bool>(tracking); })
+      .def("__repr__", [](const Tracking& tracking) {
+        return "<roomradar.Tracking " + std::string(to_string(tracking.status)) + ": RMS " +
+               format_readable(tracking.rms_m, 3) + " m>";
+      });
 
   py::class_<MapLocator>(module, "Locator",
                          "Finds the camera in a saved map: at first anywhere, then from frame to frame.")

@@ -12,6 +12,7 @@
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/map/map_merge.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar::python {
 
@@ -133,7 +134,11 @@ void bind_parts(py::module_& module) {
       .def_readonly("height_m", &LevelSurface::height_m)
       .def_readonly("area_m2", &LevelSurface::area_m2)
       .def_property_readonly("middle_world",
-                             [](const LevelSurface& surface) { return array_of(surface.middle_world); });
+                             [](const LevelSurface& surface) { return array_of(surface.middle_world); })
+      .def("__repr__", [](const LevelSurface& surface) {
+        return "<roomradar.LevelSurface of " + format_readable(surface.area_m2, 3) + " m2 around " +
+               text_of_point(surface.middle_world) + ">";
+      });
 
   py::class_<Change>(module, "Change",
                      "An object that appeared or vanished between two maps; world of map a.")
@@ -147,7 +152,11 @@ void bind_parts(py::module_& module) {
           "Lower and upper corner, (2, 3) float64, m.")
       .def_readonly("area_m2", &Change::area_m2)
       .def_readonly("volume_m3", &Change::volume_m3)
-      .def_property_readonly("surface_world", &points_of, "Centres of its surface voxels, (N, 3) float64.");
+      .def_property_readonly("surface_world", &points_of, "Centres of its surface voxels, (N, 3) float64.")
+      .def("__repr__", [](const Change& change) {
+        return "<roomradar.Change " + std::string(to_string(change.kind)) + " at " +
+               text_of_point(change.position_world) + ": " + format_readable(change.volume_m3, 3) + " m3>";
+      });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "app/python/arrays.hpp"
 #include "app/python/long_calls.hpp"
+#include "mapping/types/system/format_number.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar::python {
@@ -198,6 +199,13 @@ void add_frame(Scene& scene, const std::shared_ptr<Frame>& frame, const py::obje
   scene.add_depth(frame, depth);
 }
 
+std::string repr(const Contact& contact) {
+  const auto name_of = [](auto value) { return std::string(py::str(py::cast(value).attr("name"))); };
+  if (!contact) return "<roomradar.Contact " + name_of(contact.status) + ">";
+  return "<roomradar.Contact " + name_of(contact.status) + " after " +
+         format_readable(contact.contact_distance_m, 4) + " m, with " + name_of(contact.touched) + ">";
+}
+
 void bind_contacts(py::module_& module) {
   py::enum_<SurfaceKind>(module, "SurfaceKind", py::arithmetic(), "Kind of a surface that can be touched.")
       .value("NOTHING", SurfaceKind::kNothing)
@@ -225,7 +233,8 @@ void bind_contacts(py::module_& module) {
           "normal_world", [](const Contact& contact) { return array_of(contact.normal_world); },
           "Unit normal there, towards the object, (3,) float64.")
       .def_readonly("touched", &Contact::touched, "Kind of the surface touched.")
-      .def("__bool__", [](const Contact& contact) { return static_cast<bool>(contact); });
+      .def("__bool__", [](const Contact& contact) { return static_cast<bool>(contact); })
+      .def("__repr__", [](const Contact& contact) { return repr(contact); });
 
   py::class_<Contacts>(module, "Contacts", "Results of many queries: an array per field of Contact.")
       .def_readonly("status", &Contacts::status, "(N,) uint8: values of ContactStatus.")

@@ -18,6 +18,7 @@
 #include "app/sources/recordings/spooled_source.hpp"
 #include "mapping/coverage/hole.hpp"
 #include "mapping/prescan.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar::python {
 namespace {
@@ -169,7 +170,11 @@ void bind_results(py::module_& module) {
                              [](const Hole& hole) { return array_of(hole.look_direction_world); })
       .def_property_readonly(
           "viewpoint_world", [](const Hole& hole) { return array_or_none(hole.viewpoint_world); },
-          "Free position from which the hole can be seen, or None.");
+          "Free position from which the hole can be seen, or None.")
+      .def("__repr__", [](const Hole& hole) {
+        return "<roomradar.Hole " + std::string(to_string(hole.kind)) + " of " +
+               format_readable(hole.area_m2, 3) + " m2 at " + text_of_point(hole.position_world) + ">";
+      });
   py::class_<Scan>(module, "Scan", "Result of a prescan.")
       .def_readonly("map", &Scan::map)
       .def_readonly("holes", &Scan::holes, "Largest first; those at the end of the whole scan last.")

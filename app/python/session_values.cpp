@@ -3,6 +3,7 @@
 
 #include "app/python/arrays.hpp"
 #include "app/session/frame_result.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar::python {
 namespace {
@@ -34,6 +35,19 @@ py::list departures_of(const FrameResult& result) {
   for (const Departure& departure : result.departures)
     departures.append(py::make_tuple(departure.name, departure.is_back));
   return departures;
+}
+
+const char* status_of(const FrameResult& result) {
+  return result.status == FrameStatus::kDone         ? "done"
+         : result.status == FrameStatus::kNotLocated ? "not located"
+                                                     : "bad frame";
+}
+
+std::string repr(const FrameResult& result) {
+  const std::string said = std::string("<roomradar.FrameResult ") + status_of(result);
+  if (result.status == FrameStatus::kBadFrame) return said + ": " + std::string(result.fault) + ">";
+  return said + ": " + std::to_string(result.dynamic_triangles) + " dynamic triangles, " +
+         std::to_string(result.contacts) + " contacts>";
 }
 
 void bind_objects(py::module_& module) {
@@ -70,7 +84,11 @@ void bind_objects(py::module_& module) {
       .def_readonly("rests_on", &ObjectSnapshot::rests_on,
                     "Kind of the surface below an object at rest, else None.")
       .def_readonly("mass_kg", &ObjectSnapshot::mass_kg)
-      .def_readonly("contacts", &ObjectSnapshot::contacts);
+      .def_readonly("contacts", &ObjectSnapshot::contacts)
+      .def("__repr__", [](const ObjectSnapshot& object) {
+        return text_of("<roomradar.ObjectState " + object.name + ": " + object.state + " at " +
+                       text_of_point(object.T_world_object.translation()) + ">");
+      });
 }
 
 }  // namespace
@@ -97,14 +115,8 @@ ObjectSnapshot snapshot_of(const VirtualObject& object) {
 void bind_session_values(py::module_& module) {
   bind_objects(module);
   py::class_<FrameResult>(module, "FrameResult", "Result of Session.step(). True if the frame was processed.")
-      .def_property_readonly(
-          "status",
-          [](const FrameResult& result) {
-            return result.status == FrameStatus::kDone         ? "done"
-                   : result.status == FrameStatus::kNotLocated ? "not located"
-                                                               : "bad frame";
-          },
-          "\"done\", \"not located\" (objects did not move) or \"bad frame\" (see fault).")
+      .def_property_readonly("status", &status_of,
+                             "\"done\", \"not located\" (objects did not move) or \"bad frame\" (see fault).")
       .def_property_readonly("fault", [](const FrameResult& result) { return std::string(result.fault); })
       .def_property_readonly(
           "tracking", [](const FrameResult& result) { return std::string(to_string(result.tracking)); })
@@ -124,7 +136,8 @@ void bind_session_values(py::module_& module) {
       .def_property_readonly("notices", &sentences_of, "Sentences for the user.")
       .def_property_readonly("departures", &departures_of,
                              "Name of each object that fell out of the map, and whether it was set back.")
-      .def("__bool__", [](const FrameResult& result) { return result.status == FrameStatus::kDone; });
+      .def("__bool__", [](const FrameResult& result) { return result.status == FrameStatus::kDone; })
+      .def("__repr__", [](const FrameResult& result) { return text_of(repr(result)); });
 }
 
 }  // namespace roomradar::python

@@ -53,7 +53,9 @@ def bridge(lines: TextIO, out: TextIO) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) == 1:
+    if sys.argv[1:] in (["-h"], ["--help"]):
+        print(__doc__)
+    elif len(sys.argv) == 1:
         bridge(sys.stdin, sys.stdout)
     else:
         host, port = sys.argv[1].rsplit(":", 1)

@@ -53,6 +53,9 @@ def fall_m(room: rr.Mesh, size_m: float, per_side: int = 100) -> NDArray[np.floa
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] in (["-h"], ["--help"]):
+        print(__doc__)
+        sys.exit()
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     way = fall_m(rr.open_map(sys.argv[1]).mesh, 0.1)

@@ -37,6 +37,9 @@ def plot(room: rr.Map, picture: str) -> None:
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] in (["-h"], ["--help"]):
+        print(__doc__)
+        sys.exit()
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     plot(rr.open_map(sys.argv[1]), sys.argv[2])

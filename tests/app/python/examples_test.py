@@ -34,6 +34,14 @@ def stream(*options):
                            *options)
 
 
+class Help(unittest.TestCase):
+    def test_it_is_printed_on_demand(self):
+        for example, needed in (("bridge_stream.py", "json"), ("clearance.py", "matplotlib"),
+                                ("open3d_mesh.py", "open3d"), ("plot_map.py", "matplotlib")):
+            if has(needed):
+                self.assertIn(f"usage: {'roomradar run' if needed == 'json' else example}", run(example, "--help"))
+
+
 class Pictures(unittest.TestCase):
     def picture(self, example):
         path = support.temporary_folder() / "picture.png"

@@ -25,6 +25,7 @@ class KnownAnswers(unittest.TestCase):
         self.assertAlmostEqual(contact.contact_distance_m, 0.9, delta=1e-7)
         self.assertEqual(contact.lower_m, contact.upper_m)
         self.assertEqual(contact.touched, rr.SurfaceKind.STATIC)
+        self.assertEqual(repr(contact), "<roomradar.Contact CONTACT after 0.9 m, with STATIC>")
         np.testing.assert_allclose(contact.normal_world, [0, 0, 1], atol=1e-12)
         self.assertAlmostEqual(contact.point_world[2], 0.0, delta=1e-7)
 

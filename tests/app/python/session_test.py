@@ -25,6 +25,7 @@ class Fingerprints(unittest.TestCase):
         pot, = played.objects
         self.assertEqual((pot.name, pot.state, pot.rests_on), ("object", "at rest", rr.SurfaceKind.STATIC))
         self.assertGreaterEqual(len(pot.contacts), 3)
+        self.assertRegex(repr(pot), r"^<roomradar.ObjectState object: at rest at \(.+, .+, .+\) m>$")
         self.assertTrue(all(touch.normal_world[2] > 0.9 and touch.gap_m <= 0.0015 for touch in pot.contacts))
 
     def test_they_are_those_of_the_command_with_other_quality(self):
@@ -41,7 +42,8 @@ class Views(unittest.TestCase):
         self.assertIsNone(played.picture)
         places = set()
         for frame in frames():
-            played.step(frame)
+            result = played.step(frame)
+            self.assertRegex(repr(result), "^<roomradar.FrameResult done: [0-9]+ dynamic triangles, 0 contacts>$")
             places.add((address(played.picture), address(played.moved_mask), address(played.expected_depth_m)))
         self.assertEqual(len(places), 1)
         self.assertEqual((played.picture.shape, played.picture.dtype), (frame.colour.shape, np.uint8))
