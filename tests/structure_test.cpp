@@ -107,6 +107,14 @@ std::map<std::string, std::size_t> floor_of_rooms() {
   return floors;
 }
 
+/// Names of the units, by room.
+std::map<std::string, std::set<std::string>> units_of_rooms() {
+  std::map<std::string, std::set<std::string>> units;
+  for (const Source& source : sources_of_the_house())
+    units[source.room].insert(fs::path(source.path).stem().generic_string());
+  return units;
+}
+
 bool is_within(const std::string& room, const std::string& folder) {
   return room == folder || room.rfind(folder + "/", 0) == 0;
 }
@@ -148,10 +156,7 @@ TEST(Structure, TheRadarWithoutGlIncludesNoGl) {
 }
 
 TEST(Structure, NoRoomHoldsMoreThanFifteenUnits) {
-  std::map<std::string, std::set<std::string>> units;
-  for (const Source& source : sources_of_the_house())
-    units[source.room].insert(fs::path(source.path).stem().generic_string());
-  for (const auto& [room, names] : units) EXPECT_LE(names.size(), 15U) << room;
+  for (const auto& [room, names] : units_of_rooms()) EXPECT_LE(names.size(), 15U) << room;
 }
 
 TEST(Structure, NoUnitHasMoreThanFourHundredLinesAndEachHasAHeader) {
@@ -172,10 +177,7 @@ TEST(Structure, NoUnitHasMoreThanFourHundredLinesAndEachHasAHeader) {
 }
 
 TEST(Structure, EveryRoomHasAShortReadmeThatNamesItsUnits) {
-  std::map<std::string, std::set<std::string>> units;
-  for (const Source& source : sources_of_the_house())
-    units[source.room].insert(fs::path(source.path).stem().generic_string());
-  for (const auto& [room, names] : units) {
+  for (const auto& [room, names] : units_of_rooms()) {
     std::ifstream file(fs::path(ROOMRADAR_SOURCE_DIR) / room / "README.md");
     ASSERT_TRUE(file) << room;
     std::string text;

@@ -113,8 +113,8 @@ void bind_locator(py::module_& module) {
       .def_readonly("unconstrained_dofs", &Tracking::unconstrained_dofs)
       .def("__bool__", [](const Tracking& tracking) { return static_cast<bool>(tracking); })
       .def("__repr__", [](const Tracking& tracking) {
-        return "<roomradar.Tracking " + std::string(to_string(tracking.status)) + ": RMS " +
-               format_readable(tracking.rms_m, 3) + " m>";
+        const std::string said = "<roomradar.Tracking " + std::string(to_string(tracking.status));
+        return said + (tracking.rms_m < 0.0 ? ">" : ": RMS " + format_readable(tracking.rms_m, 3) + " m>");
       });
 
   py::class_<MapLocator>(module, "Locator",
