@@ -112,7 +112,7 @@ int run(const RetrieveStep& step) {
   KeyframeRetrieval retrieval;
   for (const fs::path& folder : step.submaps) retrieval.add(load_submap(folder));
   json pairs = json::array();
-  for (const CandidatePair& pair : retrieval.pairs())
+  for (const CandidatePair& pair : retrieval.find_pairs())
     pairs.push_back({{"a", pair.a}, {"b", pair.b}, {"similar", pair.similar}});
   write_bytes(step.out / "pairs.json", pairs.dump(1) + "\n");
   std::printf("%zu keyframes of %zu recordings: %zu pairs of recordings may meet\n", retrieval.keyframes(),

@@ -30,42 +30,59 @@ DistinctKeyframes distinct_keyframes(const Submap& submap, double min_step) {
   return distinct;
 }
 
+/// Returns the pairs that are among the `partners` best of one of their submaps, sorted by a, then b.
+std::vector<CandidatePair> best_partners(std::vector<CandidatePair> found, std::size_t submaps,
+                                         std::size_t partners) {
+  std::stable_sort(found.begin(), found.end(), [](const CandidatePair& one, const CandidatePair& other) {
+    return one.similar > other.similar;
+  });
+  std::vector<CandidatePair> best;
+  std::vector<std::size_t> pairs_of(submaps, 0);
+  for (const CandidatePair& pair : found) {
+    const bool is_kept = std::min(pairs_of[pair.a]++, pairs_of[pair.b]++) < partners;
+    if (is_kept) best.push_back(pair);
+  }
+  std::sort(best.begin(), best.end(), [](const CandidatePair& one, const CandidatePair& other) {
+    return std::pair(one.a, one.b) < std::pair(other.a, other.b);
+  });
+  return best;
+}
+
 }  // namespace
 
 void KeyframeRetrieval::add(const Submap& submap) {
   DistinctKeyframes added = distinct_keyframes(submap, config_.min_step);
-  std::map<std::size_t, std::size_t> similar;  // by submap
-  for (const MapKeyframe& keyframe : added.database.keyframes) {
-    const auto candidates = database_.index.candidates(keyframe.descriptors, config_.candidates, {});
-    std::set<std::size_t> submaps;
-    for (const std::size_t i :
-         most_alike_of(candidates, keyframe, database_, candidates.size(), config_.min_matches))
-      submaps.insert(submap_of_[i]);
-    for (const std::size_t a : submaps) ++similar[a];
-  }
-  for (const auto& [a, count] : similar)
-    if (count >= config_.min_similar) found_.push_back({a, submaps_, count});
   submap_of_.resize(submap_of_.size() + added.database.keyframes.size(), submaps_++);
   std::move(added.database.keyframes.begin(), added.database.keyframes.end(),
             std::back_inserter(database_.keyframes));
   update_index(database_);
 }
 
-std::vector<CandidatePair> KeyframeRetrieval::pairs() const {
-  std::vector<CandidatePair> best_first = found_;
-  std::stable_sort(
-      best_first.begin(), best_first.end(),
-      [](const CandidatePair& one, const CandidatePair& other) { return one.similar > other.similar; });
-  std::vector<CandidatePair> pairs;
-  std::vector<std::size_t> partners(submaps_, 0);
-  for (const CandidatePair& pair : best_first) {
-    const bool is_kept = std::min(partners[pair.a]++, partners[pair.b]++) < config_.partners;
-    if (is_kept) pairs.push_back(pair);
+std::vector<CandidatePair> KeyframeRetrieval::find_pairs() {
+  database_.index.sort();
+  struct Similar {
+    std::size_t in_a = 0, in_b = 0;  // keyframes that look similar to one of the other submap
+  };
+  std::map<std::pair<std::size_t, std::size_t>, Similar> similar;  // by submaps a and b
+  for (std::size_t k = 0; k < database_.keyframes.size(); ++k) {
+    const MapKeyframe& keyframe = database_.keyframes[k];
+    const std::size_t own = submap_of_[k];
+    const auto of_another = [&](std::size_t i) { return submap_of_[i] != own; };
+    std::set<std::size_t> others;  // submaps that show the keyframe's place
+    for (const std::size_t i :
+         database_.index.candidates(keyframe.descriptors, config_.candidates, of_another))
+      if (!others.contains(submap_of_[i]) && is_alike(keyframe, database_.keyframes[i], config_.min_matches))
+        others.insert(submap_of_[i]);
+    for (const std::size_t other : others) {
+      Similar& of_pair = similar[std::minmax(own, other)];
+      ++(own < other ? of_pair.in_a : of_pair.in_b);
+    }
   }
-  std::sort(pairs.begin(), pairs.end(), [](const CandidatePair& one, const CandidatePair& other) {
-    return std::pair(one.a, one.b) < std::pair(other.a, other.b);
-  });
-  return pairs;
+  std::vector<CandidatePair> found;
+  for (const auto& [pair, count] : similar)
+    if (std::max(count.in_a, count.in_b) >= config_.min_similar)
+      found.push_back({pair.first, pair.second, count.in_a + count.in_b});
+  return best_partners(std::move(found), submaps_, config_.partners);
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> similar_keyframes(const Submap& a, const Submap& b,

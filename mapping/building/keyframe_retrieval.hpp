@@ -11,29 +11,29 @@ namespace roomradar {
 /// Two submaps that may show the same place.
 struct CandidatePair {
   std::size_t a = 0, b = 0;  ///< submaps, a < b
-  std::size_t similar = 0;   ///< pairs of their keyframes that look similar
+  std::size_t similar = 0;   ///< keyframes of both that look similar to one of the other submap
 };
 
 struct RetrievalConfig {
   double min_step = 0.25;       ///< min view_distance() of the keyframes of a submap that are compared
   int min_matches = 15;         ///< min number of features that match
   std::size_t candidates = 24;  ///< max keyframes of other submaps to compare with a keyframe
-  std::size_t min_similar = 2;  ///< min CandidatePair::similar
+  std::size_t min_similar = 2;  ///< min number of similar keyframes in one of the submaps of a pair
   std::size_t partners = 16;    ///< max pairs per submap, those with the most similar keyframes
 };
 
-/// Finds submaps with similar keyframes, by an index of their features. Submaps are added one after the
-/// other, and only their strongest features are kept (10 kB per keyframe, and 19 to 38 kB of the index).
+/// Finds submaps with similar keyframes, by an index of their features. Of each submap, only the strongest
+/// features are kept (10 kB per keyframe, and 19 to 38 kB of the index).
 class KeyframeRetrieval {
  public:
   explicit KeyframeRetrieval(const RetrievalConfig& config = {}) : config_(config) {}
 
-  /// Compares a submap's keyframes with those added before, then adds them.
+  /// Adds a submap, which gets the next number.
   void add(const Submap& submap);
-  /// Returns the pairs of submaps found so far, sorted by a, then b. Submaps are numbered in the order in
-  /// which they were added. A pair is among the `partners` best pairs of one of its submaps, so the number of
-  /// pairs grows linearly with the number of submaps.
-  [[nodiscard]] std::vector<CandidatePair> pairs() const;
+  /// Compares the keyframes of each submap with similar ones of all others. Returns the pairs of submaps that
+  /// look alike, sorted by a, then b. A pair is among the `partners` best pairs of one of its submaps, so the
+  /// number of pairs grows linearly with the number of submaps.
+  [[nodiscard]] std::vector<CandidatePair> find_pairs();
   [[nodiscard]] std::size_t keyframes() const { return database_.keyframes.size(); }
 
  private:
@@ -41,7 +41,6 @@ class KeyframeRetrieval {
   KeyframeDatabase database_;           ///< of all submaps, with descriptors only
   std::vector<std::size_t> submap_of_;  ///< by keyframe of the database
   std::size_t submaps_ = 0;
-  std::vector<CandidatePair> found_;
 };
 
 struct SimilarConfig {

@@ -67,6 +67,8 @@ struct BucketOf {
   std::uint32_t rest;
 };
 
+void prefetch(const void* address) { __builtin_prefetch(address); }
+
 }  // namespace
 
 void FeatureIndex::add(std::span<const Descriptor> descriptors) {
@@ -82,10 +84,11 @@ void FeatureIndex::add(std::span<const Descriptor> descriptors) {
           {number, std::exchange(first_[at.bucket], static_cast<std::uint32_t>(entries_.size()))});
     });
   ++keyframes_;
-  if (entries_.size() > std::max(kMinSorted, sorted_.size() / 4)) sort_lists();
+  if (entries_.size() > std::max(kMinSorted, sorted_.size() / 4)) sort();
 }
 
-void FeatureIndex::sort_lists() {
+void FeatureIndex::sort() {
+  if (entries_.size() <= 1) return;
   const std::size_t count = sorted_.size() + entries_.size() - 1;
   // Four entries a bucket and more, so that begin_ is small beside sorted_.
   const unsigned bits =
@@ -130,18 +133,23 @@ std::vector<std::size_t> FeatureIndex::candidates(std::span<const Descriptor> qu
                                                   const std::function<bool(std::size_t)>& accept) const {
   if (keyframes_ == 0) return {};
   std::vector<std::uint32_t> collisions(std::min(keyframes_, kMaxKeyframes), 0);
+  const auto compare = [&](std::uint32_t rest, std::uint32_t rest_and_keyframe) {
+    collisions[rest_and_keyframe & kKeyframeMask] += rest_and_keyframe >> kKeyframeBits == rest ? 1U : 0U;
+  };
+
+  // Buckets are all over the memory: each pass fetches what the next one reads.
+  std::vector<BucketOf> in_sorted, in_lists;
   for_each_hash(query, [&](unsigned table, std::uint32_t hash) {
-    const auto compare = [&](std::uint32_t rest, std::uint32_t rest_and_keyframe) {
-      if (rest_and_keyframe >> kKeyframeBits == rest) ++collisions[rest_and_keyframe & kKeyframeMask];
-    };
-    if (!sorted_.empty()) {
-      const BucketOf at(table, hash, sorted_bucket_bits_);
-      for (std::uint32_t i = begin_[at.bucket]; i < begin_[at.bucket + 1]; ++i) compare(at.rest, sorted_[i]);
-    }
-    const BucketOf at(table, hash, kBucketBits);
+    if (!sorted_.empty()) prefetch(&begin_[in_sorted.emplace_back(table, hash, sorted_bucket_bits_).bucket]);
+    if (entries_.size() > 1) prefetch(&first_[in_lists.emplace_back(table, hash, kBucketBits).bucket]);
+  });
+  for (const BucketOf& at : in_sorted) prefetch(sorted_.data() + begin_[at.bucket]);
+  for (const BucketOf& at : in_sorted)
+    for (std::uint32_t i = begin_[at.bucket]; i < begin_[at.bucket + 1]; ++i) compare(at.rest, sorted_[i]);
+  for (const BucketOf& at : in_lists)
     for (std::uint32_t i = first_[at.bucket]; i != 0; i = entries_[i].next)
       compare(at.rest, entries_[i].rest_and_keyframe);
-  });
+
   std::vector<std::pair<std::uint32_t, std::size_t>> found;  // sorts by count, then the older first
   for (std::size_t i = 0; i < collisions.size(); ++i)
     if (collisions[i] > 0 && (!accept || accept(i))) found.emplace_back(~collisions[i], i);

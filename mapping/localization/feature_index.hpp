@@ -19,6 +19,9 @@ class FeatureIndex {
   /// Adds the next keyframe, which gets the number size(). Uses its first kIndexedFeatures descriptors. Uses
   /// 8 bytes per descriptor and table, at most 38 kB per keyframe; 19 kB once its entries are sorted.
   void add(std::span<const Descriptor> descriptors);
+  /// Sorts the entries of keyframes that add() has not sorted yet. candidates() is several times as fast
+  /// afterwards, with the same result.
+  void sort();
   /// Returns the number of keyframes in the index.
   [[nodiscard]] std::size_t size() const { return keyframes_; }
 
@@ -38,9 +41,6 @@ class FeatureIndex {
     std::uint32_t rest_and_keyframe;  ///< hash bits that the bucket does not imply, and the keyframe's number
     std::uint32_t next;               ///< index of the bucket's next entry; 0: none
   };
-  /// Moves the lists' entries to `sorted_`, whose buckets are read many times faster than lists.
-  void sort_lists();
-
   std::size_t keyframes_ = 0;
   std::vector<std::uint32_t> first_;  ///< by bucket, of all tables: index of the first entry; 0: none
   std::vector<Entry> entries_;        ///< of the newest keyframes; entry 0 is unused

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <random>
 #include <span>
 #include <utility>
@@ -38,26 +39,31 @@ int distance_to(const Words& a, const Descriptor& b) {
   return bits;
 }
 
-/// Returns index pairs (from, to): each feature and its nearest, if the second nearest is clearly farther.
-std::vector<std::pair<std::size_t, std::size_t>> matches(Descriptors from, Descriptors to) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const auto words = std::bit_cast<Words>(from[i]);
-    int best = 257, second = 257;
-    std::size_t nearest = 0;
-    for (std::size_t j = 0; j < to.size(); ++j) {
-      const int d = distance_to(words, to[j]);
-      if (d < best) {
-        second = std::exchange(best, d);
-        nearest = j;
-      } else if (d < second) {
-        second = d;
-      }
-    }
-    if (best <= kMaxFeatureDistance_bits && static_cast<float>(best) < kRatio * static_cast<float>(second)) {
-      pairs.emplace_back(i, nearest);
+/// Returns the index of the feature in `to` that is nearest to `feature`, if the second nearest is clearly
+/// farther.
+std::optional<std::size_t> match_of(const Descriptor& feature, Descriptors to) {
+  const auto words = std::bit_cast<Words>(feature);
+  int best = 257, second = 257;
+  std::size_t nearest = 0;
+  for (std::size_t j = 0; j < to.size(); ++j) {
+    const int d = distance_to(words, to[j]);
+    if (d < best) {
+      second = std::exchange(best, d);
+      nearest = j;
+    } else if (d < second) {
+      second = d;
     }
   }
+  const bool is_match =
+      best <= kMaxFeatureDistance_bits && static_cast<float>(best) < kRatio * static_cast<float>(second);
+  return is_match ? std::optional(nearest) : std::nullopt;
+}
+
+/// Returns index pairs (from, to) of features that match.
+std::vector<std::pair<std::size_t, std::size_t>> matches(Descriptors from, Descriptors to) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (const auto nearest = match_of(from[i], to)) pairs.emplace_back(i, *nearest);
   return pairs;
 }
 
@@ -126,6 +132,16 @@ std::vector<std::size_t> most_alike_of(const std::vector<std::size_t>& candidate
     if (alike.size() < count) alike.push_back(i);
   }
   return alike;
+}
+
+bool is_alike(const MapKeyframe& place, const MapKeyframe& keyframe, int min_matches) {
+  const Descriptors from = strongest_of(place), to = strongest_of(keyframe);
+  int missing = min_matches;
+  for (std::size_t i = 0; i < from.size() && missing > 0; ++i) {
+    if (missing > static_cast<int>(from.size() - i)) return false;
+    if (match_of(from[i], to)) --missing;
+  }
+  return missing <= 0;
 }
 
 KeyframeMatch match_keyframes(const MapKeyframe& a, const MapKeyframe& b) {

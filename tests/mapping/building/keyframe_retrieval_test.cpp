@@ -45,12 +45,41 @@ TEST(KeyframeRetrieval, FindsNeighboursAmongManySubmaps) {
     retrieval.add(submap_of({before, before, before, nullptr, nullptr, after, after, after}, random));
   }
   EXPECT_EQ(retrieval.keyframes(), 8 * kSubmaps);
-  const std::vector<CandidatePair> pairs = retrieval.pairs();
+  const std::vector<CandidatePair> pairs = retrieval.find_pairs();
   ASSERT_EQ(pairs.size(), kSubmaps - 1);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     EXPECT_EQ(pairs[i].a, i);
     EXPECT_EQ(pairs[i].b, i + 1);
-    EXPECT_EQ(pairs[i].similar, 3U);
+    EXPECT_EQ(pairs[i].similar, 6U);
+  }
+}
+
+// A recording that changes must not change which others are compared.
+TEST(KeyframeRetrieval, DoesNotDependOnTheOrderOfSubmaps) {
+  std::mt19937 random(8);
+  constexpr std::size_t kSubmaps = 8;
+  const Features corridor = drawn(40, random);
+  std::vector<Submap> submaps;
+  for (std::size_t i = 0; i < kSubmaps; ++i)
+    submaps.push_back(submap_of({i % 3 == 0 ? &corridor : nullptr, &corridor, &corridor, nullptr}, random));
+  KeyframeRetrieval forward, backward;
+  for (std::size_t i = 0; i < kSubmaps; ++i) {
+    forward.add(submaps[i]);
+    backward.add(submaps[kSubmaps - 1 - i]);
+  }
+  std::vector<CandidatePair> expected = forward.find_pairs(), found = backward.find_pairs();
+  ASSERT_EQ(found.size(), kSubmaps * (kSubmaps - 1) / 2);
+  ASSERT_EQ(expected.size(), found.size());
+  const auto last = [](const CandidatePair& pair) {
+    return CandidatePair{kSubmaps - 1 - pair.b, kSubmaps - 1 - pair.a, pair.similar};
+  };
+  std::transform(found.begin(), found.end(), found.begin(), last);
+  std::sort(found.begin(), found.end(), [](const CandidatePair& one, const CandidatePair& other) {
+    return std::pair(one.a, one.b) < std::pair(other.a, other.b);
+  });
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(std::pair(found[i].a, found[i].b), std::pair(expected[i].a, expected[i].b));
+    EXPECT_EQ(found[i].similar, expected[i].similar);
   }
 }
 
@@ -58,11 +87,11 @@ TEST(KeyframeRetrieval, OneSimilarKeyframeIsNotEnough) {
   std::mt19937 random(4);
   const Features door = drawn(40, random);
   KeyframeRetrieval retrieval;
-  EXPECT_TRUE(retrieval.pairs().empty());
+  EXPECT_TRUE(retrieval.find_pairs().empty());
   retrieval.add(submap_of({&door, nullptr}, random));
   retrieval.add(submap_of({nullptr, &door}, random));
   retrieval.add({});
-  EXPECT_TRUE(retrieval.pairs().empty());
+  EXPECT_TRUE(retrieval.find_pairs().empty());
 }
 
 // Corridors that all look alike: the number of pairs grows with the number of submaps, not with its square.
@@ -77,7 +106,7 @@ TEST(KeyframeRetrieval, KeepsTheBestPartnersOfEachSubmap) {
     const Features* also = i == 2 || i == 17 ? &room : nullptr;
     retrieval.add(submap_of({&corridor, &corridor, also, also, also}, random));
   }
-  const std::vector<CandidatePair> pairs = retrieval.pairs();
+  const std::vector<CandidatePair> pairs = retrieval.find_pairs();
   EXPECT_LE(pairs.size(), 3 * kSubmaps);
   EXPECT_GE(pairs.size(), kSubmaps);
   const bool has_best = std::any_of(pairs.begin(), pairs.end(),

@@ -82,6 +82,11 @@ TEST(FeatureIndex, OfThousandsCountsAsOneOfFew) {
     ASSERT_EQ(expected.size(), 50U);  // unlike features collide now and then
     for (std::size_t& one : found) one -= kFirst;
     EXPECT_EQ(found, expected);
+    const auto before = of_all.candidates(query, 50, {});
+    of_all.sort();
+    EXPECT_EQ(of_all.candidates(query, 50, {}), before);
+    of_few.sort();
+    EXPECT_EQ(of_few.candidates(query, 50, {}), expected);
   }
 }
 
