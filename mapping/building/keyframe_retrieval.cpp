@@ -90,6 +90,7 @@ std::vector<std::pair<std::size_t, std::size_t>> similar_keyframes(const Submap&
   DistinctKeyframes of_a = distinct_keyframes(a, config.min_step);
   const DistinctKeyframes of_b = distinct_keyframes(b, config.min_step);
   update_index(of_a.database);
+  of_a.database.index.sort();
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t j = 0; j < of_b.index_of.size(); ++j) {
     const MapKeyframe& keyframe = of_b.database.keyframes[j];
