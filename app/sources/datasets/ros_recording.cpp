@@ -196,7 +196,7 @@ IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& lo
   const auto colour_of = pair_colours(colour_s, kPairWithin_s, recording.frames);
 
   const double unit_m = depth_unit_m(*log, depth);
-  recording.read_depth = [log, depth, unit_m](std::size_t frame, DepthImage& depth_m) {
+  recording.read_depth = [log, depth = depth, unit_m](std::size_t frame, DepthImage& depth_m) {
     decode_ros_depth(*log, depth, depth.messages[frame], unit_m, depth_m);
   };
   if (colour)
