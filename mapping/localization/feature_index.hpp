@@ -41,6 +41,7 @@ class FeatureIndex {
     std::uint32_t rest_and_keyframe;  ///< hash bits that the bucket does not imply, and the keyframe's number
     std::uint32_t next;               ///< index of the bucket's next entry; 0: none
   };
+
   std::size_t keyframes_ = 0;
   std::vector<std::uint32_t> first_;  ///< by bucket, of all tables: index of the first entry; 0: none
   std::vector<Entry> entries_;        ///< of the newest keyframes; entry 0 is unused
