@@ -67,8 +67,6 @@ struct BucketOf {
   std::uint32_t rest;
 };
 
-void prefetch(const void* address) { __builtin_prefetch(address); }
-
 }  // namespace
 
 void FeatureIndex::add(std::span<const Descriptor> descriptors) {
@@ -140,10 +138,12 @@ std::vector<std::size_t> FeatureIndex::candidates(std::span<const Descriptor> qu
   // Buckets are all over the memory: each pass fetches what the next one reads.
   std::vector<BucketOf> in_sorted, in_lists;
   for_each_hash(query, [&](unsigned table, std::uint32_t hash) {
-    if (!sorted_.empty()) prefetch(&begin_[in_sorted.emplace_back(table, hash, sorted_bucket_bits_).bucket]);
-    if (entries_.size() > 1) prefetch(&first_[in_lists.emplace_back(table, hash, kBucketBits).bucket]);
+    if (!sorted_.empty())
+      __builtin_prefetch(&begin_[in_sorted.emplace_back(table, hash, sorted_bucket_bits_).bucket]);
+    if (entries_.size() > 1)
+      __builtin_prefetch(&first_[in_lists.emplace_back(table, hash, kBucketBits).bucket]);
   });
-  for (const BucketOf& at : in_sorted) prefetch(sorted_.data() + begin_[at.bucket]);
+  for (const BucketOf& at : in_sorted) __builtin_prefetch(sorted_.data() + begin_[at.bucket]);
   for (const BucketOf& at : in_sorted)
     for (std::uint32_t i = begin_[at.bucket]; i < begin_[at.bucket + 1]; ++i) compare(at.rest, sorted_[i]);
   for (const BucketOf& at : in_lists)
