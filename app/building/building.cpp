@@ -220,7 +220,7 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
 
   // Pairs that meet.
   require_all(stage("retrieve", retrieve_stage(work, names)));
-  const std::vector<CandidatePair> pairs = read_pairs(work.job(kRetrieveJob) / "pairs.json", names.size());
+  const std::vector<CandidatePair> pairs = read_pairs(work, names);
   const StageCounts joined = stage("join", join_stage(work, names, pairs));
   require_all(joined);
   std::vector<GraphJoin> joins, refused;

@@ -198,9 +198,11 @@ void add_building_steps(CLI::App& app, std::function<int()>& work) {
     command.add_option("SOURCE", step.source)->required();
     add_poses_option(command, step.poses, "whose camera poses to use");
   });
-  add_step<RetrieveStep>(
-      steps, "retrieve", "find recordings that may meet", work,
-      [](CLI::App& command, RetrieveStep& step) { command.add_option("SUBMAP", step.submaps)->required(); });
+  add_step<RetrieveStep>(steps, "retrieve", "find similar keyframes of recordings", work,
+                         [](CLI::App& command, RetrieveStep& step) {
+                           command.add_option("FEATURES", step.a)->required();
+                           command.add_option("--with", step.b);
+                         });
   add_step<JoinStep>(steps, "join", "compare two recordings", work, [](CLI::App& command, JoinStep& step) {
     command.add_option("A", step.a)->required();
     command.add_option("B", step.b)->required();

@@ -2,8 +2,13 @@
 #include "app/building/building_stages.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <set>
+#include <utility>
 
+#include "mapping/building/retrieval_files.hpp"
+#include "mapping/storage/sha256.hpp"
+#include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/make_folder.hpp"
@@ -45,6 +50,42 @@ std::string source_word(const BuildingWork& work, const std::string& recording) 
                                    : listed->source;
 }
 
+/// Submaps that are compared by the same retrieve jobs.
+struct SubmapGroup {
+  std::size_t number = 0;
+  std::vector<std::size_t> submaps;  ///< indices, ascending
+};
+
+/// Splits submaps into groups of about 16 recordings. A recording's group depends on its name and the number
+/// of groups, which doubles as recordings are added, so that few comparisons are done again after a change.
+std::vector<SubmapGroup> groups_of(const BuildingWork& work, const std::vector<SubmapName>& submaps) {
+  constexpr std::size_t kRecordings = 16, kMaxGroups = 32;
+  const std::size_t count = std::min(std::bit_ceil(work.recordings.size() / kRecordings), kMaxGroups);
+  std::vector<SubmapGroup> groups(count);
+  for (std::size_t i = 0; i < count; ++i) groups[i].number = i;
+  for (std::size_t i = 0; i < submaps.size(); ++i) {
+    const std::string digits = sha256_of(submaps[i].recording).substr(0, 4);
+    groups[std::stoul(digits, nullptr, 16) % count].submaps.push_back(i);
+  }
+  std::erase_if(groups, [](const SubmapGroup& group) { return group.submaps.empty(); });
+  return groups;
+}
+
+/// Returns indices of groups, each group with itself included.
+std::vector<std::pair<std::size_t, std::size_t>> pairs_of_groups(const std::vector<SubmapGroup>& groups) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t b = 0; b < groups.size(); ++b)
+    for (std::size_t a = 0; a <= b; ++a) pairs.emplace_back(a, b);
+  return pairs;
+}
+
+// No folder may have the name of a step, "retrieve".
+std::string retrieve_job(const SubmapGroup& a, const SubmapGroup& b) {
+  return "similar-" + std::to_string(a.number) + "-" + std::to_string(b.number);
+}
+
+std::string features_file(const SubmapName& submap) { return submap.folder() + "/" + kFeaturesFile; }
+
 void begin_step(Lines& lines, const std::string& job, const char* step) {
   lines.begin(job);
   lines.word("building-step");
@@ -71,12 +112,35 @@ Manifest track_stage(const BuildingWork& work) {
 }
 
 Manifest retrieve_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps) {
+  const std::vector<SubmapGroup> groups = groups_of(work, submaps);
   Lines lines;
-  begin_step(lines, kRetrieveJob, "retrieve");
-  for (const SubmapName& submap : submaps) lines.word(submap.folder());
-  lines.word("--out={}");
-  lines.end();
+  for (const auto& [a, b] : pairs_of_groups(groups)) {
+    begin_step(lines, retrieve_job(groups[a], groups[b]), "retrieve");
+    for (const std::size_t i : groups[a].submaps) lines.word(features_file(submaps[i]));
+    if (a != b)
+      for (const std::size_t i : groups[b].submaps) lines.word("--with=" + features_file(submaps[i]));
+    lines.word("--out={}");
+    lines.end();
+  }
   return written(work, "retrieve", lines);
+}
+
+std::vector<CandidatePair> read_pairs(const BuildingWork& work, const std::vector<SubmapName>& submaps) {
+  const std::vector<SubmapGroup> groups = groups_of(work, submaps);
+  std::vector<SubmapSimilarity> similarities(submaps.size());
+  for (const auto& [a, b] : pairs_of_groups(groups)) {
+    const std::vector<std::size_t>&of_a = groups[a].submaps, &of_b = groups[b].submaps;
+    const fs::path path = work.job(retrieve_job(groups[a], groups[b])) / kSimilarityFile;
+    const GroupSimilarity found = load_similarity(path, of_a.size(), a == b ? 0 : of_b.size());
+    const auto add = [&](std::size_t submap, const SubmapSimilarity& similarity,
+                         const std::vector<std::size_t>& others) {
+      if (!add_similar(similarities[submap], similarity, others))
+        throw Error(path.string() + ": is damaged: " + submaps[submap].name() + " has other keyframes there");
+    };
+    for (std::size_t i = 0; i < found.a.size(); ++i) add(of_a[i], found.a[i], of_b);
+    for (std::size_t i = 0; i < found.b.size(); ++i) add(of_b[i], found.b[i], of_a);
+  }
+  return choose_pairs(similarities);
 }
 
 Manifest join_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps,

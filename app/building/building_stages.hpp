@@ -11,6 +11,7 @@
 #include "app/building/building_steps.hpp"
 #include "app/building/recording_list.hpp"
 #include "app/farm/manifest.hpp"
+#include "mapping/building/keyframe_retrieval.hpp"
 
 namespace roomradar {
 
@@ -47,7 +48,6 @@ inline std::string join_job(const SubmapName& a, const SubmapName& b) {
   return "join-" + a.name() + "-" + b.name();
 }
 inline std::string tile_job(const TileIndex& tile) { return "tile-" + name_of(tile); }
-inline constexpr const char* kRetrieveJob = "candidates";  // no folder may have the name of a step
 
 /// Returns the submaps of a tracked recording, in order of time.
 std::vector<SubmapName> submaps_of(const BuildingWork& work, const std::string& recording);
@@ -62,8 +62,11 @@ PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::strin
 
 /// One job per recording.
 Manifest track_stage(const BuildingWork& work);
-/// One job, which reads all submaps.
+/// One job per pair of groups of submaps, and one per group.
 Manifest retrieve_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps);
+/// Reads what the retrieve jobs wrote, and chooses pairs of submaps.
+/// @return indices in `submaps`
+std::vector<CandidatePair> read_pairs(const BuildingWork& work, const std::vector<SubmapName>& submaps);
 /// One job per pair. A CandidatePair holds indices in `submaps`.
 Manifest join_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps,
                     const std::vector<CandidatePair>& pairs);

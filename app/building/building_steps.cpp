@@ -12,6 +12,7 @@
 #include "app/sources/formats/parse_numbers.hpp"
 #include "mapping/building/building_info.hpp"
 #include "mapping/building/keyframe_retrieval.hpp"
+#include "mapping/building/retrieval_files.hpp"
 #include "mapping/building/submap_join.hpp"
 #include "mapping/building/submap_join_file.hpp"
 #include "mapping/building/tile_surface.hpp"
@@ -101,6 +102,7 @@ int run(const TrackStep& step) {
     if (step.poses == PoseOrigin::kTracked) put_origin_on_floor(parts[i]);
     make_folder(step.out / std::to_string(i));
     save_submap(parts[i], step.out / std::to_string(i));
+    save_features(features_of(parts[i]), step.out / std::to_string(i) / kFeaturesFile);
   }
   std::printf("%s: %zu of %lld frames tracked, %zu keyframes, %zu parts\n", submap.source.c_str(),
               submap.trajectory.size(), static_cast<long long>(submap.frames_read),
@@ -109,30 +111,15 @@ int run(const TrackStep& step) {
 }
 
 int run(const RetrieveStep& step) {
-  KeyframeRetrieval retrieval;
-  for (const fs::path& folder : step.submaps) retrieval.add(load_submap(folder));
-  json pairs = json::array();
-  for (const CandidatePair& pair : retrieval.find_pairs())
-    pairs.push_back({{"a", pair.a}, {"b", pair.b}, {"similar", pair.similar}});
-  write_bytes(step.out / "pairs.json", pairs.dump(1) + "\n");
-  std::printf("%zu keyframes of %zu recordings: %zu pairs of recordings may meet\n", retrieval.keyframes(),
-              step.submaps.size(), pairs.size());
+  const auto load = [](const std::vector<fs::path>& files) {
+    std::vector<SubmapFeatures> group;
+    std::transform(files.begin(), files.end(), std::back_inserter(group), load_features);
+    return group;
+  };
+  const std::vector<SubmapFeatures> a = load(step.a), b = load(step.b);
+  save_similarity(step.b.empty() ? compare_within(a) : compare_groups(a, b), step.out / kSimilarityFile);
+  std::printf("%zu recordings, compared with %zu\n", a.size(), step.b.empty() ? a.size() : b.size());
   return 0;
-}
-
-std::vector<CandidatePair> read_pairs(const fs::path& file, std::size_t submaps) {
-  std::vector<CandidatePair> pairs;
-  try {
-    for (const json& one : json::parse(read_bytes(file, "pairs of recordings")))
-      pairs.push_back({one.at("a").get<std::size_t>(), one.at("b").get<std::size_t>(),
-                       one.at("similar").get<std::size_t>()});
-  } catch (const json::exception& fault) {
-    throw Error(file.string() + ": is damaged: " + fault.what());
-  }
-  for (const CandidatePair& pair : pairs)
-    if (pair.a >= pair.b || pair.b >= submaps)
-      throw Error(file.string() + ": is damaged: no such recordings");
-  return pairs;
 }
 
 int run(const JoinStep& step) {

@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/building/keyframe_retrieval.hpp"
 #include "mapping/building/tile_grid.hpp"
 #include "mapping/types/pose_origin.hpp"
 
 namespace roomradar {
 
-/// Tracks the camera of one recording. Writes a submap to out/0. After each loss of tracking, begins another
-/// submap, out/1 and so on; see split_at_losses().
+/// Tracks the camera of one recording. Writes a submap to out/0, and its features to out/0/features.bin; see
+/// load_features(). After each loss of tracking, begins another submap, out/1 and so on; see
+/// split_at_losses().
 struct TrackStep {
   std::string source;
   PoseOrigin poses = PoseOrigin::kTracked;
@@ -22,12 +22,15 @@ struct TrackStep {
 };
 int run(const TrackStep& step);
 
-/// Finds pairs of recordings that may show the same place. Writes out/pairs.json; see read_pairs().
+/// Compares the keyframes of two groups of submaps, or of one group with each other. Writes
+/// out/similarity.bin; see load_similarity().
 struct RetrieveStep {
-  std::vector<std::filesystem::path> submaps;  ///< folders
+  std::vector<std::filesystem::path> a, b;  ///< files of features; b is empty: within a
   std::filesystem::path out;
 };
 int run(const RetrieveStep& step);
+inline constexpr const char* kFeaturesFile = "features.bin";
+inline constexpr const char* kSimilarityFile = "similarity.bin";
 
 /// Compares two submaps. Writes out/joins.bin; see load_joins(). Depends only on these two submaps, so
 /// changes of other recordings do not require it again.
@@ -68,10 +71,6 @@ struct TileStep {
   std::filesystem::path out;
 };
 int run(const TileStep& step);
-
-/// Reads pairs.json; the pairs hold indices in RetrieveStep::submaps. Throws Error naming the file and the
-/// fault if it is missing or damaged.
-std::vector<CandidatePair> read_pairs(const std::filesystem::path& file, std::size_t submaps);
 
 /// Writes a submap's keyframe poses in the building. Throws Error if the file cannot be written.
 void save_placed_keyframes(const std::vector<Eigen::Isometry3d>& T_building_keyframe,

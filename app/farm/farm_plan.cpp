@@ -44,7 +44,7 @@ void plan_job(std::size_t job, ContentHashes& hashes, FarmPlan& plan) {
   const Job& stated = plan.manifest.jobs[job];
   PlannedJob& planned = plan.jobs[job];
   const std::uintmax_t before = hashes.bytes();
-  std::string text = "roomradar job 1\n";
+  std::string text = "roomradar job 2\n";  // to be increased when a command writes other files
   add(text, kVersion);
   for (const std::string& word : stated.words) {
     add(text, word);

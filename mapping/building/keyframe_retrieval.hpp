@@ -1,47 +1,83 @@
 // keyframe_retrieval.hpp: finds recordings of a building, and their keyframes, that may show the same place.
+//
+// Submaps are compared group by group, so that groups are compared by separate jobs, and a submap that
+// changes requires only the comparisons of its group again. The pairs do not depend on the groups.
 #pragma once
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "mapping/building/submap.hpp"
+#include "mapping/localization/feature_index.hpp"
 
 namespace roomradar {
 
+struct RetrievalConfig {
+  double min_step = 0.25;         ///< min view_distance() of the keyframes of a submap that are compared
+  std::size_t candidates = 12;    ///< max submaps that a keyframe resembles, those with the most collisions
+  std::uint32_t min_excess = 15;  ///< min collisions of similar keyframes beyond those of unrelated ones
+  std::size_t min_similar = 2;    ///< min number of similar keyframes in one of the submaps of a pair
+  std::size_t partners = 16;      ///< max pairs per submap, those with the most collisions in excess
+};
+
+/// The strongest features of a keyframe. Features of a repeated texture have equal hashes, which count once:
+/// otherwise two views of brickwork would be more similar than two views of one place. Source: Jegou, Douze
+/// and Schmid, On the burstiness of visual elements, CVPR 2009.
+struct KeyframeFeatures {
+  std::uint32_t count = 0;
+  std::array<std::vector<std::uint32_t>, kFeatureTables> hashes;  ///< by hash table, ascending, each once
+};
+/// Features of those keyframes of a submap that differ in their view.
+struct SubmapFeatures {
+  std::vector<KeyframeFeatures> keyframes;
+};
+SubmapFeatures features_of(const Submap& submap, const RetrievalConfig& config = {});
+
+/// A submap, as a keyframe of another sees it.
+struct SimilarSubmap {
+  std::uint32_t submap = 0;
+  std::uint32_t collisions = 0;  ///< equal hashes, with that of its keyframes which has the most
+};
+struct KeyframeSimilarity {
+  std::uint32_t features = 0;         ///< of the keyframe
+  std::vector<SimilarSubmap> others;  ///< most collisions first, then lowest number; no submap twice
+};
+/// By keyframe of a submap.
+using SubmapSimilarity = std::vector<KeyframeSimilarity>;
+
+/// Similarities of the submaps of two groups.
+struct GroupSimilarity {
+  std::vector<SubmapSimilarity> a;  ///< by submap of the first group; SimilarSubmap::submap is in the second
+  std::vector<SubmapSimilarity>
+      b;  ///< by submap of the second group; empty if a group is compared with itself
+};
+/// Counts the collisions of all keyframes of one group with all of another. Keeps `candidates` submaps per
+/// keyframe.
+GroupSimilarity compare_groups(std::span<const SubmapFeatures> a, std::span<const SubmapFeatures> b,
+                               const RetrievalConfig& config = {});
+/// Same for the submaps of one group with each other.
+GroupSimilarity compare_within(std::span<const SubmapFeatures> group, const RetrievalConfig& config = {});
+
+/// Adds the similarities of a submap's keyframes to those with other groups, and keeps the best `candidates`.
+/// @param number_of  by SimilarSubmap::submap of `found`: its number in `all`, ascending
+/// @return false if the submap has another number of keyframes or features there
+bool add_similar(SubmapSimilarity& all, const SubmapSimilarity& found, std::span<const std::size_t> number_of,
+                 const RetrievalConfig& config = {});
+
 /// Two submaps that may show the same place.
 struct CandidatePair {
-  std::size_t a = 0, b = 0;  ///< submaps, a < b
-  std::size_t similar = 0;   ///< keyframes of both that look similar to one of the other submap
+  std::size_t a = 0, b = 0;      ///< submaps, a < b
+  std::size_t similar = 0;       ///< keyframes of both that look similar to one of the other submap
+  std::uint64_t collisions = 0;  ///< of these, in excess
 };
-
-struct RetrievalConfig {
-  double min_step = 0.25;       ///< min view_distance() of the keyframes of a submap that are compared
-  int min_matches = 15;         ///< min number of features that match
-  std::size_t candidates = 24;  ///< max keyframes of other submaps to compare with a keyframe
-  std::size_t min_similar = 2;  ///< min number of similar keyframes in one of the submaps of a pair
-  std::size_t partners = 16;    ///< max pairs per submap, those with the most similar keyframes
-};
-
-/// Finds submaps with similar keyframes, by an index of their features. Of each submap, only the strongest
-/// features are kept (10 kB per keyframe, and 19 to 38 kB of the index).
-class KeyframeRetrieval {
- public:
-  explicit KeyframeRetrieval(const RetrievalConfig& config = {}) : config_(config) {}
-
-  /// Adds a submap, which gets the next number.
-  void add(const Submap& submap);
-  /// Compares the keyframes of each submap with similar ones of all others. Returns the pairs of submaps that
-  /// look alike, sorted by a, then b. A pair is among the `partners` best pairs of one of its submaps, so the
-  /// number of pairs grows linearly with the number of submaps.
-  [[nodiscard]] std::vector<CandidatePair> find_pairs();
-  [[nodiscard]] std::size_t keyframes() const { return database_.keyframes.size(); }
-
- private:
-  RetrievalConfig config_;
-  KeyframeDatabase database_;           ///< of all submaps, with descriptors only
-  std::vector<std::size_t> submap_of_;  ///< by keyframe of the database
-  std::size_t submaps_ = 0;
-};
+/// Returns the pairs of submaps that look alike, sorted by a, then b. A pair is among the `partners` best
+/// pairs of one of its submaps, so the number of pairs grows linearly with the number of submaps.
+/// @param similarities  by submap, with those of all groups
+std::vector<CandidatePair> choose_pairs(std::span<const SubmapSimilarity> similarities,
+                                        const RetrievalConfig& config = {});
 
 struct SimilarConfig {
   double min_step = 0.25;        ///< min view_distance() of the keyframes of a submap that are compared

@@ -14,8 +14,8 @@ namespace {
 
 // Two descriptors of one feature differ in 30 of 256 bits on average, those of different features in about
 // 110. With 20 bits, the former collide in 8 % of the tables, the latter in 0.001 %.
-constexpr unsigned kTables = 16;
-constexpr unsigned kBits = 20;        // per table
+constexpr unsigned kTables = kFeatureTables;
+constexpr unsigned kBits = kFeatureHashBits;
 constexpr unsigned kBucketBits = 16;  // select the bucket; the others are stored with the entry
 constexpr std::size_t kBuckets = 1U << kBucketBits;
 constexpr unsigned kKeyframeBits = 24;  // of an entry; the other bits are those of the hash
@@ -48,14 +48,16 @@ std::uint32_t hash_in(const std::array<std::uint8_t, kBits>& bits, const Descrip
   return hash;
 }
 
-/// Calls visit(table, hash) for each indexed descriptor and table.
+/// Calls visit(table, hash) for each table and descriptor.
 template <typename Visit>
 void for_each_hash(std::span<const Descriptor> descriptors, const Visit& visit) {
   static const TableBits bits = draw_bits();
-  const std::size_t count = std::min(descriptors.size(), FeatureIndex::kIndexedFeatures);
   for (unsigned table = 0; table < kTables; ++table)
-    for (const Descriptor& descriptor : descriptors.first(count))
-      visit(table, hash_in(bits[table], descriptor));
+    for (const Descriptor& descriptor : descriptors) visit(table, hash_in(bits[table], descriptor));
+}
+
+std::span<const Descriptor> indexed(std::span<const Descriptor> descriptors) {
+  return descriptors.first(std::min(descriptors.size(), FeatureIndex::kIndexedFeatures));
 }
 
 /// A bucket among those of all tables, and the hash bits that it does not imply.
@@ -69,13 +71,20 @@ struct BucketOf {
 
 }  // namespace
 
+std::vector<std::uint32_t> feature_hashes(std::span<const Descriptor> descriptors) {
+  std::vector<std::uint32_t> hashes;
+  hashes.reserve(kTables * descriptors.size());
+  for_each_hash(descriptors, [&](unsigned, std::uint32_t hash) { hashes.push_back(hash); });
+  return hashes;
+}
+
 void FeatureIndex::add(std::span<const Descriptor> descriptors) {
   static_assert(kMaxKeyframes < (1U << kKeyframeBits) &&
                 kMaxKeyframes * kTables * kIndexedFeatures < 1ULL << 32U);
   first_.resize(kTables * kBuckets, 0);
   if (entries_.empty()) entries_.emplace_back();
   if (keyframes_ < kMaxKeyframes)
-    for_each_hash(descriptors, [this](unsigned table, std::uint32_t hash) {
+    for_each_hash(indexed(descriptors), [this](unsigned table, std::uint32_t hash) {
       const BucketOf at(table, hash, kBucketBits);
       const std::uint32_t number = at.rest << kKeyframeBits | static_cast<std::uint32_t>(keyframes_);
       entries_.push_back(
@@ -137,7 +146,7 @@ std::vector<std::size_t> FeatureIndex::candidates(std::span<const Descriptor> qu
 
   // Buckets are all over the memory: each pass fetches what the next one reads.
   std::vector<BucketOf> in_sorted, in_lists;
-  for_each_hash(query, [&](unsigned table, std::uint32_t hash) {
+  for_each_hash(indexed(query), [&](unsigned table, std::uint32_t hash) {
     if (!sorted_.empty())
       __builtin_prefetch(&begin_[in_sorted.emplace_back(table, hash, sorted_bucket_bits_).bucket]);
     if (entries_.size() > 1)

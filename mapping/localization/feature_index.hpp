@@ -10,6 +10,13 @@
 
 namespace roomradar {
 
+/// Returns the hashes of descriptors, table by table: hash i of table t at [t * descriptors.size() + i],
+/// below 2^kFeatureHashBits. Two descriptors collide in a table if their hashes there are equal.
+std::vector<std::uint32_t> feature_hashes(std::span<const Descriptor> descriptors);
+
+inline constexpr unsigned kFeatureTables = 16;
+inline constexpr unsigned kFeatureHashBits = 20;
+
 /// Index over the descriptors of a sequence of keyframes, by locality-sensitive hashing. Two descriptors
 /// collide in one of the index's hash tables if they have equal values at the table's randomly chosen bits.
 /// Descriptors of one feature collide often, those of different features rarely. Deterministic. Source: Indyk
