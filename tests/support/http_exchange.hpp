@@ -10,7 +10,8 @@
 namespace roomradar::test {
 
 struct HttpAnswer {
-  int status = 0;  ///< 0: no answer
+  bool is_connected = false;  ///< the server accepted the connection
+  int status = 0;             ///< 0: no answer
   std::string head, body;
 };
 
@@ -26,7 +27,8 @@ inline HttpAnswer http_exchange(int port, const std::string& request, bool is_wh
   const timeval patience{60, 0};
   ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
   std::string all;
-  if (::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof(to)) == 0) {
+  answer.is_connected = ::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof(to)) == 0;
+  if (answer.is_connected) {
     std::size_t sent = 0;
     while (sent < request.size()) {
       const ssize_t n = ::send(socket, request.data() + sent, request.size() - sent, MSG_NOSIGNAL);
