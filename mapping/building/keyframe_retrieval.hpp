@@ -50,9 +50,9 @@ using SubmapSimilarity = std::vector<KeyframeSimilarity>;
 
 /// Similarities of the submaps of two groups.
 struct GroupSimilarity {
-  std::vector<SubmapSimilarity> a;  ///< by submap of the first group; SimilarSubmap::submap is in the second
-  std::vector<SubmapSimilarity>
-      b;  ///< by submap of the second group; empty if a group is compared with itself
+  // By submap of the first and of the second group; SimilarSubmap::submap is in the other group. b is empty
+  // if a group is compared with itself.
+  std::vector<SubmapSimilarity> a, b;
 };
 /// Counts the collisions of all keyframes of one group with all of another. Keeps `candidates` submaps per
 /// keyframe.

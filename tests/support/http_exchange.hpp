@@ -4,6 +4,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -16,16 +18,19 @@ struct HttpAnswer {
 };
 
 /// Sends a request as it is, and reads until the server closes the connection.
-/// @param is_whole  false: says that nothing follows, so the server need not wait for the rest
-inline HttpAnswer http_exchange(int port, const std::string& request, bool is_whole = true) {
+/// @param patience  then says that nothing follows, so that the server does not wait for a rest; 0: at once.
+///                  cpp-httplib takes this for a closed connection, and does not answer any more.
+inline HttpAnswer http_exchange(int port, const std::string& request,
+                                std::chrono::milliseconds patience = std::chrono::minutes(1)) {
   HttpAnswer answer;
   const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_port = htons(static_cast<std::uint16_t>(port));
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const timeval patience{60, 0};
-  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+  const auto wait_ms = patience.count() > 0 ? patience.count() : 60'000;
+  const timeval timeout{wait_ms / 1000, wait_ms % 1000 * 1000};
+  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof(timeout));
   std::string all;
   answer.is_connected = ::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof(to)) == 0;
   if (answer.is_connected) {
@@ -35,10 +40,17 @@ inline HttpAnswer http_exchange(int port, const std::string& request, bool is_wh
       if (n <= 0) break;  // refused early; the answer may be there all the same
       sent += static_cast<std::size_t>(n);
     }
-    if (!is_whole) ::shutdown(socket, SHUT_WR);
     char piece[16'384];
-    for (ssize_t n = 0; (n = ::recv(socket, piece, sizeof(piece), 0)) > 0;)
-      all.append(piece, static_cast<std::size_t>(n));
+    for (bool may_follow = patience.count() > 0;;) {
+      if (!may_follow) ::shutdown(socket, SHUT_WR);
+      const ssize_t n = ::recv(socket, piece, sizeof(piece), 0);
+      if (n > 0)
+        all.append(piece, static_cast<std::size_t>(n));
+      else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK) && may_follow)
+        may_follow = false;
+      else
+        break;
+    }
   }
   ::close(socket);
   const std::size_t end = all.find("\r\n\r\n");
