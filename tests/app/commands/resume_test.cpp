@@ -129,7 +129,10 @@ class ResumeTest : public ::testing::Test {
     EXPECT_TRUE(diff_maps(map_a.octree, map_b.octree, Eigen::Isometry3d::Identity()).empty());
   }
 
-  static void SetUpTestSuite() { shared_ = new test::TemporaryFolder; }
+  static void SetUpTestSuite() {
+    shared_ = new test::TemporaryFolder;
+    setenv("TMPDIR", shared_->path().c_str(), 1);  // programs that are killed leave temporary files there
+  }
   static void TearDownTestSuite() { delete shared_; }
 
   test::TemporaryFolder temporary_;
