@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mapping/localization/feature_index.hpp"
+#include "mapping/mesh/serialize_mesh.hpp"
 #include "mapping/storage/binary_file.hpp"
 #include "mapping/types/serialize.hpp"
 
@@ -23,15 +24,9 @@ template <typename Archive>
 static void serialize(Archive& archive, KeyframeFeatures& features) {
   serialize(archive, features.count);
   for (std::vector<std::uint32_t>& hashes : features.hashes) {
-    std::uint64_t count = hashes.size();
-    serialize(archive, count);
-    if constexpr (Archive::kReads) {
-      archive.require(count, sizeof(std::uint32_t));
-      hashes.resize(count);
-    }
-    archive.raw(hashes.data(), count * sizeof(std::uint32_t));
+    serialize_items(archive, hashes);
     if constexpr (Archive::kReads)
-      if (count > features.count || (count > 0 && hashes.back() >> kFeatureHashBits != 0) ||
+      if (hashes.size() > features.count || (!hashes.empty() && hashes.back() >> kFeatureHashBits != 0) ||
           std::adjacent_find(hashes.begin(), hashes.end(), std::greater_equal<>()) != hashes.end())
         archive.fail("is damaged: not hashes of features in order");
   }

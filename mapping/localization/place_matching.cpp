@@ -134,16 +134,6 @@ std::vector<std::size_t> most_alike_of(const std::vector<std::size_t>& candidate
   return alike;
 }
 
-bool is_alike(const MapKeyframe& place, const MapKeyframe& keyframe, int min_matches) {
-  const Descriptors from = strongest_of(place), to = strongest_of(keyframe);
-  int missing = min_matches;
-  for (std::size_t i = 0; i < from.size() && missing > 0; ++i) {
-    if (missing > static_cast<int>(from.size() - i)) return false;
-    if (match_of(from[i], to)) --missing;
-  }
-  return missing <= 0;
-}
-
 KeyframeMatch match_keyframes(const MapKeyframe& a, const MapKeyframe& b) {
   std::vector<PointPair> pairs;
   for (const auto& [i, j] : matches(b.descriptors, a.descriptors)) {

@@ -24,10 +24,6 @@ std::vector<std::size_t> most_alike_of(const std::vector<std::size_t>& candidate
                                        const KeyframeDatabase& keyframe_database, std::size_t count,
                                        int min_matches);
 
-/// Returns whether at least `min_matches` features of two keyframes match. Compares the same features as
-/// most_alike(), but only until the answer is certain.
-bool is_alike(const MapKeyframe& place, const MapKeyframe& keyframe, int min_matches);
-
 /// Relative pose of two keyframes a and b, from their matched features.
 struct KeyframeMatch {
   int inliers = 0;
