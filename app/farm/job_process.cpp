@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <optional>
@@ -26,16 +27,29 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kCannotBegin = 126;
+// Lets glibc ask for pages of 2 MB. A job lives for seconds, and up to a fifth of its time went into the page
+// faults of memory that it takes and gives back.
+constexpr const char* kTunables = "GLIBC_TUNABLES";
+constexpr const char* kLargePages = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
 
 /// Becomes the program. Runs between fork and exec, where only few functions may be called.
-[[noreturn]] void become(const char* program, char* const* arguments, const char* folder, int nothing,
-                         int log, pid_t parent) {
+[[noreturn]] void become(const char* program, char* const* arguments, char* const* environment,
+                         const char* folder, int nothing, int log, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setpgid(0, 0);  // Ctrl-C reaches the farm, which then ends its jobs
   const bool is_ready = getppid() == parent && chdir(folder) == 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
                         dup2(log, STDOUT_FILENO) >= 0 && dup2(log, STDERR_FILENO) >= 0;
-  if (is_ready) execv(program, arguments);
+  if (is_ready) execve(program, arguments, environment);
   _exit(kCannotBegin);
+}
+
+/// Returns this process's environment, with large pages unless the user has set tunables.
+std::vector<char*> job_environment() {
+  std::vector<char*> environment;
+  for (char** variable = environ; *variable != nullptr; ++variable) environment.push_back(*variable);
+  if (std::getenv(kTunables) == nullptr) environment.push_back(const_cast<char*>(kLargePages));
+  environment.push_back(nullptr);
+  return environment;
 }
 
 /// Starts the program. Throws Error if that fails.
@@ -45,11 +59,13 @@ pid_t start(const fs::path& program, std::vector<std::string> words, const fs::p
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  const std::vector<char*> environment = job_environment();
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   const int log = open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   const pid_t parent = getpid();
   const pid_t child = nothing >= 0 && log >= 0 ? fork() : -1;
-  if (child == 0) become(program.c_str(), arguments.data(), folder.c_str(), nothing, log, parent);
+  if (child == 0)
+    become(program.c_str(), arguments.data(), environment.data(), folder.c_str(), nothing, log, parent);
   const std::string reason = std::strerror(errno);
   if (nothing >= 0) close(nothing);
   if (log >= 0) close(log);

@@ -16,42 +16,79 @@ struct ExtrapolatedSample {
   float distance_m;
 };
 
-const TsdfSample* known_at(const std::vector<Brick>& bricks, const BrickNeighbourhood::SampleIndex& index) {
-  if (index.brick == TsdfBricks::kNone) return nullptr;
-  const TsdfSample& sample = bricks[index.brick].samples[index.offset];
-  return sample.known() ? &sample : nullptr;
+// Distances of a brick and of two samples beyond each of its six faces.
+struct BrickWindow {
+  static constexpr int kBeyond = 2, kEdge = kBrickEdge + 2 * kBeyond;
+  static constexpr std::array<int, 3> kSteps{1, kEdge, kEdge* kEdge};  // along each axis
+
+  std::array<float, kEdge * kEdge * kEdge> distance_m;
+  std::array<bool, kEdge * kEdge * kEdge> is_known{};  // those beside the brick's edges stay unknown
+
+  // Index of a sample relative to the brick's lowest.
+  static int index_of(int x, int y, int z) {
+    return x + kBeyond + kEdge * (y + kBeyond + kEdge * (z + kBeyond));
+  }
+};
+
+// Copies the samples from `low` to below `high`, both relative to the brick's lowest, from the brick that is
+// `from` bricks away.
+void copy_samples(const TsdfBricks& bricks, std::size_t b, const Eigen::Vector3i& from,
+                  const Eigen::Vector3i& low, const Eigen::Vector3i& high, BrickWindow& window) {
+  const std::size_t brick = from.isZero() ? b : bricks.find(bricks.bricks()[b].first + kBrickEdge * from);
+  for (int z = low.z(); z < high.z(); ++z)
+    for (int y = low.y(); y < high.y(); ++y)
+      for (int x = low.x(); x < high.x(); ++x) {
+        const auto to = static_cast<std::size_t>(BrickWindow::index_of(x, y, z));
+        window.is_known[to] = false;
+        if (brick == TsdfBricks::kNone) continue;
+        const TsdfSample& sample =
+            bricks.bricks()[brick].samples[brick_offset(Eigen::Vector3i(x, y, z) - kBrickEdge * from)];
+        window.is_known[to] = sample.known();
+        window.distance_m[to] = sample.distance_m;
+      }
+}
+
+void fill_window(const TsdfBricks& bricks, std::size_t b, BrickWindow& window) {
+  const Eigen::Vector3i zero = Eigen::Vector3i::Zero(), edge = Eigen::Vector3i::Constant(kBrickEdge);
+  copy_samples(bricks, b, zero, zero, edge, window);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3i unit = Eigen::Vector3i::Unit(axis);
+    copy_samples(bricks, b, unit, zero + kBrickEdge * unit, edge + BrickWindow::kBeyond * unit, window);
+    copy_samples(bricks, b, -unit, zero - BrickWindow::kBeyond * unit, edge - kBrickEdge * unit, window);
+  }
 }
 
 // Appends a sample for each unknown one next to a known one, in bricks begin..end-1.
 void extrapolated_neighbours(const TsdfBricks& bricks, std::size_t begin, std::size_t end,
                              std::vector<ExtrapolatedSample>& samples) {
-  const std::vector<Brick>& all = bricks.bricks();
+  BrickWindow window;
   for (std::size_t b = begin; b < end; ++b) {
-    const BrickNeighbourhood around(bricks, b);
-    for (int z = 0; z < kBrickEdge; ++z)
-      for (int y = 0; y < kBrickEdge; ++y)
-        for (int x = 0; x < kBrickEdge; ++x) {
-          const Eigen::Vector3i voxel(x, y, z);
-          const TsdfSample& own = all[b].samples[brick_offset(voxel)];
-          if (own.known() || own.mirrored) continue;
-          float on_lines = 0.0F, beside = 0.0F;  // sums of distances
-          int lines = 0, count = 0;
-          for (int side = 0; side < 6; ++side) {
-            const Eigen::Vector3i step = (side % 2 == 0 ? 1 : -1) * Eigen::Vector3i::Unit(side / 2);
-            const TsdfSample* next = known_at(all, around.index_of(voxel + step));
-            if (!next) continue;
-            const TsdfSample* beyond = known_at(all, around.index_of(voxel + 2 * step));
-            beside += next->distance_m;
-            ++count;
-            if (!beyond) continue;
-            on_lines += 2.0F * next->distance_m - beyond->distance_m;
-            ++lines;
-          }
-          if (count > 0)
-            samples.push_back(
-                {b, brick_offset(voxel),
-                 lines > 0 ? on_lines / static_cast<float>(lines) : beside / static_cast<float>(count)});
-        }
+    fill_window(bricks, b, window);
+    for (std::size_t offset = 0; offset < kBrickSize; ++offset) {
+      const int x = static_cast<int>(offset % kBrickEdge),
+                y = static_cast<int>(offset / kBrickEdge % kBrickEdge),
+                z = static_cast<int>(offset / (kBrickEdge * kBrickEdge));
+      const int own = BrickWindow::index_of(x, y, z);
+      if (window.is_known[static_cast<std::size_t>(own)] || bricks.bricks()[b].samples[offset].mirrored)
+        continue;
+      float on_lines = 0.0F, beside = 0.0F;  // sums of distances
+      int lines = 0, count = 0;
+      for (std::size_t side = 0; side < 6; ++side) {
+        const int step = side % 2 == 0 ? BrickWindow::kSteps[side / 2] : -BrickWindow::kSteps[side / 2];
+        const auto next = static_cast<std::size_t>(own + step),
+                   beyond = static_cast<std::size_t>(own + 2 * step);
+        if (!window.is_known[next]) continue;
+        beside += window.distance_m[next];
+        ++count;
+        if (!window.is_known[beyond]) continue;
+        on_lines += 2.0F * window.distance_m[next] - window.distance_m[beyond];
+        ++lines;
+      }
+      if (count > 0)
+        samples.push_back(
+            {b, offset,
+             lines > 0 ? on_lines / static_cast<float>(lines) : beside / static_cast<float>(count)});
+    }
   }
 }
 

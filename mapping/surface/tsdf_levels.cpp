@@ -49,18 +49,33 @@ void for_each_in_cube(int edge, const Visit& visit) {
       for (int x = 0; x < edge; ++x) visit(Eigen::Vector3i(x, y, z));
 }
 
-/// Calls visit(node) for each node, on all cores.
-template <typename Visit>
-void for_each_node(const std::vector<VoxelIndex>& nodes, const Visit& visit) {
-  constexpr std::size_t kNodesAtOnce = 256;
-  parallel_ranges(nodes.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) visit(nodes[i]);
-  });
-}
+/// Finds samples of a grid, faster if successive ones are in the same brick.
+template <typename Bricks>
+class SampleFinder {
+ public:
+  explicit SampleFinder(Bricks& bricks) : bricks_(bricks) {}
+  /// Returns the sample of a cell; null if no brick has it.
+  auto* operator()(const VoxelIndex& cell) {
+    const VoxelIndex first = brick_of(cell);
+    if (!(first == first_)) {
+      first_ = first;
+      brick_ = bricks_.find(first);
+    }
+    return brick_ == TsdfBricks::kNone ? nullptr
+                                       : &bricks_.bricks()[brick_].samples[brick_offset(cell - first)];
+  }
 
-TsdfSample& place_in(TsdfBricks& bricks, const VoxelIndex& cell) {
-  const VoxelIndex first = brick_of(cell);
-  return bricks.bricks()[bricks.find(first)].samples[brick_offset(cell - first)];
+ private:
+  Bricks& bricks_;
+  VoxelIndex first_ = VoxelIndex::Ones();  // lowest voxel of the brick found last; of none at the start
+  std::size_t brick_ = TsdfBricks::kNone;
+};
+
+/// Calls work(begin, end) for ranges of nodes, on all cores.
+template <typename Work>
+void for_ranges_of(const std::vector<VoxelIndex>& nodes, const Work& work) {
+  constexpr std::size_t kNodesAtOnce = 256;
+  parallel_ranges(nodes.size(), kNodesAtOnce, work);
 }
 
 TsdfSample mirrored(TsdfSample sample, float distance_m) {
@@ -128,67 +143,76 @@ TsdfLevels::TsdfLevels(const StaticMap& map, float min_weight, const Eigen::Alig
   voxels_beside_coarse_ = std::move(voxels_beside.cells);
 
   // The samples.
+  SampleFinder in_voxels(voxels), in_coarse(coarse);
   map.visit_cells(box_world, [&](const SurfaceSample& sample, int edge) {
     if (sample.weight < min_weight) return;
     const VoxelIndex cell = edge == 1 ? sample.voxel : divided(sample.voxel, kCoarseEdge);
-    place_in(edge == 1 ? voxels : coarse, cell) = {.distance_m = sample.distance_m,
-                                                   .weight = sample.weight,
-                                                   .colour = sample.colour,
-                                                   .has_colour = sample.has_colour};
+    *(edge == 1 ? in_voxels : in_coarse)(cell) = {.distance_m = sample.distance_m,
+                                                  .weight = sample.weight,
+                                                  .colour = sample.colour,
+                                                  .has_colour = sample.has_colour};
   });
   mirror_voxels_in_coarse();
   mirror_coarse_in_voxels();
 }
 
 void TsdfLevels::mirror_coarse_in_voxels() {
-  for_each_node(coarse_beside_voxels_, [&](const VoxelIndex& node) {
-    for_each_in_cube(kCoarsePerNode, [&](const Eigen::Vector3i& at) {
-      const VoxelIndex cell = kCoarsePerNode * node + at;
-      const TsdfSample* own = sample_in(coarse, cell);
-      const bool is_known = own != nullptr && own->known();
-      std::array<std::array<float, 2>, 3> step_m{};  // [axis][side]: change to the voxels on that side
-      for (int axis = 0; is_known && axis < 3; ++axis) {
-        std::array<bool, 2> has{};
-        auto& steps = step_m[static_cast<std::size_t>(axis)];
-        for (std::size_t side = 0; side < 2; ++side) {
-          const TsdfSample* next = sample_in(coarse, cell + (side == 0 ? -1 : 1) * VoxelIndex::Unit(axis));
-          has[side] = next != nullptr && next->known();
-          if (has[side]) steps[side] = 0.25F * (next->distance_m - own->distance_m);
+  for_ranges_of(coarse_beside_voxels_, [&](std::size_t begin, std::size_t end) {
+    SampleFinder in_coarse(std::as_const(coarse)), beside(std::as_const(coarse));
+    SampleFinder in_voxels(voxels);
+    for (std::size_t i = begin; i < end; ++i)
+      for_each_in_cube(kCoarsePerNode, [&](const Eigen::Vector3i& at) {
+        const VoxelIndex cell = kCoarsePerNode * coarse_beside_voxels_[i] + at;
+        const TsdfSample* own = in_coarse(cell);
+        const bool is_known = own != nullptr && own->known();
+        std::array<std::array<float, 2>, 3> step_m{};  // [axis][side]: change to the voxels on that side
+        for (int axis = 0; is_known && axis < 3; ++axis) {
+          std::array<bool, 2> has{};
+          auto& steps = step_m[static_cast<std::size_t>(axis)];
+          for (std::size_t side = 0; side < 2; ++side) {
+            const VoxelIndex next_cell = cell + (side == 0 ? -1 : 1) * VoxelIndex::Unit(axis);
+            const bool is_in_brick = brick_of(next_cell) == brick_of(cell);
+            const TsdfSample* next = (is_in_brick ? in_coarse : beside)(next_cell);
+            has[side] = next != nullptr && next->known();
+            if (has[side]) steps[side] = 0.25F * (next->distance_m - own->distance_m);
+          }
+          for (std::size_t side = 0; side < 2; ++side)
+            if (!has[side]) steps[side] = -steps[1 - side];
         }
-        for (std::size_t side = 0; side < 2; ++side)
-          if (!has[side]) steps[side] = -steps[1 - side];
-      }
-      for_each_in_cube(kCoarseEdge, [&](const Eigen::Vector3i& offset) {
-        TsdfSample& voxel = place_in(voxels, kCoarseEdge * cell + offset);
-        voxel = unknown_mirrored();
-        if (!is_known) return;
-        float distance_m = own->distance_m;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          distance_m += step_m[axis][static_cast<std::size_t>(offset[static_cast<Eigen::Index>(axis)])];
-        voxel = mirrored(*own, distance_m);
+        for_each_in_cube(kCoarseEdge, [&](const Eigen::Vector3i& offset) {
+          TsdfSample& voxel = *in_voxels(kCoarseEdge * cell + offset);
+          voxel = unknown_mirrored();
+          if (!is_known) return;
+          float distance_m = own->distance_m;
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            distance_m += step_m[axis][static_cast<std::size_t>(offset[static_cast<Eigen::Index>(axis)])];
+          voxel = mirrored(*own, distance_m);
+        });
       });
-    });
   });
 }
 
 void TsdfLevels::mirror_voxels_in_coarse() {
-  for_each_node(voxels_beside_coarse_, [&](const VoxelIndex& node) {
-    for_each_in_cube(kCoarsePerNode, [&](const Eigen::Vector3i& at) {
-      const VoxelIndex cell = kCoarsePerNode * node + at;
-      float sum_m = 0.0F;
-      int known = 0;
-      TsdfSample any;
-      for_each_in_cube(kCoarseEdge, [&](const Eigen::Vector3i& offset) {
-        const TsdfSample* voxel = sample_in(voxels, kCoarseEdge * cell + offset);
-        if (voxel == nullptr || !voxel->known()) return;
-        sum_m += voxel->distance_m;
-        any = *voxel;
-        ++known;
+  for_ranges_of(voxels_beside_coarse_, [&](std::size_t begin, std::size_t end) {
+    SampleFinder in_voxels(std::as_const(voxels));
+    SampleFinder in_coarse(coarse);
+    for (std::size_t i = begin; i < end; ++i)
+      for_each_in_cube(kCoarsePerNode, [&](const Eigen::Vector3i& at) {
+        const VoxelIndex cell = kCoarsePerNode * voxels_beside_coarse_[i] + at;
+        float sum_m = 0.0F;
+        int known = 0;
+        TsdfSample any;
+        for_each_in_cube(kCoarseEdge, [&](const Eigen::Vector3i& offset) {
+          const TsdfSample* voxel = in_voxels(kCoarseEdge * cell + offset);
+          if (voxel == nullptr || !voxel->known()) return;
+          sum_m += voxel->distance_m;
+          any = *voxel;
+          ++known;
+        });
+        constexpr int kVoxelsPerCell = kCoarseEdge * kCoarseEdge * kCoarseEdge;
+        *in_coarse(cell) =
+            known == kVoxelsPerCell ? mirrored(any, sum_m / kVoxelsPerCell) : unknown_mirrored();
       });
-      constexpr int kVoxelsPerCell = kCoarseEdge * kCoarseEdge * kCoarseEdge;
-      place_in(coarse, cell) =
-          known == kVoxelsPerCell ? mirrored(any, sum_m / kVoxelsPerCell) : unknown_mirrored();
-    });
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "mapping/types/system/parallel_for.hpp"
@@ -30,56 +31,72 @@ struct NeighbourBricks {
   std::array<std::size_t, 3> after{};
 };
 
-/// Sweeps over one grid. Keeps the measured distances.
+/// Sweeps over one grid.
 class Sweeps {
  public:
-  explicit Sweeps(TsdfBricks& bricks)
-      : all_(bricks.bricks()), neighbours_(all_.size()), measured_m_(all_.size()) {
+  Sweeps(TsdfBricks& bricks, float strength)
+      : all_(bricks.bricks()), strength_(strength), neighbours_(all_.size()) {
+    for (MovingSamples& moving : moving_) moving.first.push_back(0);
     for (std::size_t b = 0; b < all_.size(); ++b) {
       for (std::size_t a = 0; a < 3; ++a) {
         const VoxelIndex step = kBrickEdge * VoxelIndex::Unit(static_cast<Eigen::Index>(a));
         neighbours_[b].before[a] = bricks.find(all_[b].first - step);
         neighbours_[b].after[a] = bricks.find(all_[b].first + step);
       }
-      for (std::size_t i = 0; i < kBrickSize; ++i) measured_m_[b][i] = all_[b].samples[i].distance_m;
+      for (std::size_t i = 0; i < kBrickSize; ++i) {
+        const TsdfSample& sample = all_[b].samples[i];
+        if (!sample.known() || sample.mirrored || sample.weight > kFirm * strength) continue;
+        const std::size_t parity = (i ^ i / kBrickEdge ^ i / (kBrickEdge * kBrickEdge)) & 1U;
+        moving_[parity].samples.push_back({sample.distance_m, static_cast<std::uint16_t>(i)});
+      }
+      for (MovingSamples& moving : moving_) moving.first.push_back(moving.samples.size());
     }
   }
 
-  void sweep(float strength) {
-    for (const std::size_t parity : {0U, 1U}) half_sweep(strength, parity);
+  void sweep() {
+    for (const MovingSamples& moving : moving_) half_sweep(moving);
   }
 
  private:
-  std::vector<Brick>& all_;
-  std::vector<NeighbourBricks> neighbours_;
-  std::vector<std::array<float, kBrickSize>> measured_m_;
+  struct MovingSample {
+    float measured_m;
+    std::uint16_t offset;  // in Brick::samples
+  };
+  // The samples of each brick that are smoothed.
+  struct MovingSamples {
+    std::vector<MovingSample> samples;
+    std::vector<std::size_t> first;  // index into samples per brick, and the end
+  };
 
-  // Smooths the cells whose coordinates have a sum of this parity (0 or 1). Their axis neighbours have the
-  // other parity, so the order of cells and bricks does not matter.
-  void half_sweep(float strength, std::size_t parity) {
+  std::vector<Brick>& all_;
+  float strength_;
+  std::vector<NeighbourBricks> neighbours_;
+  // Those whose coordinates have an even sum, and the others. Their axis neighbours have
+  // the other parity, so the order of cells and bricks does not matter.
+  std::array<MovingSamples, 2> moving_;
+
+  void half_sweep(const MovingSamples& moving) {
     parallel_ranges(all_.size(), kBricksAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) half_sweep_of(b, strength, parity);
+      for (std::size_t b = begin; b < end; ++b)
+        for (std::size_t k = moving.first[b]; k < moving.first[b + 1]; ++k) smooth(b, moving.samples[k]);
     });
   }
-  void half_sweep_of(std::size_t b, float strength, std::size_t parity) {
-    for (std::size_t i = 0; i < kBrickSize; ++i) {
-      if (((i ^ i / kBrickEdge ^ i / (kBrickEdge * kBrickEdge)) & 1U) != parity) continue;
-      TsdfSample& sample = all_[b].samples[i];
-      if (!sample.known() || sample.mirrored || sample.weight > kFirm * strength) continue;
-      float sum = sample.weight * measured_m_[b][i];
-      float weight = sample.weight;
-      for (const auto& [axis, step] : kAxes) {
-        const int coordinate = static_cast<int>(i) / step % kBrickEdge;
-        const TsdfSample* before = neighbour(neighbours_[b].before[axis], b, i, -step, coordinate == 0);
-        if (!before) continue;
-        const TsdfSample* after =
-            neighbour(neighbours_[b].after[axis], b, i, step, coordinate == kBrickEdge - 1);
-        if (!after) continue;
-        sum += strength * 0.5F * (before->distance_m + after->distance_m);
-        weight += strength;
-      }
-      sample.distance_m = sum / weight;
+  void smooth(std::size_t b, const MovingSample& moving) {
+    const std::size_t i = moving.offset;
+    TsdfSample& sample = all_[b].samples[i];
+    float sum = sample.weight * moving.measured_m;
+    float weight = sample.weight;
+    for (const auto& [axis, step] : kAxes) {
+      const int coordinate = static_cast<int>(i) / step % kBrickEdge;
+      const TsdfSample* before = neighbour(neighbours_[b].before[axis], b, i, -step, coordinate == 0);
+      if (!before) continue;
+      const TsdfSample* after =
+          neighbour(neighbours_[b].after[axis], b, i, step, coordinate == kBrickEdge - 1);
+      if (!after) continue;
+      sum += strength_ * 0.5F * (before->distance_m + after->distance_m);
+      weight += strength_;
     }
+    sample.distance_m = sum / weight;
   }
 
   // The sample one step from i along an axis, in brick b or the next; null if unknown.
@@ -96,11 +113,11 @@ class Sweeps {
 }  // namespace
 
 void smooth(TsdfLevels& levels, float strength, int sweeps) {
-  Sweeps voxels(levels.voxels), coarse(levels.coarse);
+  Sweeps voxels(levels.voxels, strength), coarse(levels.coarse, kCoarseStrength * strength);
   for (int i = 0; i < sweeps; ++i) {
-    voxels.sweep(strength);
+    voxels.sweep();
     levels.mirror_voxels_in_coarse();
-    coarse.sweep(kCoarseStrength * strength);
+    coarse.sweep();
     levels.mirror_coarse_in_voxels();
   }
 }
