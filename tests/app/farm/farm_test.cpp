@@ -31,6 +31,7 @@ case $2 in
   join) cat "$3"/result "$3"/result > "$4/result" ;;
   fail) echo "no such room" >&2; exit 3 ;;
   crash) kill -SEGV $$ ;;
+  tunables) echo "$GLIBC_TUNABLES" > "$4/result" ;;
   sleep) echo half > "$4/result"; sleep 30 ;;
 esac
 )";
@@ -64,6 +65,16 @@ class Farm : public testing::Test {
   fs::path program_ = folder_.path() / "program", out_ = folder_.path() / "out";
   std::atomic<bool> is_cancelled_ = false;
 };
+
+TEST_F(Farm, JobsAskForLargePagesUnlessTheUserHasSetTunables) {
+  unsetenv("GLIBC_TUNABLES");
+  run(plan("a: prescan tunables - {}\n"));
+  EXPECT_EQ(result("a"), "glibc.malloc.hugetlb=1\n");
+  setenv("GLIBC_TUNABLES", "glibc.malloc.tcache_count=7", 1);
+  run(plan("b: prescan tunables - {}\n"));
+  unsetenv("GLIBC_TUNABLES");
+  EXPECT_EQ(result("b"), "glibc.malloc.tcache_count=7\n");
+}
 
 TEST_F(Farm, DoesWhatIsNotDone) {
   const std::string jobs = "a: prescan write input {}\nb: prescan join {a} {}\nc: prescan join {b} {}\n";
