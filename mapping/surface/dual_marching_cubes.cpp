@@ -34,6 +34,7 @@ class Net {
             on_vertex_grid(grid.edge * grid.bricks.bricks().front().first.cast<double>() * resolution_m);
         break;
       }
+    // Each step needs what the one before found in neighbouring bricks.
     for_each_brick([this](Grid& grid, std::size_t b) { find_states(grid, b); });
     for_each_brick([this](Grid& grid, std::size_t b) { find_signs(grid, b); });
     for_each_brick([this](Grid& grid, std::size_t b) { count_vertices(grid, b); });
