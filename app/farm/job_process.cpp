@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kCannotBegin = 126;
-// Lets glibc ask for pages of 2 MB. A job lives for seconds, and up to a fifth of its time went into the page
-// faults of memory that it takes and gives back.
+// Lets glibc ask for pages of 2 MB. A job lives for seconds, and a tenth to a fifth of its time went into the
+// page faults of its memory.
 constexpr const char* kTunables = "GLIBC_TUNABLES";
 constexpr const char* kLargePages = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
 

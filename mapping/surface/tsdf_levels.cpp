@@ -89,9 +89,7 @@ TsdfSample unknown_mirrored() { return mirrored({}, 0.0F); }
 }  // namespace
 
 const TsdfSample* sample_in(const TsdfBricks& bricks, const VoxelIndex& cell) {
-  const VoxelIndex first = brick_of(cell);
-  const std::size_t brick = bricks.find(first);
-  return brick == TsdfBricks::kNone ? nullptr : &bricks.bricks()[brick].samples[brick_offset(cell - first)];
+  return SampleFinder(bricks)(cell);
 }
 
 TsdfLevels::TsdfLevels(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world)
