@@ -15,6 +15,7 @@ namespace roomradar {
 namespace {
 
 constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
+
 // Vertices and origin are at multiples of this. Hence a vertex is the same in two meshes of different origin,
 // and no bit is lost within 128 m of the origin.
 constexpr double kVertexStep_m = 1.0 / (1 << 17);
@@ -45,7 +46,7 @@ class Net {
   Mesh take() { return std::move(mesh_); }
 
  private:
-  // What of a sample decides whether cells and polygons exist; bits.
+  // Properties of a sample that decide which cells and polygons exist, one bit each.
   enum State : std::uint8_t { kKnown = 1, kMirrored = 2, kNegative = 4, kExtrapolated = 8 };
   // The dual cells whose lowest sample is in one brick.
   struct BrickCells {
@@ -325,8 +326,6 @@ class Net {
       for (std::size_t i = 2; i < p.size(); ++i) triangles.push_back({p[0], p[i - 1], p[i]});
     }
   }
-
-  static constexpr std::size_t kBricksAtOnce = 64;  // of a thread
 
   std::array<Grid, 2> grids_;  // voxels, coarse cells
   double resolution_m_;

@@ -94,7 +94,6 @@ void extrapolated_neighbours(const TsdfBricks& bricks, std::size_t begin, std::s
 
 // Returns the samples of all bricks; each entry has those of kBricksAtOnce bricks.
 std::vector<std::vector<ExtrapolatedSample>> extrapolated_neighbours(const TsdfBricks& bricks) {
-  constexpr std::size_t kBricksAtOnce = 64;
   const std::size_t count = bricks.bricks().size();
   std::vector<std::vector<ExtrapolatedSample>> samples((count + kBricksAtOnce - 1) / kBricksAtOnce);
   parallel_ranges(count, kBricksAtOnce, [&](std::size_t begin, std::size_t end) {

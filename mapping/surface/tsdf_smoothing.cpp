@@ -14,7 +14,6 @@ namespace {
 // Samples with a weight above this many times the strength are skipped: they would move by less than a tenth
 // of the difference to their neighbours.
 constexpr float kFirm = 30.0F;
-constexpr std::size_t kBricksAtOnce = 64;  // of a thread
 
 // The strength in the grid of coarse cells, relative to that of voxels. Of 1, 1/2, 1/4, 1/8 on a simulated
 // dining room, 1/4 and 1/8 kept the shape of edges as well as voxels did; 1/4 has the lower median error.
@@ -71,8 +70,8 @@ class Sweeps {
   std::vector<Brick>& all_;
   float strength_;
   std::vector<NeighbourBricks> neighbours_;
-  // Those whose coordinates have an even sum, and the others. Their axis neighbours have
-  // the other parity, so the order of cells and bricks does not matter.
+  // One for each parity of the coordinates' sum. Axis neighbours have the other parity, so the order of cells
+  // and bricks does not matter.
   std::array<MovingSamples, 2> moving_;
 
   void half_sweep(const MovingSamples& moving) {
