@@ -14,14 +14,17 @@ struct ThreadSentences {
 };
 thread_local ThreadSentences thread_sentences;
 
-void keep(const char* call, const char* what, HandleError* error) noexcept {
+void keep(const char* call, const char* kind, const char* what, HandleError* error) noexcept {
+  thread_sentences.last.clear();
   try {
-    thread_sentences.last = std::string(call) + ": " + what;
-    if (error == nullptr) return;
-    const std::lock_guard lock(error->mutex);
-    error->sentence = thread_sentences.last;
-  } catch (const std::bad_alloc&) {
-    thread_sentences.last.clear();
+    std::unique_lock<std::mutex> lock;
+    if (error != nullptr) {
+      lock = std::unique_lock(error->mutex);
+      error->sentence.clear();
+    }
+    thread_sentences.last = std::string(call) + ": " + kind + what;
+    if (error != nullptr) error->sentence = thread_sentences.last;
+  } catch (...) {  // out of memory: the sentence is missing
   }
 }
 
@@ -31,22 +34,22 @@ roomradar_status status_of_exception(const char* call, HandleError* error) noexc
   try {
     throw;
   } catch (const Refusal& refusal) {
-    keep(call, refusal.what(), error);
+    keep(call, "", refusal.what(), error);
     return refusal.status;
   } catch (const Error& failure) {
-    keep(call, failure.what(), error);
+    keep(call, "", failure.what(), error);
     return ROOMRADAR_FAILED;
   } catch (const std::bad_alloc&) {
-    keep(call, "memory is short", error);
+    keep(call, "", "memory is short", error);
     return ROOMRADAR_OUT_OF_MEMORY;
   } catch (const std::length_error&) {
-    keep(call, "memory is short: a size is beyond what can be addressed", error);
+    keep(call, "", "memory is short: a size is beyond what can be addressed", error);
     return ROOMRADAR_OUT_OF_MEMORY;
   } catch (const std::exception& fault) {
-    keep(call, (std::string("a fault of the library: ") + fault.what()).c_str(), error);
+    keep(call, "a fault of the library: ", fault.what(), error);
     return ROOMRADAR_INTERNAL;
   } catch (...) {
-    keep(call, "a fault of the library", error);
+    keep(call, "", "a fault of the library", error);
     return ROOMRADAR_INTERNAL;
   }
 }

@@ -1,5 +1,5 @@
-// boundary.hpp: boundary between C++ and C, which converts exceptions to a status and a sentence. No other
-// unit catches exceptions.
+// boundary.hpp: boundary between C++ and C, which converts exceptions to a status and a sentence.
+// Elsewhere in app/c_api, exceptions are not caught.
 #pragma once
 #include <mutex>
 #include <stdexcept>
@@ -25,7 +25,7 @@ struct HandleError {
 };
 
 /// Turns the exception that is being handled into a status. Stores "CALL: sentence" for the thread and, if
-/// `error` is not null, for the handle. If memory is short, the sentence may be missing.
+/// `error` is not null, for the handle. If memory is short, the sentences may be empty.
 roomradar_status status_of_exception(const char* call, HandleError* error) noexcept;
 
 /// Returns work()'s status, or OK if it returns none. Exceptions become a status.
@@ -45,8 +45,8 @@ roomradar_status guarded(const char* call, HandleError* error, const Work& work)
 
 /// Returns the sentence of this thread's last failed call.
 const char* last_error() noexcept;
-/// Returns a copy of a handle's sentence. The copy belongs to the calling thread and is valid until the
-/// thread's next call.
+/// Returns a copy of a handle's sentence. The copy is valid until the calling thread calls sentence_of()
+/// again.
 const char* sentence_of(HandleError& error) noexcept;
 
 }  // namespace roomradar::c_api
