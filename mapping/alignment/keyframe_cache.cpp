@@ -6,14 +6,14 @@
 
 namespace roomradar {
 
-std::shared_ptr<const CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
-                                                       PreparedParts parts) {
+std::shared_ptr<CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
+                                                 PreparedParts parts) {
   auto made = std::make_shared<CachedKeyframe>();
   ViewPyramid pyramid;
   restore(view, config, pyramid);
-  if (parts != PreparedParts::kLive)
+  if (parts == PreparedParts::kAll)
     make_target_view(pyramid, Eigen::Isometry3d::Identity(), config, made->reference);
-  if (parts != PreparedParts::kReference) make_source_points(pyramid, made->live);
+  make_source_points(pyramid, made->live);
   return made;
 }
 
@@ -32,10 +32,19 @@ std::shared_ptr<const CachedKeyframe> KeyframeCache::get(std::size_t keyframe, c
   return entries_.back().held;
 }
 
-void KeyframeCache::put(std::size_t keyframe, std::shared_ptr<const CachedKeyframe> made) {
-  std::erase_if(entries_, [&](const Entry& entry) { return entry.keyframe == keyframe; });
-  if (!entries_.empty() && entries_.size() >= capacity_) entries_.erase(entries_.begin());
+void KeyframeCache::put(std::size_t keyframe, std::shared_ptr<CachedKeyframe> made) {
+  make_room(keyframe);
   entries_.push_back({keyframe, std::move(made)});
+}
+
+std::shared_ptr<CachedKeyframe> KeyframeCache::make_room(std::size_t keyframe) {
+  auto leaving = std::find_if(entries_.begin(), entries_.end(),
+                              [&](const Entry& entry) { return entry.keyframe == keyframe; });
+  if (leaving == entries_.end() && entries_.size() >= capacity_) leaving = entries_.begin();
+  if (leaving == entries_.end()) return nullptr;
+  std::shared_ptr<CachedKeyframe> held = std::move(leaving->held);
+  entries_.erase(leaving);
+  return held;
 }
 
 }  // namespace roomradar

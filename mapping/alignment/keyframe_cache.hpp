@@ -15,11 +15,11 @@ struct CachedKeyframe {
   SourcePoints live;
 };
 
-/// Members of a CachedKeyframe to prepare. The other member stays empty.
-enum class PreparedParts { kAll, kLive, kReference };
+/// Members of a CachedKeyframe to prepare. Otherwise `reference` stays empty.
+enum class PreparedParts { kAll, kLive };
 
-std::shared_ptr<const CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
-                                                       PreparedParts parts = PreparedParts::kAll);
+std::shared_ptr<CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
+                                                 PreparedParts parts = PreparedParts::kAll);
 
 /// Caches at most `capacity` keyframes and evicts the least recently used. A returned entry stays valid after
 /// its eviction while the caller keeps the pointer. Copies of a cache share their present entries and are
@@ -35,12 +35,15 @@ class KeyframeCache {
   std::shared_ptr<const CachedKeyframe> get(std::size_t keyframe, const StoredView& view,
                                             const ViewConfig& config);
   /// Caches `made` as the keyframe's entry; replaces an existing entry.
-  void put(std::size_t keyframe, std::shared_ptr<const CachedKeyframe> made);
+  void put(std::size_t keyframe, std::shared_ptr<CachedKeyframe> made);
+  /// Removes the entry that put() would replace or evict, so that the caller can reuse its memory. Returns
+  /// null if put() would remove none.
+  std::shared_ptr<CachedKeyframe> make_room(std::size_t keyframe);
 
  private:
   struct Entry {
     std::size_t keyframe;
-    std::shared_ptr<const CachedKeyframe> held;
+    std::shared_ptr<CachedKeyframe> held;
   };
   std::size_t capacity_;
   PreparedParts parts_;

@@ -36,14 +36,19 @@ void merge_into(std::vector<KeyframePair>& pairs, std::vector<KeyframePair> more
 
 void align_halves(std::span<const Keyframe> keyframes, std::span<HalfPair> halves,
                   const ConnectConfig& config) {
-  KeyframeCache references(1, PreparedParts::kReference),
-      lives(config.graph.cached_keyframes, PreparedParts::kLive);
-  for (HalfPair& half : halves) {
+  KeyframeCache lives(config.graph.cached_keyframes, PreparedParts::kLive);
+  ViewPyramid pyramid;
+  TargetView target;
+  for (std::size_t i = 0; i < halves.size(); ++i) {
+    HalfPair& half = halves[i];
     const Keyframe &reference = keyframes[half.reference], &live = keyframes[half.live];
-    const auto a = references.get(half.reference, *reference.view, config.view);
-    const auto b = lives.get(half.live, *live.view, config.view);
+    if (i == 0 || halves[i - 1].reference != half.reference) {
+      restore(*reference.view, config.view, pyramid);
+      make_target_view(pyramid, Eigen::Isometry3d::Identity(), config.view, target);
+    }
+    const auto source = lives.get(half.live, *live.view, config.view);
     half.live_in_reference =
-        align(b->live, a->reference, reference.T_world_camera.inverse() * live.T_world_camera, config.align);
+        align(source->live, target, reference.T_world_camera.inverse() * live.T_world_camera, config.align);
   }
 }
 

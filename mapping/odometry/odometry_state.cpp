@@ -42,7 +42,9 @@ void Odometry::State::improve_current(const Tracking& tracking) {
 
 /// Caches the open view, prepared for alignment, as that of a keyframe.
 void Odometry::State::cache_open(std::size_t keyframe) {
-  auto made = std::make_shared<CachedKeyframe>();
+  std::shared_ptr<CachedKeyframe> made = cache.make_room(keyframe);
+  const bool is_shared = job.valid() || made.use_count() != 1;  // with a job, which copied the cache
+  if (is_shared) made = std::make_shared<CachedKeyframe>();
   make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
   make_source_points(open, made->live);
   cache.put(keyframe, std::move(made));
@@ -78,10 +80,7 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking)
   ++kept.counts.keyframes;
   kept.current = kept.graph.keyframes.size() - 1;
   kept.improved = 0;
-  auto made = std::make_shared<CachedKeyframe>();
-  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
-  make_source_points(open, made->live);
-  cache.put(kept.current, std::move(made));
+  cache_open(kept.current);
   job = std::async(std::launch::async, run,
                    KeyframeJob{frame, kept.graph, cache, &kept.keyframe_database,
                                known.keyframes.empty() ? nullptr : &known},

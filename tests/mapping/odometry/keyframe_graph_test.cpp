@@ -81,9 +81,10 @@ TEST(StoredView, HasNoIntensityWhereThereWasNoColour) {
 
 TEST(KeyframeCache, ForgetsTheOneThatWasNotAskedForTheLongest) {
   KeyframeCache prepare_keyframe(2);
-  prepare_keyframe.put(1, std::make_shared<CachedKeyframe>());
+  const auto one = std::make_shared<CachedKeyframe>();
+  prepare_keyframe.put(1, one);
   prepare_keyframe.put(2, std::make_shared<CachedKeyframe>());
-  const auto one = prepare_keyframe.find(1);
+  EXPECT_EQ(prepare_keyframe.find(1), one);
   prepare_keyframe.put(3, std::make_shared<CachedKeyframe>());
   EXPECT_EQ(prepare_keyframe.find(1), one);
   EXPECT_EQ(prepare_keyframe.find(2), nullptr);
@@ -91,6 +92,21 @@ TEST(KeyframeCache, ForgetsTheOneThatWasNotAskedForTheLongest) {
   prepare_keyframe.put(3, one);  // replaces the entry
   EXPECT_EQ(prepare_keyframe.find(3), one);
   EXPECT_EQ(prepare_keyframe.find(1), one);
+}
+
+TEST(KeyframeCache, MakesRoomByTheEntryThatAPutWouldRemove) {
+  KeyframeCache cache(2);
+  const auto one = std::make_shared<CachedKeyframe>(), two = std::make_shared<CachedKeyframe>();
+  EXPECT_EQ(cache.make_room(1), nullptr);
+  cache.put(1, one);
+  cache.put(2, two);
+  EXPECT_EQ(cache.make_room(2), two);  // would be replaced
+  EXPECT_EQ(cache.find(2), nullptr);
+  EXPECT_EQ(cache.make_room(3), nullptr);  // there is room
+  cache.put(2, two);
+  EXPECT_EQ(cache.make_room(3), one);  // least recently used
+  EXPECT_EQ(cache.find(1), nullptr);
+  EXPECT_EQ(cache.find(2), two);
 }
 
 TEST(KeyframeGraph, ALoopIsFoundByItsLooksThoughDriftHasParted) {
