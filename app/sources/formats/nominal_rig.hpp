@@ -8,32 +8,35 @@
 namespace roomradar {
 
 enum class NominalRig {
-  /// A Kinect v1 as published by 7-Scenes. Depth is not registered to colour.
+  /// The Kinect v1 of 7-Scenes: depth intrinsics as published, colour fitted. Depth is not registered to
+  /// colour.
   kSevenScenes,
   /// A Kinect v1 with depth registered to colour.
   kTum,
   /// The Xtion of the BONN RGB-D Dynamic Dataset, with depth registered to colour.
   kBonn,
-  /// An unknown sensor.
+  /// The unknown sensor of a folder of numbered images, fitted to one such recording. Depth is not registered
+  /// to colour.
   kNumbered,
   /// A Kinect v1 through libfreenect. Depth is not registered to colour.
   kKinect,
 };
 
-/// LiDAR of an iPhone or iPad, as ARKit's depth maps of 256 x 192 pixels. ARKit smooths the depth, so errors
-/// of neighbouring pixels are correlated. On a Record3D export of a door, 0.5 to 1.5 m away, frames moved by
-/// ARKit's poses differ by 1.7 mm (10 frames apart) to 4.1 mm (50 frames apart). This noise is chosen
-/// somewhat larger, since tracking assumes independent errors of pixels: with half of it, 27 of the 60 frames
-/// are not tracked.
+/// Noise of an iPhone's or iPad's LiDAR in ARKit's depth maps of 256 x 192 pixels. ARKit smooths the depth,
+/// so errors of neighbouring pixels are correlated. In a Record3D recording of a door at 0.5 to 1.5 m, depths
+/// of two frames that are aligned by ARKit's poses differ by 1.7 mm (median, 10 frames apart) to 4.1 mm (50
+/// frames apart). This noise is about twice that, since tracking assumes independent errors of pixels: with
+/// half of it, 27 of the 60 frames are not tracked.
 inline constexpr DepthNoise kPhoneLidarNoise{0.002F, 0.004F, 0.0F, 0.0F, 0.0001F};
 
-/// Time of flight of an Azure Kinect or Femto: about 1 mm at 1 m and 4 mm at 3.5 m. Source: Tolgyessy, Dekan,
-/// Chovanec, Hubinsky, Evaluation of the Azure Kinect and Its Comparison to Kinect V1 and V2, Sensors 2021.
+/// Depth noise of the time-of-flight sensors Azure Kinect and Femto: 1.1 mm at 1 m and 4.6 mm at 3.5 m.
+/// Source: Tolgyessy, Dekan, Chovanec, Hubinsky, Evaluation of the Azure Kinect and Its Comparison to Kinect
+/// V1 and V2, Sensors 2021.
 inline constexpr DepthNoise kTimeOfFlightNoise{0.001F, 0.0F, 0.0004F, 0.5F, 0.0001F};
 
 /// Stereo of a RealSense D435: disparity is accurate to 0.08 px at a focal length of 640 px and a baseline of
-/// 5 cm, so sigma = 0.08 z^2 / (640 * 0.05). Source: Intel, Best-Known-Methods for Tuning RealSense D400
-/// Depth Cameras, section on RMS error.
+/// 5 cm, so sigma = 0.5 mm + 0.08 z^2 / (640 * 0.05). Source: Intel, Best-Known-Methods for Tuning RealSense
+/// D400 Depth Cameras, section on RMS error.
 inline constexpr DepthNoise kRealSenseNoise{0.0005F, 0.0F, 0.0025F, 0.0F, 0.0001F};
 
 /// Distance of a PrimeSense's or Xtion's colour camera from its depth camera, m.
@@ -45,8 +48,9 @@ struct ImageSize {
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// Returns the camera of a device of OpenNI, with square pixels, from the horizontal field of view that it
-/// states, rad. A field of view outside 0.1 to 3 is replaced by that of a PrimeSense.
+/// Returns the intrinsics of an OpenNI device, with square pixels.
+/// @param stated_fov_rad  horizontal field of view that the device reports, rad; outside 0.1 to 3, that of a
+///                        PrimeSense is used
 Intrinsics openni_camera(ImageSize size, double stated_fov_rad);
 
 /// Returns published or measured default intrinsics for a kind of recording, scaled to the images' width. If
@@ -54,10 +58,12 @@ Intrinsics openni_camera(ImageSize size, double stated_fov_rad);
 /// be cropped at top and bottom.
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour);
 
-/// Returns the cameras of the recording in `folder`. Intrinsics come from the first of these sources that
-/// exists: `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt (depth camera only), and
-/// nominal_rig(). Throws Error if a file is invalid. Also throws if a camera's size differs from the image
-/// size. The message then contains both sizes and a remedy.
+/// Returns the cameras of the recording in `folder`. Depth intrinsics are the first of these that exists:
+/// `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt, nominal_rig(). Colour is that of
+/// camera.json, or else of nominal_rig(). It equals the depth camera if depth is registered to colour: for
+/// kTum and kBonn, for kNumbered with depth intrinsics from the caller or a file, and for a camera.json
+/// without colour. Throws Error if intrinsics are invalid, or if their size differs from the images'. The
+/// message then contains both sizes and a remedy.
 CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
                            const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
                            std::optional<ImageSize> colour);

@@ -6,7 +6,6 @@
 #include <system_error>
 #include <vector>
 
-#include "app/sources/formats/temporary_folder.hpp"
 #include "app/sources/recordings/recording_index_fakenect.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -37,26 +36,21 @@ std::string fault_of(const fs::path& file, std::uintmax_t pixel_bytes) {
 }
 
 /// Creates a folder with links to these files of `folder`, and their INDEX.txt.
-fs::path folder_of_links(const fs::path& folder, const std::vector<std::string>& files) {
-  const fs::path links = make_temporary_folder();
-  try {
-    std::string index;
-    for (const std::string& file : files) {
-      std::error_code failed;
-      fs::create_symlink(fs::absolute(folder / file), links / file, failed);
-      if (failed && failed != std::errc::file_exists)  // a list may name a file twice
-        throw Error((links / file).string() + ": cannot be made; is the disk full?");
-      index += file + '\n';
-    }
-    if (fs::exists(folder / "camera.json"))  // also tells if the frames were calibrated already
-      fs::create_symlink(fs::absolute(folder / "camera.json"), links / "camera.json");
-    write_bytes(links / "INDEX.txt", index);
-    return links;
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(links, ignored);
-    throw;
+ScratchFolder folder_of_links(const fs::path& folder, const std::vector<std::string>& files) {
+  ScratchFolder scratch;
+  const fs::path& links = scratch.path();
+  std::string index;
+  for (const std::string& file : files) {
+    std::error_code failed;
+    fs::create_symlink(fs::absolute(folder / file), links / file, failed);
+    if (failed && failed != std::errc::file_exists)  // a list may name a file twice
+      throw Error((links / file).string() + ": cannot be made; is the disk full?");
+    index += file + '\n';
   }
+  if (fs::exists(folder / "camera.json"))  // also tells if the frames were calibrated already
+    fs::create_symlink(fs::absolute(folder / "camera.json"), links / "camera.json");
+  write_bytes(links / "INDEX.txt", index);
+  return scratch;
 }
 
 }  // namespace
@@ -88,14 +82,11 @@ FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
   if (all_sound) return;
 
   links_ = folder_of_links(folder, sound);
-  setenv(kFakenectPath, links_.c_str(), 1);
+  setenv(kFakenectPath, links_->path().c_str(), 1);
 }
 
 FakenectReplay::~FakenectReplay() {
-  if (links_.empty()) return;
-  setenv(kFakenectPath, folder_.c_str(), 1);
-  std::error_code ignored;  // destructors must not throw
-  fs::remove_all(links_, ignored);
+  if (links_) setenv(kFakenectPath, folder_.c_str(), 1);
 }
 
 }  // namespace roomradar

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "app/sources/formats/scratch_folder.hpp"
+
 namespace roomradar {
 
 /// Environment variable that names the recording to replay.
@@ -33,8 +35,8 @@ class FakenectReplay {
 
  private:
   std::filesystem::path folder_;
-  /// Folder of links; empty if all files are intact.
-  std::filesystem::path links_;
+  /// Folder of links; unset if all files are intact.
+  std::optional<ScratchFolder> links_;
   std::map<std::int64_t, std::string> broken_;
 };
 

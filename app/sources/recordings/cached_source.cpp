@@ -1,21 +1,18 @@
 // cached_source.cpp: writes each frame to disk when it is first delivered.
 #include "app/sources/recordings/cached_source.hpp"
 
-#include <filesystem>
 #include <future>
+#include <optional>
 #include <string>
-#include <system_error>
 #include <unordered_map>
 #include <utility>
 
-#include "app/sources/formats/temporary_folder.hpp"
+#include "app/sources/formats/scratch_folder.hpp"
 #include "app/sources/recordings/spool_list.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::uintmax_t bytes_of(const Frame& frame) {
   return frame.depth_m.pixels.size() * sizeof(float) + frame.colour.pixels.size() * sizeof(Rgb);
@@ -23,13 +20,8 @@ std::uintmax_t bytes_of(const Frame& frame) {
 
 class CachedSource final : public FrameSource {
  public:
-  CachedSource(std::unique_ptr<FrameSource> source, fs::path folder, std::uintmax_t max_bytes)
+  CachedSource(std::unique_ptr<FrameSource> source, ScratchFolder folder, std::uintmax_t max_bytes)
       : source_(std::move(source)), bytes_left_(max_bytes), folder_(std::move(folder)) {}
-  ~CachedSource() override {
-    if (write_.valid()) write_.wait();
-    std::error_code ignored;  // destructors must not throw
-    fs::remove_all(folder_, ignored);
-  }
 
   ReadResult next(Frame& frame) override {
     if (read_cached(frame)) {
@@ -66,7 +58,7 @@ class CachedSource final : public FrameSource {
     if (cached == entries_.end()) return false;
     try {
       const auto position = static_cast<std::size_t>(position_);
-      return read_spooled(cached->second, folder_, position, frame).status == ReadStatus::kFrame;
+      return read_spooled(cached->second, folder_.path(), position, frame).status == ReadStatus::kFrame;
     } catch (const Error&) {  // the temporary folder was cleared, or the disk is faulty
       entries_.erase(cached);
       return false;
@@ -81,7 +73,7 @@ class CachedSource final : public FrameSource {
     written_ = frame;
     written_position_ = position_;
     write_ = std::async(std::launch::async, [this] {
-      return write_spooled(written_, folder_, static_cast<std::size_t>(written_position_));
+      return write_spooled(written_, folder_.path(), static_cast<std::size_t>(written_position_));
     });
   }
 
@@ -96,26 +88,26 @@ class CachedSource final : public FrameSource {
 
   std::unique_ptr<FrameSource> source_;
   std::uintmax_t bytes_left_;
-  fs::path folder_;
+  ScratchFolder folder_;
   std::unordered_map<std::int64_t, SpoolEntry> entries_;  ///< by position
   std::int64_t position_ = 0;                             ///< of the frame that next() delivers
   std::int64_t source_position_ = 0;                      ///< of the frame that source_->next() delivers
   Frame written_;
   std::int64_t written_position_ = -1;
-  std::future<SpoolEntry> write_;
+  std::future<SpoolEntry> write_;  ///< last member: its destructor waits for the write
 };
 
 }  // namespace
 
 std::unique_ptr<FrameSource> cache_frames(std::unique_ptr<FrameSource> source, std::uintmax_t max_bytes) {
   if (!source->frame_count() || !source->seek(0)) return source;
-  fs::path folder;
+  std::optional<ScratchFolder> folder;
   try {
-    folder = make_temporary_folder();
+    folder.emplace();
   } catch (const Error&) {
     return source;
   }
-  return std::make_unique<CachedSource>(std::move(source), std::move(folder), max_bytes);
+  return std::make_unique<CachedSource>(std::move(source), std::move(*folder), max_bytes);
 }
 
 }  // namespace roomradar

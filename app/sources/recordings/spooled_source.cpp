@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "app/sources/formats/temporary_folder.hpp"
+#include "app/sources/formats/scratch_folder.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/make_folder.hpp"
@@ -13,18 +13,21 @@
 namespace roomradar {
 namespace fs = std::filesystem;
 
-SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, fs::path folder, bool kept)
+SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, Spool spool)
     : source_(std::move(source)),
-      spool_{std::move(folder), kept},
+      spool_(std::move(spool)),
       name_(source_ ? source_->name() : std::string{}) {}
 
 SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, const fs::path& parent_folder)
-    : SpooledSource(std::move(source), make_temporary_folder(parent_folder), /*kept=*/false) {}
+    : SpooledSource(std::move(source), Spool{}) {
+  spool_.scratch.emplace(parent_folder);
+  spool_.folder = spool_.scratch->path();
+}
 
 std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> source,
                                                    const fs::path& folder, std::size_t most_ahead) {
   make_folder(folder);
-  std::unique_ptr<SpooledSource> spooled(new SpooledSource(std::move(source), folder, /*kept=*/true));
+  std::unique_ptr<SpooledSource> spooled(new SpooledSource(std::move(source), Spool{folder}));
   spooled->most_ahead_ = most_ahead;
   if (has_spool_list(folder)) {
     SpoolList left = read_spool_list(folder);
@@ -49,7 +52,7 @@ bool SpooledSource::has_frames(const fs::path& folder) {
 std::unique_ptr<SpooledSource> SpooledSource::again(const fs::path& folder) {
   if (!fs::exists(spool_list_file(folder)))
     throw Error(spool_list_file(folder).string() + ": there are no recorded frames");
-  std::unique_ptr<SpooledSource> spooled(new SpooledSource(nullptr, folder, /*kept=*/true));
+  std::unique_ptr<SpooledSource> spooled(new SpooledSource(nullptr, Spool{folder}));
   spooled->take(read_spool_list(folder));
   spooled->at_end_ = true;
   return spooled;
@@ -78,12 +81,7 @@ void SpooledSource::stop_capture() {
   stop_ = false;
 }
 
-SpooledSource::~SpooledSource() {
-  stop_capture();
-  if (spool_.kept) return;
-  std::error_code ignored;  // destructors must not throw
-  fs::remove_all(spool_.folder, ignored);
-}
+SpooledSource::~SpooledSource() { stop_capture(); }
 
 void SpooledSource::capture() {
   Frame frame;
@@ -131,7 +129,7 @@ bool SpooledSource::capture_one(Frame& frame) {
   } else if (result.status == ReadStatus::kSkipped && !result.waiting) {
     entry = SpoolEntry{{}, result.fault};
   }
-  if (spool_.kept && !result.waiting)
+  if (!spool_.scratch && !result.waiting)
     append_to_spool_list(entry ? &*entry : nullptr, spool_.folder, spool_.list);
   const std::lock_guard lock(mutex_);
   waiting_.reset();

@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "app/sources/formats/scratch_folder.hpp"
 #include "app/sources/recordings/spool_list.hpp"
 #include "mapping/types/frame_source.hpp"
 
@@ -61,7 +62,14 @@ class SpooledSource final : public FrameSource {
   [[nodiscard]] std::string name() const override;
 
  private:
-  SpooledSource(std::unique_ptr<FrameSource> source, std::filesystem::path folder, bool kept);
+  /// Location of the cached frames.
+  struct Spool {
+    std::filesystem::path folder;
+    std::optional<ScratchFolder> scratch{};  ///< `folder`; unset if the folder is kept
+    /// Open only if the folder is kept.
+    std::ofstream list{};
+  };
+  SpooledSource(std::unique_ptr<FrameSource> source, Spool spool);
   void take(SpoolList left);
   void stop_capture();
   bool wait_for_reader();
@@ -69,13 +77,6 @@ class SpooledSource final : public FrameSource {
   void capture();
   bool capture_one(Frame& frame);
 
-  /// Location of the cached frames.
-  struct Spool {
-    std::filesystem::path folder;
-    bool kept = false;
-    /// Open only if the folder is kept.
-    std::ofstream list{};
-  };
   /// State for continuing the recording of an earlier process in the same folder.
   struct Continuation {
     /// Offset added to the source's own index.

@@ -1,5 +1,7 @@
-// sources_units_test.cpp: the Kinect's units, pairing of images, frame ranges, and spooling.
+// sources_units_test.cpp: the Kinect's units, pairing of images, frame ranges, scratch folders, and spooling.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <bit>
@@ -13,6 +15,7 @@
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/kinect_units.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
+#include "app/sources/formats/scratch_folder.hpp"
 #include "app/sources/formats/stamp_pairing.hpp"
 #include "app/sources/recordings/frame_images.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
@@ -299,6 +302,52 @@ TEST(SpooledSource, LeavesNothingBehind) {
   EXPECT_TRUE(contains(
       error_of([&] { SpooledSource(std::make_unique<MadeSource>(1, false), parent.path() / "absent"); }),
       "absent"));
+}
+
+TEST(ScratchFolder, IsRemovedAtTheEndAlsoAfterAMove) {
+  const test::TemporaryFolder parent;
+  {
+    ScratchFolder first(parent.path());
+    write_bytes(first.path() / "frame", "bytes");
+    const ScratchFolder second = std::move(first);
+    EXPECT_TRUE(first.path().empty());
+    EXPECT_TRUE(std::filesystem::exists(second.path() / "frame"));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(parent.path()));
+}
+
+TEST(ScratchFolder, RemovesThoseOfKilledProcessesOnly) {
+  const test::TemporaryFolder parent;
+  std::filesystem::create_directory(parent.path() / "roomradar-other");
+  std::filesystem::create_directory_symlink(parent.path() / "roomradar-other",
+                                            parent.path() / "roomradar-scratch-linked");
+  const ScratchFolder running(parent.path());
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {  // as killed: no destructor runs
+    const ScratchFolder left(parent.path());
+    write_bytes(left.path() / "frame", "bytes");
+    const std::string name = left.path().string();
+    _exit(write(ends[1], name.data(), name.size()) > 0 ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string left(4096, '\0');
+  const ssize_t length = read(ends[0], left.data(), left.size());
+  close(ends[0]);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_EQ(status, 0);
+  ASSERT_GT(length, 0);
+  left.resize(static_cast<std::size_t>(length));
+  EXPECT_TRUE(std::filesystem::exists(left + "/frame"));
+
+  const ScratchFolder next(parent.path());
+  EXPECT_FALSE(std::filesystem::exists(left));
+  EXPECT_TRUE(std::filesystem::exists(running.path()));
+  EXPECT_TRUE(std::filesystem::exists(next.path()));
+  EXPECT_TRUE(std::filesystem::exists(parent.path() / "roomradar-other"));
+  EXPECT_TRUE(std::filesystem::is_symlink(parent.path() / "roomradar-scratch-linked"));
 }
 
 /// Delivers this many of a source's frames, then nothing for the time being.
