@@ -1,4 +1,4 @@
-// model_triangles.hpp: extracts triangles of a model as a new model.
+// model_triangles.hpp: extracts some of a model's triangles as a new model.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -7,8 +7,9 @@
 
 namespace roomradar {
 
-/// Returns a model of the given triangles, in the given order, and the vertices that they use. Vertices have
-/// positions, normals, colours and texture coordinates. The result has no parts and textures.
+/// Returns a model of the given triangles, in the given order, and the vertices that they use. Vertices keep
+/// the attributes that the model has. The result has neither parts nor textures nor notes.
+/// @param triangles  indices into model.mesh.triangles
 Model triangles_alone(const Model& model, std::span<const std::uint32_t> triangles);
 
 }  // namespace roomradar

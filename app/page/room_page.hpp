@@ -22,15 +22,16 @@ struct PageRoom {
 
 struct RoomPage {
   std::string title;
-  std::vector<PageRoom> rooms;  ///< one or two, in one world
+  std::vector<PageRoom> rooms;  ///< one or two, in a common world frame
   std::vector<Hole> holes{};
   std::vector<TimedPose> trajectory{};
   std::vector<Change> changes{};  ///< kVanished belongs to rooms[0], kAppeared to rooms[1]
 };
 
 /// Writes room, texture and program as one file that needs WebGL 2, but no network. Positions are rounded to
-/// 1/65535 of the room's size. In the page, users can turn the room, walk in it, cut it and measure
-/// distances. The page lists holes and changes. An existing file is replaced once the new one is complete.
+/// 1/65535 of the room's extent along each axis. In the page, users can turn the room, walk in it, cut it and
+/// measure distances. The page lists changes, and holes inside the scan. It draws at most some
+/// 4,000 poses of the trajectory. An existing file is replaced once the new one is complete.
 /// @throws Error if a room has no triangles, or the file cannot be written
 void write_room_page(const RoomPage& page, const std::filesystem::path& path);
 

@@ -16,7 +16,8 @@ struct DynamicPixels {
   PixelBits smooth;
   PixelBits thin;  ///< lines and specks that are too thin for `smooth`
   /// Inverse depth per pixel, 1/m. For a pixel in `smooth` but not in `measured`, the mean of the measured
-  /// neighbours. Meaningless for a pixel in neither.
+  /// neighbours. Meaningless for a pixel in neither, and for the 8 elements after the last pixel, which
+  /// vector instructions may read.
   std::vector<float> inverse_depth;
 };
 

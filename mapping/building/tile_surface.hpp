@@ -7,9 +7,9 @@
 namespace roomradar {
 
 /// Extracts a tile's part of a building's surface: the triangles with a centre in the tile's cube. The tiles
-/// together are the surface of the whole map. Tiles are extracted independently, but a vertex that two tiles
-/// share has bit-identical coordinates in both. Therefore vertices on the seam keep their measured positions,
-/// and only interior vertices are simplified. Colours as in extract_surface().
+/// together are the surface of the whole map. Tiles are extracted independently, without cracks between them:
+/// simplification does not move vertices that two tiles share, so they have bit-identical coordinates in
+/// both. Colours as in extract_surface().
 /// @param map  must contain all samples within kSurfaceReach_voxels of the tile
 Mesh extract_tile_surface(const StaticMap& map, const TileGrid& grid, const TileIndex& tile,
                           const SurfaceConfig& config = {});

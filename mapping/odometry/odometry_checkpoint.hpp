@@ -1,4 +1,4 @@
-// odometry_checkpoint.hpp: saves an odometry to disk and restores it.
+// odometry_checkpoint.hpp: saves the state of an Odometry object to disk and restores it.
 #pragma once
 #include <filesystem>
 
@@ -6,18 +6,18 @@
 
 namespace roomradar {
 
-/// Writes the state of an odometry into the empty folder `into`. Call odometry.finish_jobs() first. Writes
-/// state.bin, and per keyframe its view (keyframe-NUMBER-REVISION.bin) and its database entry
+/// Writes the state of an Odometry object into the empty folder `into`. Call odometry.finish_jobs() first.
+/// Writes state.bin, and per keyframe its view (keyframe-NUMBER-REVISION.bin) and its database entry
 /// (place-NUMBER.bin). Does not write the database of a prior map. Throws Error if a file cannot be written.
-/// @param previous  folder of an earlier checkpoint of the same odometry, or empty. Files of the same name
+/// @param previous  folder of an earlier checkpoint of the same object, or empty. Files of the same name
 ///                  there are linked, or copied if linking fails
 void save_odometry(const Odometry& odometry, const std::filesystem::path& into,
                    const std::filesystem::path& previous);
 
-/// Restores a saved odometry. Tracking continues with the frame after the last saved one. `config` must equal
-/// the saved odometry's. Call set_prior_map() again if it was used. Throws Error naming the file and the
-/// fault if a file is missing, truncated, altered, of another version, or inconsistent with the others. Sizes
-/// are checked before memory is allocated.
+/// Restores a saved Odometry object. Tracking continues with the frame after the last saved one. `config`
+/// must equal the saved object's. Call set_prior_map() again if it was used. Throws Error naming the file and
+/// the fault if a file is missing, truncated, altered, of another version, or inconsistent with the others.
+/// Sizes are checked before memory is allocated.
 Odometry load_odometry(const std::filesystem::path& folder, const OdometryConfig& config);
 
 }  // namespace roomradar

@@ -18,7 +18,7 @@ namespace roomradar {
 class EarlierTexture {
  public:
   /// @param mesh  mesh that the texture fits; may have been transformed into the world of the lookups
-  /// @throws Error if the texture's picture is damaged
+  /// @throws Error if the texture's image cannot be decoded
   EarlierTexture(Mesh mesh, const SurfaceTexture& texture);
   EarlierTexture(const EarlierTexture&) = delete;
   EarlierTexture& operator=(const EarlierTexture&) = delete;

@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// Answer of the user.
+/// kNone: no answer yet. kPage, kGlb, kPly: the format chosen in kExport.
 enum class DialogAnswer { kNone, kYes, kNo, kPage, kGlb, kPly };
 
 enum class DialogKind {
@@ -20,7 +20,7 @@ enum class DialogKind {
   kDelete,   ///< asks before a map is deleted
   kExport,   ///< asks for a format
   kCompare,  ///< asks for the second map
-  kNotice,   ///< shows lines
+  kNotice,   ///< informs; has only a Close button
 };
 
 struct DialogLine {
@@ -36,9 +36,10 @@ struct StartDialog {
   std::string fault;                 ///< sentence on why the name was refused; empty: none
   std::vector<std::string> choices;  ///< rows of kCompare
   int choice = 0;                    ///< chosen row of kCompare
-  /// Answer of a key pressed while the name is edited; returned after the field has taken the typed text.
+  /// Answer of a key that was pressed while the name is edited. draw_dialog() returns it once the text field
+  /// has processed the typed text.
   DialogAnswer pressed = DialogAnswer::kNone;
-  bool is_new = true;  ///< true: the text field takes the keyboard when it is drawn
+  bool is_new = true;  ///< true: the text field gets the keyboard focus when it is drawn
 };
 
 /// Draws the dialog over a dimmed window. Returns the answer of a click or, while the name is edited, of a
