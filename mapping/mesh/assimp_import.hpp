@@ -22,8 +22,9 @@ inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 /// Returns the extension in lower case, including the dot.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// Throws Error if the file is missing, empty, larger than 512 MiB, or declares more triangles than
-/// kMaxMeshTriangles or than its bytes can hold. Allocates nothing for the mesh.
+/// Throws Error if the file is missing, empty or larger than 512 MiB. Also throws if an .stl or .ply declares
+/// more than kMaxMeshTriangles triangles, or a .ply more elements than it has bytes. Allocates nothing for
+/// the mesh.
 void require_plausible_size(const std::filesystem::path& path);
 
 /// Reads a file as triangles, without animations, lights and cameras. assimp crashes or hangs on some damaged

@@ -36,7 +36,7 @@ struct MergedVertex {
   }
 };
 
-/// An index is in at most one list.
+/// Singly linked lists of indices. An index is in at most one list.
 struct IndexLists {
   IndexLists(std::size_t lists, std::size_t indices) : first(lists, kNoIndex), next(indices, kNoIndex) {}
   void push_front(std::uint32_t list, std::uint32_t index) {

@@ -27,7 +27,7 @@ struct BorderLoop {
 /// Extracts all border loops, longest first. Loops of equal length are sorted by their lowest vertex index. A
 /// loop visits each of its vertices once, so holes that touch at a vertex are two loops. Each border edge is
 /// in exactly one loop. An edge that two triangles use in the same direction (impossible on an orientable
-/// surface) is not a border.
+/// surface), and none in the other, is a border edge of the first of them.
 std::vector<BorderLoop> border_loops(const Mesh& mesh);
 
 }  // namespace roomradar

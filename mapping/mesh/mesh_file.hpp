@@ -23,7 +23,7 @@ struct TexturedMesh {
 /// to sRGB, as its standard requires. Node transforms of a .glb are applied. Degenerate triangles (two equal
 /// vertices, or no area) are dropped. The mesh's origin is zero. Throws Error if the file is missing, has an
 /// unknown extension or is not a mesh. Also throws if it has no triangles, non-finite vertices, or more than
-/// kMaxMeshTriangles triangles. The message names the file, the fault and a remedy.
+/// kMaxMeshTriangles triangles or 512 MiB. The message names the file, the fault and a remedy.
 Mesh read_mesh(const std::filesystem::path& path);
 
 /// Writes the mesh in the format that the extension names. Vertices are written with the mesh's origin added,

@@ -23,10 +23,10 @@ inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size 
 /// Collapses edges in order of quadric error, and moves each new vertex to the least-squares intersection of
 /// the planes around it. Flat areas become few large triangles. Curved areas keep small ones.
 ///
-/// Bound: during collapses, every original vertex stays within max_deviation_m (> 0) of the triangles that
-/// replace those around it. Afterwards the distance between both surfaces is measured at points spacing_m
-/// apart. Where the distance exceeds the bound, the tolerances of nearby vertices are lowered and the block
-/// is simplified again. A block that fails in all rounds is left unchanged.
+/// Bound: during collapses, every original vertex stays within 0.6 max_deviation_m (> 0) of the triangles
+/// that replace those around it. Afterwards the distance between both surfaces is measured at points
+/// spacing_m apart. Where the distance exceeds the bound, the tolerances of nearby vertices are lowered and
+/// the block is simplified again. A block that fails in all rounds is left unchanged.
 ///
 /// A mesh of more than block_triangles (>= 1) triangles is split into blocks of at most block_triangles,
 /// which two threads process. Vertices on seams between blocks stay fixed, so no cracks appear. Small blocks
@@ -36,7 +36,7 @@ inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size 
 /// triangles less than 0.1 mm high are rejected. Source: Garland and Heckbert, Surface Simplification Using
 /// Quadric Error Metrics, SIGGRAPH 1997; bound: Klein, Liebich, Strasser, Mesh reduction with error control,
 /// IEEE Visualization 1996.
-/// @param fixed  by vertex: true if it must stay as it is; empty: none
+/// @param fixed  per vertex: true if it must stay unchanged; empty: none
 SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m,
                           std::size_t block_triangles = kBlockTriangles, std::vector<bool> fixed = {});
 

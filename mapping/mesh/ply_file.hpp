@@ -21,8 +21,8 @@ std::string ply_bytes(const Mesh& mesh);
 std::optional<Mesh> mesh_of_ply(std::string_view bytes, const std::filesystem::path& path);
 
 /// Erases degenerate triangles: those whose first two sides, with vertices rounded as in a file (origin
-/// added), enclose an angle with a sine of at most 1e-12. These include all that reading a file drops for
-/// their area of 0.
+/// added), enclose an angle with a sine of at most 1e-12. These include all triangles that reading a file
+/// drops because their area is 0.
 void erase_flat_triangles(Mesh& mesh);
 
 }  // namespace roomradar

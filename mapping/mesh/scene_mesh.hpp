@@ -33,7 +33,7 @@ struct SceneMeshConfig {
 /// Merges the scene's meshes. Applies the transforms of the nodes, and the bones of skinned meshes in their
 /// rest pose. The merged mesh has colours if all parts have them. Degenerate triangles (two equal vertices,
 /// or no area) are dropped. Throws Error naming the file if a vertex is not finite, an index is out of range,
-/// or the scene has more than kMaxMeshTriangles triangles.
+/// or the scene has more than kMaxMeshTriangles triangles or 3 kMaxMeshTriangles vertices.
 SceneMesh scene_mesh(const std::filesystem::path& path, const aiScene& scene, const SceneMeshConfig& config);
 
 /// Convert a colour channel in 0..1 from sRGB to linear (linear_of) and back (srgb_of). Source: IEC

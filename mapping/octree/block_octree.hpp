@@ -154,8 +154,9 @@ class BlockOctree {
   }
 
   /// Prunes `node`, whose children are `block`, and returns the node's new state. If all eight children are
-  /// equal, the node's block is freed and the node becomes a cube or unknown. Otherwise, a node that is a
-  /// block keeps it (`block` must be that block). Any other node gets a new block with a copy of `block`.
+  /// unknown or equal cubes without a signed distance, the node's block is freed and the node becomes unknown
+  /// or a cube. Otherwise, a node that is a block keeps it (`block` must be that block). Any other node gets
+  /// a new block with a copy of `block`.
   Slot prune(Slot node, const InnerBlock& block) {
     if (alike(block)) {
       if (node.is_block()) inner_.give_back(node.number());

@@ -15,11 +15,12 @@
 namespace roomradar {
 
 /// Half-widths of the truncation band. Signed distances are fused within this distance in front of and behind
-/// a measured surface. The band is at most as wide as that of a Kinect v1 at FusionConfig::max_range_m.
+/// a measured surface. The band is at most as wide as that of a Kinect v1 at FusionConfig::max_range_m, or
+/// truncation_voxels coarse cells if that is wider.
 class TruncationBand {
  public:
   TruncationBand(double resolution_m, const FusionConfig& config);
-  /// Returns the half-width in which cells with an edge of cell_m are updated, m.
+  /// Returns the half-width of the band for cells with an edge of cell_m, m.
   [[nodiscard]] float half_width_m(float depth_m, float cell_m) const {
     return std::min(std::max(voxels_ * cell_m, sigmas_ * depth_sigma_m(noise_, depth_m)), most_m_);
   }
@@ -67,8 +68,8 @@ struct DepthPyramid {
 
 /// Builds the pyramid, reusing its memory. Pixels without depth prove no space free or occluded. Small gaps
 /// take the bounds of the pixels around them, so that single dropouts do not leave the space in front of a
-/// wall unknown. Gaps are small below 4 x 4 pixels, or 2 x 2 for query rectangles up to six pixels wide. A
-/// pixel whose depth exceeds max_range_m makes space free up to max_range_m.
+/// wall unknown. Gaps are small below 4 x 4 pixels, or 2 x 2 for query rectangles of up to seven pixels per
+/// side. A pixel whose depth exceeds max_range_m makes space free up to max_range_m.
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid);
 

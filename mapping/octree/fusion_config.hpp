@@ -14,7 +14,7 @@ struct FusionConfig {
   float truncation_sigmas = 2.5F;  ///< half-width of the truncation band, in standard deviations of depth
   /// Max edge of a coarse cell, in standard deviations of depth. Finer cells would store the same surface in
   /// more samples, each with more noise. With 1 cm voxels and the default, cells have an edge of 2 cm where
-  /// the surface was measured from more than 2.5 m only. 0: all cells are voxels.
+  /// the surface was measured only from beyond 2.1 m. 0: all cells are voxels.
   float max_cell_sigmas = 2.9F;
   float max_weight = 64.0F;  ///< max weight of a sample, so that samples adapt to changes
   /// Weight of a frame that clearly sees through a sample, relative to a frame that measures the sample. The

@@ -132,7 +132,7 @@ class LeafUpdate {
     return size_ == CellSize::kCoarse ? prune_coarse(tree_, node, block) : tree_.prune(node, block);
   }
 
-  // Max distance from the surface, in voxels, of samples that take the surface's colour. The colours of mesh
+  // Max distance from the surface, in cells, of samples that take the surface's colour. The colours of mesh
   // vertices are interpolated from these samples only.
   static constexpr float kColourCells = 1.5F;
   // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
@@ -140,7 +140,7 @@ class LeafUpdate {
   // rounding to 8 bits.
   static constexpr float kMinColourFraction = 1.0F / 8.0F;
 
-  // Min distance, in voxels, at which a sample counts as behind a surface. Frames see past samples nearer to
+  // Min distance, in cells, at which a sample counts as behind a surface. Frames see past samples nearer to
   // the surface too often, because of noise and pose errors.
   static constexpr float kBehind_cells = 0.5F;
   // A frame that sees through a sample subtracts this many times its own weight from the sample's weight. It

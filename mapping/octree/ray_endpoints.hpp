@@ -19,7 +19,8 @@ class BlockHits {
   BlockHits(std::uint64_t block_code, unsigned voxels) : bits_(block_code << 8U | voxels) {}
   [[nodiscard]] std::uint64_t block_code() const { return bits_ >> 8U; }
   [[nodiscard]] unsigned voxels() const { return bits_ & 0xFFU; }
-  /// Returns the index of the child on the path from the root to the block, below the path's node at `depth`.
+  /// Returns the index among its siblings of the node at `depth` (1 to 15) on the path from the root to the
+  /// block.
   [[nodiscard]] unsigned child(unsigned depth) const {
     return static_cast<unsigned>(bits_ >> (8U + 3U * (kLeafDepth - 1 - depth))) & 7U;
   }

@@ -37,7 +37,7 @@ struct SurfaceSample {
   Occupancy occupancy = Occupancy::kUnknown;
   /// Signed distance from the voxel's centre to the surface along the viewing axis, m; > 0 on the free side.
   float distance_m = 0.0F;
-  float weight = 0.0F;  ///< sum of (sigma at 1 m / sigma)^2 over the fused frames, capped
+  float weight = 0.0F;  ///< sum of weight_at() (at most 1 each) over the fused frames, capped
   Rgb colour{};
   bool has_colour = false;
 };

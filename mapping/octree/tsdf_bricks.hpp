@@ -35,7 +35,7 @@ struct Brick {
 /// Bricks of samples, found by their lowest voxel.
 class TsdfBricks {
  public:
-  /// Bricks of unknown samples, with these lowest voxels. None may repeat.
+  /// Makes bricks of unknown samples at these lowest voxels, which must be distinct.
   explicit TsdfBricks(const std::vector<VoxelIndex>& firsts);
 
   [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }

@@ -21,7 +21,7 @@ class BitGrid {
   [[nodiscard]] const Eigen::Vector3i& size() const { return size_; }
   [[nodiscard]] std::size_t memory_bytes() const { return words_.size() * sizeof(std::uint64_t); }
   [[nodiscard]] bool at(const Eigen::Vector3i& p) const;
-  /// Sets one voxel, which must be in the grid.
+  /// Sets one voxel. Has no effect outside the grid.
   void set(const Eigen::Vector3i& p, bool value) { set_box(p, p + Eigen::Vector3i::Ones(), value); }
   /// Sets the voxels in [low, high), clipped to the grid.
   void set_box(const Eigen::Vector3i& low, const Eigen::Vector3i& high, bool value);
@@ -54,8 +54,8 @@ class BitGrid {
   /// Repeats spread() until nothing changes.
   void flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
 
-  /// Calls visit(p) for each set voxel, z slowest, x fastest. `visit` may clear voxels. It is still called
-  /// for those among the 64 of its word.
+  /// Calls visit(p) for each set voxel, z slowest, x fastest. `visit` may clear voxels. Those in the current
+  /// word of 64 voxels are still visited.
   template <typename Visit>
   void for_each_set(const Visit& visit) const {
     for (int z = 0; z < size_.z(); ++z)

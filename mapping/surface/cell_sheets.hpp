@@ -1,4 +1,4 @@
-// cell_sheets.hpp: how the zero crossings on the edges of a cell form surface sheets. Private to
+// cell_sheets.hpp: groups the zero crossings on the edges of a cell into surface sheets. Private to
 // dual_marching_cubes.
 #pragma once
 #include <array>

@@ -11,7 +11,7 @@ namespace roomradar {
 /// The eight samples of a dual cell. A mirrored corner of the voxels' grid has the sample of its coarse cell.
 struct CellCorners {
   std::array<const TsdfSample*, 8> samples;
-  /// In the cell, 0..1; those of coarse samples may be outside.
+  /// Positions of the samples in the cell, 0..1. Coarse samples may be outside.
   std::array<Eigen::Vector3f, 8> positions;
 };
 
@@ -23,7 +23,8 @@ struct SheetVertex {
 /// Returns the position of a corner in a cell: coordinates of 0 or 1.
 Eigen::Vector3f corner_position(unsigned corner);
 
-/// Returns the mean of a sheet's zero crossings on the edges of a cell, with their mean colour.
+/// Returns the weighted mean of a sheet's zero crossings on the edges of a cell, with their mean colour. A
+/// crossing beside an extrapolated sample has a weight of 0.05 instead of 1.
 SheetVertex place_vertex(const CellCorners& corners, const Sheets& sheets, int sheet);
 
 /// Returns the unit gradient of the trilinear distance at a position in the cell (0..1); zero if the

@@ -48,8 +48,8 @@ Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
 Mesh extract_full_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
                           const SurfaceConfig& config = {});
 
-/// Number of voxels beyond which a sample has no influence on a vertex: that of smoothing in all sweeps, of
-/// the mirrored samples where fine and coarse cells meet, and of extrapolation.
+/// Number of voxels beyond which a sample has no influence on a vertex. Covers all smoothing sweeps, mirrored
+/// samples where fine and coarse cells meet, and extrapolation.
 inline constexpr int kSurfaceReach_voxels = 64;
 
 }  // namespace roomradar

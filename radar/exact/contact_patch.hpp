@@ -47,7 +47,8 @@ class ContactPatch {
   /// Max number of equally near pieces; later ones are dropped. Limits the exact tests to a few milliseconds.
   static constexpr std::size_t kMaxPieces = 4096;
   void clear();
-  /// Returns true if kMaxPieces pieces have been collected. No further piece is then accepted.
+  /// Returns true if kMaxPieces pieces have been collected. add() then discards pieces that are too far, and
+  /// accepts a piece only if there is room or none is stored.
   [[nodiscard]] bool is_full() const { return summed_count_ + pieces_.size() >= kMaxPieces; }
   /// Adds the intersection of one pair of triangles.
   /// @param gap  vertices of the intersection, with the gap at each

@@ -53,8 +53,8 @@ struct RadarSearch;
 /// found so far, and lower_m is -infinity.
 ///
 /// Sliding: a scene triangle parallel to the motion (|n . u| <= 1e-9) is no contact for an object triangle
-/// wholly on one side of its plane. Hence an object whose triangles have edges exactly in an open scene sheet
-/// passes the sheet without contact.
+/// wholly on one side of the scene triangle's plane. Hence an object whose triangles have edges exactly in an
+/// open scene sheet passes the sheet without contact.
 ///
 /// Leaving: the object is leaving a back-facing surface that it intersects now. The object intersects
 /// back-facing surfaces over intervals of the distance moved. Overlapping intervals are joined, starting at
@@ -90,10 +90,10 @@ class CyberRadar {
 
   /// Minimum number of exact tests before sampled mode stops.
   static constexpr int kSampledExactTests = 48;
-  /// Max cost of a query that tests scene surfaces behind M, in units of ColumnScratch::work; a few
-  /// milliseconds. The limit is reached if the object is sunk in a very fine mesh, or if a very fine mesh
-  /// lies in a concavity of the object. Surfaces that may be behind M are then left untested. lower_m is then
-  /// 0 in exact mode too, and back-facing surfaces cause no contact.
+  /// Cost of a query at which surfaces that may be behind M are left untested, in units of
+  /// ColumnScratch::work; a few milliseconds. The limit is reached if the object is sunk in a very fine mesh,
+  /// or if a very fine mesh lies in a concavity of the object. lower_m is then 0 in exact mode too, and
+  /// back-facing surfaces cause no contact.
   static constexpr std::uint64_t kMostWorkBehind = 40'000;
 
  private:

@@ -33,8 +33,8 @@ struct DepthView {
 };
 
 /// Finds the rectangle of vertices whose cells can intersect `volume` (in the frame of the motion). The
-/// rectangle is the volume's bounding rectangle in the image. It suffices, since a cell's triangles lie in
-/// the pyramid between cell and camera centre.
+/// rectangle is the volume's bounding rectangle in the image. The rectangle suffices, since a cell's
+/// triangles lie in the pyramid from the camera centre through the cell.
 /// @return false if there is no such cell
 bool place_depth(const SceneDepth& scene, const Eigen::Matrix3d& R_frame_world,
                  const Eigen::Vector3d& origin_world, const Eigen::AlignedBox3d& volume, DepthView& view);

@@ -11,9 +11,9 @@ namespace roomradar {
 /// the coordinate along the motion (z in the frame of the motion).
 ///
 /// The map is conservative. Every triangle is entered into all pixels that it may touch, rounding included. A
-/// tree node no larger than a pixel is entered as a box. The cost thus grows with the number of pixels, not
-/// of triangles. Detail smaller than a pixel counts with its greatest height. A node is skipped only if all
-/// its pixels already have at least the node's height.
+/// tree node that touches at most 2 x 2 pixels is entered as a box. The cost thus grows with the number of
+/// pixels, not of triangles. Detail smaller than a pixel counts with its greatest height. A node is skipped
+/// only if all its pixels already have at least the node's height.
 class ObjectHeightMap {
  public:
   /// Sets the object's orientation and computes bounds(). Callers can choose a resolution from bounds(). A

@@ -22,9 +22,10 @@ struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
   /// Number of pixels along the longer side of the object's height map M, 1 to 4096. Determines
   /// Contact::pixel_m and, in sampled mode, the difference of lower_m and upper_m. Sampled mode first uses at
-  /// most 40 pixels per side, or 64 for an object of fewer than 500 triangles. It changes to this resolution
-  /// once repeated queries with one direction in the object's frame have cost as much as building a finer
-  /// map. Exact mode chooses M's resolution by speed. Its result does not depend on M's resolution.
+  /// most 40 pixels per side, or 64 for an object of fewer than 500 triangles. It changes to finer maps, up
+  /// to this resolution, once repeated queries with one direction in the object's frame have cost more than
+  /// half as much as building them. Exact mode chooses M's resolution by speed. Its result does not depend on
+  /// M's resolution.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };
@@ -49,7 +50,7 @@ struct RadarQuery {
   static constexpr std::size_t kNotInScene = static_cast<std::size_t>(-1);
 };
 
-/// Returns false if CyberRadar::query() rejects the query for any scene.
+/// Returns false if CyberRadar::query() rejects the query, whatever the scene.
 bool is_valid(const RadarQuery& query);
 
 /// Returns the distance below which surfaces count as touching this object, m: 1 um plus the float resolution

@@ -24,8 +24,8 @@ struct Ray {
 Ray ray_through(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, double u_px, double v_px);
 
 /// Returns the nearest intersection of the ray with the mesh within reach_m. Both sides of triangles count.
-/// Returns nullopt if there is none, if the mesh is null or empty, or if the ray is not finite. Source:
-/// Möller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, in double.
+/// Returns nullopt if there is none, if the mesh is null or empty, or if the ray is not finite or has no
+/// direction. Source: Möller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, in double.
 std::optional<MeshHit> hit_mesh(const TreeInstance& mesh, const Ray& ray, double reach_m);
 
 }  // namespace roomradar

@@ -64,8 +64,8 @@ class SceneInFrame {
   ///         jump limits)
   bool place(const RadarScene& scene, std::size_t own_tree, const Eigen::Matrix3d& R_frame_world,
              const Eigen::Vector3d& origin_world);
-  /// Finds the trees that intersect the volume, and in each depth image the rectangle into which the volume
-  /// projects.
+  /// Finds the trees whose bounding spheres intersect the volume, and in each depth image the rectangle into
+  /// which the volume projects.
   void enter(const Eigen::AlignedBox3d& volume);
   /// Returns the number of depth image cells that may be in the volume.
   [[nodiscard]] std::size_t cell_count() const;
@@ -86,14 +86,14 @@ class SceneInFrame {
     Eigen::Matrix3d R_frame_mesh;
     // Position of the tree's centre, in the frame, m.
     Eigen::Vector3d t_frame_centre;
-    /// Max rounding error of a height, m.
+    /// Max rounding error of a coordinate, m.
     float slack_m;
   };
   Eigen::Matrix3d R_frame_world_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();
   RadarScene scene_;
   std::size_t own_tree_ = 0;
-  // Trees that intersect the volume.
+  // Trees that may intersect the volume.
   std::vector<TreeView> trees_;
   std::vector<DepthView> views_;
   std::vector<DepthBlock> blocks_;

@@ -100,7 +100,7 @@ struct SceneColumn {
   SceneColumn(const TurnedTree& object, const FrameTriangle& scene);
 
   /// Returns a lower bound of the gap from an object triangle to the scene triangle's plane, along the
-  /// motion. Returns -infinity if the scene triangle is edge-on.
+  /// motion. Returns -infinity if the scene triangle is edge-on or has no area.
   [[nodiscard]] float least_gap(const TriangleTree& tree, std::uint32_t triangle) const {
     if (is_edge_on) return -std::numeric_limits<float>::infinity();
     const Eigen::Vector3f centre = tree.centre().cast<float>();

@@ -9,8 +9,7 @@
 namespace roomradar {
 
 enum class ContactStatus {
-  kInvalidInput,  ///< direction zero or not finite, distance not finite or <= 0, object without triangles, or
-                  ///< a pose not finite
+  kInvalidInput,  ///< the query or the scene is invalid; see CyberRadar::query()
   kNoAnswer,      ///< the renderer failed (out of memory, context lost); nothing is known
   kNoTarget,      ///< no contact within the queried distance
   kContact,       ///< contact after contact_distance_m >= 0

@@ -13,8 +13,8 @@ namespace roomradar {
 /// TriangleTree).
 /// @param edges   result of half_edges_of() for these triangles
 /// @param flat_m  flatness tolerance, m. A triangle joins a face if its vertices are at most flat_m from the
-///                plane fitted to the face so far. Vertices of the complete face are at most 2 flat_m from
-///                its plane
+///                plane fitted to the face so far, and its normal is within 8 degrees of the plane's.
+///                Vertices of the complete face are at most 2 flat_m from its plane
 std::vector<bool> find_within_flat_faces(const std::vector<Triangle>& triangles,
                                          const std::vector<Eigen::Vector3f>& vertices,
                                          const std::vector<HalfEdge>& edges, double flat_m);

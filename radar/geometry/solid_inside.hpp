@@ -25,9 +25,9 @@ bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double li
 /// rule holds even if components of the mesh overlap each other.
 bool is_within(const std::vector<Layer>& layers, double contact_distance_m);
 
-/// Returns true if a scene triangle is inside the object's solid, more than touching_m deep. Only one point
-/// of the triangle is tested, so it must not intersect the object's surface. Returns false if the object is
-/// not closed.
+/// Returns true if a scene triangle is inside the object's solid, more than touching_m deep. One point of the
+/// triangle decides, so the triangle must not intersect the object's surface. Returns false if the object is
+/// not closed or if none of five points is decisive.
 bool is_inside(const TurnedTree& object, const FrameTriangle& scene, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 

@@ -21,8 +21,8 @@ inline constexpr double kEdgeOn = 1e-9;
 
 /// Gap between two triangles: height of the scene's triangle above the object's, along z, m. The gap is
 /// linear over the intersection of the two projected triangles. Its minimum low_m and maximum high_m are
-/// therefore at vertices of the intersection. `vertices` holds them: vertices of one
-/// triangle inside the other, and crossings of the triangles' edges.
+/// therefore at vertices of the intersection. These are vertices of one triangle inside the other, and
+/// crossings of the triangles' edges.
 struct TriangleGap {
   struct Vertex {
     double x, y, scene_z, gap;
@@ -56,8 +56,8 @@ enum class PairContact {
 /// If low_m > touching_m, contact is ahead. If high_m < -touching_m, the scene triangle is behind the object
 /// triangle. Otherwise the triangles touch or intersect now. They touch if they overlap by less than
 /// touching_m along the normal of one of them. That triangle's plane then lies between them. Touching is a
-/// contact if the scene triangle is ahead of this plane. It is no contact if the scene triangle is behind
-/// this plane or the plane is parallel to the motion.
+/// contact if the object triangle is behind this plane and the scene triangle is ahead. It is no contact in
+/// the opposite order, or if the plane is parallel to the motion.
 ///
 /// If the scene triangle is edge-on and the object triangle reaches through its plane by less than
 /// touching_m, the object slides along the plane. Sliding is no contact at any distance. The object leaves a
