@@ -30,9 +30,9 @@ struct ForegroundConfig {
   float min_region_m2 = 0.0003F;  ///< min area of a region in the world: 3 cm2
   /// Min fraction of a region's pixels that are strong. In regions caused by a distorted map or a wrong pose,
   /// nearly all pixels are weak. In a real kitchen mapped with pose errors of 3 cm, the fraction is 0 to
-  /// 0.25. Dynamic regions are strong except at their outline. Not counted are pixels that cannot be strong:
-  /// those in the model's holes and, in a revealed region (farther than the model), those within the error of
-  /// an edge.
+  /// 0.25. Dynamic regions are strong except at their outline. Pixels that cannot be strong are not counted.
+  /// These are in the model's holes or, in a revealed region (farther than the model), within the error of an
+  /// edge.
   float min_strong_fraction = 0.6F;
   /// Min fraction of strong pixels among all pixels of a region, including those that min_strong_fraction
   /// does not count.

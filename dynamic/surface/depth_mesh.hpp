@@ -30,8 +30,9 @@ struct DepthMeshScratch {
   std::vector<float> filled_m;                           // image with its gaps filled, for skirts
 };
 
-/// Meshes the dynamic pixels. Each measured pixel of the mask that is on the stride grid becomes a vertex.
-/// Triangles connect neighbours on one surface. No triangle spans a depth discontinuity or the mask's edge.
+/// Meshes the dynamic pixels. Vertices are the measured pixels of the mask on the stride grid that belong to
+/// a triangle. Triangles connect neighbours on one surface. No triangle spans a depth discontinuity or the
+/// mask's edge.
 ///
 /// @param depth_m         height x width, metres along the optical axis, 0 = no measurement
 /// @param dynamic_mask      same size; not 0: dynamic

@@ -1,4 +1,4 @@
-// surface_motion.hpp: how a dynamic surface has moved since the last frame, near a point.
+// surface_motion.hpp: estimates the motion of a dynamic surface near a point since the last frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -18,13 +18,14 @@ void dynamic_points(const DepthImage& depth_m, const MaskImage& dynamic_mask, co
 /// Estimates the translation of a surface between two frames near a point, by registration of the surface's
 /// points. Candidates are translations of points of the last frame to those points of this frame that are
 /// farthest from all points of the last frame. The best candidate is refined by iterative closest points. A
-/// point more than 3 cm from every other has no match. A hand that enters the view, or turns, thus gets the
-/// translation of its part near the point.
+/// point more than 3 cm from every point of the other frame has no match. A hand that enters the view, or
+/// turns, thus gets the translation of its part near the point.
 /// @param before_world, now_world  points of the surface, see dynamic_points()
 /// @param centre_world, reach_m    only points of `now_world` within reach_m of the centre count
 /// @param farthest_m               max translation found
-/// Returns nullopt if fewer than 12 points are near, or if no translation brings the two sets of points to
-/// within 15 mm of each other. Source: Besl, McKay, A method for registration of 3-D shapes, PAMI 1992.
+/// @return nullopt if fewer than 12 points are near, or if the best translation leaves an RMS distance of 15
+///         mm or more between the two sets of points
+/// Source: Besl, McKay, A method for registration of 3-D shapes, PAMI 1992.
 std::optional<Eigen::Vector3d> translation_near(std::span<const Eigen::Vector3d> before_world,
                                                 std::span<const Eigen::Vector3d> now_world,
                                                 const Eigen::Vector3d& centre_world, double reach_m,

@@ -15,7 +15,8 @@ enum class TrackStatus {
   /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. They keep the initial
   /// guess's values. The others are aligned.
   kDegenerate,
-  /// The image disagrees with the references at the aligned pose. The returned pose is the guess.
+  /// The image disagrees with the references at the aligned pose, or the correction is too large
+  /// (AlignConfig). The returned pose is the guess.
   kDiverged,
 };
 std::string_view to_string(TrackStatus status);

@@ -46,7 +46,7 @@ StoredView store(const ViewPyramid& pyramid, const Image<std::uint8_t>& measured
 void restore(const StoredView& view, const ViewConfig& config, ViewPyramid& pyramid);
 
 /// Averages the depth of `other` into the finest level of `pyramid`, in the pixels where both show the same
-/// surface. Increments `measured` in these pixels.
+/// surface. Increments `measured` in these pixels, up to 60. Then the mean becomes a moving average.
 void improve_depth(ViewPyramid& pyramid, Image<std::uint8_t>& measured, const ViewPyramid& other,
                    const Eigen::Isometry3d& T_other_pyramid);
 

@@ -34,8 +34,8 @@ struct Exposure {
 struct PointMatches {
   NormalEquations depth, colour;
   std::size_t met = 0;  ///< number of points that project to a pixel with a surface
-  /// Number of correspondences whose distance is below the gate and below three standard deviations of the
-  /// difference between two measurements.
+  /// Number of correspondences whose distance is within the gate and below 4 standard deviations of one
+  /// measurement (2.8 of the difference between two).
   std::size_t inliers = 0;
   double squares = 0.0;  ///< sum of the inliers' squared distances, m^2
   /// Weighted sums over the correspondences with two known intensities. n sums the weights. live and
@@ -65,13 +65,14 @@ Real robust_weight(const Real& x) {
 /// linearised in the camera's twist in the camera frame.
 /// @param motion  motion of the points during their image's readout
 /// @param[in,out] pass  sums to which the residuals are added. Only the upper triangle of H is filled
-/// @param arithmetic    all give the same result to the bit
+/// @param arithmetic    results are bit-identical for all values
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
                   const RowMotion& motion, PointMatches& pass, Arithmetic arithmetic = Arithmetic::kFastest);
 
 /// Computes the gain and offset that map the mean and standard deviation of the live intensities to those of
-/// the reference's intensities. `known` is false if there are too few correspondences.
+/// the reference's intensities. The gain is limited to 0.5..2. `known` is false if there are too few
+/// correspondences.
 Exposure match_exposure(const PointMatches& pass);
 
 }  // namespace roomradar

@@ -30,9 +30,9 @@ struct TargetView {
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Fits a plane to each pixel's neighbourhood. A pixel gets no surface if it has no depth, or if its
-/// neighbourhood is not flat within the noise.
-/// @param arithmetic  all give the same result to the bit
+/// Fits a plane to each pixel's neighbourhood. A pixel gets no surface if it has no depth or is at the
+/// image's border. It gets none if its neighbourhood has too few samples or is not flat within the noise.
+/// @param arithmetic  results are bit-identical for all values
 void make_target_view(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world_view,
                       const ViewConfig& config, TargetView& reference,
                       Arithmetic arithmetic = Arithmetic::kFastest);

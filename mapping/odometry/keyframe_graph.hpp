@@ -16,7 +16,7 @@ namespace roomradar {
 struct KeyframeGraphConfig {
   int max_edges_rebuild = 12;  ///< max number of edges from a keyframe to older ones in close_loops()
   int max_edges_new = 6;       ///< max number of edges from a new keyframe to older ones while tracking
-  double furthest = 1.5;       ///< max view_distance() between two connected keyframes
+  double furthest = 1.5;       ///< max view_distance() of keyframes connected without place recognition
   double min_overlap = 0.25;   ///< min fraction of a keyframe's points with a correspondence
   double min_inliers = 0.5;    ///< min fraction of a pair's correspondences that are inliers
   /// Max difference between the two results of aligning a pair in both directions.

@@ -36,7 +36,7 @@ class PairAligner {
   /// Call whenever a keyframe was added. A keyframe's depth must be final once advance() has returned a
   /// number above its index. Final keyframes are aligned in batches; waits if the last batch is still being
   /// aligned.
-  /// @return the number of keyframes whose depth is final. The newest keyframe never is
+  /// @return the number of keyframes whose depth is final. The newest four never are
   std::size_t advance(const std::vector<Keyframe>& keyframes, const ConnectConfig& config);
   /// Waits for the last batch, and returns all pairs aligned so far, sorted by (newer, older).
   std::vector<KeyframePair> finish();

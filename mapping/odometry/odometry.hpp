@@ -38,8 +38,8 @@ class Odometry {
   /// optimise.
   void add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Replaces all constraints by those of keyframes with final depth, optimises the keyframes' poses, and
-  /// returns all frames so far with their final poses.
+  /// Rebuilds all constraints from the keyframes' final depth, optimises the keyframes' poses, and returns
+  /// all frames so far with their final poses.
   std::vector<TrackedFrame> optimise();
 
   /// Moves the keyframe database out, with current poses. Call optimise() first.

@@ -55,8 +55,9 @@ struct OdometrySnapshot {
 Eigen::Isometry3d T_world_camera_of(const OdometrySnapshot& kept, const KeptFrame& frame);
 
 /// Returns the camera's mean velocity over the last 0.09 s or slightly more, or since the first frame if that
-/// is later. Returns 0 if a frame in this time has no trusted pose, or if the stamps do not increase. The
-/// velocity between two consecutive frames is too noisy for correcting the time of colour.
+/// is later. Returns 0 if a frame in this time has no trusted pose, if the stamps do not increase, or if the
+/// time is outside 1 ms to 0.2 s. The velocity between two consecutive frames is too noisy for correcting the
+/// time of colour.
 CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now,
                              double now_s);
 

@@ -10,7 +10,7 @@
 namespace roomradar {
 
 enum class UpSource {
-  kNone,           ///< neither gravity nor a plane was usable; up_world is the cameras' mean -y axis
+  kNone,           ///< neither gravity nor a plane was usable; up_world: mean camera -y axis (no frames: +z)
   kAccelerometer,  ///< mean gravity measured by the device
   kPlane,          ///< most frequent normal within 60 degrees of the cameras' mean -y axis
   kGiven,          ///< stated by the user

@@ -8,8 +8,8 @@ namespace roomradar {
 /// the samples as extrapolated. The distance is the mean of linear extrapolations along the axes. Of the six
 /// directions, those with two known next voxels are used. If there is no such direction, the distance is the
 /// mean of the known face neighbours. Adds no bricks. Afterwards all eight corners of every cell around a
-/// measured zero crossing are known, so the surface extends as far as the measurements.
-/// Each grid is extrapolated in the places that belong to it.
+/// measured zero crossing are known, so the surface extends as far as the measurements. Each grid is
+/// extrapolated only where it is not mirrored from the other.
 void extrapolate_neighbours(TsdfLevels& levels);
 
 }  // namespace roomradar
