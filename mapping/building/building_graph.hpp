@@ -47,17 +47,17 @@ struct PlacedSubmap {
 
 struct BuildingGraph {
   std::vector<PlacedSubmap> submaps;
-  std::vector<bool> is_used;  ///< by join: false if it contradicts the others
-  std::vector<double> off_m;  ///< by join: median distance of its links from the solution, m
+  std::vector<bool> is_used;  ///< per join: false if it contradicts the others
+  std::vector<double> off_m;  ///< per join: median distance of its links from the solution, m
   std::size_t parts = 0;      ///< number of connected components
 };
 
 /// Solves for all keyframes' poses. All joins must have the status kJoined. First chooses joins that do not
 /// contradict each other (join_choice.hpp). Initial poses come from a spanning tree of the joins with the
 /// most agreeing keyframes. The other joins are then added as robust constraints. Joins with an error above
-/// max_off_m are refused, the worst first, until none is left. The world is that of the kept submaps, or of
-/// the first submap if none is kept. Each other connected component has the world of its first submap.
-/// Deterministic. Source: Kümmerle et al., g2o, ICRA 2011 (pose graph).
+/// max_off_m are refused, the worst first, until none is left. The world of a connected component is that of
+/// its submaps' earlier poses, or of its first submap if none has earlier poses. Deterministic. Source:
+/// Kümmerle et al., g2o, ICRA 2011 (pose graph).
 BuildingGraph solve_building(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
                              const TestOverlap& test_overlap = {}, const GraphConfig& config = {});
 

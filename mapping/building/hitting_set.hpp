@@ -13,7 +13,7 @@ using Conflict = std::vector<std::size_t>;
 /// elements are in ascending order. Exact, by branch and bound. After a fixed number of steps, returns the
 /// best set found so far. Deterministic. Conflicts must not be empty. Source: Reiter, A theory of diagnosis
 /// from first principles, Artificial Intelligence 1987.
-/// @param costs  by element, each above 0
+/// @param costs  per element, each above 0
 std::vector<std::size_t> cheapest_hitting_set(std::span<const Conflict> conflicts,
                                               std::span<const double> costs);
 

@@ -17,10 +17,10 @@ namespace roomradar {
 
 struct RetrievalConfig {
   double min_step = 0.25;         ///< min view_distance() of the keyframes of a submap that are compared
-  std::size_t candidates = 12;    ///< max submaps that a keyframe resembles, those with the most collisions
+  std::size_t candidates = 12;    ///< max similar submaps per keyframe; those with the most collisions
   std::uint32_t min_excess = 15;  ///< min collisions of similar keyframes beyond those of unrelated ones
   std::size_t min_similar = 2;    ///< min number of similar keyframes in one of the submaps of a pair
-  std::size_t partners = 16;      ///< max pairs per submap, those with the most collisions in excess
+  std::size_t partners = 16;      ///< best pairs kept per submap, by excess collisions
 };
 
 /// The strongest features of a keyframe. Features of a repeated texture have equal hashes, which count once:
@@ -28,7 +28,7 @@ struct RetrievalConfig {
 /// and Schmid, On the burstiness of visual elements, CVPR 2009.
 struct KeyframeFeatures {
   std::uint32_t count = 0;
-  std::array<std::vector<std::uint32_t>, kFeatureTables> hashes;  ///< by hash table, ascending, each once
+  std::array<std::vector<std::uint32_t>, kFeatureTables> hashes;  ///< per table: ascending, distinct
 };
 /// Features of those keyframes of a submap that differ in their view.
 struct SubmapFeatures {
@@ -36,46 +36,46 @@ struct SubmapFeatures {
 };
 SubmapFeatures features_of(const Submap& submap, const RetrievalConfig& config = {});
 
-/// A submap, as a keyframe of another sees it.
+/// A submap that resembles a keyframe of another submap.
 struct SimilarSubmap {
   std::uint32_t submap = 0;
-  std::uint32_t collisions = 0;  ///< equal hashes, with that of its keyframes which has the most
+  std::uint32_t collisions = 0;  ///< max number of equal hashes with one of its keyframes
 };
 struct KeyframeSimilarity {
-  std::uint32_t features = 0;         ///< of the keyframe
+  std::uint32_t features = 0;         ///< number of the keyframe's features
   std::vector<SimilarSubmap> others;  ///< most collisions first, then lowest number; no submap twice
 };
-/// By keyframe of a submap.
+/// One entry per keyframe of a submap.
 using SubmapSimilarity = std::vector<KeyframeSimilarity>;
 
 /// Similarities of the submaps of two groups.
 struct GroupSimilarity {
-  // By submap of the first and of the second group; SimilarSubmap::submap is in the other group. b is empty
-  // if a group is compared with itself.
+  // One entry per submap of the first and of the second group. SimilarSubmap::submap is an index in the other
+  // group. b is empty if a group is compared with itself.
   std::vector<SubmapSimilarity> a, b;
 };
 /// Counts the collisions of all keyframes of one group with all of another. Keeps `candidates` submaps per
 /// keyframe.
 GroupSimilarity compare_groups(std::span<const SubmapFeatures> a, std::span<const SubmapFeatures> b,
                                const RetrievalConfig& config = {});
-/// Same for the submaps of one group with each other.
+/// Compares the submaps of one group with each other, as compare_groups() does.
 GroupSimilarity compare_within(std::span<const SubmapFeatures> group, const RetrievalConfig& config = {});
 
 /// Adds the similarities of a submap's keyframes to those with other groups, and keeps the best `candidates`.
 /// @param number_of  by SimilarSubmap::submap of `found`: its number in `all`, ascending
-/// @return false if the submap has another number of keyframes or features there
+/// @return false if `found` has another number of keyframes or features than `all`
 bool add_similar(SubmapSimilarity& all, const SubmapSimilarity& found, std::span<const std::size_t> number_of,
                  const RetrievalConfig& config = {});
 
 /// Two submaps that may show the same place.
 struct CandidatePair {
   std::size_t a = 0, b = 0;      ///< submaps, a < b
-  std::size_t similar = 0;       ///< keyframes of both that look similar to one of the other submap
-  std::uint64_t collisions = 0;  ///< of these, in excess
+  std::size_t similar = 0;       ///< keyframes of either submap that are similar to one of the other
+  std::uint64_t collisions = 0;  ///< sum of the excess collisions of these keyframes
 };
 /// Returns the pairs of submaps that look alike, sorted by a, then b. A pair is among the `partners` best
 /// pairs of one of its submaps, so the number of pairs grows linearly with the number of submaps.
-/// @param similarities  by submap, with those of all groups
+/// @param similarities  one per submap, merged over all groups by add_similar()
 std::vector<CandidatePair> choose_pairs(std::span<const SubmapSimilarity> similarities,
                                         const RetrievalConfig& config = {});
 

@@ -1,4 +1,4 @@
-// retrieval_files.hpp: writes and reads what retrieval knows of submaps.
+// retrieval_files.hpp: writes and reads the features and similarities of submaps.
 #pragma once
 #include <filesystem>
 

@@ -23,7 +23,7 @@ struct KeyframeLink {
 
 enum class JoinStatus {
   kJoined,
-  kNotRecognised,  ///< too few keyframes match, or their relative poses disagree
+  kNotRecognised,  ///< too few keyframes match, or their relative poses or depths disagree
   /// The keyframes match, but elsewhere one recording sees through a surface that the other measured.
   kContradicted,
   /// Some keyframes match, but others that would show the same place look different. Example: another room
@@ -40,7 +40,7 @@ struct SubmapJoin {
   /// Relative pose of the submaps' worlds near the links. Its error grows with the distance from the links,
   /// by the drift of both submaps.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
-  int agreeing = 0;        ///< pairs of keyframes whose features agree on T_a_b
+  int agreeing = 0;        ///< number of keyframes of b whose features agree on T_a_b
   int expected = 0;        ///< keyframes of b that overlap enough with one of a to be recognised in it
   int recognised = 0;      ///< number of expected keyframes that were recognised
   double agreement = 0.0;  ///< fraction of the common surface that is at the same place in both
@@ -50,9 +50,9 @@ std::string describe(const SubmapJoin& join);
 
 struct JoinConfig {
   int min_inliers = 20;         ///< features that agree on the relative pose of two keyframes
-  int min_agreeing = 3;         ///< pairs of keyframes that agree on T_a_b
+  int min_agreeing = 3;         ///< min keyframes of b that agree on T_a_b
   double min_agreement = 0.75;  ///< see SubmapJoin::agreement
-  double max_different = 0.25;  ///< max fraction of the expected keyframes that are not recognised
+  double max_different = 0.25;  ///< max fraction of the expected keyframes not recognised; one is always allowed
   double near_m = 6.0;          ///< max distance from the links to compare at; beyond, drift is too large
   std::size_t max_links = 60;   ///< max links of a join, spread evenly along b
 };

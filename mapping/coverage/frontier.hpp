@@ -36,7 +36,7 @@ struct Frontier {
 
 /// Finds the border cells: unknown cells that share a face with a free cell. Adjacent border cells form one
 /// hole. Faces count with their area projected along the border's normal, since the staircase of a slanted
-/// border has a larger area. Returns no holes for an empty grid. Throws Error if the config is invalid.
+/// border has a larger area. Returns no holes if no cell is occupied. Throws Error if the config is invalid.
 /// FrontierConfig::cell_m is not used.
 Frontier find_frontier(const OccupancyCells& grid, const FrontierConfig& config = {});
 /// As above, in the octree's occupancy_cells().

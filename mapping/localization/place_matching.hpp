@@ -19,7 +19,7 @@ std::vector<std::size_t> most_alike(const MapKeyframe& place, const KeyframeData
                                     std::size_t count, int min_matches,
                                     const std::function<bool(std::size_t)>& accept = {});
 
-/// As most_alike(), of the keyframes with these indices.
+/// Same as most_alike(), restricted to the keyframes with these indices.
 std::vector<std::size_t> most_alike_of(const std::vector<std::size_t>& candidates, const MapKeyframe& place,
                                        const KeyframeDatabase& keyframe_database, std::size_t count,
                                        int min_matches);

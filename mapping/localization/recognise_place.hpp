@@ -36,12 +36,12 @@ struct [[nodiscard]] RecognisedPlace {
 
 /// Localises a frame with colour, as relocalise() does, and then looks for rivals: poses farther than 0.3 m
 /// or 0.3 rad away that fit about as well. Rivals are poses proved by features and depth, with at least half
-/// of the inliers; keyframes more than 3 m from the pose are searched for their own, since those of one of
-/// two equal rooms may fill the first candidates. Rivals are also the poses that the database's look-alikes
-/// give: the right place may have been recorded from other views only. A pose is no rival if keyframes with a
-/// similar view contradict the frame there, and contradict it less at the pose that was found. Time does not
-/// grow with the database if its index is complete. Deterministic. Does not throw, even for corrupt frames.
-/// Thread safe.
+/// of the inliers. Keyframes more than 3 m from the pose are searched separately, since the keyframes of one
+/// of two similar rooms may fill the list of candidates. Rivals are also the poses that the database's
+/// look-alikes within 2.5 m give: the right place may have been recorded from other views only. A pose is no
+/// rival if keyframes with a similar view contradict the frame more at this pose than at the found pose. Time
+/// hardly grows with the database if its index is complete. Deterministic. Does not throw, even for corrupt
+/// frames. Thread safe.
 RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyframe_database,
                                 const RelocaliseConfig& config = {});
 

@@ -30,8 +30,8 @@ std::vector<bool> floor_among(std::span<const LevelSurface> surfaces, const Mesh
 
 /// Returns the height of the floor above the keyframes' world origin along `up_world`, m. The floor is the
 /// lowest height at which the keyframes' depth shows at least a tenth as much level surface as at the height
-/// with most of it. A place counts once, however many keyframes show it. Returns nullopt if no level surface
-/// is measured.
+/// with most of it. A place counts once, however many keyframes show it. Returns nullopt if less than 0.05 m2
+/// of level surface is measured.
 /// @param up_world  unit vector
 std::optional<double> floor_height_m(const KeyframeDatabase& keyframe_database,
                                      const Eigen::Vector3d& up_world);

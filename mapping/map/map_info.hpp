@@ -50,7 +50,7 @@ struct MapInfo {
 bool knows_recorded_world(const MapInfo& info);
 
 /// Returns true if both maps are known to have the same world, since their keyframe files are equal. A map
-/// that a run in another map saves has the other map's keyframes.
+/// saved by a run in another map has that map's keyframes.
 bool share_world(const MapInfo& a, const MapInfo& b);
 
 /// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if

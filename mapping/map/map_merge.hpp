@@ -9,9 +9,9 @@
 namespace roomradar {
 
 /// Adds map `from` to map `into`: adds log-odds, and averages signed distances by weight. Each voxel of
-/// `into` gets the log-odds of `from` at its centre, and the distance interpolated from the eight samples of
-/// `from` around it. The result is exact if the grids coincide. If `into` is coarser than `from`, parts of
-/// thin surfaces are lost. Throws Error if a part of `from` is outside the octree of `into`.
+/// `into` gets the log-odds of `from` at its centre, and the distance interpolated from the samples of `from`
+/// around it. The result is exact if the grids coincide. If `into` is coarser than `from`, parts of thin
+/// surfaces are lost. Throws Error if a part of `from` is outside the octree of `into`.
 void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, StaticMap& into);
 
 /// Appends another session's keyframes, poses and counts to a map. The session must be in the map's world.

@@ -36,7 +36,7 @@ struct [[nodiscard]] Registration {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< valid only if the status is kRegistered
   int agreeing_views = 0;   ///< number of keyframes of b whose match in a agrees with T_a_b
   double overlap = 0.0;     ///< fraction of b's surface that is in space known to a
-  double agreement = 0.0;   ///< fraction that RegistrationConfig::min_agreement limits
+  double agreement = 0.0;   ///< fraction of that surface that is on a's surface, not in a's free space
   double residual_m = 0.0;  ///< median distance to a's surface, over b's points on it, m
   explicit operator bool() const { return status == RegistrationStatus::kRegistered; }
 };

@@ -15,8 +15,9 @@ namespace roomradar {
 
 /// All cells of 4^3 voxels with a removed voxel, and the neighbours of these cells. Removed voxels are ghosts
 /// (a frame saw through them) and absent voxels (parts of departed objects without measured depth behind
-/// them); see GhostVotes::Verdicts. The zone extends at least four voxels around each removed voxel. This is
-/// the width of the truncation band for surfaces measured from up to 2.5 m.
+/// them); see GhostVotes::Verdicts. The zone extends at least four voxels around each removed voxel. With 1
+/// cm voxels, this is at least the half-width of a Kinect's truncation band for surfaces measured from up to
+/// 3.1 m.
 class GhostZone {
  public:
   GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m);

@@ -51,9 +51,9 @@ class Checkpoints {
   /// Makes is_due() and is_due_at_end() wait for the last checkpoint and return true, until write() is
   /// called. For work that is about to be stopped.
   void write_soon() { writes_soon_ = true; }
-  /// Starts a child process that writes a checkpoint. Returns after a few milliseconds. If the child fails
-  /// (disk full), the previous checkpoint stays and failures() increases. Only the first failure is reported,
-  /// through the callback of tell_failure().
+  /// Waits for a checkpoint that is being written, then starts a child process that writes the next one. The
+  /// start takes a few milliseconds. If the child fails (disk full), the previous checkpoint stays and
+  /// failures() increases. Only the first failure is reported, through the callback of tell_failure().
   void write(const std::string& stage, const WriteFiles& write_files);
   /// Waits for a checkpoint that is being written. Returns true if there is a checkpoint to resume from.
   [[nodiscard]] bool has_any();

@@ -29,8 +29,8 @@ std::vector<MeshPoint> sample_mesh(const Mesh& mesh, std::size_t count);
 /// The poses of tracking have errors of some millimetres, which are some pixels of a picture. Also, colour
 /// may come from another camera and another time than depth. Alternates two steps, at an eighth, a quarter
 /// and then half of the pictures' size. Each point's brightness becomes the mean over the views that show it.
-/// Each view is then aligned to these by a Gauss-Newton step. Visibility stays that of the first poses, from
-/// which views move by some centimetres at most.
+/// Each view is then aligned to these means by a Gauss-Newton step. Visibility stays that of the first poses,
+/// from which views move by some centimetres at most.
 /// @param mesh   with normals
 /// @param views  with gains from even_exposure()
 /// Source: Zhou, Koltun, Color map optimization for 3D reconstruction with consumer depth cameras, ACM TOG

@@ -22,7 +22,8 @@ struct GlRadarConfig {
   int resolution_px = 128;
   /// In each pixel, surfaces more than this distance behind the object's front surface are ignored.
   double overlap_tolerance_m = 0.03;
-  /// Side of the textures shared by many queries, 1 to 16384.
+  /// Side of the textures shared by many queries, 1 to 16384. Raised to resolution_px, and limited to the
+  /// renderer's max texture size.
   int atlas_px = 2048;
   GlMinimum minimum = GlMinimum::kAuto;
   /// True: a query whose lower_m would be 0 for lack of resolution (see GlRadar) gets an exact result from
@@ -47,7 +48,7 @@ struct GlQuery {
   std::size_t own_index = kNotInScene;
 };
 
-/// Returns false if GlRadar rejects the query for any scene.
+/// Returns false if GlRadar rejects the query, whatever the scene.
 bool is_usable(const GlQuery& query);
 
 }  // namespace roomradar

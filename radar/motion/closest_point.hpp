@@ -22,7 +22,7 @@ struct ClosestPoint {
   std::uint32_t tree = 0;
 };
 
-/// Max number of points that one proximity query returns.
+/// Max number of points per tree that one proximity query returns.
 inline constexpr std::size_t kMaxClosestPoints = 24;
 
 /// Bit mask of surface kinds, see bit_of().

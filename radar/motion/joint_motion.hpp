@@ -51,7 +51,7 @@ struct JointMover {
 /// Moves all bodies at the same time, each until its first contact or the end of its duration. A body that
 /// meets another one stops with it; the other bodies move on, past the two at rest. A body's free time is a
 /// lower bound. When it ends, only this body is queried again, at the poses of that moment. The body's motion
-/// ends when a query gains less than 2 % of its duration (the first query: nothing), or after 12 queries.
+/// ends when a query gains less than 2 % of its duration (the first query: nothing), or after 13 queries.
 /// @param sets    bodies of different sets do not meet (sets_that_meet())
 /// @param worker  shares the bodies' first queries, then the sets, with the same results; may be null
 void move_to_contact(std::span<const std::span<JointMover>> sets, WorkerThread* worker);

@@ -80,9 +80,9 @@ struct [[nodiscard]] TimeOfImpact {
 /// success and halve on failure. An object that rotates in place and is free for a full rotation is free for
 /// the whole duration. Without rotation, a single query gives the result.
 ///
-/// An object that touches the scene at the start and rotates by more than a nanometre stops at once, even if
-/// it moves away from the scene. Callers should therefore keep a gap. A stopped object has a gap of up to
-/// tolerance_m.
+/// An object that touches the scene at the start stops at once if its rotation moves a point by more than a
+/// nanometre, even if the object moves away from the scene. Callers should therefore keep a gap. A stopped
+/// object has a gap of up to tolerance_m.
 ///
 /// Allocates a few hundred bytes in addition to the radar's memory.
 TimeOfImpact time_of_impact(CyberRadar& radar, const TreeInstance& object, const RigidMotion& motion,

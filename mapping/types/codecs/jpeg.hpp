@@ -16,8 +16,8 @@ namespace roomradar {
 std::vector<std::uint8_t> jpeg_of(const ColourImage& picture, int quality);
 
 /// Decodes a JPEG: grey, colour or CMYK. The picture gets the JPEG's size, at most 16,384 px per side.
-/// @return the fault, nullopt if there is none. A fault in the middle of the pixels is none: libjpeg
-/// continues. After a fault the picture's pixels are unspecified
+/// @return the fault, nullopt if there is none. Damage within the pixel data is not a fault, since libjpeg
+///         continues. After a fault the picture's pixels are unspecified
 [[nodiscard]] std::optional<std::string> decode_jpeg(std::string_view bytes, ColourImage& picture);
 
 /// Decodes a JPEG that must have this size. The bytes are not trusted: the size is read before memory is
