@@ -9,8 +9,9 @@
 namespace roomradar {
 
 /// Reads a few well spread, slow frames of pass.fused again, and bakes a texture of the mesh from their
-/// colours. Their pictures take at most 160 MB. Returns null, and reads nothing, if the memory would exceed
-/// config.max_memory_bytes. Returns null if no frame has colour.
+/// colours. Their pictures take about 160 MB, at most 320 MB if later pictures are larger than the first.
+/// Returns null, and reads nothing, if the memory would exceed config.max_memory_bytes. Returns null if no
+/// frame has colour and `earlier` is empty.
 ///
 /// Surface that these frames do not show keeps the colours of `earlier` textures. Stages timed: read (per
 /// frame), texture (per frame, then the whole).

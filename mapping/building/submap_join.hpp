@@ -52,7 +52,7 @@ struct JoinConfig {
   int min_inliers = 20;         ///< features that agree on the relative pose of two keyframes
   int min_agreeing = 3;         ///< min keyframes of b that agree on T_a_b
   double min_agreement = 0.75;  ///< see SubmapJoin::agreement
-  double max_different = 0.25;  ///< max fraction of the expected keyframes not recognised; one is always allowed
+  double max_different = 0.25;  ///< max fraction of expected keyframes not recognised; one is always allowed
   double near_m = 6.0;          ///< max distance from the links to compare at; beyond, drift is too large
   std::size_t max_links = 60;   ///< max links of a join, spread evenly along b
 };

@@ -17,8 +17,9 @@ std::string_view to_string(HoleKind kind);
 struct Hole {
   HoleKind kind = HoleKind::kUnknownSpace;
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();  ///< centre, m
-  double size_m = 0.0;                                       ///< diagonal of its bounding box; kSurfaceBorder: BorderLoop::size_m
-  double area_m2 = 0.0;                                      ///< area of its border with the known space
+  /// Diagonal of its bounding box, m; for kSurfaceBorder: BorderLoop::size_m.
+  double size_m = 0.0;
+  double area_m2 = 0.0;  ///< area of its border with the known space
   /// Unit viewing direction, from known space into the hole.
   Eigen::Vector3d look_direction_world = Eigen::Vector3d::UnitX();
   /// Free position from which a camera can observe the hole, m; unset if no position with a free line of

@@ -18,8 +18,8 @@ struct TextureConfig {
 };
 
 /// Divides the mesh into charts and gives each texel the colour of the views that show it best, i.e. from
-/// near, from the front, sharp, and away from the picture's border. A texel is as small as the best picture's
-/// pixels on the surface.
+/// near, from the front, sharp, and away from the picture's border. A texel's side is 80 % of the best
+/// picture's pixel on the surface, but at least min_texel_m.
 ///
 /// Detail comes from the best view, or from views that are almost as good. The colour without detail is the
 /// mean of all good views, so no seam shows where the best view changes. Views whose colour is far from the
