@@ -28,9 +28,9 @@ std::array<std::int16_t, 8> voxel_distances(const BlockOctree& tree, const LeafB
 
 /// Replaces a coarse leaf block by the voxels that it stands for. Each takes its cell's log-odds, weight and
 /// colour. Distances are interpolated within the block. Samples in front of a surface are dropped outside the
-/// truncation band of voxels, which is narrower than that of coarse cells. Close frames would have to correct
-/// them. Samples behind the surface are kept, since on a surface seen obliquely even adjacent samples are
-/// outside the band. Returns the node's new state.
+/// truncation band of voxels, which is narrower than that of coarse cells. Otherwise close frames would have
+/// to correct them. Samples behind the surface are kept, since on a surface seen obliquely even adjacent
+/// samples are outside the band. Returns the node's new state.
 Slot refined(BlockOctree& tree, Slot node);
 
 /// Returns true if a node at kCoarseDepth has no fine samples, so that its cells may be coarse: it is not an

@@ -64,7 +64,7 @@ std::string describe(const PoseGraphResult& result);
 ///
 /// Leaves out measurements between two constant poses, and invalid measurements. A measurement is invalid if
 /// an index is out of range, both indices are equal, or a number is not finite. It is also invalid if the
-/// information is zero or not positive semidefinite. Their residual_sigma is -1.
+/// information is zero or not positive semidefinite. Measurements left out get a residual_sigma of -1.
 /// @param constant  per pose: true if the pose is constant; if empty, only the first pose is constant
 PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_camera,
                                     const std::vector<PoseConstraint>& constraints,
