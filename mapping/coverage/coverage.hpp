@@ -11,7 +11,7 @@
 namespace roomradar {
 
 struct Coverage {
-  std::vector<Hole> holes;                ///< ordered by kind, then largest first
+  std::vector<Hole> holes;                ///< largest first; outer borders last
   std::vector<std::uint8_t> picture_png;  ///< drawn by draw_coverage(), as a PNG file
 };
 

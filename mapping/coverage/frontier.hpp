@@ -34,10 +34,10 @@ struct Frontier {
   std::vector<FrontierCell> cells;
 };
 
-/// Finds the border cells: unknown cells that share a face with a free cell. Adjacent border cells form one
-/// hole. Faces count with their area projected along the border's normal, since the staircase of a slanted
-/// border has a larger area. Returns no holes if no cell is occupied. Throws Error if the config is invalid.
-/// FrontierConfig::cell_m is not used.
+/// Finds the border cells: unknown cells that share a face with a free cell. Adjacent border cells, all
+/// inside the scan or all at its end, form one hole of limited size. Faces count with their area projected
+/// along the border's normal, since the staircase of a slanted border has a larger area. Returns no holes if
+/// no cell is occupied. Throws Error if the config is invalid. FrontierConfig::cell_m is not used.
 Frontier find_frontier(const OccupancyCells& grid, const FrontierConfig& config = {});
 /// As above, in the octree's occupancy_cells().
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config = {});

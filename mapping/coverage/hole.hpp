@@ -23,7 +23,7 @@ struct Hole {
   /// Unit viewing direction, from known space into the hole.
   Eigen::Vector3d look_direction_world = Eigen::Vector3d::UnitX();
   /// Free position from which a camera can observe the hole, m; unset if no position with a free line of
-  /// sight was found.
+  /// sight was found. The line of sight is not tested for kSurfaceBorder.
   std::optional<Eigen::Vector3d> viewpoint_world;
 };
 

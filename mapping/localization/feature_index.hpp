@@ -32,8 +32,9 @@ class FeatureIndex {
   /// Returns the number of keyframes in the index.
   [[nodiscard]] std::size_t size() const { return keyframes_; }
 
-  /// Returns the numbers of the keyframes with the most descriptors that collide with one of `query`, best
-  /// first. Returns at most `count` keyframes, all with at least one collision.
+  /// Returns the numbers of the keyframes with the most collisions with `query`, best first. Counts each
+  /// collision of two descriptors in each table. Returns at most `count` keyframes, all with at least one
+  /// collision.
   /// @param accept  called with a keyframe's number; false: the keyframe is left out. Empty: all are accepted
   [[nodiscard]] std::vector<std::size_t> candidates(std::span<const Descriptor> query, std::size_t count,
                                                     const std::function<bool(std::size_t)>& accept) const;

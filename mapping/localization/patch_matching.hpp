@@ -13,7 +13,8 @@
 
 namespace roomradar {
 
-/// All patches of a keyframe database, in the world's frame, grouped by patch size.
+/// Patches of a keyframe database, in the world's frame, grouped by patch size. A patch that several
+/// keyframes show alike is stored once.
 struct PatchIndex {
   struct OfSize {
     /// First 64 bits of each patch's descriptor, contiguous in memory for fast comparison.
@@ -39,9 +40,9 @@ struct PoseCandidate {
 };
 
 /// Returns at most `most` distinct poses that at least `min_agreeing` patches of the frame support, best
-/// first. Each pair of similar patches (one of the frame, one known) votes for the approximate pose that it
-/// implies. RANSAC over triples of patch centres then refines each pose from its supporting pairs.
-/// Deterministic.
+/// first. Each of the 400 most similar pairs of patches (one of the frame, one known) votes for the
+/// approximate pose that it implies. RANSAC over triples of patch centres then refines each pose from its
+/// supporting pairs. Deterministic.
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing);
 

@@ -37,10 +37,10 @@ inline constexpr int kPatchSizes = 4;
 /// surface. Cameras at different distances thus extract the same patches.
 inline float patch_width_m(int size) { return 0.06F * static_cast<float>(1 << size); }
 
-/// Returns at most `most` patches at a frame's strongest image corners, in the depth camera's frame. Returns
-/// an empty vector if the frame has no colour or no flat surface. Deterministic. Source: Wu, Clipp, Li,
-/// Frahm, Pollefeys, 3D model matching with viewpoint-invariant patches, CVPR 2008; Calonder, Lepetit,
-/// Strecha, Fua, BRIEF, ECCV 2010.
+/// Returns at most `most` patches at a frame's strong image corners, spread over the image, in the depth
+/// camera's frame. Returns an empty vector if the frame has no colour or no flat surface. Deterministic.
+/// Source: Wu, Clipp, Li, Frahm, Pollefeys, 3D model matching with viewpoint-invariant patches, CVPR 2008;
+/// Calonder, Lepetit, Strecha, Fua, BRIEF, ECCV 2010.
 std::vector<SurfacePatch> describe_patches(const Frame& frame, int most);
 
 }  // namespace roomradar

@@ -12,7 +12,7 @@ namespace roomradar {
 /// Returns the indices in `keyframe_database` of the keyframes with the most feature matches to `place`, best
 /// first. Returns at most `count` keyframes, each with at least `min_matches` matches. Compares only the
 /// strongest FeatureIndex::kIndexedFeatures features of each keyframe. Of the keyframes in the database's
-/// FeatureIndex, compares only the first 40 + 2 * `count` candidates(), so that time does not grow with the
+/// FeatureIndex, compares only the first 40 + 2 * `count` candidates(), so that time hardly grows with the
 /// database.
 /// @param accept  called with a keyframe's index; false: the keyframe is left out. Empty: all are accepted
 std::vector<std::size_t> most_alike(const MapKeyframe& place, const KeyframeDatabase& keyframe_database,

@@ -22,7 +22,7 @@ struct GhostConfig {
   float window_radius_m = 0.03F;
   /// Min fraction of the window's pixels that must have depth. The centre pixel must always have depth.
   float min_measured_share = 0.5F;
-  int min_through = 3;  ///< min number of frames that must see through a ghost's sample
+  int min_through = 3;  ///< min frames that see through a sample; fewer suffice beside such samples
   /// Min fraction of frames that see through a ghost's sample, relative to all frames that measure it or see
   /// through it.
   float min_through_share = 0.1F;

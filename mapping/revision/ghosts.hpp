@@ -28,7 +28,7 @@ class GhostVotes {
 
   /// Classification of the surface voxels. A departed object is a large enough connected component of voxels
   /// with enough evidence, plus connected voxels with weaker evidence. Components of at least 0.5 x 0.5 m are
-  /// too large to be tracking errors. Within 10 cm of them, even weaker evidence suffices.
+  /// too large to be tracking errors. Up to 20 cm around them, even weaker evidence suffices.
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects through which frames see
     std::vector<VoxelIndex> absent;  ///< voxels of departed objects without measured depth behind

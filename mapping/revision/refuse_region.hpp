@@ -15,8 +15,7 @@ namespace roomradar {
 /// Region around a set of points: all grid cells that contain a point, and their 26 neighbours.
 class WorldRegion {
  public:
-  /// @param cell_m  edge of a cell, m, > 0. The distance of every point from the region's border is one to
-  ///                two cells
+  /// @param cell_m  edge of a cell, m, > 0. Every point is at least one cell inside the region's border
   WorldRegion(std::span<const Eigen::Vector3d> points_world, double cell_m);
 
   [[nodiscard]] bool contains(const Eigen::Vector3d& p_world) const;
@@ -39,14 +38,15 @@ struct RegionView {
 /// Updates a region of the map from the frames. Uses pixels whose measured point is in the region. Also uses
 /// pixels whose expected point is in the region and whose measured depth is larger than the expected depth.
 ///
-/// A sample becomes free if more frames see through it than measure it. This includes samples behind the
-/// region, e.g. on the far side of a removed object. A sample in the region is erased if at least one frame
-/// measures a surface within the truncation distance of it. Then the selected pixels are fused as in
-/// StaticMap::fuse(). This measures the erased samples again.
+/// A sample becomes free if more frames see through it than measure it. This includes samples up to 1 m
+/// behind the region, e.g. on the far side of a removed object. A sample in the region is erased if at least
+/// one frame measures a surface within the truncation distance of it. Then the selected pixels are fused as
+/// in StaticMap::fuse(). This measures the erased samples again.
 ///
 /// @param views  frames of one static scene. Pass several, since the noise of a single frame would become
 ///               surface
-/// @return the box (world, m) in which surface may have changed; empty if nothing changed
+/// @return the box (world, m) in which surface may have changed, without pixels fused more than 1 m outside
+///         the region's box; empty if nothing changed
 Eigen::AlignedBox3d refuse_region(StaticMap& map, const WorldRegion& region,
                                   std::span<const RegionView> views);
 

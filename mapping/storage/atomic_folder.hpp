@@ -27,8 +27,9 @@ class AtomicFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
 
-  /// Waits until all files are on disk. Then renames the folder to `target` atomically and removes the old
-  /// `target`. Throws Error, with `target` unchanged, if the disk or the file system fails.
+  /// Waits until all files directly in the folder are on disk. Then renames the folder to `target` atomically
+  /// and removes the old `target`. Throws Error, with `target` unchanged, if the disk or the file system
+  /// fails.
   void commit();
 
  private:
@@ -49,7 +50,7 @@ std::string folder_version(const std::filesystem::path& folder);
 [[noreturn]] void fail_replaced_too_often(const std::filesystem::path& folder);
 
 /// Calls read() until the folder is not replaced during the call, and returns that call's result. The result
-/// is thus from a single version of the folder, even if another process replaces it. Makes at most 100
+/// is thus from a single version of the folder, even if another process replaces it. Throws Error after 100
 /// attempts. Rethrows an exception of read() only if the folder was not replaced during that call.
 template <typename Read>
 auto read_consistent(const std::filesystem::path& folder, const Read& read) {

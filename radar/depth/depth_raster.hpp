@@ -32,8 +32,8 @@ class DepthRaster {
                      const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, double near_m,
                      bool cull_back_faces, DepthImage& depth_m);
 
-  /// Takes the pieces of a mesh, which cut_into_pieces() has made of its vertices and triangles, on any thread.
-  /// Without this call they are made when the mesh is first drawn, which delays that frame.
+  /// Takes the pieces that cut_into_pieces() made of the mesh's vertices and triangles, possibly on another
+  /// thread. Without this call, the pieces are made when the mesh is first drawn, which delays that frame.
   void set_pieces(const GpuMesh& mesh, RasterMesh pieces);
 
  private:

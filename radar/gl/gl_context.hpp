@@ -9,12 +9,12 @@ enum class RendererChoice {
   kAuto,
   /// Requires a GPU; throws Error if there is none.
   kGpu,
-  /// Requires Mesa's llvmpipe; throws Error if it is missing.
+  /// Requires a Mesa software renderer, e.g. llvmpipe; throws Error if there is none.
   kSoftware,
 };
 
 /// Returns the choice that the environment variable ROOMRADAR_RENDERER names: "gpu", "software" or "auto".
-/// Unset means "auto".
+/// Unset or empty means "auto".
 /// @throws Error for any other value
 RendererChoice renderer_choice_from_environment();
 

@@ -44,8 +44,8 @@ class GpuMesh {
   void upload(const Mesh& mesh, MeshUsage usage);
 
   /// Replaces the mesh; the tree's triangles and vertices serve as the CPU copy.
-  /// @param tree  built from this mesh (by build_in_order() for kStreamed). Must not be destroyed or rebuilt
-  ///              before the next upload
+  /// @param tree  built from this mesh (by build_in_order() for kStreamed); Error is thrown if the numbers of
+  ///              vertices or triangles differ. Must not be destroyed or rebuilt before the next upload
   void upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree);
   /// Adds texture coordinates, one per vertex, to a mesh uploaded as kStatic: vertex attribute 3 (vec2).
   /// Throws Error if their number differs from the number of vertices, or if the renderer has no memory.
@@ -96,8 +96,7 @@ class GpuMesh {
 
   /// Returns the origin in the mesh's frame, m. A local point plus the origin is a point in the mesh's frame.
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
-  /// Returns the bounding box in the mesh's frame (origin() added), m. It isEmpty() if there are no
-  /// triangles.
+  /// Returns the bounding box in the mesh's frame (origin() added), m. Empty if there are no triangles.
   [[nodiscard]] Eigen::AlignedBox3d bounds() const;
 
   /// Returns the chunks of the CPU copy, in local coordinates.
