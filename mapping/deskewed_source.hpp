@@ -11,7 +11,8 @@ namespace roomradar {
 
 /// Delivers the frames of another source with depth as a global shutter would have seen it at the middle of
 /// the readout, and with T_colour_depth for the time of the colour image. Frames without neighbours of known
-/// pose are unchanged. The other source must outlive this one.
+/// pose are unchanged. Depth is also unchanged if no row would move by more than about half a pixel. The
+/// other source must outlive this one.
 class DeskewedSource final : public FrameSource {
  public:
   /// @param trajectory  poses in the order of their stamps

@@ -64,8 +64,8 @@ std::vector<const ContentFile*> files_of(const BuildingTile& tile);
 
 /// Returns true if the folder holds a building.
 bool is_building(const std::filesystem::path& folder);
-/// Reads building.json. Throws Error naming the file and the fault if it is missing, damaged, of a later
-/// version, or names files outside the folder.
+/// Reads building.json. Throws Error naming the file and the fault if it is missing, damaged, of another
+/// format version, or names files outside the folder.
 BuildingInfo read_building(const std::filesystem::path& folder);
 /// Writes building.json, whole or not at all. Throws Error if it cannot be written.
 void write_building(const BuildingInfo& info, const std::filesystem::path& folder);

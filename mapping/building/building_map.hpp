@@ -12,7 +12,7 @@
 
 namespace roomradar {
 
-// All functions throw Error naming the file and the fault if a file is missing or damaged.
+// The load functions throw Error naming the file and the fault if a file is missing or damaged.
 
 /// Returns the meshes of all tiles as one. Vertices of different tiles at the same position, bit for bit,
 /// become one vertex. The origin is that of the first tile.
@@ -25,7 +25,7 @@ StaticMap load_building_octree(const BuildingInfo& info, const std::filesystem::
 /// features, as recognise_place() needs them, but without patches. Throws Error if the building has no
 /// keyframes, which is the case if it was made by an earlier version.
 /// @param max_bytes  max memory of the result; 0: no limit. To meet the limit, keyframes with a view similar
-///                   to an earlier keyframe's are left out
+///                   to an earlier keyframe's are left out. At least one keyframe per recording is kept
 KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const std::filesystem::path& folder,
                                          std::size_t max_bytes = 0);
 

@@ -30,7 +30,8 @@ Eigen::AlignedBox3d box_of(const TileGrid& grid, const TileIndex& tile);
 /// Returns the tile that contains a point.
 TileIndex tile_at(const TileGrid& grid, const Eigen::Vector3d& p_world);
 
-/// Returns the tiles with a sample of the map within `margin_voxels` of their cubes, ordered by is_before().
+/// Returns the tiles with a sample of the map within `margin_voxels` (or up to 3 voxels more) of their cubes,
+/// ordered by is_before().
 std::vector<TileIndex> tiles_of(const StaticMap& map, const TileGrid& grid, int margin_voxels);
 
 /// Returns the tiles that have a free or occupied voxel, in the same order.

@@ -64,7 +64,7 @@ StaticMap load_map_octree(const std::filesystem::path& folder);
 std::shared_ptr<const SurfaceTexture> fitting_texture(const SavedMap& map);
 
 /// Reads the map's mesh and its texture, as load_map_mesh() does. Returns an empty texture (no corners) if
-/// the map has none.
+/// the map has none. Also throws if the texture belongs to another mesh.
 std::pair<Mesh, SurfaceTexture> load_textured_map_mesh(const std::filesystem::path& folder);
 
 /// Returns one sentence per fault, naming the file; empty for an intact map. Never throws for a damaged map.

@@ -15,11 +15,12 @@ namespace roomradar {
 void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, StaticMap& into);
 
 /// Appends another session's keyframes, poses and counts to a map. The session must be in the map's world.
-/// The session's timestamps are shifted to follow the map's. Octree and mesh are unchanged.
+/// The session's timestamps are shifted to follow the map's, unless they already do. Octree and mesh are
+/// unchanged.
 void append_session(SavedMap& map, const SavedMap& session);
 
-/// Estimates T_a_b between two maps' worlds. b's surface must agree with a's surface and free space, and a's
-/// surface with b's.
+/// Estimates T_a_b between two maps' worlds. b's surface must agree with a's surface and free space.
+/// Conversely, a's surface must agree with b's, unless almost none of it is in space known to b.
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config = {});
 
 /// Merges two maps in a's world, at the finer of their resolutions, and re-extracts the surface with a's

@@ -40,8 +40,8 @@ struct [[nodiscard]] Registration {
   double residual_m = 0.0;  ///< median distance to a's surface, over b's points on it, m
   explicit operator bool() const { return status == RegistrationStatus::kRegistered; }
 };
-/// Returns the end of a sentence for the user with the result or the reason for failure. Includes the number
-/// of agreeing keyframes, overlap and agreement.
+/// Returns the end of a sentence for the user with the result or the reason for failure. A result includes
+/// the number of agreeing keyframes, overlap and agreement. A reason includes the value that was too low.
 std::string describe(const Registration& registration);
 
 /// Computes T_a_b. Each keyframe of b that matches a keyframe of a votes for a transform. The transform on

@@ -12,8 +12,8 @@ namespace roomradar {
 /// Returns `count` points sampled uniformly on a mesh. Deterministic. Empty for a mesh without area.
 std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count);
 
-/// Returns about `count` surface points from the keyframes' depth previews (downsampled depth images), in the
-/// keyframes' world. Uses depths up to 3 m.
+/// Returns at most `count` surface points from the keyframes' depth previews (downsampled depth images), in
+/// the keyframes' world. Uses depths up to 3 m.
 std::vector<Eigen::Vector3d> surface_of(const KeyframeDatabase& keyframe_database, std::size_t count);
 
 }  // namespace roomradar

@@ -51,7 +51,8 @@ namespace roomradar {
 /// (the line along u through its sample position). lower_m is 0 if, in one of the object's pixels, a scene
 /// surface is neither certainly ahead of the object nor certainly behind it. Examples are a wall that the
 /// object passes at less than a pixel's distance, and a peg in a hole. Such a query is repeated with the
-/// exact test on the CPU if possible (GlRadarConfig::exact_fallback). Then lower_m = upper_m.
+/// exact test on the CPU if possible (GlRadarConfig::exact_fallback). Then lower_m = upper_m, except beyond
+/// CyberRadar::kMostWorkBehind.
 ///
 /// One-sided surfaces (is_one_sided(), for example the frontier of observed space) block GlRadar's objects
 /// from both sides. Use CyberRadar if they must block from their outside only.

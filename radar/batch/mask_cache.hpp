@@ -15,7 +15,7 @@ struct MaskKey {
   /// GpuMesh::revision() of the mesh.
   std::uint64_t revision = 0;
   /// Direction, rounded to multiples of 2^-40. Directions with equal rounded values share a mask. After 100 m
-  /// of motion, the resulting error is at most 0.1 nm.
+  /// of motion, the resulting error is at most 0.2 nm.
   std::array<std::int64_t, 3> direction{};
   friend bool operator==(const MaskKey&, const MaskKey&) = default;
 };
