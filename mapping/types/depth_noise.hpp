@@ -18,7 +18,8 @@ struct DepthNoise {
   friend bool operator==(const DepthNoise&, const DepthNoise&) = default;
 };
 
-/// Returns true if the standard deviation is finite and > 0 at every depth, and does not decrease with depth.
+/// Returns true if all parameters are in their ranges. The standard deviation is then finite and > 0 at every
+/// depth, and does not decrease with depth.
 inline bool is_valid(const DepthNoise& noise) {
   constexpr float kMost = 1.0F;  // m, or m per m
   const auto is_within = [](float value, float most) { return value >= 0.0F && value <= most; };

@@ -22,7 +22,8 @@ std::set<pid_t> threads_of_process();
 
 /// Owns a thread that sleeps between calls of run(). On a machine with one processor there is no thread, and
 /// the two tasks run one after the other. Results must not depend on the order of the tasks. Call run() from
-/// one thread only, and not from inside run(). The worker does not run on the caller's processor.
+/// one thread only, and not from inside run(). If the worker last ran on the caller's processor, run() moves
+/// it to another.
 class WorkerThread {
  public:
   WorkerThread();
