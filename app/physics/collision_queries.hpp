@@ -23,7 +23,8 @@ using DistanceQuery = std::function<Contact(const Eigen::Isometry3d& T_world_obj
 struct SceneBody {
   Body* body = nullptr;  ///< null: the tree is a static or dynamic surface, not a body
   /// Mass of the querying body (AdvancedBody::mass_kg) divided by the mass of this body. Used only for bodies
-  /// that are not advanced in the same call. 0: impulses do not move the body, such as a carried one.
+  /// that are not advanced in the same call. 0: impulses do not move this body, for example while it is
+  /// carried.
   double mass_ratio = 0.0;
 };
 

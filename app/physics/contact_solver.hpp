@@ -58,10 +58,11 @@ double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2);
 double energy(std::span<const SolverBody> bodies);
 
 /// Solves for contact impulses by projected Gauss-Seidel (sequential impulses) and applies them to the
-/// bodies' velocities. Each connected component of bodies in contact (island) is solved as one system. After
-/// the solve, each contact separates at leaves_mps or faster and obeys Coulomb's friction law. The impulses
-/// on the two bodies of a contact are opposite, so momentum is conserved. If leaves_mps <= 0 at all contacts
-/// and all guesses are 0, impulses add no energy.
+/// bodies' velocities. Each connected component of bodies in contact (island) is solved as one system. Sweeps
+/// end when none changes a velocity by 1e-8 m/s, and after 200. Each contact then separates at leaves_mps or
+/// faster and obeys Coulomb's friction law, within this tolerance. The impulses on the two bodies of a
+/// contact are opposite, so linear momentum is conserved. If leaves_mps <= 0 at all contacts and all guesses
+/// are 0, impulses add no energy.
 ///
 /// Nonlinear conjugate gradients speed up the convergence of the sweeps. Sources: Catto, Iterative dynamics
 /// with temporal coherence, GDC 2005; Silcowitz, Niebe, Erleben, A nonsmooth nonlinear conjugate gradient

@@ -41,7 +41,7 @@ struct MovingBody {
   double mass_kg = 1.0;
   bool is_carried = false;       ///< moves without gravity, friction and restitution
   std::vector<Push> pushes{};    ///< pushes by dynamic surfaces that overlap the body
-  SurfaceKindMask left_out = 0;  ///< kinds that are no contacts, because they push or grip the body
+  SurfaceKindMask left_out = 0;  ///< kinds excluded from the contacts, because they push or grip the body
   StepReport* report = nullptr;  ///< the substep adds its contacts
   double dt_s = 0.0;             ///< length of the substep
   /// Called after each change of the body's pose, to update the other bodies' scenes. May be null.

@@ -33,7 +33,7 @@ struct DirectedOverlap {
 /// features of the body when it is translated out of the overlap, each with the normal speed that this
 /// translation needs there. Hence the pushed body may rotate, but not into another part of the surfaces. If
 /// the translated body still intersects a surface, the only contact is that of the overlap.
-/// @param push_m  displacement by the push during dt_s, at most the depth and the margin
+/// @param push_m  displacement by the push during dt_s, at most overlap.depth_m plus the contact margin
 std::vector<Push> push_contacts(const Body& body, const DirectedOverlap& overlap, double push_m, double dt_s,
                                 const CollisionQueries& queries, const PhysicsConfig& config);
 

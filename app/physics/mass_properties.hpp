@@ -13,14 +13,14 @@ struct MassProperties {
   /// Inertia about the centre of mass, in the mesh's axes, m^2 (per kg of body mass). Positive definite.
   Eigen::Matrix3d inertia_m2 = 0.0025 * Eigen::Matrix3d::Identity();
   double radius_m = 0.1;  ///< distance from the centre of mass to the farthest vertex
-  /// Mass, > 0. A closed mesh is a solid of 1,000 kg/m^3. An open mesh is a shell of 5 kg/m^2.
+  /// Mass, at least 1 g. A closed mesh is a solid of 1,000 kg/m^3. An open mesh is a shell of 5 kg/m^2.
   double mass_kg = 1.0;
   double volume_m3 = 0.0;  ///< of a closed mesh; 0: open
 };
 
 /// Computes the properties of a uniform solid if the mesh is closed (TriangleTree::is_closed()). Otherwise
 /// computes those of a thin shell of uniform thickness. A mesh with negligible area is treated as point
-/// masses at its vertices.
+/// masses at its vertices. A mesh without usable triangles yields the default values.
 ///
 /// Each principal moment is raised to at least 1/10,000 of the largest, so that a thin rod has inertia about
 /// its own axis. Source: Eberly, Polyhedral mass properties (revisited), 2002.

@@ -27,7 +27,8 @@ struct PhysicsConfig {
   double sleep_drift_m = 0.012;
   /// Time at rest before a balanced body falls asleep. An unbalanced body needs four times as long.
   double sleep_after_s = 0.3;
-  /// A sleeping body wakes if the gap to its support grows beyond this. Sensor noise is a few mm.
+  /// A sleeping body wakes if the gap to its support exceeds contact_margin_m by more than this. Sensor noise
+  /// is a few mm.
   double wake_gap_m = 0.012;
   /// A sleeping body wakes if a body that it touches moves farther than this.
   double wake_moved_m = 0.001;
@@ -35,7 +36,8 @@ struct PhysicsConfig {
   /// moves (see advance_together()).
   double wake_overlap_m = 0.008;
   double overlap_allowed_m = 0.001;  ///< overlaps of an awake body up to this depth are not corrected
-  /// Max speed of depenetration, and of a dynamic surface that pushes a body.
+  /// Max speed at which surfaces push a body or move it out of an overlap. Faster dynamic surfaces raise it,
+  /// see max_push_mps().
   double max_depenetration_mps = 1.0;
   double max_speed_mps = 20.0;
   double max_angular_rad_s = 60.0;  ///< about ten revolutions per second

@@ -20,7 +20,8 @@ Contact query_travel(Body& body, const Eigen::Vector3d& direction_world, double 
                      const CollisionQueries& probe, StepReport& report);
 
 /// Returns the distance, m, at most distance_m, by which a body that surfaces overlap can be translated until
-/// its first contact. Ignores bodies that cross it, and surfaces of the kinds that cross or overlap it.
+/// its first contact. Ignores other bodies that cross this body, and surfaces of the kinds that cross or
+/// overlap it.
 /// @param direction_world  unit
 /// @param overlapping      kinds of surfaces that overlap the body, perhaps without crossing it
 double free_past_overlaps_m(const Body& body, const Eigen::Vector3d& direction_world, double distance_m,

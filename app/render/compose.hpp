@@ -42,10 +42,10 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
                             const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
                             const OcclusionConfig& config);
 
-/// Copies the background and darkens it by the objects' shadows: in ambient light and, where a caster has
-/// one, in its main light. Along depth edges shadows end where colours change, see align_shadow_edges(). Does
-/// not draw the objects. The run time is that of one copy, plus a time
-/// proportional to the area of the shadows' rectangles.
+/// Copies the background and darkens it by the objects' shadows, from ambient light and from the casters'
+/// main lights. Along depth edges, shadows end where colours change, see align_shadow_edges(). Does not draw
+/// the objects. The run time is that of one copy, plus a time proportional to the area of the shadows'
+/// rectangles.
 ///
 /// @param background       colour image of the camera, or result of shade_depth(). Must have the size of
 ///                         `camera`

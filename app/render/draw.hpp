@@ -19,7 +19,7 @@ struct DrawnPart {
 };
 
 /// A virtual object to render. Meshes without normals are shaded flat. Meshes without vertex colours are
-/// drawn in `colour`.
+/// drawn in `colour`, or in white under a texture.
 struct DrawnObject {
   MeshInstance instance;
   Rgb colour{198, 120, 72};
@@ -53,7 +53,8 @@ class ObjectDrawer {
 
   /// Starts rendering the objects into `layer`. Sets layer.rect to the smallest rectangle that contains the
   /// objects, empty if none is in view. Sets layer.samples to 2, or to 1 if the rectangle has more than
-  /// 80,000 pixels. The GPU renders in parallel to the CPU. finish() then sets colour and depth. The near
+  /// 80,000 pixels or its double exceeds the max texture size. The GPU renders in parallel to the CPU.
+  /// finish() then sets colour and depth. The near
   /// plane is at 0.05 m. There is no far plane. The depth resolution is 6e-8 of the depth. Objects with a
   /// null mesh are skipped. Reuses the layer's memory.
   void begin(std::span<const DrawnObject> objects, const Intrinsics& camera,

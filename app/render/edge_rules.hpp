@@ -1,4 +1,4 @@
-// edge_rules.hpp: when adjacent pixels belong to different surfaces, by depth and by colour.
+// edge_rules.hpp: decides by depth and by colour if adjacent pixels belong to different surfaces.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ inline float squared_distance(const Rgb& a, const Rgb& b) {
   return static_cast<float>(r * r + g * g + blue * blue);
 }
 
-/// Returns true if there is a jump between the depths of adjacent pixels, m. 0: no surface.
+/// Returns true if there is a depth discontinuity between adjacent pixels. Depths are in m; 0: no surface.
 inline bool is_depth_jump(float a_m, float b_m) {
   constexpr float kJump = 0.02F;  // fraction of the depth; a table seen at 20 degrees: 0.005 per pixel
   return std::abs(a_m - b_m) > kJump * std::min(a_m, b_m);

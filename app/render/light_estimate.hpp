@@ -42,8 +42,8 @@ class LightEstimator {
  public:
   /// Adds a frame's samples, dt_s after the previous frame. They replace the oldest of 720 samples. The first
   /// estimate tests all candidates. Later estimates test some in turn, so that all are tested every second.
-  /// There is no estimate from fewer than 30 samples. Ignores samples that are not finite, and all samples if
-  /// dt_s is not finite.
+  /// There is no estimate from fewer than 30 samples. Ignores samples that are not finite or whose
+  /// reach.ambient is at most 0.3, and all samples if dt_s or the position is not finite.
   /// @param place_world_m  position for which light is estimated; should change slowly
   void add(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m, double dt_s,
            const LightConfig& config);

@@ -42,8 +42,8 @@ struct SurfaceView {
 /// Takes up to `wanted` points at the next pixels of a sequence that covers the depth image evenly. Leaves
 /// out dynamic points, points where measured and expected depth disagree, and points whose neighbourhood is
 /// not one smooth surface. Also leaves out points outside the colour image, and points with a saturated or
-/// almost black colour. Looks at no more than four times as many pixels. Reuses the vector's memory. Returns
-/// no samples without colour or depth, or if sizes do not match.
+/// almost black colour. Tests at most four pixels per wanted point. Reuses the vector's memory. Returns no
+/// samples without colour or depth, or if sizes do not match.
 /// @param[in,out] position  in the sequence; 0 at first. Source of the sequence: see spread_points()
 void take_light_samples(const ColourView& colour, const SurfaceView& surface, int wanted,
                         std::uint64_t& position, std::vector<LightSample>& samples);

@@ -38,12 +38,12 @@ struct Occlusion {
   Image<float> object_m, unsoftened;
   /// 255 in pixels that an object covers at least partly.
   MaskImage covered;
-  /// 255 in pixels that are occluded according to depth alone.
+  /// Occlusion according to depth alone, 0 to 255.
   Image<std::uint8_t> by_depth;
   MaskImage edges;
   /// Result of find_contacts().
   MaskImage contact;
-  /// Numbers of edge pixels and of occluded pixels in each pixel's neighbourhood.
+  /// Sums of `edges` and of by_depth over each pixel's neighbourhood.
   Image<int> near_edges, near_hidden;
   std::vector<int> column_sums;
   /// A pixel in the band around an occluder's edge.

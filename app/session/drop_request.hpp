@@ -66,9 +66,9 @@ struct [[nodiscard]] DropPosition {
 };
 
 /// Searches the view for a level surface of the static room on which the object can stand, onto which it can
-/// fall freely and where it then stays. Dynamic surfaces do not count. Simulates a fall from drop.height_m,
-/// and from kGentleDrop_m if the object does not stay, for at most 6 places. If it stays in none of them, the
-/// first one is returned.
+/// fall freely and where it then stays. Dynamic surfaces count only if the scene has no static surface.
+/// Simulates a fall from drop.height_m, and from kGentleDrop_m if the object does not stay, for at most 6
+/// places. If the object stays in none of them, the first place is returned.
 /// @param camera                the depth camera
 /// @param expected, foreground results for the current frame
 DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,

@@ -53,7 +53,7 @@ class FrameScene {
              const TriangleTree* unknown = nullptr);
 
   /// Renders the room's depth from a camera pose. Reuses the last result if the pose has changed by less than
-  /// 0.2 mm and 0.2 mrad, a tenth of a pixel.
+  /// 0.2 mm and 0.2 mrad, each a tenth of a pixel at 1 m.
   const ExpectedView& render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
   /// Replaces all config fields except `surfaces`, from the next frame on. Does not check `config`, which
   /// must be valid.
@@ -66,8 +66,8 @@ class FrameScene {
   void set_surfaces(SurfacePolicy surfaces);
   /// Replaces the frontier of unknown space; null: unknown space is free.
   void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
-  /// Replaces the room by the tiles of a building, and the frontier of unknown space, unless it is null, by
-  /// those of the tiles. `tiles` must outlive the scene.
+  /// Replaces the room by the tiles of a building, and a frontier of unknown space that is not null by the
+  /// tiles' frontiers. `tiles` must outlive the scene.
   void set_tiles(const TileWindow* tiles) { tiles_ = tiles; }
   /// Discards the expected depth. Call after the room's mesh has changed.
   void room_changed() { expected_.camera = {}; }

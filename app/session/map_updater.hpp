@@ -61,7 +61,7 @@ class MapUpdater {
   void keep_up_unknown() { keeps_up_unknown_ = true; }
 
   /// Call before each frame. Returns true if a commit takes effect in this frame; callers must then use the
-  /// new room().
+  /// new room(). Throws as finish() does.
   bool is_due(const Frame& frame);
   [[nodiscard]] ChangedRoom& room() { return room_; }
   /// Call after a frame's pixels have been labelled. Ignores a frame with the previous frame's index, since

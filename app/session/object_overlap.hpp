@@ -37,17 +37,17 @@ struct WayOut {
 
 /// Moves an object to the nearest free pose within 10 cm. Does nothing unless a surface intersects the object
 /// or a part of it is in solid unknown space. Other objects do not count as surfaces. Throws PlaceRefused if
-/// no free pose is within 10 cm, unless the object is thrown from unknown space, where nothing stops it. The
-/// error message names the nearest free position found within 1 m.
+/// no free pose is within 10 cm. A thrown object that no surface intersects is not refused: it may begin in
+/// unknown space. The error message names the nearest free position found within 1 m, if any.
 /// @return notice text without the object's name. Empty if the object was moved by less than 5 mm
 std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thrown);
 
-/// Adds waited_s to VirtualObject::still_s, the time for which the object has been awake and has moved by at
-/// most 2 mm. Returns true when still_s reaches 1 s, and resets still_s to 0.
+/// Adds waited_s to VirtualObject::still_s, the time for which the object has been awake, not carried, and
+/// has moved by at most 2 mm. Returns true when still_s reaches 1 s, and resets still_s to 0.
 bool is_still_too_long(VirtualObject& object, double waited_s);
 
-/// Moves the object to the nearest free pose within 10 cm if a surface intersects it. Dynamic surfaces do not
-/// count. Sets VirtualObject::stuck if there is no such pose.
+/// Moves the object to the nearest free pose within 10 cm if a surface or another object intersects it.
+/// Dynamic surfaces do not count. Sets VirtualObject::stuck if there is no such pose.
 /// @return notice text without the object's name; empty if no surface intersects the object, or if it was
 ///         stuck already
 std::string free_or_stuck(VirtualObject& object, const WayOut& way);

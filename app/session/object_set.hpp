@@ -46,15 +46,17 @@ class ObjectSet {
     change_material(named(name), change);
   }
   /// Puts an object into the room. An object that would overlap other objects is placed on top of them if no
-  /// surface of the room is in the way. If a surface intersects the object, or its centre is in solid unknown
-  /// space, it is placed at the nearest free pose within 10 cm. A notice is then created. Throws PlaceRefused
-  /// if no free pose is within 10 cm; the object's pose is then unchanged. An object with a velocity may
-  /// begin in unknown space; a notice says that nothing stops it there.
+  /// surface of the room is in the way. If a surface intersects the object, or a part of it is in solid
+  /// unknown space, it is placed at the nearest free pose within 10 cm. A notice is created if this moves it
+  /// by 5 mm or more. Throws PlaceRefused if no free pose is within 10 cm; the object's pose is then
+  /// unchanged. An object with a velocity may begin in unknown space; a notice says that nothing stops it
+  /// there.
   void place(const std::string& name, const ObjectState& state);
   /// Drops an object. With drop.position_world, places it above that position as place() does. Without it,
   /// the drop waits for release_waiting(), and require_small_enough() may throw Error.
   void drop(const DropRequest& drop, std::int64_t frame_number);
-  /// Moves an object towards a position and holds it there until release(). Obstacles stop it on the way.
+  /// Moves an object towards a position and holds it there until release(). Obstacles stop it on the way. An
+  /// object outside the room is first placed at the position, see place().
   void carry(const std::string& name, const Eigen::Vector3d& position_world);
   void release(const std::string& name, const Eigen::Vector3d& velocity_world_mps);
   /// Rotates an object in the room until the first contact, see turn_until_contact().

@@ -40,8 +40,8 @@ class PictureComposer {
   /// the estimate of the room's light. Call it after the scene has found the frame's dynamic pixels.
   /// @param dt_s  time since the previous frame
   void keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
-  /// Composes the picture of a localised frame. Recomputes the shadow of at most one object, with 16 instead
-  /// of 8 cells across only if may_refine_shadow.
+  /// Composes the picture of a localised frame. Recomputes the shadow of at most one object, with 8 cells
+  /// across, or with 16 if the object is asleep and may_refine_shadow is true.
   void compose(const Frame& frame, const Eigen::Isometry3d& T_world_camera, bool may_refine_shadow);
   /// Call instead of compose() for a frame that is not localised. The picture is the camera's own image,
   /// without objects.

@@ -26,7 +26,7 @@ namespace roomradar {
 
 /// State of an AR run. The saved map is not modified. Not thread safe: call all functions on the constructing
 /// thread, whose GL context is used. Objects, policies and quality may be changed between frames. A function
-/// that throws Error changes nothing.
+/// that throws Error changes nothing, except that PlaceRefused cancels a waiting drop and ends carrying.
 class Session {
  public:
   /// `map` must outlive the session. Throws Error if GL is not available or a config is invalid.
@@ -36,8 +36,8 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Processes one frame, from sensor data to picture. Stages timed: reduce adopt tiles locate expected
-  /// foreground changes mesh place physics radar compose frame. Stage contact is the time from the call until
-  /// all objects have been advanced.
+  /// foreground changes mesh place physics radar light compose frame. Stage contact is the time from the call
+  /// until all objects have been advanced.
   FrameResult step(const Frame& frame, StageTimes& times);
 
   /// Adds an object, outside the room until placed. Throws Error if the name is taken or the mesh is invalid.
@@ -63,7 +63,7 @@ class Session {
   /// drop waits for a frame that shows such a surface; another call for the object cancels it. Throws Error
   /// without a position if the object's footprint radius is above kMostFootprint_m.
   void drop(const DropRequest& drop) { objects_.drop(drop, frames_); }
-  /// Moves an object towards a position and holds it there until release(). Obstacles stop it on the way.
+  /// Moves an object towards a position and holds it there until release(); see ObjectSet::carry().
   void carry(const std::string& name, const Eigen::Vector3d& position_world) {
     objects_.carry(name, position_world);
   }
@@ -97,12 +97,13 @@ class Session {
   void set_quality_from(FramePart part, const RunQuality& quality);
   /// Commits changes in view, see MapUpdater::ask(). Throws Error unless config().map_updates is set.
   void commit_changes();
-  /// Returns the notices since the last frame or call. Later frames return them as FrameResult::notices.
+  /// Returns the notices since the last frame or call. Notices that no call has returned are in the next
+  /// frame's FrameResult::notices.
   std::vector<ObjectNotice> take_notices() { return objects_.take_notices(); }
   /// Returns the changes committed to the room so far.
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
   [[nodiscard]] const BuildingTracker* building() const { return building_.get(); }  ///< null: a room
-  /// Waits for a running commit. Afterwards the octree may be read.
+  /// Waits for a running commit. Afterwards the octree may be read. Throws as MapUpdater::finish() does.
   void finish_commits();
 
   /// Makes this session's GL context current. Call it before using or destroying one of several sessions of a

@@ -20,13 +20,13 @@ struct SessionRoom {
   std::shared_ptr<const UnknownSurface> unknown{};
   TriangleTree unknown_tree{};
   bool unknown_is_solid = false;  ///< effective only with SurfacePolicy::kMap
-  /// Tiles of a building, whose surfaces and borders replace `shape` and `unknown`. Null in the map of a
+  /// Tiles of a building, whose surfaces and frontiers replace `shape` and `unknown`. Null in the map of a
   /// room.
   const TileWindow* tiles = nullptr;
 };
 
-/// Returns true if the surfaces near the object are loaded, which is always so in the map of a room. Other
-/// objects stay where they are.
+/// Returns true if the surfaces near the object are loaded, which is always so in the map of a room. If not,
+/// the object is not advanced unless it is carried.
 bool is_loaded_round(const SessionRoom& room, const VirtualObject& object);
 
 /// Sets the frontier of unknown space: the map's, which is extracted if it was not saved.

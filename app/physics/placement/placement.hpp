@@ -21,7 +21,7 @@ struct PlacementConfig {
   double max_range_m = 4.0;       ///< max depth of the surface along the camera's axis
   double max_away_m = 0.25;       ///< max distance of the returned point from SupportQuery::near_world
 };
-/// Throws Error such as "placement.cell_m = 0: must be in 0.005..0.1".
+/// Throws Error such as "placement.cell_m = 0: must be in 0.005000..0.100000".
 void require_valid(const PlacementConfig& config);
 
 /// Max radius of a footprint, m. The footprint is the circle that the object covers seen from above.
@@ -43,7 +43,7 @@ enum class SupportStatus {
   kNothingMeasured,  ///< no depth within range
   kNotLevel,         ///< no level surface, not even one as small as the margin
   kTooSmall,         ///< level surfaces exist, but none as large as footprint plus margin
-  kTooFar,           ///< large enough surfaces exist, but none within max_away_m of near_world
+  kTooFar,           ///< large enough surfaces exist, but none within max_away_m of near_world or in the image
   kBlocked,          ///< is_free() rejected all candidates tried
 };
 
@@ -62,6 +62,7 @@ struct [[nodiscard]] Support {
 ///
 /// @param depth_m         live depth, or depth rendered from the map. Must have the size of `camera`
 /// @param T_world_camera  world with +z up
+/// Throws Error if `config` is invalid.
 /// Takes about 10 ms: too slow for a call in each frame.
 Support find_support(const DepthImage& depth_m, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, const SupportQuery& query,

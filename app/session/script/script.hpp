@@ -63,8 +63,8 @@ Script read_script(const std::filesystem::path& path, LastLine last_line = LastL
 /// mesh paths are returned unchanged.
 Script parse_script(std::string_view text, std::string_view where);
 
-/// Returns the event as a line of an events file, without a line end. parse_script() restores all fields of
-/// the event exactly.
+/// Returns the event as a line of an events file, without a line end. parse_script() restores all fields that
+/// the action uses exactly, except `line` and `origin`.
 std::string to_line(const ScriptEvent& event);
 
 }  // namespace roomradar

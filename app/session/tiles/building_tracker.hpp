@@ -17,11 +17,12 @@ namespace roomradar {
 /// another place. It becomes the pose once its tiles are loaded, and aligning the frame with their surface
 /// keeps it at that place.
 ///
-/// A tracked pose is supported if depth constrains it and surface is loaded in a large fraction of the view,
-/// or if recognise_place() returns the same place. A doubtful pose is one that is not supported, or that the
-/// depth contradicts. The tracker compares a doubtful pose with the result of recognise_place(): at once if
-/// the depth contradicts the pose, otherwise after 3 frames, then every 5 frames. Poses without support are
-/// discarded 0.15 s after the last supported pose, since their error grows with the camera's motion.
+/// A tracked pose is supported if depth constrains it and at least 30 % of the measured pixels show loaded
+/// surface, or if recognise_place() returns the same place. A doubtful pose is one that is not supported, or
+/// that the depth contradicts. The tracker compares a doubtful pose with the result of recognise_place(): at
+/// once if the depth contradicts the pose, in the third doubtful frame, and in every fifth frame after it.
+/// Poses without support are discarded 0.15 s after the last supported pose, since their error grows with the
+/// camera's motion.
 class BuildingTracker {
  public:
   /// Throws Error if the config is invalid. `context` must outlive the tracker.
@@ -44,7 +45,7 @@ class BuildingTracker {
   /// See TileWindow::has_fault().
   [[nodiscard]] bool has_fault() const { return tiles_.has_fault(); }
   std::string take_fault() { return tiles_.take_fault(); }
-  /// Numbers of untracked frames whose place was recognised, and of those whose place was ambiguous.
+  /// Numbers of frames in which recognise_place() found a place, and in which the place was ambiguous.
   [[nodiscard]] std::int64_t recognised() const { return recognised_; }
   [[nodiscard]] std::int64_t ambiguous() const { return ambiguous_; }
 
@@ -53,7 +54,7 @@ class BuildingTracker {
   std::int64_t recognised_ = 0, ambiguous_ = 0;
   int doubtful_frames_ = 0;
   bool is_contradicted_ = false;       ///< the depth contradicts the last tracked pose
-  bool is_refuted_ = false;            ///< so clearly that the pose is discarded unless a place is recognised
+  bool is_refuted_ = false;  ///< so clearly that only recognise_place() at the same place keeps the pose
   std::optional<double> supported_s_;  ///< stamp of the last frame whose pose was supported
   std::optional<Eigen::Isometry3d>
       T_world_place_;  ///< place recognised in the last frame, if it was untracked

@@ -14,7 +14,7 @@ struct TileChoiceConfig {
   double reach_m = 8.0;       ///< max distance from the camera; depth cameras measure up to 8 m
   double keep_m = 2.0;        ///< hysteresis: loaded tiles may be this much farther than reach_m
   double ahead_s = 2.0;       ///< distances are also measured from the position predicted for this time
-  bool has_unknown = true;    ///< tiles include their border of unknown space
+  bool has_unknown = true;    ///< tiles include their frontier of unknown space
   std::size_t max_bytes = 0;  ///< max memory of the chosen tiles and of loading one; 0: no limit
 };
 /// Throws Error naming the field, its value and the rule.

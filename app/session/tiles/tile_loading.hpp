@@ -15,16 +15,16 @@ struct LoadedTile {
   Mesh mesh;               ///< surface in the world, without normals and colours
   TriangleTree tree;       ///< of `mesh`
   RasterMesh pieces;       ///< of `tree`
-  UnknownSurface unknown;  ///< border of unknown space within the tile; its mesh_world is empty
+  UnknownSurface unknown;  ///< frontier of unknown space within the tile; its mesh_world is empty
   TriangleTree unknown_tree;
 };
 
-/// Reads a tile, without its octree. The border of unknown space is open on faces of the cube that adjoin
-/// another tile, since that tile contains the border there.
+/// Reads a tile, without its octree. The frontier of unknown space is open on faces of the cube that adjoin
+/// another tile, since that tile contains the frontier there.
 ///
 /// Thread safe. Throws Error naming the file and the fault if a file is missing or damaged.
 /// @param tile         index in building.tiles
-/// @param has_unknown  false: the border of unknown space is left empty, and its file is not read
+/// @param has_unknown  false: the frontier of unknown space is left empty, and its file is not read
 LoadedTile load_tile(const BuildingInfo& building, const std::filesystem::path& folder, std::size_t tile,
                      bool has_unknown);
 

@@ -54,8 +54,8 @@ class TileWindow {
   TileWindow(const TileWindow&) = delete;
   TileWindow& operator=(const TileWindow&) = delete;
 
-  /// Call before each frame. Drops tiles that are no longer chosen, and adds a tile that is due. Returns true
-  /// if the surfaces have changed.
+  /// Call before each frame. Drops up to two tiles that are no longer chosen, and adds a tile that is due.
+  /// Returns true if the surfaces have changed.
   bool begin_frame(double stamp_s);
   /// Chooses the tiles that contain the frame's surfaces, those near the camera, and those on its way, and
   /// begins to load them. Call with the camera's pose, or with a possible pose of an untracked camera.
