@@ -38,7 +38,7 @@ struct BuildingResult {
   BuildingInfo info;
   std::vector<StageCounts> stages;
   std::vector<JoinedPair> joins;
-  std::size_t kept = 0;  ///< submaps whose poses did not change since the last time
+  std::size_t kept = 0;  ///< submaps whose poses did not change since the last run
   /// Position error of all placed frames against the recorded poses, after one rigid alignment. Has no poses
   /// if the recordings state none. The recorded poses must be in one world.
   TrajectoryError recorded_error;
@@ -47,15 +47,16 @@ struct BuildingResult {
 /// Makes a building's map, or brings it up to date. The stages:
 ///   track     tracks each recording alone, which gives its submaps
 ///   retrieve  finds pairs of submaps that may show the same place
-///   join      proves that they show it, and measures their relative pose
+///   join      verifies these pairs, and measures their relative poses
 ///   (place)   solves for the poses of all submaps in one world; not a job
 ///   fuse      fuses each recording's frames with its final poses, and splits the result into tiles
 ///   tile      adds up the parts of each tile, and extracts its surface
 /// Jobs whose inputs have not changed are not run again. Recordings that cannot be tracked, or that no join
 /// connects with the others, are left out and listed. At the end, building.json is replaced, then the files
-/// of earlier tiles are deleted.
+/// of earlier tiles and keyframes are deleted.
 /// @param show  called with one sentence after each stage
-/// @throws Error if no recording can be tracked, a tile or a fusion fails, or a file cannot be written
+/// @throws Error if no recording can be tracked, a job of a later stage fails, a stage is stopped, or a file
+///         cannot be written
 BuildingResult build_building(const BuildingWork& work, const RunStage& run_stage,
                               const std::function<void(const std::string&)>& show);
 

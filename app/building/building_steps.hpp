@@ -59,9 +59,9 @@ inline constexpr const char* kPlacedKeyframesFile = "keyframes.bin";
 /// Max cells of a tile's unknown space: 2.5 MB of bits, cells of 2 cm in a tile of 5 m.
 inline constexpr double kTileUnknownCells = 2e7;
 
-/// Adds up the parts of one tile, and extracts its surface and the border of its unknown space. Writes
+/// Adds up the parts of one tile, and extracts its surface and the frontier of its unknown space. Writes
 /// out/tile.json. If the tile has surface in its cube, also writes out/tile.octree (the tile's cube),
-/// tile.mesh, tile.glb and tile.unknown (the border within the cube, closed on all sides).
+/// tile.mesh, tile.glb and tile.unknown (the frontier within the cube, closed on all sides).
 struct TileStep {
   std::string tile;                          ///< name of the tile
   std::vector<std::filesystem::path> parts;  ///< files, in the order in which they are added

@@ -8,7 +8,7 @@
 namespace roomradar {
 
 /// Hashes contents. Caches each file's hash in memory and in a file. The cached hash is valid while size and
-/// time of change are the same.
+/// modification time are the same.
 class ContentHashes {
  public:
   /// @param memory  file with the hashes of earlier runs; need not exist. Its format is checked, but not its
@@ -27,7 +27,7 @@ class ContentHashes {
  private:
   struct Known {
     std::uintmax_t size = 0;
-    std::int64_t changed = 0;  ///< in clock ticks of the file system
+    std::int64_t changed = 0;  ///< modification time, in clock ticks of the file system
     std::string sha256;
   };
   std::filesystem::path memory_;

@@ -30,12 +30,12 @@ struct Manifest {
 ///     change: map diff {morning}/map {evening}/map --html {}/change.html
 ///
 /// {} stands for the job's own folder, and {NAME} for the folder of another job, which is run first. Words
-/// are separated by blanks; words in '...' or "..." may contain blanks. A word that names an existing file or
-/// folder, relative to the manifest's folder, is an input. Empty lines and lines that begin with # are
-/// ignored.
+/// are separated by blanks; words in '...' or "..." may contain blanks. A word, or a VALUE in --option=VALUE,
+/// that names an existing file or folder, relative to the manifest's folder, is an input. Empty lines and
+/// lines that begin with # are ignored.
 ///
 /// @throws Error with file, line and fault if the file cannot be read, a line is not such a job, a name
-///         occurs twice or is unknown, jobs need each other in a cycle, or a job writes nothing to {}
+///         occurs twice or is unknown, jobs need each other in a cycle, or no word of a job contains {}
 Manifest read_manifest(const std::filesystem::path& path);
 
 /// Parses the text of a manifest; see read_manifest().

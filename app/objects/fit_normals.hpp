@@ -13,7 +13,7 @@ namespace roomradar {
 /// @param fine       with normals; normals that are not finite are ignored
 /// @param reach_m    max distance (> 0) of a sample point from its corresponding triangle
 /// @param spacing_m  max distance (> 0) between sample points on a fine triangle. A triangle whose longest
-///                   side is at most spacing_m has one
+///                   side is at most spacing_m has one. A side is divided into at most 64 parts
 /// @param coarse     with normals; Mesh::origin must equal that of `fine`
 void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse);
 

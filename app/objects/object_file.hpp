@@ -32,7 +32,8 @@ struct SizeCheck {
 
 /// Throws Error for a model without a given size whose longest side is below 5 mm, above 5 m or above half of
 /// room_m. The message ends with an option that the user can paste. The option's size assumes that the file
-/// is in millimetres or centimetres if the model is then 2 cm to 2 m long. Otherwise the size is 0.3 m.
+/// is in millimetres or centimetres if the model is then 2 cm to 2 m long and not too large for the room.
+/// Otherwise the size is 0.3 m, or half of room_m if that is less.
 void require_sensible_size(const Model& model, const ObjectSource& source, const SizeCheck& check);
 
 }  // namespace roomradar

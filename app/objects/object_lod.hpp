@@ -20,11 +20,11 @@ struct LevelOfDetail {
 };
 
 /// Computes simplified meshes, finest first. The last has about 100 triangles, or a deviation of up to 1/8 of
-/// the mesh's size. Returns none for a mesh with fewer than 1,000 triangles. The max deviation starts at
-/// 1/1,024 of the mesh's size and grows by a factor of 1.4 per level. The levels' normals are fitted to the
-/// full mesh's normals (fit_normals.hpp). For a full mesh without normals, vertex normals are averaged over
-/// adjacent faces. A face that deviates from the averaged normal by more than 25 degrees keeps its own
-/// normal. This preserves sharp edges.
+/// the mesh's size (the diagonal of its bounding box). Returns none for a mesh that is invalid or has fewer
+/// than 1,000 triangles. The max deviation starts at 1/1,024 of the mesh's size and grows by a factor of 1.4
+/// per level. The levels' normals are fitted to the full mesh's normals (fit_normals.hpp). For a full mesh
+/// without normals, vertex normals are averaged over adjacent faces. A face that deviates from the averaged
+/// normal by more than 25 degrees keeps its own normal. This preserves sharp edges.
 /// @param keeps_seams  true: coincident vertices, as along texture seams, are not merged
 std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh, bool keeps_seams = false);
 

@@ -46,7 +46,7 @@ struct VirtualObject {
   Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
   /// Contacts before its last motion, within 1.5 contact margins. They stay while it sleeps.
   std::vector<ObjectContact> contacts;
-  double waited_s = 0.0;  ///< time since advance() was last called for it
+  double waited_s = 0.0;  ///< time since physics last advanced it
   /// Pose to which physics last moved the object, if no surface of the room and no other object overlaps it
   /// there.
   std::optional<Eigen::Isometry3d> T_world_undisturbed;

@@ -69,16 +69,16 @@ BudgetState start_budget(std::vector<BudgetStep> front, const BudgetConfig& conf
 double nominal_ms(FramePart part, const FrameLoad& load);
 
 /// Chooses the step for `part` and all later parts of the frame, and sets state.step. Call before the part
-/// begins. Within a frame, the step only becomes faster. The next frame begins with state.settled. If many
-/// frames switch to faster steps, state.settled becomes faster, too.
+/// begins. Within a frame, the step only becomes faster. The next frame begins with state.settled. If two
+/// frames within about ten switch to faster steps, state.settled becomes faster, too.
 /// @param elapsed_ms  time since the frame began
 /// @return index of the new step; unset if the step did not change
 std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config, FramePart part,
                                   const FrameLoad& load, double elapsed_ms);
 
-/// Updates the estimates from the measured times of a frame's parts. A part with a time far below its
-/// prediction counts as skipped and is ignored. The entry of `scales` of a part skipped in more than 17
-/// consecutive frames decays to 1.
+/// Updates the estimates from the measured times of a frame's parts. A part that takes at most 2 % of its
+/// prediction counts as skipped and is ignored. If a part is skipped in more than 17 consecutive frames, its
+/// entry of `scales` decays to 1 from above.
 void learn(BudgetState& state, const BudgetConfig& config, const std::array<double, kFrameParts>& parts_ms);
 
 /// Returns the predicted 95th percentile of the time of a whole frame with this load at a step, ms.

@@ -54,9 +54,8 @@ class ObjectDrawer {
   /// Starts rendering the objects into `layer`. Sets layer.rect to the smallest rectangle that contains the
   /// objects, empty if none is in view. Sets layer.samples to 2, or to 1 if the rectangle has more than
   /// 80,000 pixels or its double exceeds the max texture size. The GPU renders in parallel to the CPU.
-  /// finish() then sets colour and depth. The near
-  /// plane is at 0.05 m. There is no far plane. The depth resolution is 6e-8 of the depth. Objects with a
-  /// null mesh are skipped. Reuses the layer's memory.
+  /// finish() then sets colour and depth. The near plane is at 0.05 m. There is no far plane. The depth
+  /// resolution is 6e-8 of the depth. Objects with a null mesh are skipped. Reuses the layer's memory.
   void begin(std::span<const DrawnObject> objects, const Intrinsics& camera,
              const Eigen::Isometry3d& T_world_camera, const Lighting& lighting, ObjectLayer& layer);
   /// Waits for the GPU, and sets colour and depth of `layer`, which must be the one passed to the last

@@ -5,7 +5,8 @@
 namespace roomradar {
 
 /// Processes frames until the source ends, a quit event occurs, the window is closed, or the user presses
-/// Ctrl-C. Requests from the window that fail are reported in the window only.
+/// Ctrl-C. Without a window, a run also ends after 5 s in which the source repeats frames and no event is
+/// left. Requests from the window that fail are reported in the window only.
 /// @throws Error if the source or a script event fails, or output cannot be written. `run` keeps the results
 ///         of earlier frames
 void play_to_end(OpenedRun& run);

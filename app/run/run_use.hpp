@@ -73,7 +73,7 @@ class FrameUseFile {
  public:
   /// The file is not created or changed before the first frame is written.
   explicit FrameUseFile(std::filesystem::path path);
-  /// Appends a frame. Throws Error if the file cannot be written.
+  /// Appends a frame. Throws Error if the file cannot be created.
   void write(std::int64_t frame, const FrameUse& use,
              std::span<const std::unique_ptr<VirtualObject>> objects);
   /// Closes the file. Throws Error if it could not be written completely.

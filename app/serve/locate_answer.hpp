@@ -30,8 +30,8 @@ struct SearchedMap {
 ///
 ///     {"found": false, "reason": "ambiguous", "sentence": "..."}
 ///
-/// The result is also ambiguous if the frame is found in two maps, and neither has twice the inliers of the
-/// other. Throws Error if a map's keyframes are missing or damaged.
+/// The result is also ambiguous if a second map, in which the frame is found or ambiguous, has at least half
+/// as many inliers as the best. Throws Error if a map's keyframes are missing or damaged.
 nlohmann::json locate_in(std::span<const SearchedMap> maps, const Frame& frame,
                          const std::optional<GeoAnchor>& anchor);
 

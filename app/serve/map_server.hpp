@@ -29,7 +29,8 @@ class MapServer {
   MapServer& operator=(const MapServer&) = delete;
 
   [[nodiscard]] int port() const;
-  /// Answers requests until stop() is called, then completes the requests that have begun.
+  /// Answers requests until stop() is called, then completes the requests that have begun. Throws Error if
+  /// the system closes the socket.
   void run();
   /// May be called from another thread.
   void stop();

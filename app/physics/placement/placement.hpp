@@ -43,7 +43,7 @@ enum class SupportStatus {
   kNothingMeasured,  ///< no depth within range
   kNotLevel,         ///< no level surface, not even one as small as the margin
   kTooSmall,         ///< level surfaces exist, but none as large as footprint plus margin
-  kTooFar,           ///< large enough surfaces exist, but none within max_away_m of near_world or in the image
+  kTooFar,           ///< large enough surfaces exist, but none near near_world or within the image
   kBlocked,          ///< is_free() rejected all candidates tried
 };
 
