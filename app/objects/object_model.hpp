@@ -26,8 +26,8 @@ struct ObjectParts {
   std::vector<LevelOfDetail> levels;  ///< finest first
 };
 
-/// Computes an object's parts. Levels of detail take most of the time: about 5 s for a model file of 10 MB, up
-/// to minutes for larger files.
+/// Computes an object's parts. Levels of detail take most of the time: about 5 s for a model file of 10 MB,
+/// up to minutes for larger files.
 /// @param name  name of the object in error messages
 /// Throws Error if the mesh has no valid triangles.
 ObjectParts object_parts(const std::string& name, Model source);

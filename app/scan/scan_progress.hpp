@@ -34,8 +34,8 @@ class ScanProgress {
       : map_(map), start_(start), window_(window) {}
 
   /// Call after each frame of a stage. After Ctrl-C it requests a checkpoint of the frames read so far, and
-  /// the call after the next frame throws StoppedByUser. No effect in a stage whose source ends by itself.
-  /// Throws ScanDiscarded if the window requests it.
+  /// the call after the next frame throws StoppedByUser. While a live source is tracked, leaves Ctrl-C to the
+  /// source, which then ends. Throws ScanDiscarded if the window requests it.
   void show(const std::string& stage, const std::string& note);
 
  private:

@@ -50,7 +50,7 @@ class ExplorationGrid {
 };
 
 /// Returns the fraction of a frame's pixels whose points are surrounded by free space, as those of moving
-/// objects are. Uses every 16th pixel in both directions, up to 4 m.
+/// objects are. Uses every 8th pixel in both directions, up to 4 m.
 double moved_fraction(const ExplorationGrid& grid, const Frame& frame,
                       const Eigen::Isometry3d& T_world_camera);
 

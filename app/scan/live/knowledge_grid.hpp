@@ -21,7 +21,8 @@ enum class Knowledge : std::uint8_t {
 };
 
 /// Sums the weights of measurements in cells of 4 cm. Uses every 8th pixel in both directions, up to 5 m
-/// depth. The weight of a frame is that of the fusion: (sigma at 1 m / sigma)^2. Takes about 1 ms per frame.
+/// depth. The weight of a frame is that of the fusion, (sigma at 1 m / sigma)^2, divided among its samples in
+/// a cell. Takes about 1 ms per frame.
 class KnowledgeGrid {
  public:
   static constexpr int kStep_px = 8;

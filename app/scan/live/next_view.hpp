@@ -16,9 +16,9 @@ struct NextView {
 };
 
 /// Tries views from the camera's position and from free places up to 1.5 m away, in directions all round. The
-/// gain of a view is the area of the border between free and unknown space that rays of up to 3.5 m hit, from
-/// the view and from the way to it. Behind a border nearer than 1.3 m, surface is expected at 1.3 m. Returns
-/// the view with the most gain per time; nullopt if none has at least 0.15 m2. Takes about 150 ms.
+/// gain of a view is the area of the frontier between free and unknown space that rays of up to 3.5 m hit,
+/// from the view and from the way to it. Behind a frontier nearer than 1.3 m, surface is expected at 1.3 m.
+/// Returns the view with the most gain per time; nullopt if none has at least 0.15 m2. Takes about 150 ms.
 /// @param up_world  unit vector
 std::optional<NextView> best_next_view(const ExplorationGrid& grid, const Eigen::Isometry3d& T_world_camera,
                                        const Eigen::Vector3d& up_world);
@@ -27,7 +27,7 @@ std::optional<NextView> best_next_view(const ExplorationGrid& grid, const Eigen:
 NextView view_of(const Eigen::Vector3d& point_world, const Eigen::Vector3d& viewpoint_world,
                  const Eigen::Vector3d& up_world);
 
-/// Returns the way from the camera to a view in words, such as "turn left 60 degrees, go 0.8 m forward".
+/// Returns the way from the camera to a view in words, such as "go forward 0.8 m, turn left 60\u00B0".
 std::string way_to(const NextView& next, const Eigen::Isometry3d& T_world_camera,
                    const Eigen::Vector3d& up_world);
 
