@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Returns true for a .db3 of ROS 2, an MCAP file, and a folder with metadata.yaml and such files.
+/// Returns true for an SQLite database named *.db3, an MCAP file, and a folder with metadata.yaml.
 [[nodiscard]] bool is_ros2_bag(const std::filesystem::path& path);
 
 /// Opens a bag and lists its messages. A folder's files are the parts of one bag. Messages that are

@@ -20,7 +20,7 @@ struct MessageBytes {
 
 struct RosHeader {
   double stamp_s = 0.0;
-  std::string frame_id{};  ///< without a slash at its begin
+  std::string frame_id{};  ///< without a leading slash
 };
 
 /// sensor_msgs/Image. `data` refers to the message's bytes.

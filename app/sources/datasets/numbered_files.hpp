@@ -19,8 +19,8 @@ namespace roomradar {
 std::map<std::int64_t, std::filesystem::path> numbered_files(
     const std::filesystem::path& folder, std::initializer_list<std::string_view> extensions);
 
-/// Returns the size of the first of ten images whose header can be read. Throws Error naming `where` if there
-/// is none.
+/// Returns the size of the first image, among the first ten files, whose header can be read. Throws Error
+/// naming `where` if there is none.
 ImageSize size_of_first_png(const std::vector<std::filesystem::path>& files,
                             const std::filesystem::path& where);
 

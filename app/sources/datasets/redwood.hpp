@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// Returns true if `folder` holds a recording of Redwood or Open3D: depth, color (or image, rgb), and a
-/// trajectory (*.log) or Open3D's intrinsic.json or camera_intrinsic.json.
+/// Returns true if `folder` holds a recording of Redwood or Open3D: depth, color (or colour, image, rgb), and
+/// a trajectory (*.log) or Open3D's intrinsic.json or camera_intrinsic.json.
 [[nodiscard]] bool is_redwood(const std::filesystem::path& folder);
 
 /// Lists the frames of a recording of Redwood or Open3D:

@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Returns true for an SQLite database with RTAB-Map's tables Node, Data and Link.
+/// Returns true for an SQLite database named *.db with RTAB-Map's tables Node, Data and Link.
 [[nodiscard]] bool is_rtabmap(const std::filesystem::path& path);
 
 /// Lists the nodes with depth: a JPEG or PNG, depth as PNG (16 bit, mm; or four bytes, a float in m), the

@@ -33,10 +33,10 @@ bool said_calibrated(const Json& root, const std::string& where) {
   return said->template get<bool>();
 }
 
-/// Reads the fields depth, colour and T_colour_depth of camera.json. Throws Error naming a field that is
-/// missing, has the wrong type or an invalid value.
+/// Reads the fields depth, colour, T_colour_depth, timing and depth_noise of camera.json. Throws Error naming
+/// a field that is missing, has the wrong type or an invalid value.
 CameraRig rig_from_json(const nlohmann::json& root, const std::string& where);
-/// Returns the fields depth, colour and T_colour_depth of camera.json.
+/// Returns the fields depth, colour, T_colour_depth, timing and depth_noise of camera.json.
 nlohmann::json json_of(const CameraRig& rig);
 
 }  // namespace roomradar

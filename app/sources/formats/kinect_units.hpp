@@ -15,11 +15,11 @@ constexpr double kKinectTicksPerSecond = 60e6;
 constexpr double kKinectCountsPerG = 819.0;
 /// Magnitude of 1 g.
 constexpr double kStandardGravity_m_s2 = 9.80665;
-/// Max valid raw value, 9.88 m. Above it, one raw step is more than 0.5 m.
+/// Max valid raw value, 9.78 m. Above it, one raw step is more than 0.27 m.
 constexpr std::uint16_t kRawFarthest = 1057;
 
 /// Converts a raw 11 bit disparity to depth along the optical axis, m: 0.1236 tan(raw / 2842.5 + 1.1863).
-/// Depth increases with `raw` from 0.31 m at 0 to 9.88 m at 1057. Above 1057, the result is 0 (invalid).
+/// Depth increases with `raw` from 0.31 m at 0 to 9.78 m at 1057. Above 1057, the result is 0 (invalid).
 /// Source: Stephane Magnenat's fit, OpenKinect wiki, "Imaging Information". Nicolas Burrus' formula, 1 /
 /// (3.331 - 0.003071 raw), is also common. In our test recordings, with the cameras of nominal_rig.cpp,
 /// Burrus' formula gives 94 to 95 degrees between two perpendicular concrete walls. Magnenat's formula gives

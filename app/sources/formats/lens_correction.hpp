@@ -24,8 +24,8 @@ class LensCorrection {
   LensCorrection(const Intrinsics& real, const RationalLens& lens, const char* where);
 
   /// Returns the pinhole camera of the corrected images. Its size and principal point are those of the real
-  /// camera. Its focal lengths are at most those of the real camera, and at least half of them: the middles
-  /// of all four edges of the real image stay inside.
+  /// camera. Its focal lengths are reduced until the middles of all four edges of the real image are inside,
+  /// at most to half of the real camera's.
   [[nodiscard]] const Intrinsics& ideal() const { return ideal_; }
 
   /// Resamples by nearest neighbour. Pixels outside the real image are 0. The image must have the camera's

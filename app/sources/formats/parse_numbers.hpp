@@ -10,8 +10,9 @@ namespace roomradar {
 /// Splits `line` at spaces, tabs and carriage returns.
 std::vector<std::string_view> split_words(std::string_view line);
 
-/// Parses `word` as a number. Returns nullopt unless the whole word is a number. Accepts NaN and infinity in
-/// the spellings of C (nan, inf) and Microsoft (`-1.#IND`, `1.#QNAN`, `1.#INF`).
+/// Parses `word` as a number. Returns nullopt unless the whole word is a number. Accepts a leading plus sign,
+/// and NaN and infinity in the spelling of C (nan, inf). Words with Microsoft's #IND, #QNAN or #INF, such as
+/// `-1.#IND`, give NaN.
 std::optional<double> parse_number(std::string_view word);
 
 /// Parses `word` as an integer. Returns nullopt unless the whole word is an integer.

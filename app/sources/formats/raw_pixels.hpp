@@ -24,11 +24,13 @@ struct RawLayout {
 };
 
 /// Converts depth. `unit_m` is the length of one unit, m.
-/// @throws Error naming `where` if a side is not in 1..16384, or `bytes` are fewer than the layout needs
+/// @throws Error naming `where` if a side is not in 1..16384, unit_m is not > 0, or `bytes` are fewer than
+///         the layout needs
 void convert_depth(std::string_view bytes, const RawLayout& layout, DepthPixels pixels, double unit_m,
                    const std::string& where, DepthImage& depth_m);
 
-/// Converts colour. Throws Error as convert_depth() does. kYuyv, kUyvy and kNv12 need even sides.
+/// Converts colour. Throws Error as convert_depth() does. kYuyv, kUyvy and kNv12 need an even width, kNv12
+/// also an even height.
 void convert_colour(std::string_view bytes, const RawLayout& layout, ColourPixels pixels,
                     const std::string& where, ColourImage& colour);
 

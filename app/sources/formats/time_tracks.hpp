@@ -21,7 +21,8 @@ void sort_by_stamp(std::vector<StampedPose>& poses);
 void sort_by_stamp(std::vector<StampedAcceleration>& accelerations);
 
 /// Returns the pose at a stamp, interpolated (linear and slerp) between the poses before and after it. A pose
-/// within 2 us counts as equal. Returns nullopt outside the track, and in gaps of more than max_gap_s.
+/// within 2 us of the stamp is returned unchanged. Returns nullopt outside the track, and in gaps of more
+/// than max_gap_s.
 [[nodiscard]] std::optional<Eigen::Isometry3d> pose_at(const std::vector<StampedPose>& poses, double stamp_s,
                                                        double max_gap_s);
 

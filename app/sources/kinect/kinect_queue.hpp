@@ -33,8 +33,8 @@ class KinectQueue {
   bool put(KinectFrame frame);
   /// Returns an empty frame, with reused memory if available.
   KinectFrame empty_frame();
-  /// Returns true if the reader has stopped the feed. During a replay, first waits until the reader has
-  /// fetched the queued frames.
+  /// Returns true if the reader has stopped the feed. During a replay, first waits until fewer than two
+  /// frames are queued.
   bool must_stop();
   /// Waits for wait_s and returns false. Returns true as soon as the reader stops the feed.
   bool stopped_within(double wait_s);
@@ -42,7 +42,7 @@ class KinectQueue {
   // ---- called by the reader's thread ----
 
   /// Waits up to config.patience_s until the device is open, and returns its factory calibration. Throws
-  /// Error if the device could not be opened.
+  /// Error if the device could not be opened in this time.
   std::optional<KinectConstants> wait_for_opening();
   /// Moves the next frame into `frame`. Waits up to wait_s for a frame.
   Take take(KinectFrame& frame, double wait_s);

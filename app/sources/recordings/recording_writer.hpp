@@ -19,11 +19,11 @@ enum class RecordingFormat { kTum, kSevenScenes, kFakenect, kRosBag };
 std::string_view to_string(RecordingFormat format);
 
 /// Writes a recording frame by frame. Precision after reading it back with open_folder():
-///   kTum          stamps to 1 us, depth to 0.1 mm (invalid beyond 13.1 m), colour, poses, gravity
+///   kTum          stamps, depth to 0.1 mm (invalid beyond 13.1 m), colour, poses, gravity
 ///   kSevenScenes  depth to 0.5 mm (invalid beyond 65.5 m), colour, poses; no gravity. Stamps are
 ///                 frame / 30 s. A frame without colour gets an empty file frame-N.color.none.
 ///   kFakenect     stamps to 1/60 us plus a common offset, depth quantised as by the Kinect (invalid
-///                 beyond 10 m), colour, gravity to 1/819 g; no poses. Gaps over 30 s become 30 s, since
+///                 beyond 9.9 m), colour, gravity to 1/819 g; no poses. Gaps over 30 s become 30 s, since
 ///                 the device's clock wraps after 72 s. 640 x 480 only, the one size that fakenect
 ///                 replays.
 ///   kRosBag       recording.bag: depth and poses bit for bit, stamps to 1 ns, colour, gravity. All values

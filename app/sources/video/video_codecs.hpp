@@ -30,7 +30,7 @@ class VideoEncoder {
   virtual void write(const ColourImage& picture) = 0;
 };
 
-/// The module's functions. Unset if there is no such video, or no encoder for the codec.
+/// The module's functions. They return null if there is no such video, or no encoder for the codec.
 class VideoCodecs {
  public:
   virtual ~VideoCodecs() = default;
