@@ -8,7 +8,7 @@ namespace roomradar {
 struct HelpTopic {
   std::string_view name;     ///< word after `roomradar help`
   std::string_view summary;  ///< line in the list of topics
-  std::string_view text;     ///< plain text with lines of at most 100 characters; ends with a newline
+  std::string_view text;     ///< plain text with lines of at most 116 characters; ends with a newline
 };
 
 /// Returns all topics: script, models, sources, units, calibrate, http, files.

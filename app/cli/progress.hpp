@@ -42,8 +42,8 @@ class SmoothRate {
 };
 
 /// Remaining time of an operation, smoothed so that it does not jump with the speed. Counts down between
-/// estimates. An estimate pulls the remaining time exponentially (on a logarithmic scale) with a time
-/// constant of 15 s, or of the estimate or the shown time if that is less.
+/// estimates. An estimate pulls the remaining time exponentially (on a logarithmic scale). The time constant
+/// is the least of 15 s, the estimate and the shown time, but at least 1 s.
 class SmoothRemaining {
  public:
   /// @param estimate_s  remaining steps divided by the recent speed, s

@@ -21,8 +21,7 @@ namespace roomradar {
 ///   truth/room.ply          surface of the room, without moving objects; of a building, its rooms, corridors
 ///                           and stairs that may be seen from the walk, whole
 ///   truth/sim.json          the options, and the spec that reproduces these frames; of a building also the
-///   plan:
-///                           floor, box and look-alike of each room, and the rooms that the walk visits
+///                           plan (floor, box and look-alike of each room) and the rooms that the walk visits
 /// moved/, mover/ and revealed/ exist only if something moves, appears or disappears.
 /// @param progress  called after each frame with the number of finished frames and the total; may be empty
 /// @throws Error if the options are not valid, the folder is not empty, or a file cannot be written

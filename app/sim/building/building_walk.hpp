@@ -17,14 +17,15 @@ inline constexpr double kWalkStep_s = 1.0, kEyeHeight_m = 1.45;
 /// covering_walks() - 1 together visit all rooms. A stair walk leads from one floor to the next. Each other
 /// walk shares a room with the next walk that is not a stair walk. Later walks begin in any room.
 std::vector<int> rooms_of_walk(const BuildingPlan& plan, int walk);
-/// Returns the number of walks that together visit all rooms, about half the number of rooms.
+/// Returns the number of walks that together visit all rooms: about 0.4 times the number of rooms, or half of
+/// it if there are several floors.
 int covering_walks(const BuildingPlan& plan);
 
 /// Returns the points of a walk, one per kWalkStep_s: round each room, facing its middle, and along the
 /// corridors and stairs between them, looking to the left and right. Max speed 0.42 m/s, max turn 24
-/// degrees/s. kRingWalk goes round one or several blocks of rooms, 200 m if the building is large enough. In
-/// a building with one corridor, it goes up one stairwell and down the other one. On a single floor, it goes
-/// to the corridor's end and back.
+/// degrees/s. kRingWalk goes round one or several blocks of rooms, at least 200 m if the building is large
+/// enough. In a building with one corridor, it goes up one stairwell and down the other one. On a single
+/// floor, it goes to both ends of the corridor and back.
 std::vector<WalkPoint> plan_walk(const BuildingPlan& plan, int walk);
 
 }  // namespace roomradar

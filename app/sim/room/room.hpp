@@ -92,12 +92,12 @@ struct Room {
 
 /// Returns the names of the fixed furnished rooms that make_room() accepts.
 const std::vector<std::string>& room_names();
-/// Another name for make_room(): a room with furniture drawn at random from the seed.
+/// Further name that make_room() accepts: a room with furniture drawn at random from the seed.
 inline constexpr std::string_view kRandomRoom = "random";
-/// Another name for make_room(): a room with a checkerboard on a stand, for camera calibration.
+/// Further name that make_room() accepts: a room with a checkerboard on a stand, for camera calibration.
 inline constexpr std::string_view kBoardRoom = "board";
-/// Another name for make_room(): a flat of four rooms in a ring, with doorways between them and furniture
-/// drawn at random from the seed.
+/// Further name that make_room() accepts: a flat of four rooms in a ring, with doorways between them and
+/// furniture drawn at random from the seed.
 inline constexpr std::string_view kFlatRoom = "flat";
 /// Name of a building with many rooms, which make_building() makes; make_room() does not.
 inline constexpr std::string_view kBuildingRoom = "building";

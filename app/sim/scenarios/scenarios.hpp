@@ -26,9 +26,9 @@ ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed = 1);
 ///   mm. This excludes contacts that depend on detail finer than the map's voxels.
 ///
 /// Four drops and four pushes follow each other in turn. Each group of four contains all four kinds of
-/// occluder. Object shapes also take turns. The occluder alone, without the room, hides at least half of the
-/// points that could stop the object. If 3,000 random draws find no placement, the next kind of occluder is
-/// tried, then the next shape. Throws Error if all fail.
+/// occluder. Object shapes also take turns. Unless furniture is the occluder, the room itself hides at most
+/// half of the points that could stop the object. If 3,000 random draws find no placement, the next kind of
+/// occluder is tried, then the next shape. Throws Error if all fail.
 Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number);
 
 enum class Outcome {

@@ -36,8 +36,8 @@ struct CameraPath {
   double walk_step_s = 0.0;
   /// Number of full turns of the view on the closed walk.
   int walk_turns = 0;
-  /// Point at which the camera looks. On a walk, that point is 1.5 m ahead of the camera, at this height
-  /// above the floor, as is centre_world.
+  /// Point at which the camera looks. On a walk, that point is 1.5 m ahead of the camera. The z coordinates
+  /// of target_world and centre_world are then heights above the floor.
   Eigen::Vector3d target_world = Eigen::Vector3d::Zero();
   /// Sway of the position, m. First index: world axis x, y or z. Second index: terms of the sum.
   std::array<std::array<Sway, 3>, 3> position_sway{};
@@ -49,10 +49,10 @@ struct CameraPath {
 };
 
 /// Draws up to 64 paths at random. Returns the first path with a clearance of 0.5 m from all solids. If there
-/// is none, returns the path with the max clearance. During a scan, the camera moves at 0.3 to 0.6 m/s and
-/// rotates by less than 40 degrees/s. If duration_s permits a full round at this speed, the path ends at its
-/// start. On an open walk, which passes narrow doorways, the clearance is 0.4 m, and the camera is 1.3 to 1.6
-/// m above the floor or step.
+/// is none, returns the path with the max clearance. During a scan, the camera moves at about 0.3 to 0.6 m/s
+/// and rotates by less than 40 degrees/s. The path ends at its start if a whole number of rounds fits
+/// duration_s at 0.5 m/s or less. On an open walk, which passes narrow doorways, the clearance is 0.4 m, and
+/// the camera is 1.3 to 1.6 m above the floor or step.
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s);
 
 /// Adds swings of 25 degrees to each side, at up to turn_dps degrees/s; nothing if turn_dps is 0.

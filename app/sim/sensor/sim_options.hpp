@@ -34,8 +34,8 @@ struct SimOptions {
   /// Seed of the camera path, the phases of moving objects, the noise, and the furniture of a random room,
   /// flat or building.
   std::uint64_t seed = 1;
-  /// Number of frames, >= 1. Of the building, 0: as many as the whole walk takes; more frames than that are
-  /// not delivered.
+  /// Number of frames, >= 1. For the building, 0 means the whole walk, and frames beyond the walk are not
+  /// delivered.
   std::int64_t frames = 300;
   /// Size of the building. All walks of a building of one seed and size have the same world.
   BuildingSize building;

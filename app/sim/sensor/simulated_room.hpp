@@ -11,8 +11,8 @@ namespace roomradar {
 /// Makes the room that the options describe.
 Room room_of(const SimOptions& options);
 
-/// Returns the number of frames: of an open walk at most those of the walk, and all of them if
-/// SimOptions::frames is 0.
+/// Returns the number of frames: SimOptions::frames, but at most those of an open walk. SimOptions::frames =
+/// 0 means the whole walk, or the default number without a walk.
 std::int64_t frames_of(const SimOptions& options, const Room& room);
 
 /// Returns the seed of the camera's sway, the moving objects and the noise. It differs between the walks of a

@@ -33,7 +33,7 @@ void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindo
 /// Draws the camera's view frustum up to depth_m.
 void draw_camera(ImDrawList& draw, const ShownView& view, double depth_m, const ToWindow& to_window);
 
-/// Returns the object's state in words, such as "at rest on seen static", "moves at 1.2 m/s" or "carried".
+/// Returns the object's state in words, such as "at rest on another object", "moves at 1.2 m/s" or "carried".
 std::string what_it_does(const ShownObject& object);
 
 }  // namespace roomradar

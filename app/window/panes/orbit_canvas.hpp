@@ -41,17 +41,18 @@ class OrbitCanvas {
 
   Orbit orbit;
 
-  /// Handles the mouse in the area: a left drag turns, a right drag shifts, the wheel zooms. Call within a
-  /// Dear ImGui frame, after the window's pane has begun. Returns true if the orbit has changed.
+  /// Handles the mouse in the area: a left drag turns, a right drag (or left with Shift) shifts, the wheel
+  /// zooms. Call within a Dear ImGui frame, after the window's pane has begun. Returns true if the orbit has
+  /// changed.
   bool steer(const Area& area);
 
   /// Reports that what is drawn has changed. It is rendered again when that is due.
   void content_changed() { is_stale_ = true; }
   /// Reports that `orbit` has changed. The view is rendered again at once. steer() calls it.
   void orbit_changed() { is_moved_ = true; }
-  /// Returns true if the view must be rendered now, by begin(), draw() and end(): after a change of the orbit
-  /// or the size, in pixels, at once; after a change of the content so that renderings take at most an eighth
-  /// of the time, since a processor that renders in place of a GPU is needed elsewhere.
+  /// Returns true if the view must be rendered now, by begin(), draw() and end(). After a change of the orbit
+  /// or of the size in pixels, that is at once. After a change of the content, the wait since the last
+  /// rendering is 7 times its duration, at most 0.2 s, since a software renderer shares the processor.
   bool must_render(int width_px, int height_px);
   void begin();
   /// @param is_transparent_behind  true: triangles that face away from the eye are not drawn
