@@ -4,19 +4,20 @@
  * address: do not dereference it. A closed, null or foreign handle is recognised, and the call returns
  * ROOMRADAR_CLOSED_HANDLE. Numbers are never used twice.
  *
- * Errors. A function that can fail returns a roomradar_status. If it is not ROOMRADAR_OK, nothing has
- * changed, and roomradar_last_error() has a sentence that says what is wrong, where, and what to do. The
- * sentence is also kept with the handle. No exception leaves the library.
+ * Errors. A function that can fail returns a roomradar_status. If it is not ROOMRADAR_OK, nothing has changed
+ * except needed counts and, after ROOMRADAR_SKIPPED, a source's position. roomradar_last_error() then has a
+ * sentence that says what is wrong, where, and what to do. The sentence is also kept with the handle. No
+ * exception leaves the library.
  *
  * Structs. A struct that begins with struct_size may grow in later versions: set struct_size to sizeof of the
  * struct, and all other fields to zero or to a value. Zero is the default of each field unless its comment
  * says otherwise. Structs without struct_size never change while the library is libroomradar.so.0.
  *
  * Buffers. The caller owns all memory that it passes, and the library keeps no pointer into it. Functions
- * that return arrays take a buffer, its capacity, and a pointer to the needed count. They always set the
- * needed count. If the capacity is less, they return ROOMRADAR_BUFFER_TOO_SMALL and write nothing else. A
- * null buffer with capacity 0 asks for the count. Only a frame of roomradar_source_next() points into the
- * library.
+ * that return arrays take a buffer, its capacity, and a pointer to the needed count. If handle and arguments
+ * are valid, they set the needed count. If the capacity is less, they return ROOMRADAR_BUFFER_TOO_SMALL and
+ * do not write to the buffer. A null buffer with capacity 0 asks for the count. Only sentences and a frame of
+ * roomradar_source_next() point into the library.
  *
  * Threads. Every function may be called from any thread. Calls with the same handle run one after the other;
  * calls with different handles run at the same time. A thread that shares a handle sees the state after

@@ -47,8 +47,8 @@ ROOMRADAR_API roomradar_status roomradar_session_throw(roomradar_session* sessio
                                                        const roomradar_pose* T_world_object,
                                                        const double velocity_world_mps[3],
                                                        const double angular_velocity_world_rad_s[3]);
-/* Drops an object from a height above a point, m. Without a point (null) it waits for a frame that shows a
- * level surface, and falls there. The lowest vertex begins at that height. */
+/* Drops an object from a height of 0..100 m above a point. Without a point (null) it waits for a frame that
+ * shows a level surface, and falls there. The lowest vertex begins at that height. */
 ROOMRADAR_API roomradar_status roomradar_session_drop(roomradar_session* session, const char* name,
                                                       const double point_world_m[3], double height_m);
 /* Moves an object towards a position and holds it until it is released. Obstacles stop it on the way. */

@@ -17,8 +17,8 @@ extern "C" {
 ROOMRADAR_API roomradar_status roomradar_session_expected_depth(roomradar_session* session, float* depth_m,
                                                                 size_t capacity, size_t* needed,
                                                                 roomradar_camera* camera);
-/* Returns which pixels of the last located frame are dynamic, i.e. show a surface that is not in
- * the map: 255, else 0.
+/* Returns which pixels of the last located frame are dynamic, i.e. show a surface that is not in the map:
+ * 255, else 0. The mask is of the depth image's size, divided by the quality's depth_stride.
  * @param capacity  of mask, pixels
  * @param needed    width * height; 0 before the first located frame
  * @param width_px, height_px  may be null */

@@ -64,9 +64,9 @@ typedef struct roomradar_frame_result {
   double contact_ms;        /* time until all objects had moved */
 } roomradar_frame_result;
 
-/* Processes one frame: locates the camera, finds dynamic pixels, moves the objects, composes the picture. A
- * frame whose images do not fit its cameras is ROOMRADAR_INVALID_ARGUMENT and changes nothing. `result` may
- * be null. */
+/* Processes one frame: locates the camera, finds dynamic pixels, moves the objects, composes the picture.
+ * Returns ROOMRADAR_INVALID_ARGUMENT for an invalid frame, such as one without depth, and changes nothing.
+ * `result` may be null. */
 ROOMRADAR_API roomradar_status roomradar_session_step(roomradar_session* session,
                                                       const roomradar_frame* frame,
                                                       roomradar_frame_result* result);

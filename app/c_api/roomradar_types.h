@@ -26,7 +26,7 @@ typedef enum roomradar_status {
   ROOMRADAR_OK = 0,
   ROOMRADAR_INVALID_ARGUMENT = 1,  /* null, NaN, out of range, or a name that does not exist */
   ROOMRADAR_CLOSED_HANDLE = 2,     /* closed, null, or of another kind */
-  ROOMRADAR_WRONG_STRUCT_SIZE = 3, /* struct_size is not set, or of a newer header than this library */
+  ROOMRADAR_WRONG_STRUCT_SIZE = 3, /* struct_size is not set, or of a header of another version */
   ROOMRADAR_BUFFER_TOO_SMALL = 4,  /* the needed count was set */
   ROOMRADAR_FAILED = 5,            /* file, map, renderer or settings; the sentence says what to do */
   ROOMRADAR_OUT_OF_MEMORY = 6,
@@ -40,7 +40,7 @@ ROOMRADAR_API const char* roomradar_version(void);
 /* Returns a status' name, such as "closed handle"; "unknown status" for other numbers. */
 ROOMRADAR_API const char* roomradar_status_name(int32_t status);
 /* Returns the sentence of the last call on this thread that failed; "" if none has. Valid until the thread's
- * next call that fails. Functions that open something have no other. */
+ * next call that fails. For functions that open something, this is the only place of the sentence. */
 ROOMRADAR_API const char* roomradar_last_error(void);
 
 /* A rigid motion as a 4 x 4 matrix, row by row: m[3], m[7] and m[11] are the translation, the last row is
@@ -56,7 +56,7 @@ typedef struct roomradar_camera {
 } roomradar_camera;
 
 /* Standard deviation of a depth measurement: base + linear z + quadratic max(z - from, 0)^2, m. At grazing
- * angles a term with the factor `grazing` is added. All 0: a Kinect v1. */
+ * angles a term with the factor `grazing` is added. All 0: a Kinect v1; otherwise base_m must be > 0. */
 typedef struct roomradar_depth_noise {
   float base_m, linear, quadratic_per_m, from_m, grazing;
 } roomradar_depth_noise;
@@ -78,7 +78,7 @@ typedef struct roomradar_frame {
   int32_t has_gravity;            /* 0: down_camera is unused */
   double down_camera[3];          /* direction of gravity in the depth camera's frame, any length except 0 */
   roomradar_depth_noise noise;
-  double depth_readout_s, colour_readout_s; /* time to read an image's rows; 0: global shutter */
+  double depth_readout_s, colour_readout_s; /* time to read an image's rows, 0..1; 0: global shutter */
   double colour_delay_s;                    /* colour's delay beyond its stamp */
 } roomradar_frame;
 

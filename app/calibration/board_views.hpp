@@ -40,9 +40,9 @@ struct BoardViews {
   /// Number of frames in which the checkerboard was found and had moved by at most 6 px (RMS) since the
   /// previous frame.
   std::int64_t still = 0;
-  /// One entry per frame that was rejected only because its depth does not fit the checkerboard's plane. The
-  /// entry is the median ratio of measured to expected depth. The expected depth is computed from the corners
-  /// and Board::square_m. Similar ratios other than 1 in all frames indicate a wrong square_m.
+  /// One entry per checkerboard pose that was rejected only because its depth does not fit the checkerboard's
+  /// plane. The entry is the median ratio of measured to expected depth. The expected depth is computed from
+  /// the corners and Board::square_m. Similar ratios other than 1 in all entries indicate a wrong square_m.
   std::vector<double> off_plane_ratios;
 };
 
@@ -53,7 +53,8 @@ std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colo
 /// Reads the source to its end, or until `most` views are found. A frame becomes a view if the whole
 /// checkerboard is in its colour image and measured by its depth image. The checkerboard must hardly move,
 /// and its pose must differ from all earlier views. Motion is excluded because colour and depth images are
-/// not taken at the same instant. Throws Error if the source has no colour.
+/// not taken at the same instant. Throws Error as require_valid(Board) does, or if none of the first 60
+/// frames has colour.
 /// @param progress  called after each frame with the views found so far
 BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
                             const std::function<void(const BoardViews&)>& progress);

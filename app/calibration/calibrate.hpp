@@ -15,8 +15,8 @@ struct CalibrateConfig {
   int hold_out = 5;                       ///< every n-th view is held out for validation; 0: none
 };
 
-/// Standard deviations of the results, from the covariance of the least-squares fit. They are scaled up if
-/// the residuals exceed the assumed noise.
+/// Standard deviations of the results, from the covariance of the least-squares fit. Each is the largest of
+/// its components, such as fx and fy. They are scaled up if the residuals exceed the assumed noise.
 struct CalibrationSigmas {
   double colour_focal_px = 0.0, colour_centre_px = 0.0, depth_focal_px = 0.0, depth_centre_px = 0.0;
   double shift_m = 0.0, turn_rad = 0.0;  ///< translation and rotation of T_colour_depth
@@ -30,14 +30,15 @@ struct CalibrationFit {
   std::vector<ViewResidual> after;    ///< residuals with the calibration, one per view
 };
 
-/// Fits all parameters jointly to all views. Parameters are intrinsics and lens distortion of both cameras,
-/// T_colour_depth, the checkerboard's pose in each view, and the depth correction. Residuals are the
-/// reprojection errors of corners (sigma 0.15 px) and the distances of depth from the checkerboard's plane
-/// (sigma: the sensor's noise). The loss is robust (Huber). Nodes of the depth correction without
-/// measurements are extrapolated from their neighbours. Method: Herrera, Kannala, Heikkila, Joint depth and
-/// color camera calibration with distortion correction, PAMI 2012, but with the depth error modelled in
-/// disparity. Throws Error if there are fewer than 12 views or fewer than 6 tilted views. Throws Error if the
-/// fit does not converge, a focal length's sigma exceeds 1 %, or read_calibration() would reject the result.
+/// Fits all parameters jointly to all views that are not held out. Parameters are intrinsics and lens
+/// distortion of both cameras (k3 of the depth lens is 0), T_colour_depth, the checkerboard's pose in each
+/// view, and the depth correction. Residuals are the reprojection errors of corners (sigma 0.15 px) and the
+/// differences of inverse depth from the checkerboard's plane (sigma: twice the sensor's noise). The loss is
+/// robust (Huber). Nodes of the depth correction without measurements are extrapolated from their neighbours.
+/// Method: Herrera, Kannala, Heikkila, Joint depth and color camera calibration with distortion correction,
+/// PAMI 2012, but with the depth error modelled in disparity. Throws Error if there are fewer than 12 views,
+/// or fewer than 6 tilted ones in the fit. Throws Error if the fit does not converge, a focal length's sigma
+/// exceeds 1 %, or read_calibration() would reject the result.
 CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config);
 
 }  // namespace roomradar

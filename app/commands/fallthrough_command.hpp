@@ -6,7 +6,7 @@
 namespace roomradar {
 
 /// Runs the scenarios in simulated rooms, or run_grid() if a source is given. Prints a table and writes the
-/// requested files. Returns the exit status 0.
+/// requested files. Returns the exit status: 1 if a job of options.jobs failed, else 0.
 /// @throws Error if a room cannot be scanned or a file cannot be written. Results obtained before the error
 ///         are written
 int run(const FallthroughOptions& options);

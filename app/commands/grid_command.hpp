@@ -6,7 +6,8 @@
 namespace roomradar {
 
 /// Drops a ball in each cell of a grid over the map, onto the surfaces of the source's first frame. Prints
-/// the table, and writes picture and report. Throws Error if the frame cannot be localised.
+/// the table, and writes picture and report. Returns the exit status 0. Throws Error if there is no readable
+/// frame, or it cannot be localised.
 int run_grid(const FallthroughOptions& options);
 
 /// Returns true if both maps were made from recorded poses of the same recording, possibly with different

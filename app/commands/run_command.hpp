@@ -16,8 +16,8 @@ int play(const RunOptions& options);
 
 struct PlayResult {
   PlayWindowResult window;
-  /// If the user asks to scan more: the place where an object rests on the border of unknown space; unset if
-  /// none does.
+  /// If the user asks to scan more: the place where an object rests on the frontier of unknown space. Unset
+  /// if none does.
   std::optional<PlaceToScan> look_at{};
 };
 /// Does the same in a window.

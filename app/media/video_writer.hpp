@@ -9,13 +9,14 @@
 namespace roomradar {
 
 /// The file's extension selects the format: .mp4 (H.264 if an encoder is available, else MPEG-4), .avi
-/// (Motion JPEG) or .mkv (MPEG-4). Encoders need even sizes. If width or height is odd, the last column or
-/// row is dropped. The video is written to a temporary file in the same folder, such as NAME.partial-PID.avi.
-/// close() moves it to its final name, and replaces an earlier video.
+/// (Motion JPEG) or .mkv (MPEG-4, else Motion JPEG). Encoders need even sizes. If width or height is odd, the
+/// last column or row is dropped. The video is written to a temporary file in the same folder, such as
+/// NAME.partial-PID.avi. close() moves it to its final name, and replaces an earlier video. A pipe or a
+/// device is written directly.
 class VideoWriter {
  public:
-  /// Throws Error for another extension, a folder that does not exist, or frames_per_s not in 1..240. The
-  /// file is created when the first picture is written.
+  /// Throws Error for another extension, a folder that does not exist, a path that cannot be written, or
+  /// frames_per_s not in 1..240. The file is created when the first picture is written.
   VideoWriter(std::filesystem::path path, double frames_per_s);
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;

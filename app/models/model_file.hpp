@@ -24,7 +24,7 @@ enum class ModelOrigin {
 /// textures that cannot be read.
 ///
 /// @param up  axis of the file that points up; unset: y for .glb, .gltf and .obj, z for .ply and .stl, and
-///            the axis that a .dae states
+///            the axis that a .dae states (y if none)
 /// @throws Error with the file's name, the fault and a remedy, as read_mesh() does
 Model read_model(const std::filesystem::path& path, std::optional<UpAxis> up = std::nullopt,
                  ModelOrigin origin = ModelOrigin::kNear);

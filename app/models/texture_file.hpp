@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxTexturePixels = std::size_t{64} << 20U;
 /// An image with more than kMaxTextureSide_px per side or more than max_pixels in total is reduced by
 /// averaging. Alpha is kept if some pixel is not opaque. `bytes` may be malicious: call this function within
 /// run_sandboxed().
-/// @throws Error "cannot be decoded; ..." without the file's name
+/// @throws Error such as "cannot be decoded as PNG: ...", without the file's name
 Texture decode_texture(std::string_view bytes, std::size_t max_pixels);
 /// Makes a texture from uncompressed pixels of 4 bytes: blue, green, red, alpha. Reduces it as
 /// decode_texture() does.
@@ -25,7 +25,8 @@ Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size
 
 /// Returns the path of an image that a model file names. The name is searched relative to the model's folder.
 /// Then its last component is searched in the model's folder, since many files contain paths of their
-/// author's machine. Returns an empty path if there is no such file.
+/// author's machine. Then both are tried without "file://", with "%20" and the like decoded, and with slashes
+/// for backslashes. Returns an empty path if there is no such file.
 std::filesystem::path find_texture(const std::filesystem::path& model, const std::string& name);
 
 /// @throws Error as decode_texture(), also for a file above 64 MiB

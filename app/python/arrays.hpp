@@ -38,8 +38,8 @@ py::array required_output(py::handle value, const char* name, const ArrayShape& 
 Eigen::Isometry3d pose_of(py::handle value, const char* name);
 /// Returns pose_of(), or nullopt for None.
 std::optional<Eigen::Isometry3d> optional_pose_of(py::handle value, const char* name);
-/// Returns a float64 array (3,), or a sequence of three numbers, as a vector. Throws ValueError if a number
-/// is not finite.
+/// Returns a float64 array (3,), or a tuple or list of three numbers, as a vector. Throws ValueError if a
+/// number is not finite.
 Eigen::Vector3d vector_of(py::handle value, const char* name);
 std::optional<Eigen::Vector3d> optional_vector_of(py::handle value, const char* name);
 /// Returns a float64 array (3, 3) as a rotation, or nullopt for None. Throws ValueError as pose_of() does.

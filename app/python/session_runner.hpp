@@ -28,7 +28,7 @@ RunQuality quality_with(RunQuality quality, const QualityValues& values);
 struct SessionSettings {
   PoseOrigin poses = PoseOrigin::kTracked;
   SurfacePolicy surfaces = SurfacePolicy::kMap;
-  bool unknown_is_solid = true;
+  bool unknown_is_solid = true;  ///< has no effect unless `surfaces` is kMap
   bool make_picture = true;
   bool measure_penetration = false;
   RunQuality quality{};

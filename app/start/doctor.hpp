@@ -20,7 +20,8 @@ struct Finding {
   std::string what_to_do;  ///< sentence with advice; empty if `health` is kGood
 };
 
-/// Compares the Kinects on the USB bus with those that libfreenect finds.
+/// Checks permission, port, power supply and kernel driver of each Kinect on the USB bus. Compares their
+/// number with that of libfreenect.
 /// @param seen_by_libfreenect  result of count_kinects()
 std::vector<Finding> judge_kinects(const std::vector<KinectOnUsb>& on_usb, int seen_by_libfreenect);
 

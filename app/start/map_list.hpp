@@ -14,7 +14,7 @@ namespace roomradar {
 
 struct MapEntry {
   std::filesystem::path folder;
-  std::time_t saved_at = 0;                          ///< when map.json was written
+  std::time_t saved_at = 0;                          ///< when map.json, or FOLDER.unfinished, was written
   std::uint64_t bytes = 0;                           ///< all files together
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  ///< of the box around all occupied space
   std::string source;                                ///< recordings or devices that it was scanned from

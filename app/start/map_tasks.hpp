@@ -16,10 +16,11 @@ std::string proposed_map_name(const std::filesystem::path& folder, std::time_t n
 std::filesystem::path rename_map(const std::filesystem::path& map, const std::string& new_name);
 
 /// Deletes the map, and its interrupted scan if there is one. Throws Error, with nothing deleted, if the
-/// folder is not a map or contains anything that is not part of a map.
+/// folder is not a map, is a link, or contains anything that is not part of a map.
 void delete_map(const std::filesystem::path& map);
 
-/// Exports the map beside itself, to NAME.glb, or NAME-2.glb if that is taken, and so on. Returns the path.
+/// Exports the map beside itself, to a file such as NAME.glb, or NAME-2.glb if that is taken. Returns the
+/// path.
 /// Throws Error as export_map() and write_map_page() do.
 /// @param extension  .html (a page), .glb or .ply
 std::filesystem::path export_beside(const std::filesystem::path& map, const std::string& extension);

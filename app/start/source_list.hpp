@@ -27,11 +27,11 @@ std::vector<SourceEntry> list_kinects();
 /// not readable or no recording are left out.
 std::vector<SourceEntry> list_recordings(const std::filesystem::path& folder);
 
-/// Returns the simulated rooms.
+/// Returns the simulated rooms, without the one with the checkerboard.
 std::vector<SourceEntry> list_simulated_rooms();
 
-/// Returns the entry of any source, with a fault if `source` is not a source or cannot be read.
-/// @param source  as open_source() takes it
+/// Returns the entry of a source, with a fault if `source` is not a source or cannot be read.
+/// @param source  kinect:N, sim:ROOM with keys, or a recording's path
 SourceEntry describe_source(const std::string& source);
 
 }  // namespace roomradar

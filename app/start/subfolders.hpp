@@ -6,7 +6,7 @@
 namespace roomradar {
 
 /// Returns the subfolders of `folder` in sorted order, without hidden ones, at most the first 300 that the
-/// system lists. Folders that cannot be read are empty.
+/// system lists. Returns none if the folder cannot be read.
 std::vector<std::filesystem::path> subfolders(const std::filesystem::path& folder);
 
 /// Returns the regular files in `folder` by the same rules.

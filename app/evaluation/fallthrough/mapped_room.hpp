@@ -37,9 +37,9 @@ struct ScannedRoom {
   Mesh unknown_world;  ///< frontier of unknown space
 };
 /// Simulates a prescan of the room with noisy depth at known poses, fuses the frames and extracts the
-/// surface. If scan.maps contains this room's map from an earlier run, loads it instead.
+/// surface. If scan.maps contains this room's map, made by this version with the same settings, loads it.
 /// @param progress  called after each frame, possibly from several threads concurrently
-/// Throws Error if no surface was found or a stored map is damaged.
+/// @throws Error if no surface was found, or a stored map is damaged or of another source
 ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std::function<void()>& progress);
 
 /// A scanned room in GPU memory, with one FrameScene per policy.

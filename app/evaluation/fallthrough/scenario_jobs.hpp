@@ -11,10 +11,10 @@
 namespace roomradar {
 
 /// Returns the manifest: a job that scans the rooms, and one per options.job_size scenarios. More scenarios
-/// add jobs and leave the others as they are.
+/// add jobs. Jobs with options.job_size scenarios stay as they are.
 std::string scenario_manifest(const FallthroughOptions& options);
 
-/// Returns the folder of the rooms' maps, of the manifest's first job.
+/// Returns the folder of the rooms' maps, which the manifest's first job writes.
 std::filesystem::path maps_of_jobs(const std::filesystem::path& folder);
 
 /// Returns the rows of all jobs that have results, in the scenarios' order.

@@ -13,8 +13,7 @@
 
 namespace roomradar {
 
-/// Frames of a scenario, rendered on first use. If the occluder does not move, all frames are copies of the
-/// first rendered one.
+/// Frames of a scenario, rendered on first use. If the occluder does not move, frame 0 stands for all.
 class ScenarioFrames {
  public:
   ScenarioFrames(const Scenario& scenario, const Room& room) : scenario_(scenario), room_(room) {}
@@ -61,7 +60,8 @@ struct TrialSurfaces {
 };
 
 /// Sets the scene's surfaces to those of one frame of the scenario, with the camera at T_world_believed.
-/// Processes frame 0 twice, so that the foreground detection has previous labels. Returns the run time, ms.
+/// Returns the run time, ms. With kMap, detects the foreground of frame 0 once before, untimed, so that the
+/// detection has previous labels.
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
                   std::span<const FineRegion> about_objects, FrameScene& scene);
 

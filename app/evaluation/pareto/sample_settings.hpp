@@ -11,7 +11,8 @@ namespace roomradar {
 /// result.
 ///
 /// Up to two thirds of the settings change a single parameter, to show its effect. If there are more such
-/// changes, faster values come first, since fronts consist mostly of them, then values close to the default.
+/// changes, faster values of quality parameters come first, since fronts consist mostly of them. Among these
+/// and among the others, values close to the default come first.
 ///
 /// The other settings (combinations) change all quality parameters. The values of each parameter occur about
 /// equally often. Combinations tend to pair fast values with fast ones and slow values with slow ones, since

@@ -11,14 +11,15 @@
 
 namespace roomradar {
 
-/// Returns a job's name: the work, the scene's index, and a digit per parameter, such as "prescan-0-4214".
+/// Returns a job's name: the work, the scene's index, and a digit (0-9, a-z) per parameter, such as
+/// "prescan-0-4214".
 std::string sweep_job_name(const MeasuredWork& work, std::size_t scene, const Setting& setting);
 
 /// Returns the names of the jobs that measure the settings in all scenes.
 std::vector<std::string> sweep_job_names(const MeasuredWork& work, const std::vector<Setting>& settings);
 
-/// Returns the manifest's lines for these jobs: `trade --setting SETTING --rows {}/rows.json`, and the words
-/// that `words_of` returns for a scene.
+/// Returns the manifest's lines for these jobs: `trade --only WORK --setting SETTING WORDS --rows
+/// {}/rows.json`, where WORDS is what `words_of` returns for a scene.
 std::string sweep_manifest(const MeasuredWork& work, const std::vector<Setting>& settings,
                            const std::function<std::string(std::size_t scene)>& words_of);
 

@@ -28,13 +28,14 @@ inline constexpr double kTouchLimit_m = 0.5;  ///< max distance of flight
 
 /// Draws at random up to 4 balls for each scenario with an occluder that was absent from the prescan. Each
 /// ball flies along the ray of a pixel that shows the occluder at 0.8 to 3.5 m, and would touch the occluder
-/// well before the room.
+/// at least 5 cm before the room.
 std::vector<DynamicTouch> draw_dynamic_touches(
     const std::vector<std::unique_ptr<PreparedScenario>>& scenarios, const Room& room);
 
 /// Errors of the radar's contacts; NaN if there are no balls.
 struct DynamicTouchFacts {
-  /// Over balls whose contact the radar found at most kTooFar_m (2 cm) late.
+  /// Median of |found distance - true distance| over balls whose contact the radar found at most kTooFar_m
+  /// (2 cm) late.
   double error_median_m = std::numeric_limits<double>::quiet_NaN();
   double error_p95_m = error_median_m;
   double missed = error_median_m;  ///< fraction of balls without such a contact

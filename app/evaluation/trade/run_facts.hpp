@@ -41,7 +41,8 @@ RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mes
 
 /// Results of the scene's scenarios and touches; NaN if it has none.
 struct ContactFacts {
-  double error_median_m = std::numeric_limits<double>::quiet_NaN();  ///< over objects that stopped
+  /// Median of |travelled distance - true distance| over the objects that stopped.
+  double error_median_m = std::numeric_limits<double>::quiet_NaN();
   double error_p95_m = error_median_m;
   double passed = error_median_m;       ///< fraction of objects that passed through a surface
   double false_stops = error_median_m;  ///< fraction of objects that stopped short of the true contact

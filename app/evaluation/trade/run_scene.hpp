@@ -37,8 +37,9 @@ struct RunScene {
 
 /// @param spec  room as after `sim:`, such as "table" or "random?seed=3"
 std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const TradeScale& scale);
-/// Maps the first frames of the recording. Uses the rest, at most half of the recording, for the run. Throws
-/// Error as frames_of_recording() does.
+/// Reads the first scale.map_frames + scale.run_frames frames of the recording. The last scale.run_frames of
+/// them, but at most half, are for the run. The others are mapped. Throws Error as frames_of_recording()
+/// does.
 std::unique_ptr<RunScene> run_scene_of_recording(const std::string& folder, const TradeScale& scale);
 
 }  // namespace roomradar
