@@ -11,8 +11,8 @@ std::uintptr_t next_handle_number() {
 }
 
 void refuse_handle(const char* kind) {
-  throw Refusal(ROOMRADAR_CLOSED_HANDLE,
-                std::string("this is no open ") + kind + ": the handle is closed, null or of another kind");
+  throw Refusal(ROOMRADAR_CLOSED_HANDLE, std::string("this is not an open ") + kind +
+                                             ": the handle is closed, null or of another kind");
 }
 
 }  // namespace roomradar::c_api

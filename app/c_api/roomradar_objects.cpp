@@ -33,7 +33,7 @@ BodyMaterial material_of(const roomradar_material* material) {
 std::string new_name_of(const char* name, const SessionState& state) {
   const std::string named = name_of(name);
   if (find_object(state.session->objects(), named) != nullptr)
-    refuse("there is an object named " + named + " already");
+    refuse("an object named " + named + " already exists");
   return named;
 }
 

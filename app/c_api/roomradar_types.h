@@ -143,7 +143,7 @@ typedef enum roomradar_surface_kind {
   ROOMRADAR_SURFACE_STATIC = 1,           /* the saved room */
   ROOMRADAR_SURFACE_DYNAMIC = 2,          /* a surface that is not in the map */
   ROOMRADAR_SURFACE_OBJECT = 3,           /* another virtual object */
-  ROOMRADAR_SURFACE_UNKNOWN_FRONTIER = 4, /* border of unobserved space */
+  ROOMRADAR_SURFACE_UNKNOWN_FRONTIER = 4, /* frontier of unknown space */
   ROOMRADAR_SURFACE_INFERRED_BACK = 5     /* assumed back of a dynamic surface */
 } roomradar_surface_kind;
 #define ROOMRADAR_SURFACE_KINDS 6

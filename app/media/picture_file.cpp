@@ -25,7 +25,7 @@ void write_picture(const Image<Pixel>& picture, const std::filesystem::path& pat
 
 void require_png_name(const std::filesystem::path& path) {
   if (!path.empty() && path.extension() != ".png")
-    throw Error(path.string() + ": is no name for a PNG picture; give one that ends in .png");
+    throw Error(path.string() + ": is not the name of a PNG picture; give one that ends in .png");
 }
 
 void write_png(const ColourImage& picture, const std::filesystem::path& path) {

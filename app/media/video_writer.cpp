@@ -136,10 +136,9 @@ void VideoWriter::close() {
   const std::unique_ptr<VideoDecoder> reader = video_codecs().open(s.partial.string());
   const double frames_held = reader != nullptr ? reader->frame_count() : 0.0;
   if (frames_held + 1.5 < static_cast<double>(s.frames_written))
-    throw Error(s.path.string() + ": could be written with " +
-                std::to_string(static_cast<long>(std::max(frames_held, 0.0))) + " of " +
-                std::to_string(s.frames_written) + " frames only, see " + s.partial.string() +
-                "; is the disk full?");
+    throw Error(s.path.string() + ": only " + std::to_string(static_cast<long>(std::max(frames_held, 0.0))) +
+                " of " + std::to_string(s.frames_written) + " frames could be written, see " +
+                s.partial.string() + "; is the disk full?");
   std::error_code fault;
   std::filesystem::rename(s.partial, s.path, fault);
   if (fault)

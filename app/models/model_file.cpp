@@ -116,7 +116,7 @@ Model read_by_assimp(const std::filesystem::path& path) {
   Model model;
   model.mesh = std::move(collected.mesh);
   if (model.mesh.triangles.empty())
-    fail_for_file(path, "holds no triangles with an area; wanted a surface mesh");
+    fail_for_file(path, "contains no triangles with an area; must be a surface mesh");
   set_appearance(path, scene, collected.parts, model);
   return model;
 }
@@ -130,9 +130,9 @@ Model read_sandboxed(const std::filesystem::path& path) {
   if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end())
     fail_for_file(path, extension.find('=') != std::string::npos
                             ? "\"" + extension +
-                                  "\" is no extension of a model; what may follow a comma is named in "
-                                  "`roomradar help models`"
-                            : "the extension \"" + extension + "\" is no model format known here; use " +
+                                  "\" is not a model file extension; `roomradar help models` lists what may "
+                                  "follow a comma"
+                            : "the extension \"" + extension + "\" is not a supported model format; use " +
                                   kModelFormats + ", or the built-in teapot");
   require_plausible_size(path);
   const std::uintmax_t bytes = std::filesystem::file_size(path);
@@ -170,7 +170,8 @@ void bring_origin_near(const std::filesystem::path& path, Model& model) {
 
 Model read_copy(const std::filesystem::path& path) {
   const std::string bytes = read_bytes(path, "a model of a recorded session", kMaxCopyBytes);
-  if (!bytes.starts_with(kCopyHead)) fail_for_file(path, "is no model of a recorded session, or is damaged");
+  if (!bytes.starts_with(kCopyHead))
+    fail_for_file(path, "is not a model of a recorded session, or is damaged");
   ByteReader reader(std::string_view(bytes).substr(kCopyHead.size()), path.string());
   Model model;
   serialize(reader, model);

@@ -35,7 +35,7 @@ std::string_view support_words(SurfaceKind kind) {
     case SurfaceKind::kObject:
       return " on another object";
     case SurfaceKind::kUnknownFrontier:
-      return " on the border of unknown space";
+      return " on the frontier of unknown space";
     case SurfaceKind::kInferredBack:
       return " on the inferred back of something that moved";
     case SurfaceKind::kNothing:
@@ -84,15 +84,14 @@ std::string unknown_support_text(const VirtualObject& object, std::span<const Sc
   if (from)
     std::snprintf(
         text.data(), text.size(),
-        " rests on the border of space that was not scanned, at %.2f %.2f %.2f m; to make it known, "
-        "scan it from about %.1f %.1f %.1f m",
+        " rests on the frontier of unknown space at %.2f %.2f %.2f m; to make that space known, scan "
+        "it from about %.1f %.1f %.1f m",
         p.x(), p.y(), p.z(), from->x(), from->y(), from->z());
   else
     std::snprintf(
         text.data(), text.size(),
-        " rests on the border of space that was not scanned, at %.2f %.2f %.2f m, which is hidden from "
-        "all sides",
-        p.x(), p.y(), p.z());
+        " rests on the frontier of unknown space at %.2f %.2f %.2f m, which is hidden from all sides", p.x(),
+        p.y(), p.z());
   return text.data();
 }
 

@@ -198,7 +198,7 @@ void bind_maps(py::module_& module) {
           py::kw_only(), py::arg("min_area_m2") = 0.05,
           "Returns floor, table tops and the like, largest first.")
       .def("unknown_surface", &unknown_mesh_of,
-           "Returns the border between observed free space and unobserved space as a mesh.")
+           "Returns the frontier between observed free space and unknown space as a mesh.")
       .def_property_readonly("coverage_png",
                              [](const Map& map) {
                                return py::bytes(reinterpret_cast<const char*>(map.saved.coverage_png.data()),

@@ -39,7 +39,7 @@ void bind_errors(py::module_& module) {
       "A failure that a user can repair. The sentence says what failed, where, and what to do.",
       PyExc_RuntimeError, nullptr);
   place_refused_type = PyErr_NewExceptionWithDoc(
-      "roomradar.PlaceRefused", "An object cannot be placed where it was to be; its pose is unchanged.",
+      "roomradar.PlaceRefused", "An object cannot be placed at the requested pose; its pose is unchanged.",
       error_type, nullptr);
   module.attr("Error") = py::handle(error_type);
   module.attr("PlaceRefused") = py::handle(place_refused_type);

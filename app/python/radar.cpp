@@ -145,7 +145,7 @@ Eigen::Isometry3d pose_at(const double* poses, std::size_t i) {
   Eigen::Isometry3d T;
   T.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(poses + 16 * i);
   if (T.matrix().row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) || !is_rigid(T, 1e-6))
-    throw py::value_error("T_world_object: row " + std::to_string(i) + " is no finite rigid transform");
+    throw py::value_error("T_world_object: row " + std::to_string(i) + " is not a finite rigid transform");
   return T;
 }
 
@@ -212,7 +212,7 @@ void bind_contacts(py::module_& module) {
       .value("STATIC", SurfaceKind::kStatic, "the prescanned room")
       .value("DYNAMIC", SurfaceKind::kDynamic, "a surface that is not in the map")
       .value("OBJECT", SurfaceKind::kObject, "a virtual object")
-      .value("UNKNOWN_FRONTIER", SurfaceKind::kUnknownFrontier, "border of space that was not observed")
+      .value("UNKNOWN_FRONTIER", SurfaceKind::kUnknownFrontier, "frontier of unknown space")
       .value("INFERRED_BACK", SurfaceKind::kInferredBack, "assumed back of a dynamic surface");
   py::enum_<ContactStatus>(module, "ContactStatus", py::arithmetic(), "Outcome of a radar query.")
       .value("NO_ANSWER", ContactStatus::kNoAnswer)

@@ -40,11 +40,19 @@ bool is_within(const QualityField& field, int value) {
   return is_within(field, static_cast<double>(value)) && !(is_stride && value == 3);
 }
 
+/// Returns "1|2|4" as "1, 2 or 4".
+std::string listed(std::string_view unit) {
+  std::string list(unit);
+  for (std::size_t bar = list.rfind('|'), i = 0; bar != std::string::npos; bar = list.rfind('|'), ++i)
+    list.replace(bar, 1, i == 0 ? " or " : ", ");
+  return list;
+}
+
 [[noreturn]] void fail(const QualityField& field, std::string_view word) {
-  std::string rule = field.unit;
-  if (std::string_view(field.unit).find('|') == std::string_view::npos) {
+  std::string rule = listed(field.unit);
+  if (rule == field.unit) {
     std::array<char, 64> range{};
-    std::snprintf(range.data(), range.size(), "within %.10g and %.10g%s", field.low, field.high,
+    std::snprintf(range.data(), range.size(), "between %.10g and %.10g%s", field.low, field.high,
                   std::string_view(field.unit) == "M" ? " m" : "");
     rule = range.data();
   }

@@ -130,7 +130,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
       quality.picture_every_n_frames);
 }
 
-/// Throws Error such as "depth_stride = 3: must be 1|2|4".
+/// Throws Error such as "depth_stride = 3: must be 1, 2 or 4".
 void require_valid(const ScanQuality& quality);
 void require_valid(const RunQuality& quality);
 

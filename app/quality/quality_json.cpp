@@ -38,7 +38,7 @@ Quality quality_of(const Json& json, const std::string& where) {
   if (!json.is_object()) throw Error(where + ": is not a JSON object of settings");
   Quality quality;
   for (const auto& [name, value] : json.items()) {
-    if (value.is_structured()) throw Error(where + ": " + name + ": is no single value");
+    if (value.is_structured()) throw Error(where + ": " + name + ": is not a single value");
     try {
       set_field(quality, name, word_of(value));
     } catch (const Error& fault) {

@@ -44,8 +44,8 @@ OpenedBuilding open_building(const RunOptions& options, const Script& script) {
                   [](const BuildingTile& tile) { return tile.unknown.name.empty(); }))
     throw Error(
         options.map +
-        ": has no borders of unknown space, since an earlier version made it; run `roomradar building` "
-        "once more with the same recordings, or add --unknown free");
+        ": has no frontier of unknown space, since an earlier version made it; run `roomradar building` "
+        "again with the same recordings, or add --unknown free");
   mmap_large_allocations();  // tiles come and go: their memory goes back to the system
 
   const double keyframes_mb = kKeyframesPart * options.max_memory_mb;

@@ -103,7 +103,7 @@ void require_one_quality(const RunOptions& options, const Script& script) {
         "to its default, not to the preset's value; leave out one of them");
   if (options.budget_ms)
     throw Error(
-        "--budget-ms: the script or the session has quality events of its own, and each would undo the "
+        "--budget-ms: the script or the session also has quality events, and each would undo the "
         "other; leave out one of them");
 }
 
@@ -180,7 +180,7 @@ void make_unknown_solid(Session& session, StageTimes& times) {
   if (session.unknown() != nullptr && session.unknown()->memory_bytes > 0)  // not from the map's folder
     std::fprintf(
         stderr,
-        "unknown space: the map was saved without its border; %zu triangles, extracted in %.1f s with "
+        "unknown space: the map was saved without its frontier; %zu triangles, extracted in %.1f s with "
         "%.0f MB\n",
         session.unknown()->mesh_world.triangles.size(), ms_since(start) / 1e3,
         static_cast<double>(session.unknown()->memory_bytes) / 1e6);

@@ -94,15 +94,14 @@ std::string reason_of(SupportStatus status, double footprint_radius_m) {
       return "the map has no level surface in this view";
     case SupportStatus::kTooSmall:
       std::snprintf(text.data(), text.size(),
-                    "no level surface in this view has a free circle of %.2f m across, which it needs",
+                    "it needs a free circle %.2f m across, and no level surface in this view has one",
                     2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m));
       return text.data();
     case SupportStatus::kTooFar:
-      std::snprintf(
-          text.data(), text.size(),
-          "there is no free level circle of %.2f m across, which it needs, within %.0f cm of that point",
-          2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m),
-          100.0 * PlacementConfig{}.max_away_m);
+      std::snprintf(text.data(), text.size(),
+                    "it needs a free level circle %.2f m across, and none is within %.0f cm of that point",
+                    2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m),
+                    100.0 * PlacementConfig{}.max_away_m);
       return text.data();
     case SupportStatus::kBlocked:
       return "something is in the way above or beside every level surface that is large enough, or that "

@@ -43,9 +43,8 @@ MapUpdater::MapUpdater(StaticMap& octree, const Mesh& mesh, const MapUpdateConfi
   require_valid(config);
   if (!holds_samples(octree))
     throw Error(
-        "commit changes: the map's octree holds no surface, so nothing can be added to it or carved from it; "
-        "scan the "
-        "room with `roomradar prescan`, or run without --commit-changes");
+        "commit changes: the map's octree contains no surface, so nothing can be added to it or carved "
+        "from it; scan the room with `roomradar prescan`, or run without --commit-changes");
   measured_.views.resize(static_cast<std::size_t>(config.views));
 }
 

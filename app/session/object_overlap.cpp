@@ -79,16 +79,15 @@ std::string leave_surfaces(VirtualObject& object, const WayOut& way, bool is_thr
   if (const auto free = free_pose_near(object, kWayOut_m, way)) {
     object.body.T_world_object = free->T_world_object;
     if (free->moved_m < kSaid_m) return {};
-    return crosses ? " would begin in a surface, and is moved out by " + millimetres(free->moved_m)
-                   : " would begin in space that was not scanned, and is moved out by " +
-                         millimetres(free->moved_m);
+    return crosses ? " would start inside a surface; moved out by " + millimetres(free->moved_m)
+                   : " would start in space that was not scanned; moved out by " + millimetres(free->moved_m);
   }
   const bool is_middle = is_middle_unknown(way.room, object);
   if (!crosses && is_thrown)
     return is_middle
-               ? " begins in space that was not scanned, where nothing stops it"
-               : " begins partly in space that was not scanned, which does not stop it until it has left";
-  std::string text = object.body.name + ": cannot begin at " +
+               ? " starts in space that was not scanned, where nothing stops it"
+               : " starts partly in space that was not scanned; nothing there stops it until it has left";
+  std::string text = object.body.name + ": cannot be placed at " +
                      coordinates(object.body.T_world_object.translation()) + ": " +
                      (crosses     ? "a surface is in the way"
                       : is_middle ? "that space was not scanned"
@@ -121,7 +120,7 @@ std::string free_or_stuck(VirtualObject& object, const WayOut& way) {
   if (!is_crossed(instance_of(object), lasting)) return {};
   if (const auto free = free_pose_near(object, kWayOut_m, way)) {
     object.body.T_world_object = free->T_world_object;
-    return " was stuck in a surface, and is moved out by " + millimetres(free->moved_m);
+    return " was stuck in a surface; moved out by " + millimetres(free->moved_m);
   }
   if (std::exchange(object.stuck, true)) return {};
   return " is stuck in a surface at " + coordinates(object.body.T_world_object.translation()) +

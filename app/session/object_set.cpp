@@ -22,7 +22,7 @@ VirtualObject& ObjectSet::named(const std::string& name) {
 
 void ObjectSet::require_new(const std::string& name) const {
   if (find_object(objects_, name) != nullptr)
-    throw Error("script: there is an object named " + name + " already");
+    throw Error("script: an object named " + name + " already exists");
 }
 
 void ObjectSet::add(const std::string& name, Model model, const BodyMaterial& material) {
@@ -65,7 +65,7 @@ void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
     if (!moved.empty()) notices_.push_back({object.body.name, moved});
   } catch (const PlaceRefused&) {
     object.body.T_world_object = T_world_before;
-    object.why_not_in_room = "the place where it was to begin was refused";
+    object.why_not_in_room = "its start position was refused";
     throw;
   }
   object.R_world_put = object.body.T_world_object.linear();

@@ -41,12 +41,12 @@ void Session::make_unknown_solid(StageTimes& times) {
         "unknown space can be solid only with the map's surfaces: the others do not know which space was "
         "observed");
   if (room_.tiles && !room_.tiles->config().choice.has_unknown)
-    throw Error("unknown solid: the tiles were loaded without it; begin the run with --unknown solid");
+    throw Error("unknown solid: the tiles were loaded without it; start the run with --unknown solid");
   times.timed("unknown", [&] {
     if (!room_.unknown && !room_.tiles) {
       if (map_updater_ && (last_stamp_s_ || !map_updater_->committed_changes().empty()))
         throw Error(
-            "unknown solid: changes are being committed to the map; begin the run with --unknown solid");
+            "unknown solid: changes are being committed to the map; start the run with --unknown solid");
       set_unknown(room_, map_);
       if (map_updater_) map_updater_->keep_up_unknown();
     }

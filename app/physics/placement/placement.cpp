@@ -12,6 +12,7 @@
 #include "app/physics/placement/height_grid.hpp"
 #include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/config_check.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -151,7 +152,7 @@ void require_valid(const PlacementConfig& config) {
   const ConfigCheck rules{"placement"};
   const auto require = [&](const char* name, double value, double lowest, double highest) {
     rules(value >= lowest && value <= highest, name, value,
-          ("in " + std::to_string(lowest) + ".." + std::to_string(highest)).c_str());
+          ("in " + format_number(lowest) + ".." + format_number(highest)).c_str());
   };
   require("cell_m", config.cell_m, 0.005, 0.1);
   require("max_tilt_deg", config.max_tilt_deg, 0.0, 60.0);

@@ -111,7 +111,8 @@ void read_add(LineReader& line, ScriptEvent& event) {
       event.up = line.choice("the axis of the file that points up", kUpAxes);
     } else if (!read_material(line, event.material)) {
       line.fail(in_quotes(line.word("an option")) +
-                " is no option of add, or is there twice: size, up, mass or density, friction, restitution");
+                " is not an option of add, or is given twice; the options are size, up, mass or density, "
+                "friction, restitution");
     }
   }
 }
@@ -176,10 +177,10 @@ void read_action(LineReader& line, ScriptEvent& event) {
       event.turn_world_deg = line.vector("a turn X Y Z (degrees about the world's axes)", kMaxTurn_deg);
       break;
     case Action::kSurfaces:
-      event.surfaces = line.choice("what can be touched", kSurfaces);
+      event.surfaces = line.choice("the surfaces that can be touched", kSurfaces);
       break;
     case Action::kUnknown:
-      event.unknown_is_solid = line.choice("what unknown space is", kUnknown);
+      event.unknown_is_solid = line.choice("the state of unknown space", kUnknown);
       break;
     case Action::kRadar:
       event.radar.mode = line.choice("the radar's mode", kRadarModes);
@@ -189,7 +190,7 @@ void read_action(LineReader& line, ScriptEvent& event) {
       read_quality(line, event);
       break;
     case Action::kCamera:
-      event.camera = line.choice("what the camera does", kCameraPlays);
+      event.camera = line.choice("a camera command", kCameraPlays);
       break;
     case Action::kRemove:
     case Action::kCommit:
@@ -239,7 +240,7 @@ Script parse_script(std::string_view text, std::string_view where) {
     if (event.action == Action::kAdd) {
       const auto [first, is_new] = added_in_line.emplace(event.name, number);
       if (!is_new)
-        line.fail(in_quotes(event.name) + " was added in line " + std::to_string(first->second) + " already");
+        line.fail(in_quotes(event.name) + " was already added in line " + std::to_string(first->second));
     } else if (!event.name.empty() && !added_in_line.contains(event.name)) {
       line.fail("no object " + in_quotes(event.name) + " was added in a line above; write 'frame 0 add " +
                 event.name + " teapot' first");

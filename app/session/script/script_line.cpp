@@ -31,7 +31,7 @@ void LineReader::fail(const std::string& complaint) const {
 }
 
 std::string_view LineReader::word(const char* wanted) {
-  if (done()) fail("the line ends where " + std::string(wanted) + " is wanted");
+  if (done()) fail("the line ends too early; expected " + std::string(wanted));
   return words_[next_++];
 }
 
@@ -43,7 +43,7 @@ bool LineReader::take_if(std::string_view expected) {
 
 void LineReader::expect(std::string_view expected) {
   const std::string_view found = word(in_quotes(expected).c_str());
-  if (found != expected) fail(in_quotes(found) + " found where " + in_quotes(expected) + " is wanted");
+  if (found != expected) fail("expected " + in_quotes(expected) + ", found " + in_quotes(found));
 }
 
 double LineReader::number(const char* wanted, double lowest, double highest) {
@@ -51,14 +51,14 @@ double LineReader::number(const char* wanted, double lowest, double highest) {
   double value = 0.0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (fault != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-    fail(in_quotes(text) + " is not a finite number; wanted is " + wanted);
+    fail(in_quotes(text) + " is not a finite number; expected " + wanted);
   if (value < lowest || value > highest) fail(in_quotes(text) + " is out of range for " + wanted);
   return value;
 }
 
 double LineReader::whole_number(const char* wanted, double lowest, double highest) {
   const double value = number(wanted, lowest, highest);
-  if (value != std::floor(value)) fail("a whole number is wanted: " + std::string(wanted));
+  if (value != std::floor(value)) fail("expected a whole number: " + std::string(wanted));
   return value;
 }
 
@@ -72,7 +72,7 @@ Eigen::Vector3d LineReader::vector(const char* wanted, double limit) {
 }
 
 void LineReader::expect_end() const {
-  if (!done()) fail(in_quotes(words_[next_]) + " is too much; the event is complete before it");
+  if (!done()) fail("unexpected " + in_quotes(words_[next_]) + ": the event is already complete");
 }
 
 }  // namespace roomradar

@@ -62,7 +62,7 @@ class LineReader {
     const std::string_view found = word((std::string(wanted) + ": " + list).c_str());
     for (const Word<Value>& candidate : words)
       if (candidate.word == found) return candidate.value;
-    fail("unknown word " + in_quotes(found) + "; wanted is " + wanted + ": " + list);
+    fail("unknown word " + in_quotes(found) + "; expected " + wanted + ": " + list);
   }
   /// Reads three numbers, each in -limit..limit.
   Eigen::Vector3d vector(const char* wanted, double limit);

@@ -61,7 +61,7 @@ TEST(Presets, WhatIsWrongIsNamed) {
   EXPECT_EQ(fault_of_text(begin + R"(, "presents": {}})"),
             "p.json: \"presents\" is not known; allowed are format, format_version, made_by, presets, front");
   EXPECT_EQ(fault_of_text(begin + R"(, "presets": {"fast": {"run": {"depth_stride": 3}}}})"),
-            "p.json: fast: run: depth_stride = 3: must be 1|2|4");
+            "p.json: fast: run: depth_stride = 3: must be 1, 2 or 4");
   EXPECT_EQ(fault_of_text(begin + R"(, "presets": {"fast": {"figures": {"a": "b"}}}})"),
             "p.json: fast: figures: a: is not a number");
   EXPECT_EQ(fault_of_text(begin + R"(, "front": [{}, {"part_ratios": {"mesh": 0}}]})"),
@@ -92,7 +92,7 @@ TEST(Presets, HugeOrMissingFilesAreRefused) {
   const test::TemporaryFolder folder;
   EXPECT_NE(test::error_of([&] {
               read_presets(folder.path() / "none");
-            }).find("is missing; wanted a file of presets"),
+            }).find("is missing; expected a file of presets"),
             std::string::npos);
   std::ofstream(folder.path() / "huge") << std::string((1U << 20U) + 1U, ' ');
   EXPECT_NE(test::error_of([&] { read_presets(folder.path() / "huge"); }).find("too many"),

@@ -228,7 +228,8 @@ TEST(Adopt, AMapWithoutAnOctreeIsRefusedInWords) {
     Session session(map, updating(1.0), &*map.octree);
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("octree holds no surface"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("octree contains no surface"), std::string::npos)
+        << error.what();
   }
   EXPECT_THROW(Session(map, updating(1.0)), Error);
   EXPECT_THROW(Session(map, updating(0.0), &*map.octree), Error);

@@ -919,8 +919,7 @@ TEST(Session, ADropNearAPointIsTriedOnceAndSaysWhyNot) {
   EXPECT_FALSE(box.in_room);
   EXPECT_TRUE(session.waiting_drops().empty());
   ASSERT_EQ(result.notices.size(), 1U);
-  EXPECT_NE(result.notices[0].text.find("is not dropped: there is no free level circle of"),
-            std::string::npos)
+  EXPECT_NE(result.notices[0].text.find("is not dropped: it needs a free level circle"), std::string::npos)
       << result.notices[0].text;
 }
 
@@ -1009,7 +1008,7 @@ TEST(Session, WhatIsPutPartlyIntoUnknownSpaceIsMovedOutOrRefused) {
       << refusal;
   const VirtualObject& its = *find_object(session.objects(), "beam");
   EXPECT_FALSE(its.in_room);
-  EXPECT_EQ(its.why_not_in_room, "the place where it was to begin was refused");
+  EXPECT_EQ(its.why_not_in_room, "its start position was refused");
   session.place("beam", {.position_world = {0.92, 0.0, 0.8}, .velocity_world_mps = {-1.0, 0.0, 0.0}});
   EXPECT_TRUE(its.in_room);
   session.remove("beam");
