@@ -43,7 +43,7 @@ ContentFile content_file_of(const json& value) {
 
 Eigen::Vector3d vector_of(const json& value) {
   const Eigen::Vector3d v(value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>());
-  if (!v.allFinite()) throw Error("has a coordinate that is no number");
+  if (!v.allFinite()) throw Error("has a coordinate that is not a number");
   return v;
 }
 
@@ -73,7 +73,7 @@ LookAlike look_alike_of(const json& value) {
   const json& xyzw = value.at("other_rotation_xyzw");
   const Eigen::Quaterniond q(xyzw.at(3).get<double>(), xyzw.at(0).get<double>(), xyzw.at(1).get<double>(),
                              xyzw.at(2).get<double>());
-  if (!(std::abs(q.norm() - 1.0) < 1e-6)) throw Error("has a rotation that is no unit quaternion");
+  if (!(std::abs(q.norm() - 1.0) < 1e-6)) throw Error("has a rotation that is not a unit quaternion");
   look_alike.T_other_this.linear() = q.normalized().toRotationMatrix();
   look_alike.T_other_this.translation() = vector_of(value.at("other_translation_m"));
   return look_alike;
@@ -186,7 +186,7 @@ Mesh read_tile_mesh(const fs::path& path) {
     for (const std::uint32_t v : t)
       if (v >= mesh.vertices.size()) in.fail("is damaged: a triangle names a vertex that is not there");
   for (const Eigen::Vector3f& v : mesh.vertices)
-    if (!v.allFinite()) in.fail("is damaged: a vertex is no number");
+    if (!v.allFinite()) in.fail("is damaged: a vertex is not a number");
   return mesh;
 }
 

@@ -146,7 +146,7 @@ KeyframeDatabase load_building_keyframes(const BuildingInfo& info, const fs::pat
   }
   if (whole.keyframes.empty())
     throw Error(folder.string() +
-                ": has no keyframes; run `roomradar building` once more with the same recordings");
+                ": has no keyframes; run `roomradar building` again with the same recordings");
   whole.look_alikes = info.look_alikes;
   update_index(whole);
   return whole;

@@ -22,7 +22,7 @@ static void serialize(Archive& archive, KeyframeLink& link) {
   serialize(archive, link.T_a_b);
   serialize(archive, link.information);
   if constexpr (Archive::kReads) {
-    if (!link.information.allFinite()) archive.fail("is damaged: a link's information is no number");
+    if (!link.information.allFinite()) archive.fail("is damaged: a link's information is not a number");
     link.a = a;
     link.b = b;
   }

@@ -102,7 +102,7 @@ TileIndex tile_of_name(std::string_view name) {
     at = after;
     if (axis == 2 && at == end && name_of(tile) == name) return tile;
   }
-  throw Error("'" + std::string(name) + "' is no tile's name; it must be three whole numbers, like 3_-1_0");
+  throw Error("'" + std::string(name) + "' is not a tile name; it must be three whole numbers, like 3_-1_0");
 }
 
 }  // namespace roomradar

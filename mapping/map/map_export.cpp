@@ -12,7 +12,7 @@ void export_map(const std::filesystem::path& folder, const std::filesystem::path
   const bool octree = extension == ".ot" || extension == ".bt";
   if (!octree && extension != ".ply" && extension != ".obj" && extension != ".stl" && extension != ".glb")
     throw Error(path.string() + ": the extension \"" + extension +
-                "\" is no format to export to; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
+                "\" is not an export format; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
                 "the mesh, .html for a page");
   require_outside_maps(path);
   if (extension == ".ot") return load_map_octree(folder).write_ot(path);

@@ -38,13 +38,13 @@ void require_replaceable(const fs::path& folder) {
     empty = false;
     const std::string name = entry.path().filename().string();
     if (name != kMapInfoFile && !is_map_part(name))
-      refuse(folder,
-             "exists and holds \"" + name + "\", which is no part of a map; choose another name for the map");
+      refuse(folder, "exists and holds \"" + name +
+                         "\", which is not part of a map; choose another name for the map");
   }
   if (fault) refuse(folder, "cannot be listed: " + fault.message());
   if (!empty && !fs::exists(folder / kMapInfoFile))
     refuse(folder, std::string("exists and has no ") + kMapInfoFile +
-                       ", so it is no map; choose another name for the map");
+                       ", so it is not a map; choose another name for the map");
 }
 
 fs::path tidy_map_name(const fs::path& folder) {
@@ -52,7 +52,7 @@ fs::path tidy_map_name(const fs::path& folder) {
   fs::path path = folder.lexically_normal();
   if (!path.has_filename()) path = path.parent_path();  // a trailing slash
   if (path.filename() == "." || path.filename() == ".." || !path.has_filename())
-    refuse(folder, "is no name for a map's folder; give a new one, such as maps/kitchen");
+    refuse(folder, "is not a valid name for a map's folder; give a new one, such as maps/kitchen");
   return path;
 }
 
@@ -61,7 +61,7 @@ void require_outside_maps(const fs::path& path) {
   std::error_code ignored;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (fs::exists(folder / kMapInfoFile, ignored))
-    refuse(path, "lies in the folder of a map, which holds nothing but the map; choose another place");
+    refuse(path, "lies in the folder of a map, which may contain only the map; choose another place");
 }
 
 void require_contents_outside_maps(const fs::path& folder) {
@@ -81,7 +81,7 @@ void require_can_become_map(const fs::path& folder, std::initializer_list<fs::pa
     if (!whole.empty() &&
         std::mismatch(whole.begin(), whole.end(), path.begin(), path.end()).first == whole.end())
       refuse(output, "would lie in " + map.string() +
-                         ", which is to be a map and holds nothing but that; choose another place");
+                         ", which is to be a map and may contain only the map; choose another place");
   }
 }
 

@@ -79,7 +79,7 @@ void require_parts(const MapInfo& info, const fs::path& where) {
     if (!info.files.contains(name)) fail(where, std::string("does not list \"") + name + "\"");
   }
   for (const auto& [name, file] : info.files)
-    if (!is_map_part(name)) fail(where, "lists \"" + name.substr(0, 100) + "\", which is no part of a map");
+    if (!is_map_part(name)) fail(where, "lists \"" + name.substr(0, 100) + "\", which is not part of a map");
 }
 
 std::vector<std::uint8_t> read_picture(const fs::path& path) {
@@ -161,7 +161,7 @@ MapInfo read_info(const fs::path& folder) {
   const fs::file_status status = fs::symlink_status(path, fault);
   if (!fs::exists(status) && fs::exists(folder / "building.json", fault))
     fail(folder, "is the map of a building; this takes the map of one room, made with `roomradar prescan`");
-  if (!fs::exists(status)) fail(path, "is missing, so the folder is no map");
+  if (!fs::exists(status)) fail(path, "is missing, so the folder is not a map");
   if (!fs::is_regular_file(status))
     fail(path, "is not a plain file, but a link or a folder; a map contains only plain files");
   MapInfo info = parse_map_info(read_bytes(path, "a map's description", kMaxInfoBytes), path.string());

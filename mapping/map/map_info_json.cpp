@@ -79,7 +79,7 @@ Eigen::Isometry3d pose(const Fields& fields, const char* name) {
   const Eigen::Matrix<double, 16, 1> rows = fields.numbers<16>(name);
   Eigen::Isometry3d T;
   T.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(rows.data());
-  if (!is_rigid(T, 1e-6)) fields.fail("\"" + std::string(name) + "\" is no rotation and translation");
+  if (!is_rigid(T, 1e-6)) fields.fail("\"" + std::string(name) + "\" is not a rigid transform");
   return T;
 }
 
@@ -151,7 +151,7 @@ MapInfo parse_map_info(const std::string& text, const std::string& where) {
   info.source = fields.text("source");
   info.resolution_m = fields.number("resolution_m");
   if (!(info.resolution_m >= 0.001 && info.resolution_m <= 1.0))
-    fields.fail("\"resolution_m\" is not within 0.001 and 1");
+    fields.fail("\"resolution_m\" is not between 0.001 and 1");
   info.frames_read = static_cast<std::int64_t>(fields.count("frames_read"));
   info.frames_fused = static_cast<std::int64_t>(fields.count("frames_fused"));
   info.up_source = fields.text("up_source");

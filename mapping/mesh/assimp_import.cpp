@@ -40,9 +40,9 @@ void check_ply_counts(const std::filesystem::path& path, std::istream& file, std
     if (name == "face" && count > kMaxMeshTriangles) fail_for_size(path, count);
     if (count > bytes)
       fail_for_file(
-          path, "is cut short: it promises " + std::to_string(count) + " of \"" + name.substr(0, 40) + "\"");
+          path, "is cut short: it declares " + std::to_string(count) + " of \"" + name.substr(0, 40) + "\"");
   }
-  if (!header) fail_for_file(path, "its header has no end; wanted a .ply");
+  if (!header) fail_for_file(path, "its header has no end; must be a .ply file");
 }
 
 bool has_empty_face(const aiScene& scene) {
@@ -138,9 +138,9 @@ void require_plausible_size(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, unreadable)) fail_for_file(path, "is not a file");
   const std::uintmax_t bytes = std::filesystem::file_size(path, unreadable);
   if (unreadable) fail_for_file(path, "cannot be read: " + unreadable.message());
-  if (bytes == 0) fail_for_file(path, "is empty; wanted a mesh");
+  if (bytes == 0) fail_for_file(path, "is empty; must be a mesh");
   std::ifstream file(path, std::ios::binary);
-  if (!file) fail_for_file(path, "cannot be opened; may you read it?");
+  if (!file) fail_for_file(path, "cannot be opened; do you have permission to read it?");
   if (lower_extension(path) == ".stl") {
     char header[84] = {};
     file.read(header, sizeof(header));

@@ -38,8 +38,8 @@ const Format& format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   for (const Format& format : kFormats)
     if (extension == format.extension) return format;
-  fail_for_file(
-      path, "the extension \"" + extension + "\" is no mesh format known here; use .ply, .obj, .stl or .glb");
+  fail_for_file(path, "the extension \"" + extension +
+                          "\" is not a supported mesh format; use .ply, .obj, .stl or .glb");
 }
 
 bool is_gltf(const Format& format) { return std::strcmp(format.extension, ".glb") == 0; }
@@ -158,7 +158,8 @@ void replace_line(std::string& text, const std::string& word, const std::string&
 }
 
 void require_triangles(const std::filesystem::path& path, const Mesh& mesh) {
-  if (mesh.triangles.empty()) fail_for_file(path, "holds no triangles with an area; wanted a surface mesh");
+  if (mesh.triangles.empty())
+    fail_for_file(path, "contains no triangles with an area; must be a surface mesh");
 }
 
 Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {

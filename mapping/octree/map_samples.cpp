@@ -208,7 +208,7 @@ void require_cube(const VoxelIndex& lowest, int edge_voxels) {
   throw Error(
       "voxel " + std::to_string(lowest.x()) + " " + std::to_string(lowest.y()) + " " +
       std::to_string(lowest.z()) + " with an edge of " + std::to_string(edge_voxels) +
-      " is no leaf of an octree: it must lie within +-32768, on a multiple of its edge, a power of two");
+      " is not a leaf of an octree: it must lie within +-32768, on a multiple of its edge, a power of two");
 }
 
 // Adds another map's nodes in a range of keys to a tree. No leaf block may be partly in the range.

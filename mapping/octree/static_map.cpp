@@ -26,7 +26,7 @@ const FusionConfig& checked(const FusionConfig& config) {
 
 double checked_resolution(double resolution_m) {
   if (!(resolution_m >= 0.001 && resolution_m <= 1.0))
-    throw Error("resolution = " + format_number(resolution_m) + " m: must be within 0.001 and 1 m");
+    throw Error("resolution = " + format_number(resolution_m) + " m: must be between 0.001 and 1 m");
   return resolution_m;
 }
 

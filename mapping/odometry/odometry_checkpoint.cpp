@@ -119,7 +119,7 @@ StoredView read_view(const fs::path& path) {
   DepthNoise& noise = view.noise;
   for (float* number : {&noise.base_m, &noise.linear, &noise.quadratic_per_m, &noise.from_m, &noise.grazing})
     *number = static_cast<float>(in.take_finite("noise"));
-  if (!is_valid(noise)) in.fail("its noise is no noise model");
+  if (!is_valid(noise)) in.fail("its noise model is not valid");
   view.inverse_depth = take_image<std::uint16_t>(in, "depth");
   view.intensity = take_image<std::uint8_t>(in, "intensity");
   view.measured = take_image<std::uint8_t>(in, "counts");

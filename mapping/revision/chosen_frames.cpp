@@ -10,7 +10,7 @@ namespace roomradar {
 ChosenFrames::ChosenFrames(FrameSource& source, std::span<const FusedFrame> fused,
                            std::vector<std::size_t> chosen, StageTimes& times)
     : source_(source), fused_(fused), chosen_(std::move(chosen)), times_(times) {
-  if (!source.rewind()) throw Error(source.name() + ": cannot be read once more");
+  if (!source.rewind()) throw Error(source.name() + ": cannot be read again");
   read_ahead();
 }
 

@@ -81,9 +81,9 @@ void put_in_place(const fs::path& ready, const fs::path& target) {
   if (!fs::exists(fs::symlink_status(target))) {
     if (::renameat2(AT_FDCWD, ready.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) != 0 &&
         ((errno != EINVAL && errno != ENOSYS) || ::rename(ready.c_str(), target.c_str()) != 0))
-      fail(target, "cannot be put in place", errno);
+      fail(target, "cannot be moved into place", errno);
   } else if (::renameat2(AT_FDCWD, ready.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0) {
-    if (errno != EINVAL && errno != ENOSYS) fail(target, "cannot be put in place", errno);
+    if (errno != EINVAL && errno != ENOSYS) fail(target, "cannot be moved into place", errno);
     // This file system cannot exchange names: for a moment the target's name is missing, but a complete
     // folder always exists.
     const fs::path aside = beside(target, kBefore);
@@ -91,7 +91,7 @@ void put_in_place(const fs::path& ready, const fs::path& target) {
     if (::rename(ready.c_str(), target.c_str()) != 0) {
       const int reason = errno;
       static_cast<void>(::rename(aside.c_str(), target.c_str()));
-      fail(target, "cannot be put in place", reason);
+      fail(target, "cannot be moved into place", reason);
     }
     fs::remove_all(aside, ignored);
   }

@@ -166,12 +166,12 @@ void require_checkpoints_only(const fs::path& folder, std::string_view beside) {
   const fs::file_status status = fs::symlink_status(folder, fault);
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status))
-    reject(folder, "is no folder, and its name is that of the scan's checkpoints; move it away");
+    reject(folder, "is not a folder, but has the name of the scan's checkpoint folder; move it away");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
     const std::string name = entry.path().filename().string();
     if (name != kWork && name != kWorkWriting && name != kCheckpointLock && name != kWriting &&
         name != beside && !name.starts_with(kPrefix))
-      reject(folder, "holds \"" + name + "\", which is no part of a scan that was cut off; move it away");
+      reject(folder, "holds \"" + name + "\", which is not part of an interrupted scan; move it away");
   }
   if (fault) reject(folder, "cannot be listed: " + fault.message());
 }

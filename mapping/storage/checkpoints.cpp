@@ -189,9 +189,10 @@ void Checkpoints::note_written(bool is_written) {
 
 void Checkpoints::fail_to_write() {
   if (++failures_ > 1 || !tell_) return;
-  tell_(
-      folder_.string() + ": a checkpoint could not be written; is the disk full? The scan goes on, and if " +
-      "it is cut off " + (last_number_ > 0 ? "it resumes from the previous checkpoint" : "it starts again"));
+  tell_(folder_.string() +
+        ": a checkpoint could not be written; is the disk full? The scan continues, and if " +
+        "it is cut off " +
+        (last_number_ > 0 ? "it resumes from the previous checkpoint" : "it starts again"));
 }
 
 bool Checkpoints::has_any() {

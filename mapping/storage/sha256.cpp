@@ -55,7 +55,7 @@ std::string sha256_of(std::string_view bytes) {
 
 std::string sha256_of_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(path.string() + ": cannot be opened; may you read it?");
+  if (!file) throw Error(path.string() + ": cannot be opened; do you have permission to read it?");
   Sha256 sum(path.string());
   std::vector<char> block(1U << 20U);
   while (file) {

@@ -124,7 +124,7 @@ template <typename Archive>
 void serialize(Archive& archive, Eigen::Isometry3d& T) {
   serialize(archive, T.matrix());
   if constexpr (Archive::kReads) {
-    if (!is_rigid(T, 1e-3)) archive.fail("is damaged: a pose is no rotation and translation");
+    if (!is_rigid(T, 1e-3)) archive.fail("is damaged: a pose is not a rigid transform");
   }
 }
 

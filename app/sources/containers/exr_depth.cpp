@@ -104,7 +104,7 @@ void decode_exr_depth(std::string_view bytes, const std::string& where, DepthIma
   if (header.pixel_type < 0) throw Error(where + ": is damaged: its header lists no channel");
   if (header.compression != ExrCompression::kNone && header.compression != ExrCompression::kZip &&
       header.compression != ExrCompression::kZipPerRow)
-    throw Error(where + ": is compressed in another way than by zip, which is read");
+    throw Error(where + ": its compression is not supported; must be zip or none");
   const std::int64_t pixel_bytes = header.pixel_type == kHalf ? 2 : 4;
   if (width * height * pixel_bytes / kMostPacked > static_cast<std::int64_t>(bytes.size()))
     throw Error(where + ": is cut short or damaged: " + std::to_string(bytes.size()) +

@@ -166,7 +166,7 @@ MatroskaIndex index_matroska(const RandomAccessFile& file) {
   if (!head || head->id != kEbml) throw Error(file.name() + ": is not a Matroska file");
   auto segment = top.next();
   while (segment && segment->id != kSegment) segment = top.next();
-  if (!segment) throw Error(file.name() + ": is cut short: it holds no segment");
+  if (!segment) throw Error(file.name() + ": is cut short: it contains no segment");
 
   MatroskaIndex index;
   double tick_s = 1e-3;

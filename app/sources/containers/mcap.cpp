@@ -153,7 +153,7 @@ class Mcap {
       chunk.compression = Compression::kZstd;
     else if (!compression.empty())
       throw Error(file_.name() + ": is compressed by '" + compression.substr(0, 40) +
-                  "'; none, lz4 and zstd are read");
+                  "'; must be none, lz4 or zstd");
     if (chunk.packed_bytes > length - head_bytes ||
         (chunk.compression == Compression::kNone && chunk.bytes != chunk.packed_bytes))
       throw Error(file_.name() + ": is damaged: a chunk's sizes disagree");

@@ -39,11 +39,11 @@ bool is_oni(const std::filesystem::path& path) { return begins_with(path, "NI10"
 std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file) {
   const std::string head = file.read(0, kFileHeader_bytes);
   ByteReader head_reader(head, file.name());
-  if (head_reader.take(4) != "NI10") throw Error(file.name() + ": is not a recording of OpenNI");
+  if (head_reader.take(4) != "NI10") throw Error(file.name() + ": is not an OpenNI recording");
   const auto major = head_reader.number<std::uint8_t>(), minor = head_reader.number<std::uint8_t>();
   const auto maintenance = head_reader.number<std::uint16_t>();
   const auto build = head_reader.number<std::uint32_t>();
-  if (major != 1 || minor != 0) throw Error(file.name() + ": is of another version of OpenNI than 1.0");
+  if (major != 1 || minor != 0) throw Error(file.name() + ": has an unsupported version; must be OpenNI 1.0");
   // Offsets had 32 bits before version 1.0.0.5.
   const std::uint64_t header_bytes = maintenance == 0 && build < 5 ? 24 : 28;
 

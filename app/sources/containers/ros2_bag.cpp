@@ -27,7 +27,7 @@ MessageLog open_db3(const fs::path& path) {
   const auto database = std::make_shared<SqliteFile>(path);
   MessageLog log{.name = database->name(), .encoding = MessageEncoding::kCdr};
   if (!database->has_tables({"topics", "messages"}))
-    throw Error(log.name + ": is no bag of ROS 2: it has no tables topics and messages");
+    throw Error(log.name + ": is not a ROS 2 bag: it lacks the tables topics and messages");
   std::map<std::int64_t, std::uint32_t> topic_of;
   database->query("SELECT id, name, type FROM topics", {}, [&](const SqliteRow& row) {
     topic_of[row.integer(0)] = static_cast<std::uint32_t>(log.topics.size());

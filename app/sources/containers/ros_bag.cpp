@@ -104,7 +104,7 @@ class Bag {
       throw Error(
           file_.name() +
           (magic.starts_with("#ROSBAG V")
-               ? ": is a bag of another version than 2.0; `rosbag migrate` or `rosbag fix` converts it"
+               ? ": is a bag of a version other than 2.0; `rosbag migrate` or `rosbag fix` converts it"
                : ": is not a bag of ROS 1"));
     walk();
   }
@@ -172,7 +172,7 @@ class Bag {
         const auto chunk = chunk_of(*record);
         if (!chunk)
           throw Error(file_.name() + ": the chunk at byte " + std::to_string(record->data_offset) +
-                      " is damaged, or its compression is neither none, bz2 nor lz4");
+                      " is damaged, or its compression is not none, bz2 or lz4");
         chunks_.push_back(*chunk);
       } else if (record->op == RosBagOp::kIndex && !chunks_.empty()) {
         const auto connection = field_number<std::uint32_t>(record->fields, "conn");
@@ -187,7 +187,7 @@ class Bag {
                 static_cast<std::uint32_t>(chunks_.size() - 1), *number_at<std::uint32_t>(data, i + 8)}});
       }
     }
-    if (chunks_.empty()) throw Error(file_.name() + ": holds no whole chunk; is it cut short?");
+    if (chunks_.empty()) throw Error(file_.name() + ": contains no complete chunk; is it cut short?");
     // A bag without its last part names connections in its chunks only.
     std::optional<std::uint32_t> searched;
     for (const Unnamed& each : entries) {

@@ -55,7 +55,7 @@ const Json& entry_with(const Json& array, const char* name, const char* value, c
   if (array.is_array())
     for (const Json& entry : array)
       if (entry.is_object() && entry.contains(name) && entry[name] == value) return entry;
-  throw Error(where + ": holds no entry with " + name + " " + value);
+  throw Error(where + ": contains no entry with " + name + " " + value);
 }
 
 /// Returns the transform to the sensor's frame from the device's, which is the depth camera's.

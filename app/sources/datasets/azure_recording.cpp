@@ -89,7 +89,7 @@ IndexedRecording index_azure_recording(const std::filesystem::path& path) {
   const MatroskaTrack* colour = track_named(index, "COLOR");
   const MatroskaTrack* imu = track_named(index, "IMU");
   if (!depth)
-    throw Error(where + ": holds no track DEPTH; only recordings of depth cameras by k4arecorder are read");
+    throw Error(where + ": contains no track DEPTH; must be a depth camera's recording by k4arecorder");
   if (four_characters_of(*depth) != "b16g")
     throw Error(where + ": its track DEPTH is of the kind '" + four_characters_of(*depth) + "', not b16g");
   const ImageSize depth_size = size_of(*depth, where);

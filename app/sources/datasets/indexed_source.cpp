@@ -36,7 +36,7 @@ class IndexedSource final : public FrameSource {
  public:
   IndexedSource(IndexedRecording recording, const SourceOptions& options) : recording_(std::move(recording)) {
     CameraRig& rig = recording_.rig;
-    if (recording_.frames.empty()) throw Error(recording_.name + ": the recording holds no frames");
+    if (recording_.frames.empty()) throw Error(recording_.name + ": the recording contains no frames");
     if (options.depth_camera) {
       const Intrinsics& chosen = *options.depth_camera;
       require_valid(chosen, "the depth intrinsics that were given");

@@ -40,14 +40,15 @@ ImageSize size_of_first_png(const std::vector<fs::path>& files, const fs::path& 
       if (first_fault.empty()) first_fault = fault.what();
     }
   }
-  if (files.empty()) throw Error(where.string() + ": holds no depth image");
+  if (files.empty()) throw Error(where.string() + ": contains no depth images");
   throw Error(where.string() + ": none of its first frames can be read, the first because " + first_fault);
 }
 
 Intrinsics scaled_to_depth(const Intrinsics& colour, ImageSize depth, const std::string& where) {
   Intrinsics camera = scaled(colour, static_cast<double>(depth.width_px) / colour.width_px);
   if (std::abs(camera.height_px - depth.height_px) > 1)
-    throw Error(where + ": depth is " + size_text(depth.width_px, depth.height_px) + ", which is no scaled " +
+    throw Error(where + ": depth is " + size_text(depth.width_px, depth.height_px) +
+                ", which does not have the aspect ratio of the colour, " +
                 size_text(colour.width_px, colour.height_px));
   camera.width_px = depth.width_px;
   camera.height_px = depth.height_px;

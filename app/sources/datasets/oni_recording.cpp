@@ -93,7 +93,7 @@ IndexedRecording index_oni_recording(const std::filesystem::path& path) {
   const std::string where = file->name();
   const auto nodes = std::make_shared<const OniNodes>(index_oni(*file));
   const auto depth = node_of(nodes, OniNodeKind::kDepth), colour = node_of(nodes, OniNodeKind::kImage);
-  if (!depth) throw Error(where + ": holds no depth image");
+  if (!depth) throw Error(where + ": contains no depth images");
   if (depth->codec != "16zT" && depth->codec != "16zP" && depth->codec != "NONE")
     throw Error(where + ": its depth is compressed by '" + depth->codec + "', which is not read");
 

@@ -84,7 +84,7 @@ std::vector<std::optional<Eigen::Isometry3d>> read_log(const fs::path& path) {
       return;
     }
     const auto T = rigid_transform(matrix.topRows<3>());
-    if (!T) throw Error(where + ": the pose that ends here is no rotation and translation");
+    if (!T) throw Error(where + ": the pose that ends here is not a rigid transform");
     poses.emplace_back(T);
   });
   if (row >= 0) throw Error(path.string() + ": ends within a pose; is it cut short?");

@@ -163,13 +163,13 @@ std::vector<Candidate> candidates_of(const MessageLog& log) {
   for (const Candidate& candidate : candidates) {
     const RosStream& stream = candidate.stream;
     if (candidate.is_depth)
-      throw Error(log.name + ": holds no camera_info of " + size_text(stream.width_px, stream.height_px) +
+      throw Error(log.name + ": contains no camera_info of " + size_text(stream.width_px, stream.height_px) +
                   " for its depth images on " + log.topics[stream.topic].name + "; record that topic too");
   }
   std::string topics;
   for (const MessageTopic& topic : log.topics)
     if (topics.size() < 400) topics += (topics.empty() ? "" : ", ") + topic.name;
-  throw Error(log.name + ": holds no depth images (16UC1, 32FC1 or compressedDepth); its topics are " +
+  throw Error(log.name + ": contains no depth images (16UC1, 32FC1 or compressedDepth); its topics are " +
               (topics.empty() ? "none" : topics));
 }
 

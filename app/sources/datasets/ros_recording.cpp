@@ -162,7 +162,7 @@ std::optional<Eigen::Isometry3d> exact_pose_at(const MessageLog& log, const std:
   Eigen::Isometry3d T_world_camera;
   T_world_camera.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
   if (!nearest_rotation(T_world_camera.linear()) || !T_world_camera.matrix().allFinite())
-    throw Error(log.name + ": a pose is no rotation and translation");
+    throw Error(log.name + ": a pose is not a rigid transform");
   return T_world_camera;
 }
 

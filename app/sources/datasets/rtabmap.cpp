@@ -57,7 +57,7 @@ RtabmapCamera read_camera(std::string_view bytes, const std::string& where) {
   if (pose_count == 12) {
     if (const auto T = transform_of(reader.number<std::array<float, 12>>())) result.T_robot_camera = *T;
   }
-  if (reader.left() > 0) throw Error(where + ": has several cameras; recordings of one are read");
+  if (reader.left() > 0) throw Error(where + ": has several cameras; must be a recording of one camera");
   return result;
 }
 
@@ -105,7 +105,7 @@ IndexedRecording index_rtabmap(const std::filesystem::path& path) {
         recording.frames.push_back(
             {.has_colour = row.integer(3) > 0, .T_world_camera = pose_in(row.bytes(2))});
       });
-  if (rows.empty()) throw Error(where + ": holds no node with a depth image");
+  if (rows.empty()) throw Error(where + ": contains no node with a depth image");
   set_stamps(stamps_s, recording.frames);
 
   const auto read = [database](const char* column, std::int64_t row) {

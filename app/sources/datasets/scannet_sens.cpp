@@ -80,7 +80,7 @@ IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
   const std::string start = file->read(0, 12);
   ByteReader start_reader(start, where);
   if (start_reader.number<std::uint32_t>() != kSensVersion)
-    throw Error(where + ": is not of version 4, the one that is read");
+    throw Error(where + ": has an unsupported version; must be version 4");
   const auto name_bytes = start_reader.number<std::uint64_t>();
   if (name_bytes > kMaxName_bytes) throw Error(where + ": is damaged: the name of its sensor is too long");
   const std::string head = file->read(12 + name_bytes, kFixed_bytes);
@@ -94,7 +94,7 @@ IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
   const auto units_per_m = static_cast<double>(reader.number<float>());
   const auto count = reader.number<std::uint64_t>();
   if (depth_kind != SensDepth::kRaw && depth_kind != SensDepth::kZlib)
-    throw Error(where + ": its depth is neither raw nor compressed by zlib, which are read");
+    throw Error(where + ": its depth compression is not supported; must be raw or zlib");
   if (!(units_per_m > 0.0 && std::isfinite(units_per_m)))
     throw Error(where + ": is damaged: its depth's units per m are not > 0");
 

@@ -104,7 +104,7 @@ DepthNoise noise_from(const Json& object, const std::string& where) {
                          number("grazing")};
   if (!is_valid(noise))
     throw Error(where +
-                ": is no noise model: base_m must be above 0, all values at least 0 and at most 1, "
+                ": is not a valid noise model: base_m must be above 0, all values at least 0 and at most 1, "
                 "from_m at most 10");
   return noise;
 }
@@ -119,15 +119,15 @@ Json parse_json_of_format(const std::filesystem::path& path, const char* format,
     const auto command = root.is_object() ? root.find("command") : root.end();
     const bool is_report = root.is_object() && command != root.end() && command->is_string();
     throw Error(
-        name + ": is no " + format + ": the field 'format' is missing" +
+        name + ": is not a " + format + ": the field 'format' is missing" +
         (is_report ? "; the file is the report of `roomradar " + command->get<std::string>() + "`" : ""));
   }
   const Json& said = root["format"];
   if (said != format)
-    throw Error(name + ": 'format' is " + (said.is_string() ? said.dump() : "no text") + "; must be \"" +
+    throw Error(name + ": 'format' is " + (said.is_string() ? said.dump() : "not a string") + "; must be \"" +
                 format + "\"");
   if (json_number(root, "version", name) != version)
-    throw Error(name + ": is of version " + json_field(root, "version", name).dump() +
+    throw Error(name + ": has version " + json_field(root, "version", name).dump() +
                 "; this program reads version " + std::to_string(version));
   return root;
 }

@@ -16,9 +16,9 @@ std::string range_text(std::int64_t first, std::int64_t last) {
 
 [[noreturn]] void fail_outside(const FrameSource& source, std::int64_t first, std::int64_t last,
                                std::int64_t count) {
-  throw Error(source.name() + ": " + range_text(first, last) + " are asked for, but the recording has " +
-              std::to_string(count) + " frames" +
-              (count > 0 ? ", 0:" + std::to_string(count - 1) + "; ask for a range within them" : ""));
+  throw Error(source.name() + ": " + range_text(first, last) +
+              " extend past the end of the recording, which has " + std::to_string(count) + " frames" +
+              (count > 0 ? ", 0:" + std::to_string(count - 1) + "; give a range within these" : ""));
 }
 
 class FrameRangeSource final : public FrameSource {

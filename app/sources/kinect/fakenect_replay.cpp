@@ -78,7 +78,7 @@ FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
     depth_images += is_depth ? 1 : 0;
   }
   if (static_cast<std::int64_t>(broken_.size()) == depth_images)
-    throw Error(folder.string() + ": holds no whole depth image");
+    throw Error(folder.string() + ": contains no complete depth image");
   if (all_sound) return;
 
   links_ = folder_of_links(folder, sound);

@@ -76,10 +76,10 @@ std::string why_not_opened() {
   const auto complains = [](const char* of) { return complaint.find(of) != std::string::npos; };
   if (complains("BUSY")) return "another program uses it; end that program";
   if (complains("ACCESS"))
-    return "this user lacks the right to; install libfreenect0.5, which brings the udev rule, then unplug it "
+    return "this user lacks permission; install libfreenect0.5, which brings the udev rule, then unplug it "
            "and "
            "plug it in again, or join the group plugdev";
-  return "does another program use it, or does this user lack the right to (udev rule 60-libfreenect, group "
+  return "does another program use it, or does this user lack permission (udev rule 60-libfreenect, group "
          "plugdev)?" +
          (complaint.empty() ? std::string{} : " libfreenect says: " + complaint);
 }
@@ -172,11 +172,11 @@ class FreenectDevice final : public KinectDevice {
  private:
   void start(const KinectRequest& request) {
     if (request.depth != KinectDepth::kRaw && replayed_folder())
-      throw Error(name_ + ": fakenect replays raw depth only; leave ?depth= away");
+      throw Error(name_ + ": fakenect replays raw depth only; leave out ?depth=");
     const auto depth_mode = freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM, format_of(request.depth));
     const auto video_mode = freenect_find_video_mode(FREENECT_RESOLUTION_MEDIUM, FREENECT_VIDEO_RGB);
     if (!depth_mode.is_valid || !video_mode.is_valid)
-      throw Error(name_ + ": this libfreenect does not have the mode that is asked for; ask for ?depth=raw");
+      throw Error(name_ + ": this libfreenect does not have the requested mode; use ?depth=raw");
     depth_pixels_ = static_cast<std::size_t>(depth_mode.bytes) / sizeof(std::uint16_t);
     colour_bytes_ = static_cast<std::size_t>(video_mode.bytes);
     freenect_set_user(device_, this);

@@ -65,7 +65,7 @@ std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder, co
       });
   // An absolute path, so different spellings name the same recording.
   IndexedRecording recording{.name = std::filesystem::canonical(folder).string()};
-  if (!depth_size) throw Error(recording.name + ": holds no depth image");
+  if (!depth_size) throw Error(recording.name + ": contains no depth images");
   recording.rig = rig_of_recording(folder, index->nominal, options.depth_camera, *depth_size, colour_size);
   for (const RecordedFrame& frame : index->frames)
     recording.frames.push_back({frame.stamp_s, !frame.colour_file.empty(), frame.colour_after_depth_s,

@@ -133,7 +133,7 @@ void read_frame_images(const fs::path& path, Frame& frame) {
   const std::string bytes = read_bytes(path, "the images of a frame");
   ByteReader in(bytes, path.string());
   if (in.left() < kImagesMagic.size() || in.take(kImagesMagic.size()) != kImagesMagic)
-    in.fail("is no file of a frame's images");
+    in.fail("is not a file of frame images");
   take_size(in, frame.depth_m);
   take_size(in, frame.colour);
   unpack(in, frame.depth_m.pixels.data(), frame.depth_m.pixels.size() * sizeof(float));

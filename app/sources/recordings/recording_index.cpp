@@ -125,9 +125,8 @@ RecordingIndex index_recording(const fs::path& folder) {
   if (!fs::exists(folder, fault)) throw Error(name + ": there is no such folder");
   if (!fs::is_directory(folder, fault))
     throw Error(name +
-                ": is neither a folder nor a recording in one file that is known here; `roomradar help "
-                "sources` lists "
-                "the kinds");
+                ": is neither a folder nor a recording file of a known format; `roomradar help sources` "
+                "lists the formats");
   try {
     if (fs::is_empty(folder)) throw Error(name + ": the folder is empty");
     RecordingIndex index;
@@ -145,12 +144,10 @@ RecordingIndex index_recording(const fs::path& folder) {
       throw Error(name + ": is a recorded session, not a recording; `roomradar run` replays it");
     else
       throw Error(name +
-                  ": is no recording that is known here; looked for INDEX.txt (fakenect), depth.txt and "
-                  "rgb.txt (TUM RGB-D), "
-                  "frame-XXXXXX.depth.png (7-Scenes), depth/NNNNN.png with color/NNNNN.jpg (numbered), and "
-                  "recordings of "
-                  "other programs (`roomradar help sources`)");
-    if (index.frames.empty()) throw Error(name + ": the recording holds no frames");
+                  ": is not a recording of a known format; looked for INDEX.txt (fakenect), depth.txt and "
+                  "rgb.txt (TUM RGB-D), frame-XXXXXX.depth.png (7-Scenes), depth/NNNNN.png with "
+                  "color/NNNNN.jpg (numbered), and recordings of other programs (`roomradar help sources`)");
+    if (index.frames.empty()) throw Error(name + ": the recording contains no frames");
     return index;
   } catch (const fs::filesystem_error& error) {
     throw Error(name + ": cannot be listed: " + error.code().message());

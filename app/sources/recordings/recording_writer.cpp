@@ -84,8 +84,7 @@ RecordingWriter::RecordingWriter(fs::path folder, RecordingFormat format, bool a
   make_folder(folder_);
   std::error_code fault;
   if (!fs::is_empty(folder_, fault))
-    throw Error(folder_.string() +
-                ": is not empty; a recording is written to a folder of its own, name a new one");
+    throw Error(folder_.string() + ": is not empty; name a new folder for the recording");
   if (format_ == RecordingFormat::kRosBag) bag_ = std::make_unique<BagFrameWriter>(folder_ / "recording.bag");
   if (format_ != RecordingFormat::kTum) return;
   make_folder(folder_ / "depth");

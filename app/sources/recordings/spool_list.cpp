@@ -73,7 +73,7 @@ SpoolEntry entry_of(std::string_view bytes, const fs::path& list) {
     ByteReader reader(bytes, list.string());
     serialize_entry(reader, entry, has_sensor);
     reader.require_end();
-    if (!is_valid(entry.frame.depth_noise)) reader.fail("its noise is no noise model");
+    if (!is_valid(entry.frame.depth_noise)) reader.fail("its noise model is not valid");
     return entry;
   };
   try {
@@ -105,7 +105,7 @@ SpoolList read_spool_list(const fs::path& folder) {
   list.raw(magic.data(), magic.size());
   if (magic != kMagic &&
       std::find(kEarlierMagics.begin(), kEarlierMagics.end(), magic) == kEarlierMagics.end())
-    list.fail("is no list of spooled frames, or of another version");
+    list.fail("is not a list of spooled frames, or has another version");
   SpoolList left;
   serialize(list, left.name);
   left.sound_bytes = bytes.size() - list.left();

@@ -155,7 +155,7 @@ void require_jpeg(std::span<const std::uint8_t> jpeg, int width_px, int height_p
   const auto byte = [&](std::size_t i) { return i < jpeg.size() ? jpeg[i] : 0; };
   const auto word = [&](std::size_t i) { return 256 * byte(i) + byte(i + 1); };
   const std::size_t size = jpeg.size();
-  if (size < 4 || word(0) != 0xffd8) throw Error(where + ": is no JPEG picture");
+  if (size < 4 || word(0) != 0xffd8) throw Error(where + ": is not a JPEG picture");
   if (word(size - 2) != 0xffd9) throw Error(where + ": is cut short; a JPEG picture ends otherwise");
   // Segments: a marker, then the length of the rest. Start of frame: precision, height, width.
   for (std::size_t at = 2; at + 9 < size && byte(at) == 0xff;

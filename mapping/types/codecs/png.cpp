@@ -77,7 +77,7 @@ void request_layout(PngReader& reader, PngLayout layout) {
   const int type = png_get_color_type(png, reader.info), bits = png_get_bit_depth(png, reader.info);
   const bool is_grey = (type & PNG_COLOR_MASK_COLOR) == 0;
   if (layout.channels == 1 && (!is_grey || (bits == 16) != (layout.bits == 16)))
-    png_error(png, layout.bits == 16 ? "it is no 16 bit grey PNG" : "it is no 8 bit grey PNG");
+    png_error(png, layout.bits == 16 ? "it is not a 16-bit grey PNG" : "it is not an 8-bit grey PNG");
   png_set_expand(png);  // palettes, bits and transparency to bytes
   if (layout.bits == 8) png_set_strip_16(png);
   if (layout.bits == 16 && std::endian::native == std::endian::little) png_set_swap(png);

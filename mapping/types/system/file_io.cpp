@@ -17,17 +17,17 @@ std::string read_bytes(const fs::path& path, std::string_view what, std::uintmax
   std::error_code fault;
   const fs::file_status status = fs::status(path, fault);
   if (status.type() == fs::file_type::not_found)
-    throw Error(path.string() + ": is missing; wanted " + std::string(what));
+    throw Error(path.string() + ": is missing; expected " + std::string(what));
   if (!fs::status_known(status)) throw Error(path.string() + ": cannot be read: " + fault.message());
   if (!fs::is_regular_file(status))
-    throw Error(path.string() + ": is no plain file; wanted " + std::string(what));
+    throw Error(path.string() + ": is not a regular file; expected " + std::string(what));
   const std::uintmax_t size = fs::file_size(path, fault);
   if (fault) throw Error(path.string() + ": cannot be read: " + fault.message());
   if (size > max_bytes)
     throw Error(path.string() + ": has " + std::to_string(size) + " bytes, too many for " +
                 std::string(what));
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(path.string() + ": cannot be opened; may you read it?");
+  if (!file) throw Error(path.string() + ": cannot be opened; do you have permission to read it?");
   std::string bytes(static_cast<std::size_t>(size), '\0');
   if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
     throw Error(path.string() + ": cannot be read to its end");

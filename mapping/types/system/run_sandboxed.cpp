@@ -155,7 +155,7 @@ std::string run_sandboxed(const std::function<std::string()>& work, const std::s
     fail(took_long ? "it takes more than " + std::to_string(most_s) + " s, or too much memory"
                    : std::string("crashed: ") + strsignal(signal));
   }
-  if (status != 0 || !is_whole(answer)) fail("it takes more memory than is allowed for it");
+  if (status != 0 || !is_whole(answer)) fail("it takes more memory than it is allowed");
   const bool is_answer = answer.front() == kAnswer;
   answer.erase(0, Head::kBytes);
   if (!is_answer) throw Error(answer);

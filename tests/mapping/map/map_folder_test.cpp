@@ -384,7 +384,7 @@ TEST_F(MapFolder, NamesThatLeadOutOfTheFolderAreRefused) {
   expect_fault("map.json", "does not list \"mesh.ply\"");
   edit_info("\"../secret\"",
             "\"mesh.ply\": {\"bytes\": 1, \"sha256\": \"" + std::string(64, '0') + "\"}, \"../secret\"");
-  expect_fault("map.json", "\"../secret\", which is no part of a map");
+  expect_fault("map.json", "\"../secret\", which is not part of a map");
 }
 
 TEST_F(MapFolder, LinksInPlaceOfFilesAreRefused) {

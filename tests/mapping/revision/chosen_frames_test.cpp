@@ -109,7 +109,7 @@ TEST(ChosenFrames, ASourceThatCannotRewindIsNamed) {
     const ChosenFrames frames(source, all, {1}, times);
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "eight: cannot be read once more");
+    EXPECT_STREQ(error.what(), "eight: cannot be read again");
   }
 }
 

@@ -107,7 +107,7 @@ TEST(AzureRecording, SaysWhatIsMissing) {
                        "no mode of the device has images of 333 x 288"));
   EXPECT_TRUE(contains(message_of(test::matroska_file(test::track(1, "VIDEO", "MJPG", 8, 8), "", "")),
                        "no track DEPTH"));
-  EXPECT_TRUE(contains(message_of(element(0x1A45DFA3, "")), "holds no segment"));
+  EXPECT_TRUE(contains(message_of(element(0x1A45DFA3, "")), "contains no segment"));
 }
 
 TEST(AzureRecording, ReadsAFileThatWasCutShortUpToItsLastWholeBlock) {

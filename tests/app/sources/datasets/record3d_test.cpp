@@ -153,7 +153,8 @@ TEST(Record3d, SaysWhatIsWrongWithTheMetadata) {
   };
   EXPECT_TRUE(contains(message_of("[20,0,0,0,22,0,5.5,7.5,1]", "[20]"), "K: must be a list of 9 numbers"));
   EXPECT_TRUE(contains(message_of("[20,", "[-20,"), "fx"));
-  EXPECT_TRUE(contains(message_of("\"dh\":8", "\"dh\":3"), "which is no scaled"));
+  EXPECT_TRUE(
+      contains(message_of("\"dh\":8", "\"dh\":3"), "which does not have the aspect ratio of the colour"));
   EXPECT_TRUE(contains(message_of("\"w\":12,", ""), "'w' is missing"));
   EXPECT_TRUE(contains(message_of("0.75]}", "0.75"), "is it cut short?"));
   EXPECT_TRUE(contains(message_of("[0,0,0,1,1,2,3]", "[0,0]"), "poses[0]: must be a list of 7 numbers"));

@@ -190,7 +190,7 @@ TEST(Ros2Bag, RefusesADatabaseOfAnotherKind) {
                "SELECT x AS rowid, 1 AS topic_id, 1 AS timestamp, 1 AS data FROM n",
                nullptr, nullptr, nullptr);
   sqlite3_close(database);
-  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(path); }), "no tables topics and messages"));
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(path); }), "lacks the tables topics and messages"));
   write_db3(folder.path() / "b.db3", some_messages());
   const std::string whole = read_bytes(folder.path() / "b.db3", "a bag");
   for (std::size_t size = 20; size < whole.size(); size += 1000) {

@@ -111,7 +111,7 @@ TEST(Rtabmap, SaysWhatIsWrong) {
   EXPECT_TRUE(contains(message_of(camera(32, 24, 2)), "several cameras"));
   EXPECT_TRUE(contains(message_of(camera(32, 24).substr(0, 60)), "cut short"));
   EXPECT_TRUE(contains(message_of(std::string(200, 'x')), "before 0.18"));
-  EXPECT_TRUE(contains(message_of(camera(50, 24)), "no scaled"));
+  EXPECT_TRUE(contains(message_of(camera(50, 24)), "does not have the aspect ratio of the colour"));
 }
 
 }  // namespace

@@ -274,7 +274,7 @@ TEST_F(KinectReplay, OneWithoutAWholeImageIsRefused) {
   for (const std::string& line : depth_files_) test::cut_to(recording_ / line, 0.4);
   const Outcome outcome = replay(recording_);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_TRUE(contains(outcome.rest, "holds no whole depth image")) << outcome.rest;
+  EXPECT_TRUE(contains(outcome.rest, "contains no complete depth image")) << outcome.rest;
 }
 
 TEST_F(KinectReplay, OnlyDeviceZeroAndRawDepthAreThere) {

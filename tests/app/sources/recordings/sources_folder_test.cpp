@@ -710,12 +710,12 @@ TEST(Intrinsics, BrokenFilesAreNamed) {
   EXPECT_TRUE(contains(fails("camera.json", head + depth), "not JSON"));
   EXPECT_TRUE(contains(fails("camera.json", "{}"), "'format' is missing"));
   EXPECT_TRUE(contains(fails("camera.json", R"({"command": "run", "settings": {}})"),
-                       "is no roomradar camera: the field 'format' is missing; the file is the report of "
+                       "is not a roomradar camera: the field 'format' is missing; the file is the report of "
                        "`roomradar run`"));
   EXPECT_TRUE(contains(fails("camera.json", "[1, 2]"), "missing"));
   EXPECT_TRUE(contains(fails("camera.json", R"({"format": "roomradar camera", "version": 2})"), "version 2"));
   const std::string deep = std::string(400'000, '[') + std::string(400'000, ']');
-  EXPECT_TRUE(contains(fails("camera.json", R"({"format": )" + deep + "}"), "'format' is no text"));
+  EXPECT_TRUE(contains(fails("camera.json", R"({"format": )" + deep + "}"), "'format' is not a string"));
   EXPECT_TRUE(contains(fails("camera.json", head + R"({"width_px": 16})" + "}"), "'height_px' is missing"));
   EXPECT_TRUE(
       contains(fails("camera.json", head + R"({"width_px": "16"})" + "}"), "width_px is not a number"));
@@ -724,7 +724,7 @@ TEST(Intrinsics, BrokenFilesAreNamed) {
           "camera.json",
           head + depth +
               R"(, "depth_noise": {"base_m": 0, "linear": 0, "quadratic_per_m": 0, "from_m": 0, "grazing": 0}})"),
-      "depth_noise: is no noise model"));
+      "depth_noise: is not a valid noise model"));
   EXPECT_TRUE(
       contains(fails("camera.json", head + depth + R"(, "T_colour_depth": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]})"),
                "four rows"));

@@ -136,7 +136,7 @@ TEST(Jpeg, DamagedBytesOfATextureAreNotACrash) {
   EXPECT_NEAR(whole.at(30, 30).g, 200, 4);
   EXPECT_NE(error_of([&] { (void)picture_of_jpeg(jpeg, 64, 63, "a.jpg"); }).find("a.jpg: has 64 x 64"),
             std::string::npos);
-  EXPECT_NE(error_of([&] { (void)picture_of_jpeg({}, 64, 64, "a.jpg"); }).find("is no JPEG"),
+  EXPECT_NE(error_of([&] { (void)picture_of_jpeg({}, 64, 64, "a.jpg"); }).find("is not a JPEG"),
             std::string::npos);
   for (std::size_t i = 2; i + 2 < jpeg.size(); ++i) {
     std::vector<std::uint8_t> damaged = jpeg;

@@ -112,9 +112,9 @@ TEST(Png, GreyOfEightAndSixteenBitsIsExact) {
   ASSERT_EQ(decode_png(opencvs_png(sixteen), grey16), std::nullopt);
   EXPECT_TRUE(std::equal(grey8.pixels.begin(), grey8.pixels.end(), eight.data));
   EXPECT_TRUE(std::equal(grey16.pixels.begin(), grey16.pixels.end(), sixteen.ptr<std::uint16_t>()));
-  EXPECT_EQ(decode_png(opencvs_png(eight), grey16), "it is no 16 bit grey PNG");
-  EXPECT_EQ(decode_png(opencvs_png(sixteen), grey8), "it is no 8 bit grey PNG");
-  EXPECT_EQ(decode_png(opencvs_png(mixed(CV_8UC3)), grey8), "it is no 8 bit grey PNG");
+  EXPECT_EQ(decode_png(opencvs_png(eight), grey16), "it is not a 16-bit grey PNG");
+  EXPECT_EQ(decode_png(opencvs_png(sixteen), grey8), "it is not an 8-bit grey PNG");
+  EXPECT_EQ(decode_png(opencvs_png(mixed(CV_8UC3)), grey8), "it is not an 8-bit grey PNG");
 }
 
 TEST(Png, OpenCVReadsWhatIsWritten) {

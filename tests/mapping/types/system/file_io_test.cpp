@@ -35,15 +35,15 @@ TEST(FileBytes, WhatCannotBeReadIsNamed) {
   const fs::path long_file = folder.path() / "long", pipe = folder.path() / "pipe",
                  loop = folder.path() / "loop";
   const fs::path none = folder.path() / "none";
-  EXPECT_EQ(fault_of(none), none.string() + ": is missing; wanted a poem");
-  EXPECT_EQ(fault_of(folder.path()), folder.path().string() + ": is no plain file; wanted a poem");
+  EXPECT_EQ(fault_of(none), none.string() + ": is missing; expected a poem");
+  EXPECT_EQ(fault_of(folder.path()), folder.path().string() + ": is not a regular file; expected a poem");
   write_bytes(long_file, "eleven byte");
   EXPECT_EQ(fault_of(long_file), long_file.string() + ": has 11 bytes, too many for a poem");
-  EXPECT_EQ(fault_of(long_file / "x"), (long_file / "x").string() + ": is missing; wanted a poem");
+  EXPECT_EQ(fault_of(long_file / "x"), (long_file / "x").string() + ": is missing; expected a poem");
   write_bytes(long_file, "ten  bytes");
   EXPECT_EQ(read_bytes(long_file, "a poem", 10), "ten  bytes");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // opening it would wait for a writer
-  EXPECT_EQ(fault_of(pipe), pipe.string() + ": is no plain file; wanted a poem");
+  EXPECT_EQ(fault_of(pipe), pipe.string() + ": is not a regular file; expected a poem");
   fs::create_symlink("loop", loop);
   EXPECT_TRUE(fault_of(loop).starts_with(loop.string() + ": cannot be read: ")) << fault_of(loop);
 }
