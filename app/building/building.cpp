@@ -48,7 +48,7 @@ StageCounts run_counted(const BuildingWork& work, const std::string& stage, Mani
   }
   counts.failed = counts.faults.size();
   if (counts.done + counts.present + counts.failed < plan.jobs.size())
-    throw Error(work.folder.string() + ": stopped; the same command does the rest");
+    throw Error(work.folder.string() + ": stopped; run the same command again to finish the rest");
   return counts;
 }
 

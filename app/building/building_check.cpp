@@ -62,7 +62,7 @@ void check_mesh(const fs::path& path, const BuildingTile& tile) {
 }
 
 void check_glb(const fs::path& path) {
-  require_that(read_bytes(path, "a tile's surface").starts_with("glTF"), path, "is no .glb file");
+  require_that(read_bytes(path, "a tile's surface").starts_with("glTF"), path, "is not a .glb file");
 }
 
 void check_unknown(const fs::path& path, const TileGrid& grid, const TileIndex& tile) {

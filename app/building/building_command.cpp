@@ -161,7 +161,7 @@ int run(const BuildingOptions& options) {
                             ? options.processes
                             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const Interrupt interrupt;
-  Interrupt::say("roomradar: the running jobs are ended; the same command goes on with them later\n");
+  Interrupt::say("roomradar: stopping the running jobs; the same command continues them later\n");
   return run_building(options, [&](const std::string& stage, const FarmPlan& plan) {
     const auto waiting = static_cast<std::int64_t>(Schedule(plan).count(JobState::kWaiting));
     Progress progress(stage, waiting);

@@ -62,9 +62,10 @@ int run_on_building(const MapExportOptions& options) {
   } else if (extension == ".ply" || extension == ".obj" || extension == ".stl" || extension == ".glb") {
     write_mesh(load_building_mesh(read_building(options.map), options.map), options.path);
   } else {
-    throw Error(options.path + ": the extension \"" + extension +
-                "\" is no format to export a building to; use .ply .obj .stl or .glb for the surface, .ot or "
-                ".bt for the octree, .png for a plan of each floor");
+    throw Error(
+        options.path + ": the extension \"" + extension +
+        "\" is not an export format for a building; use .ply .obj .stl or .glb for the surface, .ot or "
+        ".bt for the octree, .png for a plan of each floor");
   }
   std::printf("%s written\n", options.path.c_str());
   return 0;

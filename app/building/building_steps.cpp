@@ -133,7 +133,9 @@ int run(const JoinStep& step) {
 
 int run(const FuseStep& step) {
   require_valid(step.grid);
-  if (step.submaps.size() != step.placed.size()) throw Error("as many files of poses as submaps are needed");
+  if (step.submaps.size() != step.placed.size())
+    throw Error("--placed: there are " + std::to_string(step.placed.size()) + " files of poses for " +
+                std::to_string(step.submaps.size()) + " submaps; give one file per submap");
   Submap submap;  // of all parts
   std::vector<TimedPose> trajectory;
   KeyframeDatabase keyframes;

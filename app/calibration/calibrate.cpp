@@ -102,8 +102,8 @@ void require_tilted(const std::vector<PoseBlock>& T_colour_board) {
   });
   if (tilted >= kLeastTilted) return;
   throw Error("calibrate: of " + std::to_string(normals.size()) + " views of the board, " +
-              std::to_string(tilted) + " are tilted by 12 degrees or more against the others; it takes " +
-              std::to_string(kLeastTilted) + ". Tilt the board every way, by 30 to 50 degrees");
+              std::to_string(tilted) + " are tilted by 12 degrees or more against the others; at least " +
+              std::to_string(kLeastTilted) + " are needed. Tilt the board every way, by 30 to 50 degrees");
 }
 
 void require_sure(const char* which, double focal_px, double sigma_px) {
@@ -131,9 +131,9 @@ void require_views(const BoardViews& views, const Board& board) {
               std::to_string(views.with_board) + " show a board of " + std::to_string(board.columns) +
               " by " + std::to_string(board.rows) + " inner corners, and " +
               std::to_string(views.views.size()) +
-              " of these are still, differ, and have depth on it; it takes " + std::to_string(kLeastViews) +
-              ". Count the inner corners, hold the board still for a moment in each position, 0.6 m or more "
-              "away");
+              " of these are still, differ, and have depth on it; at least " + std::to_string(kLeastViews) +
+              " are needed. Count the inner corners, hold the board still for a moment in each position, "
+              "0.6 m or more away");
 }
 
 /// Rejects a fit that read_calibration() would reject: a lens observed only in the image's centre may be

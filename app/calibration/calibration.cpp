@@ -39,10 +39,10 @@ void require_lens(const Lens& lens, const Intrinsics& camera, const std::string&
 
 void require_correction(const DepthCorrection& correction, const std::string& where) {
   if (!(correction.inverse_scale > 0.5 && correction.inverse_scale < 2.0))
-    throw Error(where + ": inverse_scale must be within 0.5 and 2");
+    throw Error(where + ": inverse_scale must be between 0.5 and 2");
   for (const double offset_per_m : correction.offset_per_m)
     if (!(std::abs(offset_per_m) <= kLargestOffset_per_m))
-      throw Error(where + ": each of offset_per_m must be a number within -0.2 and 0.2");
+      throw Error(where + ": each of offset_per_m must be a number between -0.2 and 0.2");
 }
 
 int nodes_from(const Json& json, const char* name, const std::string& where) {
@@ -63,7 +63,7 @@ DepthCorrection correction_from(const Json& json, const std::string& where) {
     throw Error(where + ": offset_per_m must be a list of columns times rows numbers");
   for (const Json& offset : offsets) {
     if (!offset.is_number())
-      throw Error(where + ": each of offset_per_m must be a number within -0.2 and 0.2");
+      throw Error(where + ": each of offset_per_m must be a number between -0.2 and 0.2");
     correction.offset_per_m.push_back(offset.get<double>());
   }
   return correction;

@@ -49,7 +49,7 @@ struct Calibration {
 ///   "depth_correction": {"inverse_scale", "columns", "rows", "offset_per_m": [columns * rows numbers]}}
 /// Throws Error naming the file and the field if a field is missing, has the wrong type or an invalid value.
 /// A lens is invalid if it moves a corner of the image by more than half the corner's distance from the
-/// principal point. inverse_scale must be within 0.5 and 2, and the magnitude of an offset at most 0.2 / m.
+/// principal point. inverse_scale must be between 0.5 and 2, and the magnitude of an offset at most 0.2 / m.
 /// Without a colour camera, "colour", "colour_lens" and "T_colour_depth" are absent.
 Calibration read_calibration(const std::filesystem::path& path);
 /// Throws Error "WHERE, depth_lens: ..." if read_calibration() would reject these numbers.

@@ -151,8 +151,8 @@ Without a Kinect, the simulated board shows the whole way:
 constexpr std::string_view kFiles =
     R"(  MAP/             a saved map: map.json (facts and checksums), octree.bin (`map export` writes it as .ot
                    and .bt), mesh.ply, places.bin (keyframe database for localisation), trajectory.txt,
-                   coverage.png, unknown.bin (the border of unknown space), texture.jpg and texture.bin (colours
-                   of the surface). It is saved completely or not at all.
+                   coverage.png, unknown.bin (the frontier of unknown space), texture.jpg and texture.bin
+                   (colours of the surface). It is saved completely or not at all.
   MAP.unfinished   checkpoint of an interrupted scan, for `prescan --resume`
   SESSION/         frames, events and results of `run --record-session`
 

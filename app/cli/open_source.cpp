@@ -112,7 +112,7 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
 void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source) {
   if (knows_recorded_world(info)) return;
   throw Error(map + ": was scanned without recorded poses, so the poses of " + source +
-              " have no meaning in it; take --poses tracked");
+              " have no meaning in it; use --poses tracked");
 }
 
 }  // namespace roomradar

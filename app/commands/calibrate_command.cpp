@@ -43,8 +43,8 @@ nlohmann::json summary_json(const Summary& summary) {
 
 void print_camera(const char* name, const Intrinsics& said, const Intrinsics& camera, const Lens& lens,
                   double focal_sigma_px, double centre_sigma_px) {
-  std::printf("%-7s f %.2f %.2f +- %.2f px (said %.2f), c %.2f %.2f +- %.2f px (said %.2f %.2f)\n", name,
-              camera.fx_px, camera.fy_px, focal_sigma_px, said.fx_px, camera.cx_px, camera.cy_px,
+  std::printf("%-7s f %.2f %.2f +- %.2f px (declared %.2f), c %.2f %.2f +- %.2f px (declared %.2f %.2f)\n",
+              name, camera.fx_px, camera.fy_px, focal_sigma_px, said.fx_px, camera.cx_px, camera.cy_px,
               centre_sigma_px, said.cx_px, said.cy_px);
   std::printf("        lens k1 %.4f k2 %.4f p1 %.5f p2 %.5f k3 %.4f\n", lens.k1, lens.k2, lens.p1, lens.p2,
               lens.k3);

@@ -143,8 +143,8 @@ void add_measuring_commands(CLI::App& app, std::function<int()>& work) {
   add_command<FarmOptions>(
       app, "farm",
       "run a list of commands as jobs:\n"
-      "each job has a folder of its own, which is there as a whole or not at all; what is there for the\n"
-      "same program, command and inputs is not done again. A job that fails is counted, the rest goes on",
+      "each job has its own folder, which is complete or absent. A job is skipped if its folder exists\n"
+      "for the same program, command and inputs. A failed job is counted, and the others continue",
       work)
       ->group(kMeasure);
   add_command<TradeOptions>(

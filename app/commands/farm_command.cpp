@@ -118,12 +118,12 @@ FarmState run_here(const FarmOptions& options, const FarmPlan& plan) {
                             ? options.processes
                             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const Interrupt interrupt;
-  Interrupt::say("roomradar: the running jobs are ended; the same command goes on with them later\n");
+  Interrupt::say("roomradar: stopping the running jobs; the same command continues them later\n");
   FarmState state = run_planned(options, plan, [&](const WatchFarm& watch) {
     return run_farm(plan, processes, "/proc/self/exe", Interrupt::was_pressed, watch);
   });
   if (Interrupt::was_pressed())
-    throw Error(options.out + ": stopped by Ctrl-C; the same command does the rest");
+    throw Error(options.out + ": stopped by Ctrl-C; run the same command again to finish the rest");
   return state;
 }
 

@@ -27,7 +27,7 @@ Eigen::Isometry3d read_located(const FallthroughOptions& options, const SavedMap
   if (options.poses == PoseOrigin::kRecorded) {
     if (!frame.T_world_camera)
       throw Error(source->name() + ": frame " + std::to_string(frame.index) +
-                  " has no recorded pose; take --poses tracked");
+                  " has no recorded pose; use --poses tracked");
     return map.info.T_world_recorded * *frame.T_world_camera;
   }
   Shape room(context);
@@ -40,7 +40,7 @@ Eigen::Isometry3d read_located(const FallthroughOptions& options, const SavedMap
                                    });
   if (!locator.T_world_camera)
     throw Error(source->name() + ": frame " + std::to_string(frame.index) + " is not found in the map (" +
-                std::string(to_string(tracking.status)) + "); take another with --frames A:A");
+                std::string(to_string(tracking.status)) + "); choose another frame with --frames A:A");
   return tracking.T_world_camera;
 }
 

@@ -70,8 +70,8 @@ nlohmann::json settings_of(const PrescanOptions& options) {
 /// Reports that the map already contains the recording to resume; returns the exit status.
 /// @param channel  to the window; null: no window
 int report_held_already(const PrescanOptions& options, ScanChannel* channel, Report& report) {
-  const std::string sentence = options.map + ": holds " + options.source +
-                               " already; there is nothing to resume (another recording needs another name)";
+  const std::string sentence = options.map + ": already contains " + options.source +
+                               "; there is nothing to resume (for another recording, name another map)";
   std::printf("%s\n", sentence.c_str());
   std::fflush(stdout);  // the window may stay open
   if (channel) channel->finish({sentence, std::make_shared<const Mesh>(load_map(options.map).mesh)});

@@ -104,7 +104,7 @@ int play(OpenedRun& run) {
   }
   if (totals.located > 0 || run.was_quit) return 0;
   if (options.poses == PoseOrigin::kRecorded) {
-    std::fprintf(stderr, "roomradar: %s: no frame has a recorded pose; take --poses tracked\n",
+    std::fprintf(stderr, "roomradar: %s: no frame has a recorded pose; use --poses tracked\n",
                  options.source.c_str());
     return 1;
   }

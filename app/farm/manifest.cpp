@@ -67,7 +67,7 @@ void read_head(std::string_view head, Job& job, const std::filesystem::path& pat
   const auto value =
       is_cost ? parse_number(trimmed(cost.substr(5, cost.size() - 6))) : std::optional<double>();
   if (!value || !(*value > 0.0) || !(*value < 1e300))
-    fail(path, job.line, "behind the name only (cost NUMBER) may stand, with a number above 0");
+    fail(path, job.line, "after the name, only (cost NUMBER) is allowed, with a number above 0");
   job.cost = *value;
 }
 
@@ -197,7 +197,7 @@ Manifest parse_manifest(const std::string& text, const std::filesystem::path& pa
   }
   if (manifest.jobs.empty())
     throw Error(path.string() +
-                ": holds no job; a line is for instance `kitchen: prescan recordings/kitchen --map {}/map`");
+                ": contains no jobs; write lines such as `kitchen: prescan recordings/kitchen --map {}/map`");
   find_needs(manifest);
   refuse_circles(manifest);
   return manifest;

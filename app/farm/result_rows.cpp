@@ -43,7 +43,7 @@ Json read_result_rows(const std::string& kind, const std::filesystem::path& path
     Json json = Json::parse(text);
     if (json.at("format") != "roomradar " + kind || json.at("version") != kFileVersion ||
         !json.at(kind).is_array())
-      throw Error("it is of another form");
+      throw Error("its format, version or rows differ");
     return std::move(json.at(kind));
   } catch (const std::exception& error) {
     throw Error(path.string() + ": is not a file with results of " + kind + ": " + error.what());

@@ -49,7 +49,7 @@ GeoAnchor parse_geo_anchor(const std::string& text) {
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     const auto number = parse_number(text.substr(at, end - at));
-    if (!number || !std::isfinite(*number)) fail("'" + text.substr(at, end - at) + "' is no number");
+    if (!number || !std::isfinite(*number)) fail("'" + text.substr(at, end - at) + "' is not a number");
     numbers.push_back(*number);
     at = end + 1;
   }

@@ -178,7 +178,8 @@ struct MapServer::State {
     if (answer.status == 401) response.set_header("WWW-Authenticate", "Bearer");
     const std::uintmax_t bytes = answer.file ? answer.file_bytes : answer.body.size();
     if (answer.status == 200 && !make_range_valid(request, bytes))
-      answer = error_answer(416, "the range is not in the content, or there are several");
+      answer =
+          error_answer(416, "the range is outside the content, or several are requested; request one range");
     if (answer.status != 200) const_cast<httplib::Request&>(request).ranges.clear();  // for content only
     send(answer, response);
   }

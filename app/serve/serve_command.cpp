@@ -35,7 +35,7 @@ MapCatalogue catalogue_of(const ServeOptions& options) {
   }
   if (!options.anchor.empty()) {
     if (options.maps.size() > 1)
-      throw Error("--anchor is of one map; serve each map with a server of its own");
+      throw Error("--anchor applies to a single map; serve each map with its own server");
     catalogue.anchor = parse_geo_anchor(options.anchor);
   }
   return catalogue;
@@ -48,8 +48,9 @@ MapServerConfig config_of(const ServeOptions& options) {
   if (!options.token_file.empty()) config.token = read_token(options.token_file);
   if (is_loopback(config.address)) return config;
   if (!options.allow_remote)
-    throw Error("--listen " + options.listen +
-                ": other machines could read the maps; add --allow-remote and --token-file if that is meant");
+    throw Error(
+        "--listen " + options.listen +
+        ": other machines could read the maps; add --allow-remote and --token-file if this is intended");
   if (config.token.empty())
     throw Error("--listen " + options.listen +
                 ": needs --token-file, since other machines reach this address");

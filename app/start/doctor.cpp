@@ -78,7 +78,7 @@ std::vector<Finding> judge_kinects(const std::vector<KinectOnUsb>& on_usb, int s
     findings.push_back({Health::kBad,
                         "of " + std::to_string(on_usb.size()) + " Kinects on the bus libfreenect sees " +
                             std::to_string(sees),
-                        "unplug it and plug it in again, at a USB 2 port of its own"});
+                        "unplug it and plug it in again, into a USB 2 port of its own"});
   else if (sees > 0)
     findings.push_back({Health::kGood,
                         "libfreenect sees " + std::to_string(sees) + ": kinect:0" +

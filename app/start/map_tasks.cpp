@@ -67,7 +67,7 @@ std::string proposed_map_name(const fs::path& folder, std::time_t now) {
 
 fs::path rename_map(const fs::path& map, const std::string& new_name) {
   if (new_name.empty() || new_name.find('/') != std::string::npos || new_name == "." || new_name == "..")
-    throw Error("'" + new_name + "': is no name for a map; give one without a slash, such as kitchen");
+    throw Error("'" + new_name + "': is not a valid map name; give one without a slash, such as kitchen");
   std::error_code ignored;
   if (fs::exists(unfinished_scan_of(map), ignored))
     throw Error(map.string() +
@@ -75,7 +75,7 @@ fs::path rename_map(const fs::path& map, const std::string& new_name) {
   load_map_info(map);
   const fs::path renamed = map.parent_path() / new_name;
   if (renamed == map) return map;
-  if (is_taken(renamed)) throw Error(renamed.string() + ": exists already; choose another name");
+  if (is_taken(renamed)) throw Error(renamed.string() + ": already exists; choose another name");
   move_folder(map, renamed);
   return renamed;
 }

@@ -23,7 +23,7 @@ std::string path_in(const nlohmann::json& json, const char* key) {
   if (!json[key].is_string()) throw Error(std::string(key) + " must be a text");
   std::string path = json[key];
   if (path.size() > kMaxPath_bytes || path.find('\0') != std::string::npos)
-    throw Error(std::string(key) + " is no name of a file");
+    throw Error(std::string(key) + " is not a valid file name");
   return path;
 }
 

@@ -65,10 +65,11 @@ void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) 
                   "write the results of each scenario, as --jobs joins them (default: not written)")
       ->type_name("FILE");
   command
-      .add_option("--jobs", options.jobs,
-                  "split the run into jobs of `roomradar farm` in this folder, run those that are not done,\n"
-                  "and join their results: the same table but for times, which jobs that run beside others\n"
-                  "do not measure well (default: this process runs all scenarios)")
+      .add_option(
+          "--jobs", options.jobs,
+          "split the run into jobs of `roomradar farm` in this folder, run those that are not done,\n"
+          "and join their results: the same table, except for times, which are less accurate because\n"
+          "jobs run side by side (default: this process runs all scenarios)")
       ->type_name("DIR");
   command.add_option("--job-size", options.job_size, "scenarios per job of --jobs (default: 100)")
       ->check(whole_within(1, 1'000'000))

@@ -33,7 +33,7 @@ void add_options(CLI::App& command, MapExportOptions& options) {
           "each floor) (required)")
       ->required();
   command.add_flag("--unknown", options.unknown,
-                   "write the border of unknown space instead of the room's mesh (default: off)");
+                   "write the frontier of unknown space instead of the room's mesh (default: off)");
 }
 
 void add_options(CLI::App& command, MapMergeOptions& options) {

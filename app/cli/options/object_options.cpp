@@ -52,7 +52,7 @@ void refuse_unknown_key(const std::string& text, std::string_view part) {
   if (key.empty()) return;
   std::string known;
   for (const std::string_view one : kKeys) known += (known.empty() ? "" : ", ") + std::string(one) + "=";
-  fail(text, "there is no " + key + "=; known are " + known);
+  fail(text, "there is no " + key + "=; the keys are " + known);
 }
 
 double number_of(const std::string& text, const std::string& word, double low, double high,
@@ -94,7 +94,7 @@ void take_value(const std::string& text, const std::string& key, const std::stri
   }
   if (key == "size")
     object.source.size_m =
-        number_of(text, value, kLeastSize_m, kMostSize_m, "size= must be within 0.001 and 10 (metres)");
+        number_of(text, value, kLeastSize_m, kMostSize_m, "size= must be between 0.001 and 10 (metres)");
   else if (key == "up")
     object.source.up = axis_of("--object " + text, value);
   else
@@ -105,7 +105,7 @@ ObjectOption object_of(const std::string& text) {
   ObjectOption object{.text = text};
   std::size_t at = next_key(text, 0);
   object.source.mesh = text.substr(0, at);
-  if (object.source.mesh.empty()) fail(text, "names no mesh; wanted is MESH[,size=M][,up=AXIS][,at=X,Y,Z]");
+  if (object.source.mesh.empty()) fail(text, "names no mesh; must be MESH[,size=M][,up=AXIS][,at=X,Y,Z]");
   std::error_code ignored;
   if (!std::filesystem::exists(object.source.mesh, ignored)) refuse_unknown_key(text, object.source.mesh);
   while (at != std::string::npos) {
@@ -137,15 +137,14 @@ void add_object_options(CLI::App& command, ObjectOptions& options) {
       ->type_name("MESH[,size=M][,up=AXIS][,at=X,Y,Z]");
   command
       .add_option("--object-size", options.size_m,
-                  "longest side of the objects that have no size= of their own\n"
+                  "longest side of objects without their own size=\n"
                   "(default: as in the file, whose numbers are metres unless it states a unit)")
       ->check(within(kLeastSize_m, kMostSize_m, "metres"))
       ->type_name("M");
   command
-      .add_option(
-          "--object-up", options.up,
-          "axis that points up in the files of objects that have no up= of their own: x, y, z, -x, -y\n"
-          "or -z (default: y for .glb, .gltf and .obj, z for .ply and .stl, as stated in a .dae)")
+      .add_option("--object-up", options.up,
+                  "axis that points up in the files of objects without their own up=: x, y, z, -x, -y or -z\n"
+                  "(default: y for .glb, .gltf and .obj, z for .ply and .stl, as stated in a .dae)")
       ->type_name("AXIS");
 }
 

@@ -13,7 +13,7 @@ CLI::Validator within(double low, double high, const std::string& unit) {
         double value = 0.0;
         if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
         std::array<char, 80> rule{};
-        std::snprintf(rule.data(), rule.size(), "must be within %.10g and %.10g", low, high);
+        std::snprintf(rule.data(), rule.size(), "must be between %.10g and %.10g", low, high);
         return std::string(rule.data()) + " (" + unit + "), not " + text;
       },
       "", "within");
@@ -24,7 +24,7 @@ CLI::Validator whole_within(std::int64_t low, std::int64_t high) {
       [low, high](const std::string& text) -> std::string {
         std::int64_t value = 0;
         if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
-        return "must be a whole number within " + std::to_string(low) + " and " + std::to_string(high) +
+        return "must be a whole number between " + std::to_string(low) + " and " + std::to_string(high) +
                ", not " + text;
       },
       "", "whole_within");

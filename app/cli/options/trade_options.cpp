@@ -108,7 +108,7 @@ void complete_options(const CLI::App& command, TradeOptions& options) {
     refuse_given(command, {"--processes"}, ": used only with --jobs DIR, which is not given");
   else
     refuse_given(command, {"--presets"},
-                 ": are chosen by times, which jobs beside others do not measure well; leave out --jobs");
+                 ": are chosen by times, which are less accurate if jobs run side by side; leave out --jobs");
   if ((command.count("--setting") > 0) != (command.count("--rows") > 0))
     throw CLI::ValidationError("--setting and --rows are used only together");
   if (command.count("--setting") > 0) {

@@ -55,9 +55,8 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
   const double count = std::max<double>(1.0, static_cast<double>(rows.size()));
   std::string html =
       "<div class=\"wide\"><table class=\"totals\"><tr><th>surfaces</th><th>passed through</th><th>stopped "
-      "where nothing "
-      "is</th><th>contact error, median</th><th>p95</th><th>frame, median</th><th>relative to the "
-      "first</th></tr>\n";
+      "in empty space</th><th>contact error, median</th><th>p95</th><th>frame, median</th><th>relative "
+      "to the first</th></tr>\n";
   char line[400];
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const PolicyTotals& t = totals[i];
@@ -136,7 +135,7 @@ void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
           "content=\"width=device-width,initial-scale=1\"><title>Fall-through</title><style>"
        << kStyle << "</style><h1>Do virtual objects fall through hidden surfaces?</h1><p>" << escaped(about)
        << "</p><p>An object moves straight onto a surface that the camera cannot see now, but saw in the "
-          "prescan. Passed through: more than 2 cm beyond the exact contact. Stopped where nothing is: more "
+          "prescan. Passed through: more than 2 cm beyond the exact contact. Stopped in empty space: more "
           "than 3 cm before it.</p>"
        << totals_table(rows) << error_plot(rows);
   const auto shape = [](const ScenarioRow& row) { return std::string(to_string(row.shape)); };
@@ -145,14 +144,14 @@ void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
   };
   for (const auto& [title, outcome] :
        {std::pair{std::string("Passed through, by "), Outcome::kPassedThrough},
-        {std::string("Stopped where nothing is, by "), Outcome::kStoppedFalse}}) {
+        {std::string("Stopped in empty space, by "), Outcome::kStoppedFalse}}) {
     file << "<div>" << outcome_cells(rows, title + "shape", outcome, shape)
          << outcome_cells(rows, title + "occluder", outcome, hider)
          << outcome_cells(rows, title + "speed", outcome, speed_of) << "</div>\n";
   }
   file << "<h2>Failures</h2><p>Left: the camera's depth. Right: a section along the object's path; grey the "
           "true room, orange the occluder, lines the surfaces that the object could touch: black the map, "
-          "blue this frame's, violet inferred, red the border of unknown space. Object: blue at its start, "
+          "blue this frame's, violet inferred, red the frontier of unknown space. Object: blue at its start, "
           "green at the true contact, red at its end.</p>\n";
   const std::size_t failures = failure_count(rows);
   if (failures == 0) file << "<p>None.</p>";

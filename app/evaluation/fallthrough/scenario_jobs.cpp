@@ -52,7 +52,7 @@ std::vector<ScenarioRow> joined_rows(const FallthroughOptions& options,
       is_whole = is_whole && part[i].number == first + static_cast<std::int64_t>(i) &&
                  part[i].room == turn_of(part[i].number, rooms).room;
     if (!is_whole)
-      throw Error(file.string() + ": holds other scenarios than " + std::to_string(first) + " to " +
+      throw Error(file.string() + ": contains scenarios other than " + std::to_string(first) + " to " +
                   std::to_string(last) + "; delete its folder, and run the command again");
     std::move(part.begin(), part.end(), std::back_inserter(rows));
   });

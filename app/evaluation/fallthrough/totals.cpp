@@ -64,7 +64,7 @@ std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>&
 std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int scenarios) {
   char line[160];
   std::string table =
-      "surfaces       passed through     stopped where nothing is   contact error, median and 95 %   frame, "
+      "surfaces       passed through     stopped in empty space     contact error, median and 95 %   frame, "
       "median\n";
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const PolicyTotals& t = totals[i];

@@ -36,7 +36,7 @@ std::vector<FigureName> run_figures() {
             0.0005},
            {"contact_error_p95_m", "contact error on hidden surfaces, p95, mm", 1e3, Kind::kError, 0.002},
            {"passed_through", "fell through, %", 1e2, Kind::kError, 0.005},
-           {"false_stops", "stopped where nothing is, %", 1e2, Kind::kError, 0.02},
+           {"false_stops", "stopped in empty space, %", 1e2, Kind::kError, 0.02},
            {"moved_error_median_m", "contact error on dynamic objects, median, mm", 1e3, Kind::kError,
             0.0005},
            {"moved_error_p95_m", "contact error on dynamic objects, p95, mm", 1e3, Kind::kError, 0.002},

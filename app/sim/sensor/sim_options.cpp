@@ -153,7 +153,7 @@ SimOptions parse_sim_spec(std::string_view spec) {
       const std::size_t equals = pair.find('=');
       if (equals == std::string_view::npos)
         throw Error("sim: '" + std::string(pair) +
-                    "' is no key=value; write for example sim:table?seed=1&frames=300");
+                    "' is not a key=value pair; write for example sim:table?seed=1&frames=300");
       set_option(options, pair.substr(0, equals), pair.substr(equals + 1));
     }
   require_valid(options);

@@ -192,7 +192,7 @@ void ScanUi::draw_advice(const Area& area) {
                                         look::kBad, 0.0F, 0, look::px(8.0F));
   if (newest_s_ >= 0.0 && ImGui::GetTime() - newest_s_ > kSilent_s) fault = ScanFault::kSilent;
   if (channel_.is_paused())
-    draw_sentence(area, "Paused. Frames are left out until you go on.", look::kText, fonts_.large);
+    draw_sentence(area, "Paused. Frames are skipped until you continue.", look::kText, fonts_.large);
   else if (fault)
     draw_sentence(area, std::string(to_sentence(*fault)),
                   *fault == ScanFault::kLost ? look::kBad : look::kWarn, fonts_.large);

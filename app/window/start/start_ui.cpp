@@ -185,7 +185,7 @@ void StartUi::scan() {
   const std::string map = dialog_.name.data();
   require_can_become_map(map, {});
   if (is_map(tidy_map_name(map)))
-    throw Error(map + ": exists already; choose another name, or Back and Scan more (M)");
+    throw Error(map + ": already exists; choose another name, or Back and Scan more (M)");
   const SourceEntry* source = chosen_source(state_);
   if (source == nullptr) throw Error("the source is gone; go back and choose another");
   choice_ = {StartAction::kScan, source->source, map};

@@ -239,7 +239,7 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   EXPECT_EQ(budget["settings"].back()["step"], budget["steps"].get<int>() - 1);
   const Outcome again = roomradar("run " + hurried.string() + pictures("again"));
   EXPECT_NE(again.out.find("replay: 15 of 15 frames the same as recorded"), std::string::npos) << again.out;
-  expect_fault(roomradar("run " + hurried.string() + " --budget-ms 33"), 1, "quality events of its own");
+  expect_fault(roomradar("run " + hurried.string() + " --budget-ms 33"), 1, "also has quality events");
   // Without pictures, objects move in the same frames.
   const Outcome unseen = roomradar("run " + session.string());
   EXPECT_NE(unseen.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos) << unseen.out;
@@ -565,7 +565,7 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar(prescan + " --frames 9:3"), 2, "A:B");
   expect_fault(roomradar(prescan + " --frames x"), 2, "A:B");
   expect_fault(roomradar(prescan + " --hold-out 1"), 2,
-               "--hold-out: must be a whole number within 2 and 1000000, not 1");
+               "--hold-out: must be a whole number between 2 and 1000000, not 1");
   expect_fault(roomradar(prescan + " --map twice"), 2, "--map: is given 2 times; give it once");
   expect_fault(roomradar("prescan sim:table --map"), 2, "--map: needs a value, DIR: folder for the map");
   expect_fault(roomradar("run sim:table --map m --window=3"), 2, "--window: takes no value");
@@ -574,7 +574,7 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar("trade --objects 3"), 2, "--objects: must be 1, 5 or 20, not 3");
   expect_fault(roomradar("run sim:table --map m --depth-stride 3"), 2, "--depth-stride 3: must be 1, 2 or 4");
   expect_fault(roomradar("calibrate sim:board --out c.json --rows 1"), 2,
-               "--rows: must be a whole number within 3 and 30, not 1");
+               "--rows: must be a whole number between 3 and 30, not 1");
   for (const char* number : {"nan", "-5", "inf", "1e9", "x"}) {
     expect_fault(roomradar(prescan + " --max-memory " + number), 2, "10000000 (megabytes)");
     expect_fault(roomradar(prescan + " --checkpoint-every " + number), 2, "86400 (seconds)");
@@ -932,9 +932,9 @@ TEST_F(CommandLine, RecordedPosesAreNotTakenForThoseOfAMapThatKnowsNone) {
   for (int i = 0; i < 16; ++i) info["T_world_recorded"][i] = i % 5 == 0 ? 1.0 : 0.0;
   std::ofstream(blind / "map.json") << info;
   const std::string run = "run 'sim:table?frames=2&width=160' --map " + blind.string() + " --poses ";
-  expect_fault(roomradar(run + "recorded"), 1, "take --poses tracked");
+  expect_fault(roomradar(run + "recorded"), 1, "use --poses tracked");
   expect_fault(roomradar("fallthrough 'sim:table?width=160' --poses recorded --map " + blind.string()), 1,
-               "take --poses tracked");
+               "use --poses tracked");
   EXPECT_EQ(roomradar(run + "tracked").status, 0);
 }
 
@@ -1136,7 +1136,7 @@ TEST_F(CommandLine, SeveralObjectsEachWithASizeAPlaceAndAnAxis) {
     expect_fault(roomradar(run + " --object " + bad), 2, "--object");
   for (const char* bad : {"teapot,siz=0.3", "teapot,size=0.3,siz=0.3", "teapot,siz=0.3,size=0.3"})
     expect_fault(roomradar(run + " --object " + bad), 2,
-                 "there is no siz=; known are size=, up=, at=, mass=");
+                 "there is no siz=; the keys are size=, up=, at=, mass=");
   expect_fault(roomradar(run + " --object teapt"), 1, "teapt: there is no such file; a model is a file .glb");
   expect_fault(roomradar(run + " --object-up w"), 2, "--object-up w");
   expect_fault(roomradar(run + " --object-size 0.3 --script s.txt"), 2, "--script says how");

@@ -35,8 +35,8 @@ TEST(Manifest, HoldsJobsWithWordsCostsAndNeeds) {
 }
 
 TEST(Manifest, FaultsNameFileLineAndCure) {
-  expect_fault("", "/jobs.txt: holds no job");
-  expect_fault("# nothing\n", "holds no job");
+  expect_fault("", "/jobs.txt: contains no jobs");
+  expect_fault("# nothing\n", "contains no jobs");
   expect_fault("a: prescan x --map {}/m\n\nb prescan y --map {}/m",
                "/jobs.txt, line 3: must begin with a name");
   expect_fault("../a: prescan x --map {}/m", "must begin with a name");

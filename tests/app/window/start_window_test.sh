@@ -74,7 +74,7 @@ until_true has_focus '^roomradar$'
 echo "== M adds to the map; a recording that it holds already is named"
 before=$(sha256sum < maps/table/map.json)
 keys m
-until_true says 'holds .* already'
+until_true says ': already contains '
 until_true has_focus '^roomradar scan - '
 settled_shot held-already
 keys Return

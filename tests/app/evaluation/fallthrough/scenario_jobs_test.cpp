@@ -202,9 +202,10 @@ TEST(ScenarioJobs, AFileWithOtherScenariosThanItsJobsIsNamed) {
   options.job_size = 2;
   write_job(folder.path(), "scenarios-000000", 2);
   const auto fault = [&] { return test::error_of([&] { (void)joined_rows(options, {}); }); };
-  EXPECT_NE(fault().find("scenarios-000000/rows.json: holds other scenarios than 0 to 1"), std::string::npos);
+  EXPECT_NE(fault().find("scenarios-000000/rows.json: contains scenarios other than 0 to 1"),
+            std::string::npos);
   write_rows({row(0), row(1)}, folder.path() / "scenarios-000000" / "rows.json");  // room 3 for both
-  EXPECT_NE(fault().find("other scenarios"), std::string::npos);
+  EXPECT_NE(fault().find("scenarios other than"), std::string::npos);
   std::filesystem::remove_all(folder.path() / "scenarios-000000");
   EXPECT_NE(fault().find("rows.json"), std::string::npos);
 }
