@@ -255,7 +255,7 @@ void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory
   second_pass.frames_read = pass.frames_read;
   if (pass.frames_read > 0) skip_frames(*work.source, pass.frames_read, kFusingStage, work.progress);
   release_unused_memory();
-  bool has_room = true;
+  bool has_room = !pass.stopped_for_memory;  // set if the pass had ended before it was resumed
   ReadAhead frames(*work.source, pass.counts.frames_read - pass.frames_read);
   Frame frame;
   while (has_room && read(frames, work.times, frame, second_pass)) {

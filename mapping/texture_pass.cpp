@@ -74,7 +74,7 @@ std::shared_ptr<const SurfaceTexture> run_texture_pass(PrescanWork& work,
   for (std::size_t i = 0; frames.next(frame, i);) {
     if (frame.colour.empty()) continue;
     bytes += kBytesPerPixel * static_cast<double>(frame.colour.pixels.size());
-    if (bytes > 2.0 * kMostBytes) break;  // later pictures are larger than the first
+    if (bytes > kMostBytes && !views.empty()) break;  // later pictures are larger than the first
     work.times.timed("texture", [&] {
       views.push_back(
           make_texture_view(frame, candidates[i].T_world_camera, mesh, candidates[i].image_speed_pxps));

@@ -9,7 +9,7 @@
 namespace roomradar {
 
 /// Reads at most 160 well spread, slow frames of pass.fused again, and bakes a texture of the mesh from their
-/// colours. Their pictures take about 160 MB, at most 320 MB if later pictures are larger than the first.
+/// colours. Their pictures take at most 160 MB, unless a single one is larger.
 /// Returns null, and reads nothing, if the memory would exceed config.max_memory_bytes. Returns null if no
 /// frame has colour and `earlier` is empty.
 ///

@@ -34,7 +34,10 @@ SurfacePolicy surfaces_of(int32_t surfaces) {
 /// Reads words such as "depth_stride=2 radar=sampled".
 RunQuality quality_of(const char* words) {
   RunQuality quality;
-  const std::string text = words == nullptr ? "" : std::string(words, strnlen(words, 4096));
+  constexpr std::size_t kLongest = 4096;
+  const std::string text = words == nullptr ? "" : std::string(words, strnlen(words, kLongest + 1));
+  if (text.size() > kLongest)
+    refuse("quality: is longer than " + std::to_string(kLongest) + " characters; is it null-terminated?");
   constexpr const char* kBlanks = " \t\n,";
   for (std::size_t from = text.find_first_not_of(kBlanks); from != std::string::npos;) {
     const std::size_t to = std::min(text.find_first_of(kBlanks, from), text.size());

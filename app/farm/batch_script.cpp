@@ -64,10 +64,11 @@ std::string makefile(const FarmPlan& plan, const std::filesystem::path& program)
     for (std::size_t at = 0; (at = text.find('$', at)) != std::string::npos; at += 2) text.insert(at, "$");
     return text;
   };
-  std::string all, rules;
+  std::string all, rules, every = "all";
   for (const auto& jobs : levels_of(plan))
     for (const std::size_t job : jobs) {
       const std::string& name = plan.manifest.jobs[job].name;
+      if (name == every) every = "jobs/all";  // no job's name: those have no /
       all += " " + name;
       rules += "\n" + name + ":";
       for (const std::size_t need : plan.manifest.jobs[job].needs)
@@ -75,7 +76,7 @@ std::string makefile(const FarmPlan& plan, const std::filesystem::path& program)
       rules += "\n\t@\"$(ROOMRADAR)\" " + escaped(farm_command(plan)) + " " + name + "\n";
     }
   return "# Jobs of roomradar: make --keep-going --jobs=2 --file THIS\nROOMRADAR ?= " +
-         escaped(program.string()) + "\n.PHONY: all" + all + "\nall:" + all + "\n" + rules;
+         escaped(program.string()) + "\n.PHONY: " + every + all + "\n" + every + ":" + all + "\n" + rules;
 }
 
 std::string parallel_script(const FarmPlan& plan, const std::filesystem::path& program) {

@@ -73,12 +73,11 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 /// along its path.
 ///
 /// Apart from contacts with moving bodies, a sleeping body is tested only along gravity and
-/// depenetration_directions_world. If it overlaps along gravity by more than 3 mm, four horizontal directions
-/// are tested, too. Overlaps up to wake_overlap_m, such as from sensor noise, do not move it.
-/// For dynamic surfaces that move, the limit is less by the distance that they travel in dt_s.
-/// A body that fell asleep in contact with another body wakes when that other body moves by more than
-/// wake_moved_m or disappears. A sleeping body with a non-zero velocity wakes. At most max_advance_s is
-/// simulated per call.
+/// depenetration_directions_world; if it overlaps along gravity by more than 3 mm, also along four horizontal
+/// directions. Overlaps up to wake_overlap_m, such as from sensor noise, do not move it. For dynamic surfaces
+/// that move, the limit is less by the distance that they travel in dt_s. A body that fell asleep in contact
+/// with another body wakes when that other body moves by more than wake_moved_m or disappears. A sleeping
+/// body with a non-zero velocity wakes. At most max_advance_s is simulated per call.
 /// @param system  pass the same object in each call; its impulses warm-start the next solve
 void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& config, ContactSystem& system);
 

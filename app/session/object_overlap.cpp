@@ -55,8 +55,7 @@ std::string coordinates(const Eigen::Vector3d& p) {
 }
 
 bool is_middle_unknown(const SessionRoom& room, const VirtualObject& object) {
-  return room.unknown_is_solid &&
-         is_unknown(*room.unknown, object.body.T_world_object * object.model->middle);
+  return room.unknown_is_solid && is_unknown_at(room, object.body.T_world_object * object.model->middle);
 }
 
 TreeInstance instance_of(const VirtualObject& object) {

@@ -94,9 +94,10 @@ void ObjectSet::drop(const DropRequest& drop, std::int64_t frame_number) {
     waiting_.push_back({drop, frame_number});
     return;
   }
-  if (drop.R_world_object) object.body.T_world_object.linear() = *drop.R_world_object;
-  put(object,
-      {.position_world = *drop.position_world + Eigen::Vector3d(0.0, 0.0, drop.height_m - lowest_m(object))});
+  const Eigen::Matrix3d R_world_object = drop.R_world_object.value_or(object.body.T_world_object.linear());
+  const double rise_m = drop.height_m - lowest_m(object, R_world_object);
+  put(object, {.position_world = *drop.position_world + Eigen::Vector3d(0.0, 0.0, rise_m),
+               .R_world_object = R_world_object});
 }
 
 void ObjectSet::carry(const std::string& name, const Eigen::Vector3d& position_world) {

@@ -97,8 +97,7 @@ class Session {
   void set_quality_from(FramePart part, const RunQuality& quality);
   /// Commits changes in view, see MapUpdater::ask(). Throws Error unless config().map_updates is set.
   void commit_changes();
-  /// Returns the notices since the last frame or call. Notices that no call has returned are in the next
-  /// frame's FrameResult::notices.
+  /// Returns the notices since the last frame or call. The next frame's FrameResult::notices has the others.
   std::vector<ObjectNotice> take_notices() { return objects_.take_notices(); }
   /// Returns the changes committed to the room so far.
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;

@@ -16,11 +16,11 @@ Eigen::AlignedBox3d known_box(const SavedMap& map) {
   return box;
 }
 
+}  // namespace
+
 bool is_unknown_at(const SessionRoom& room, const Eigen::Vector3d& p_world) {
   return room.tiles != nullptr ? room.tiles->is_unknown_at(p_world) : is_unknown(*room.unknown, p_world);
 }
-
-}  // namespace
 
 bool is_loaded_round(const SessionRoom& room, const VirtualObject& object) {
   constexpr double kMargin_m = 0.3;  // an object falls less than this from frame to frame

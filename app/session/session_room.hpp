@@ -34,6 +34,8 @@ void set_unknown(SessionRoom& room, const SavedMap& map);
 /// Replaces the surface, and the frontier of unknown space if it is set, by those of a committed change.
 void take_over(SessionRoom& room, ChangedRoom& changed);
 
+/// Returns true if a position is in unknown space. Requires unknown space to be solid.
+bool is_unknown_at(const SessionRoom& room, const Eigen::Vector3d& p_world);
 /// Returns true if unknown space is solid and a vertex or triangle centroid of the object is in it.
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object);
 /// Returns is_in_solid_unknown() for the object at another pose.

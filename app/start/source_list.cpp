@@ -117,9 +117,14 @@ std::vector<SourceEntry> list_simulated_rooms() {
 
 SourceEntry describe_source(const std::string& source) {
   if (source.starts_with("sim:")) return describe_simulated(source);
+  if (source.starts_with("openni:"))
+    return {SourceKind::kKinect, source, "device of OpenNI2", source, source, {}};
   if (source.starts_with("kinect:")) {
-    for (SourceEntry& entry : list_kinects())
-      if (source == entry.source) return entry;
+    for (SourceEntry& entry : list_kinects()) {
+      if (source.substr(0, source.find('?')) != entry.source) continue;
+      entry.source = entry.play_source = source;
+      return entry;
+    }
     return {SourceKind::kKinect,
             source,
             "not plugged in",

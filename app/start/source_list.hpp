@@ -31,7 +31,8 @@ std::vector<SourceEntry> list_recordings(const std::filesystem::path& folder);
 std::vector<SourceEntry> list_simulated_rooms();
 
 /// Returns the entry of a source, with a fault if `source` is not a source or cannot be read.
-/// @param source  kinect:N, sim:ROOM with keys, or a recording's path
+/// @param source  kinect:N with or without ?depth=, openni:N (not looked for on the bus), sim:ROOM with keys,
+///                or a recording's path
 SourceEntry describe_source(const std::string& source);
 
 }  // namespace roomradar

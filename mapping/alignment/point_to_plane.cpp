@@ -148,7 +148,7 @@ class Matcher {
     if (matched.bits() == 0) return;
     const Float8 r = select(matched, r_m * inverse_sigma_per_m, 0.0F);
     const Float8 w = select(matched, robust_weight(r * limits_.inverse_soft), 0.0F);
-    // Difference of two measurements: 3 sqrt(2) standard deviations.
+    // The residual is the difference of two measurements: 2.8 of its standard deviations.
     const Mask inliers = matched & (abs(r) < Float8(4.0F));
     pass.inliers += static_cast<std::size_t>(std::popcount(inliers.bits()));
     sums.squares = sums.squares + select(inliers, r_m * r_m, 0.0F);

@@ -44,10 +44,11 @@ Floats depth_sigmas_m(const DepthNoise& noise, const Floats& depth_m) {
 /// Standard deviation, m, of a measurement of weight 1 in a map: that of a Kinect v1 at 1 m.
 inline const float kUnitWeightSigma_m = depth_sigma_m(DepthNoise{}, 1.0F);
 
-/// Returns the depth, m, of at least DepthNoise::from_m, at which depth_sigma_m() is sigma_m; infinite if
-/// there is none.
+/// Returns the least depth, m, of at least DepthNoise::from_m, at which depth_sigma_m() is sigma_m or more;
+/// infinite if there is none.
 inline float depth_of_sigma_m(const DepthNoise& noise, float sigma_m) {
   const float rest_m = std::max(sigma_m - noise.base_m - noise.linear * noise.from_m, 0.0F);
+  if (rest_m == 0.0F) return noise.from_m;
   if (noise.quadratic_per_m <= 0.0F) return noise.from_m + rest_m / noise.linear;
   if (noise.linear == 0.0F) return noise.from_m + std::sqrt(rest_m / noise.quadratic_per_m);
   return noise.from_m +

@@ -128,8 +128,8 @@ void GpuMesh::upload_texture_points(std::span<const Eigen::Vector2f> points) {
     glVertexArrayVertexBuffer(vertex_array_, kTexturePoints, texture_points_, 0, sizeof(Eigen::Vector2f));
     glVertexArrayAttribBinding(vertex_array_, kTexturePoints, kTexturePoints);
     glVertexArrayAttribFormat(vertex_array_, kTexturePoints, 2, GL_FLOAT, GL_FALSE, 0);
-    glEnableVertexArrayAttrib(vertex_array_, kTexturePoints);
   }
+  glEnableVertexArrayAttrib(vertex_array_, kTexturePoints);
   glNamedBufferData(texture_points_, static_cast<GLsizeiptr>(points.size_bytes()), points.data(),
                     GL_STATIC_DRAW);
   require_drawn("texture coordinates");
@@ -147,6 +147,7 @@ void GpuMesh::send(const Mesh& mesh, MeshUsage usage) {
   has_normals_ = !mesh.normals.empty();
   has_colours_ = !mesh.colours.empty();
 
+  glDisableVertexArrayAttrib(vertex_array_, kTexturePoints);  // those of another mesh
   fill_buffer(kPositions, vertices().data(), vertices().size_bytes(), usage);
   fill_buffer(kIndices, triangles().data(), triangles().size_bytes(), usage);
   if (has_normals_) {

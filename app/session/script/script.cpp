@@ -21,23 +21,24 @@ constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxAngular_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
 
-constexpr std::array<Word<Action>, 17> kActions = {{{"add", Action::kAdd},
-                                                    {"place", Action::kPlace},
-                                                    {"drop", Action::kDrop},
-                                                    {"throw", Action::kThrow},
-                                                    {"material", Action::kMaterial},
-                                                    {"remove", Action::kRemove},
-                                                    {"turn", Action::kTurn},
-                                                    {"carry", Action::kCarry},
-                                                    {"release", Action::kRelease},
-                                                    {"surfaces", Action::kSurfaces},
-                                                    {"unknown", Action::kUnknown},
-                                                    {"radar", Action::kRadar},
-                                                    {"quality", Action::kQuality},
-                                                    {"camera", Action::kCamera},
-                                                    {"commit", Action::kCommit},
-                                                    {"adopt", Action::kCommit},  // of scripts of earlier versions
-                                                    {"quit", Action::kQuit}}};
+constexpr std::array<Word<Action>, 17> kActions = {
+    {{"add", Action::kAdd},
+     {"place", Action::kPlace},
+     {"drop", Action::kDrop},
+     {"throw", Action::kThrow},
+     {"material", Action::kMaterial},
+     {"remove", Action::kRemove},
+     {"turn", Action::kTurn},
+     {"carry", Action::kCarry},
+     {"release", Action::kRelease},
+     {"surfaces", Action::kSurfaces},
+     {"unknown", Action::kUnknown},
+     {"radar", Action::kRadar},
+     {"quality", Action::kQuality},
+     {"camera", Action::kCamera},
+     {"commit", Action::kCommit},
+     {"adopt", Action::kCommit},  // of scripts of earlier versions
+     {"quit", Action::kQuit}}};
 constexpr std::array<Word<SurfacePolicy>, 4> kSurfaces = {{{"holes", SurfacePolicy::kHoles},
                                                            {"skirt", SurfacePolicy::kSkirt},
                                                            {"border", SurfacePolicy::kBorder},
@@ -110,9 +111,9 @@ void read_add(LineReader& line, ScriptEvent& event) {
     } else if (!event.up && line.take_if("up")) {
       event.up = line.choice("the axis of the file that points up", kUpAxes);
     } else if (!read_material(line, event.material)) {
-      line.fail(in_quotes(line.word("an option")) +
-                " is not an option of add, or is given twice; the options are size, up, mass or density, "
-                "friction, restitution");
+      line.fail(
+          in_quotes(line.word("an option")) +
+          " is not an option of add (size, up, mass, density, friction, restitution), or is given twice");
     }
   }
 }

@@ -2,6 +2,7 @@
 #include "app/sources/formats/parse_numbers.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 namespace roomradar {
@@ -19,9 +20,11 @@ std::vector<std::string_view> split_words(std::string_view line) {
 
 std::optional<double> parse_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  if (word.find("#IND") != std::string_view::npos || word.find("#QNAN") != std::string_view::npos ||
-      word.find("#INF") != std::string_view::npos)
+  const std::string_view unsigned_word = word.substr(word.starts_with('-') ? 1 : 0);
+  if (unsigned_word.starts_with("1.#IND") || unsigned_word.starts_with("1.#QNAN"))
     return std::numeric_limits<double>::quiet_NaN();
+  if (unsigned_word.starts_with("1.#INF"))
+    return std::copysign(std::numeric_limits<double>::infinity(), word.starts_with('-') ? -1.0 : 1.0);
   double value = 0.0;
   const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (fault != std::errc() || end != word.data() + word.size()) return std::nullopt;

@@ -11,8 +11,8 @@ namespace roomradar {
 std::vector<std::string_view> split_words(std::string_view line);
 
 /// Parses `word` as a number. Returns nullopt unless the whole word is a number. Accepts a leading plus sign,
-/// and NaN and infinity in the spelling of C (nan, inf). Words with Microsoft's #IND, #QNAN or #INF, such as
-/// `-1.#IND`, give NaN.
+/// and NaN and infinity in the spelling of C (nan, inf). Accepts Microsoft's spelling, too: words
+/// that begin with `-1.#IND`, `1.#QNAN` or `1.#INF`, with or without a sign.
 std::optional<double> parse_number(std::string_view word);
 
 /// Parses `word` as an integer. Returns nullopt unless the whole word is an integer.

@@ -78,6 +78,10 @@ TEST(CWrongCall, NamesCallArgumentAndRule) {
   options.quality = "radar";
   expect_refused(roomradar_session_open(map.handle, &options, &none), ROOMRADAR_INVALID_ARGUMENT,
                  "NAME=VALUE");
+  const std::string long_quality(5000, ' ');
+  options.quality = long_quality.c_str();
+  expect_refused(roomradar_session_open(map.handle, &options, &none), ROOMRADAR_INVALID_ARGUMENT,
+                 "longer than 4096");
   options.quality = nullptr;
   options.watches_changes = 1;
   options.adopt_after_s = -1.0;

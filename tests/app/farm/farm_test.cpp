@@ -300,6 +300,11 @@ TEST_F(Farm, ScriptsRunTheJobsInOrder) {
   const std::string made = tally();
   EXPECT_NE(made.find("b\n"), std::string::npos);
   EXPECT_LT(made.find("a\n"), made.find("c\n"));
+  write_bytes(
+      folder_.path() / "script",
+      batch_script(plan("all: prescan write input {}\nd: prescan join {all} {}\n"), BatchForm::kMake, farm));
+  EXPECT_EQ(run_script(folder_.path() / "script", "make --file"), 0);
+  EXPECT_EQ(tally(), "all\nd\n");
   if (std::system("command -v parallel > /dev/null 2>&1") == 0) {
     write_bytes(folder_.path() / "script", batch_script(planned, BatchForm::kParallel, farm));
     EXPECT_NE(run_script(folder_.path() / "script", "bash"), 0);

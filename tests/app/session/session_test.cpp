@@ -780,6 +780,10 @@ TEST(Session, WhatHasNoFreePlaceNearIsRefusedWithTheNearestAndNothingHasChanged)
   EXPECT_THROW(session.place("box", {.position_world = {0.7, 0.0, 0.06}}), PlaceRefused);
   EXPECT_TRUE(box.in_room);
   EXPECT_EQ(box.body.T_world_object.translation(), Eigen::Vector3d(-1.5, 0.0, 0.3));
+  DropRequest turned{.name = "box", .position_world = Eigen::Vector3d(0.7, 0.0, 0.0), .height_m = 0.06};
+  turned.R_world_object = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  EXPECT_THROW(session.drop(turned), PlaceRefused);
+  EXPECT_EQ(box.body.T_world_object.linear(), Eigen::Matrix3d::Identity());
 }
 
 constexpr Intrinsics kFineCamera{320, 240, 292.0, 292.0, 159.5, 119.5};

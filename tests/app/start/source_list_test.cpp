@@ -73,5 +73,16 @@ TEST(SourceList, WhatIsNoSourceIsNamed) {
   EXPECT_NE(describe_source("kinect:7").fault.find("kinect:7: is not plugged in"), std::string::npos);
 }
 
+TEST(SourceList, ADeviceMayHaveItsOwnOptions) {
+  const SourceEntry xtion = describe_source("openni:0");
+  EXPECT_EQ(xtion.kind, SourceKind::kKinect);
+  EXPECT_EQ(xtion.fault, "");
+  for (const SourceEntry& kinect : list_kinects()) {
+    const SourceEntry metric = describe_source(kinect.source + "?depth=mm");
+    EXPECT_EQ(metric.source, kinect.source + "?depth=mm");
+    EXPECT_EQ(metric.name, kinect.name);
+  }
+}
+
 }  // namespace
 }  // namespace roomradar::test::source_list_test

@@ -123,6 +123,7 @@ TEST(DepthNoise, OfEverySensorCanBeInvertedAndBounded) {
   EXPECT_NEAR(depth_sigma_m(phone, 2.0F), 0.019F, 1e-6F);
   const DepthNoise constant{0.01F, 0.0F, 0.0F, 0.0F, 0.0F};
   EXPECT_TRUE(std::isinf(depth_of_sigma_m(constant, 0.02F)));
+  EXPECT_EQ(depth_of_sigma_m(constant, 0.01F), 0.0F);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const DepthNoise& wrong :
        {DepthNoise{0.0F, 0, 0, 0, 0}, DepthNoise{-0.1F, 0, 0, 0, 0}, DepthNoise{nan, 0, 0, 0, 0},

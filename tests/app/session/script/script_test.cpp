@@ -227,7 +227,7 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 add cup teapot restitution nan", "'nan' is not a finite number"},
       {"frame 1 add cup teapot mass 1 density 5", "a mass and a density exclude each other"},
       {"frame 1 add cup teapot mass 1 mass 2",
-       "'mass' is not an option of add, or is given twice; the options are size,"},
+       "'mass' is not an option of add (size, up, mass, density, friction, restitution), or is given twice"},
       {"frame 1 add cup teapot sze 0.2", "'sze' is not an option of add"},
       {"frame 1 material pot", "is followed by mass, density, friction or restitution"},
       {"frame 1 material pot heavy", "is followed by mass, density, friction or restitution"},

@@ -323,6 +323,22 @@ TEST(TileWindow, UnknownSpaceIsOpenTowardsNeighboursAndClosedElsewhere) {
   EXPECT_GT(outer, 0U);
 }
 
+TEST(TileWindow, RefusesAPlaceInSpaceThatWasNotScanned) {
+  BuildingSession run(window_config(building().folder.path()), PoseOrigin::kRecorded);
+  for (int i = 0; i < 40; ++i) (void)run.show(0);
+  run.session->make_unknown_solid(run.times);
+  const FloorPlace place = floor_below(*run.session, position(building().frames[0]));
+  run.session->add_object("pot", utah_teapot(4, 0.2));
+  try {
+    run.session->place("pot", {.position_world = place.point_world - Vector3d(0.0, 0.0, 0.5)});
+    ADD_FAILURE() << "placed below the floor";
+  } catch (const PlaceRefused& refused) {
+    EXPECT_NE(std::string(refused.what()).find("that space was not scanned"), std::string::npos)
+        << refused.what();
+  }
+  EXPECT_FALSE(run.session->objects()[0]->in_room);
+}
+
 TEST(TileWindow, RefusesWhatOnlyARoomCanDo) {
   const TileWindowConfig tiles = window_config(building().folder.path());
   SavedMap map;

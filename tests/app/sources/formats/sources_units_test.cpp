@@ -89,6 +89,10 @@ TEST(ParseNumbers, TakesWholeWordsOnly) {
   EXPECT_FALSE(parse_number("1,5"));
   EXPECT_TRUE(std::isnan(*parse_number("nan")));
   EXPECT_TRUE(std::isnan(*parse_number("-1.#IND000e+000")));
+  EXPECT_TRUE(std::isnan(*parse_number("1.#QNAN")));
+  EXPECT_EQ(parse_number("1.#INF00"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(parse_number("-1.#INF"), -std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(parse_number("a#IND"));
   EXPECT_FALSE(parse_whole_number("3.0"));
   EXPECT_EQ(split_words(" a\tb  c\r").size(), 3U);
 }
