@@ -31,8 +31,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
 ///     time 4     place pot 0.4 -0.1 0.9
 ///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
-///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0       spin in rad/s about x y z; speeds
-///                                                              are limited to 20 m/s, spins to 60 rad/s
+///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0      at most 20 m/s, 60 rad/s about x y z
 ///     time 5.5   turn pot 0 0 45                  about the world's axes (degrees)
 ///     time 5.6   carry pot 0.4 -0.1 1.0           moved to this position and held there
 ///     time 5.9   release pot velocity 0 0 0
@@ -43,8 +42,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 210  unknown solid                    or free
 ///     frame 220  radar sampled 64                 mode exact or sampled; resolution in pixels
 ///     frame 225  quality depth_stride 2 shadows off       others as on the command line, or default
-///     frame 226  quality from physics move_every_n_frames 4      from that frame's physics on; or mesh,
-///                                                              compose
+///     frame 226  quality from physics move_every_n_frames 4      from its physics on; or mesh, compose
 ///     frame 230  camera hold                      repeats this frame; or go, rewind, loop, stay, resume
 ///     frame 300  quit
 ///
