@@ -31,7 +31,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
 ///     time 4     place pot 0.4 -0.1 0.9
 ///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
-///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0      at most 20 m/s, 60 rad/s about x y z
+///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0     at most 20 m/s, 60 rad/s about x y z
 ///     time 5.5   turn pot 0 0 45                  about the world's axes (degrees)
 ///     time 5.6   carry pot 0.4 -0.1 1.0           moved to this position and held there
 ///     time 5.9   release pot velocity 0 0 0
