@@ -32,7 +32,9 @@ struct Keyframe {
   /// tracking was degenerate counts tenfold. The assumed drift between two keyframes grows with the length of
   /// the path between them.
   double path_length_m = 0.0;
-  CameraVelocity velocity = {};  ///< of the camera at `frame_index`
+  CameraVelocity velocity = {};         ///< of the camera at `frame_index`
+  CameraVelocity steady_velocity = {};  ///< mean over several frames up to `frame_index`
+  SensorTiming timing = {};             ///< times with which the view's intensity was registered
 };
 
 /// Returns a measure of how much two viewpoints differ: distance / 0.8 m + angle / 35 degrees. At 1, the two

@@ -45,8 +45,10 @@ struct Correspondence {
   Vector3d p_camera, p_view;
   Eigen::Vector2d live_px, view_px;
   Vector3d live_mps,
-      view_mps;         ///< motion of the point in the camera frame, by the live image and by the view
-  Vector3d steady_mps;  ///< difference of these, by the steady velocities
+      view_mps;  ///< motion of the point in the camera frame, by the live image and by the view
+  Vector3d live_steady_mps, view_steady_mps;  ///< the same by the steady velocities
+  /// Time by which the view's intensity would be registered later with the current times.
+  double colour_late_s = 0.0;
 };
 
 struct Sums {
@@ -95,14 +97,15 @@ void add_colour(const Correspondence& c, float live_intensity, const Eigen::Matr
                gv = gradient_v * view_camera.fy_px * inverse_z;
   const double expected = static_cast<double>(c.pixel->intensity) + gradient_u * (c.view_px.x() - c.x) +
                           gradient_v * (c.view_px.y() - c.y);
-  const double residual =
-      (expected - static_cast<double>(exposure.gain * live_intensity + exposure.offset)) / kIntensitySigma;
   const Vector3d h(gu, gv, -(gu * c.p_view.x() + gv * c.p_view.y()) * inverse_z);
   const Vector3d m = (1.0 / kIntensitySigma) * (R_view_camera.transpose() * h);
+  const double residual =
+      (expected - static_cast<double>(exposure.gain * live_intensity + exposure.offset)) / kIntensitySigma -
+      m.dot(c.view_steady_mps) * c.colour_late_s;
   Row J = pose_part(c, m);
   J(kColourReadout) = m.dot(c.live_mps) * row_fraction(live_camera, c.live_px.y()) -
                       m.dot(c.view_mps) * row_fraction(view_camera, c.view_px.y());
-  J(kColourDelay) = m.dot(c.steady_mps);
+  J(kColourDelay) = m.dot(c.live_steady_mps - c.view_steady_mps);
   sums.add(J, residual, depth_weight * robust_weight(residual / kSoft));
 }
 
@@ -122,15 +125,14 @@ TimingEvidence without_pose(const Sums& sums) {
 }  // namespace
 
 TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camera,
-                               const TargetView& reference, const MovingView& view,
-                               const SensorTiming& timing) {
+                               const TargetView& reference, const MovingView& view) {
   constexpr std::size_t kEvery = 4;
   const std::size_t level = std::min(live.levels.size(), reference.levels.size()) > 1 ? 1 : 0;
   if (level >= live.cameras.size() || level >= reference.levels.size()) return {};
   const std::vector<SourcePoint>& points = live.levels[level];
   const TargetLevel& target = reference.levels[level];
   const Intrinsics &live_camera = live.cameras[level], &view_camera = target.camera;
-  const RowMotion motion = row_motion(live_camera, camera.velocity, timing.depth_readout_s);
+  const RowMotion motion = row_motion(live_camera, camera.velocity, camera.timing.depth_readout_s);
   const Eigen::Isometry3d T_view_camera = view.T_world_camera.inverse() * camera.T_world_camera;
   const Eigen::Matrix3d R = T_view_camera.linear();
   PointMatches matches;
@@ -154,8 +156,11 @@ TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camer
     if (c.pixel->inverse_sigma_per_m <= 0.0F) continue;
     c.live_mps = motion_of(c.p_camera, camera.velocity);
     c.view_mps = R.transpose() * motion_of(c.p_view, view.velocity);
-    c.steady_mps = motion_of(c.p_camera, camera.steady_velocity) -
-                   R.transpose() * motion_of(c.p_view, view.steady_velocity);
+    c.live_steady_mps = motion_of(c.p_camera, camera.steady_velocity);
+    c.view_steady_mps = R.transpose() * motion_of(c.p_view, view.steady_velocity);
+    c.colour_late_s = camera.timing.colour_delay_s - view.timing.colour_delay_s +
+                      (camera.timing.colour_readout_s - view.timing.colour_readout_s) *
+                          row_fraction(view_camera, c.view_px.y());
     const double weight = add_depth(c, R, live_camera, view_camera, sums);
     const bool is_textured = c.pixel->gradient_u != 0.0F || c.pixel->gradient_v != 0.0F;
     if (weight > 0.0 && exposure.known && is_textured && points[i].intensity >= 0.0F)

@@ -31,15 +31,15 @@ struct MovingView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   CameraVelocity velocity;
   CameraVelocity steady_velocity;  ///< mean over several frames
+  SensorTiming timing;             ///< times with which the view was made
 };
 
 /// Linearises the residuals of an aligned image in the camera's pose and in the parameters, and eliminates
-/// the pose. Two images taken at equal velocities constrain no times. Uses every fourth point of the second
-/// finest level, or of the only level.
-/// @param live    points of the image before any correction
-/// @param timing  times with which the views were aligned
+/// the pose. The corrections are those of camera.timing. If the reference's intensity was registered with
+/// other times, its displacement by the difference is taken off. Two images taken at equal velocities
+/// constrain no times. Uses every fourth point of the second finest level, or of the only level.
+/// @param live  points of the image before any correction
 TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camera,
-                               const TargetView& reference, const MovingView& view,
-                               const SensorTiming& timing);
+                               const TargetView& reference, const MovingView& view);
 
 }  // namespace roomradar

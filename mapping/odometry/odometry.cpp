@@ -89,10 +89,10 @@ void Odometry::State::take_evidence(const Frame& frame, const Tracking& tracking
   const CameraVelocity steady = mean_velocity(kept, tracking.T_world_camera, frame.stamp_s);
   const Keyframe& keyframe = kept.graph.keyframes[kept.current];
   const auto used = cache.get(kept.current, *keyframe.view, config.view);
-  add_evidence(
-      kept.timing,
-      timing_evidence(live, {tracking.T_world_camera, velocity, steady}, used->reference,
-                      {keyframe.T_world_camera, keyframe.velocity, keyframe.velocity}, kept.timing.current));
+  add_evidence(kept.timing,
+               timing_evidence(
+                   live, {tracking.T_world_camera, velocity, steady, kept.timing.current}, used->reference,
+                   {keyframe.T_world_camera, keyframe.velocity, keyframe.steady_velocity, keyframe.timing}));
 }
 
 Odometry::Odometry(const OdometryConfig& config) : state_(std::make_unique<State>(config)) {}
@@ -139,7 +139,9 @@ Tracking Odometry::track(const Frame& frame) {
   const bool second = !first && kept.graph.keyframes.size() == 1 && !kept.frames.empty() &&
                       kept.graph.keyframes.front().frame_index == kept.frames.back().frame_index;
   if (tracking && second) {
-    s.deskew_first_keyframe(frame);
+    s.remake_first_keyframe();
+    make_pyramid(frame, s.config.view, s.pyramid, {s.velocity, kept.timing.current});
+    make_source_points(s.pyramid, s.live);
     tracking = s.find_pose(frame, {tracking.T_world_camera, s.velocity, predicted.dt_s});
   }
   if (!has_pose(tracking)) {
@@ -152,7 +154,8 @@ Tracking Odometry::track(const Frame& frame) {
   const Eigen::Isometry3d T_last_next = kept.T_world_last.inverse() * tracking.T_world_camera;
   kept.path_length_m += motion_length_m(T_last_next) * (tracking ? 1.0 : 10.0);
   if (tracking && !first) {
-    if (s.config.estimate_timing) s.take_evidence(frame, tracking);
+    // The first keyframe was made with the velocity of one pair of frames.
+    if (s.config.estimate_timing && kept.current > 0) s.take_evidence(frame, tracking);
     deskew(s.pyramid, s.velocity, kept.timing.current.depth_readout_s);
     s.improve_current(tracking);
     s.choose_keyframe(frame, tracking);

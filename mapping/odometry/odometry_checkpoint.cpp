@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kStateMagic = "RRODOMET", kViewMagic = "RRKEYFRM";
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 constexpr int kMaxSide_px = 8192;
 
 fs::path view_name(std::size_t number, std::uint32_t revision) {
@@ -49,9 +49,20 @@ CameraVelocity take_velocity(BinaryReader& in) {
   return velocity;
 }
 
+void put_times(std::string& out, const SensorTiming& times) {
+  for (const double s : {times.depth_readout_s, times.colour_readout_s, times.colour_delay_s}) put(out, s);
+}
+
+SensorTiming take_times(BinaryReader& in) {
+  SensorTiming times;
+  for (double* s : {&times.depth_readout_s, &times.colour_readout_s, &times.colour_delay_s})
+    *s = in.take_finite("a time of the sensor");
+  return times;
+}
+
 void put_timing(std::string& out, const TimingEstimate& timing) {
-  for (const SensorTiming& times : {timing.stated, timing.current})
-    for (const double s : {times.depth_readout_s, times.colour_readout_s, times.colour_delay_s}) put(out, s);
+  put_times(out, timing.stated);
+  put_times(out, timing.current);
   put(out, timing.sum.H.data(), static_cast<std::size_t>(timing.sum.H.size()));
   put(out, timing.sum.b.data(), static_cast<std::size_t>(timing.sum.b.size()));
   put(out, timing.frames);
@@ -59,9 +70,8 @@ void put_timing(std::string& out, const TimingEstimate& timing) {
 
 TimingEstimate take_timing(BinaryReader& in) {
   TimingEstimate timing;
-  for (SensorTiming* times : {&timing.stated, &timing.current})
-    for (double* s : {&times->depth_readout_s, &times->colour_readout_s, &times->colour_delay_s})
-      *s = in.take_finite("a time of the sensor");
+  timing.stated = take_times(in);
+  timing.current = take_times(in);
   for (Eigen::Index i = 0; i < timing.sum.H.size(); ++i) timing.sum.H.data()[i] = in.take_finite("evidence");
   for (Eigen::Index i = 0; i < timing.sum.b.size(); ++i) timing.sum.b.data()[i] = in.take_finite("evidence");
   timing.frames = in.take<int>("frames of evidence");
@@ -178,6 +188,8 @@ void put_graph(std::string& out, const KeyframeGraph& graph) {
     put(out, keyframe.revision);
     put(out, keyframe.path_length_m);
     put_velocity(out, keyframe.velocity);
+    put_velocity(out, keyframe.steady_velocity);
+    put_times(out, keyframe.timing);
   }
   put(out, std::uint64_t{graph.constraints.size()});
   for (const PoseConstraint& c : graph.constraints) {
@@ -207,6 +219,8 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
     keyframe.revision = in.take<std::uint32_t>("revision");
     keyframe.path_length_m = in.take_finite("path length");
     keyframe.velocity = take_velocity(in);
+    keyframe.steady_velocity = take_velocity(in);
+    keyframe.timing = take_times(in);
     keyframe.view = std::make_shared<const StoredView>(read_view(folder / view_name(i, keyframe.revision)));
   }
   graph.constraints.resize(take_count(in, kPose_bytes + kInformation_bytes, "constraints"));

@@ -14,17 +14,15 @@ KeyframeJobConfig job_config(const OdometryConfig& config) {
   return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
 }
 
-/// The first keyframe's velocity is known once the second frame is tracked. The keyframe's intensity was
-/// registered without it, and is dropped if the error exceeds a pixel.
-void Odometry::State::deskew_first_keyframe(const Frame& frame) {
-  constexpr double kMost_px = 1.0;
+/// The first keyframe's velocity is known once the second frame is tracked. The keyframe is then made again.
+void Odometry::State::remake_first_keyframe() {
   Keyframe& keyframe = kept.graph.keyframes.front();
-  keyframe.velocity = velocity;
+  keyframe.velocity = keyframe.steady_velocity = velocity;
+  keyframe.timing = kept.timing.current;
+  if (!first_frame.depth_m.empty())  // empty if a checkpoint was resumed after the first frame
+    make_pyramid(std::exchange(first_frame, {}), config.view, open, {velocity, kept.timing.current});
   deskew(open, velocity, kept.timing.current.depth_readout_s);
-  const double delay_s = frame.colour_after_depth_s + kept.timing.current.colour_delay_s;
-  if (std::abs(delay_s) * image_speed_pxps(velocity, open.levels.front().camera) > kMost_px)
-    for (ViewPyramid::Level& level : open.levels)
-      std::fill(level.intensity.pixels.begin(), level.intensity.pixels.end(), -1.0F);
+  open.grey.resize(0, 0);
   open_is_newer = true;
   cache_open(0);
 }
@@ -74,9 +72,11 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking)
   open = pyramid;
   open.grey.resize(0, 0);
   open_measured.resize(open.levels.front().camera.width_px, open.levels.front().camera.height_px, 1);
-  kept.graph.keyframes.push_back({frame.index, tracking.T_world_camera,
-                                  std::make_shared<const StoredView>(store(open, open_measured)), 0,
-                                  kept.path_length_m, velocity});
+  kept.graph.keyframes.push_back(
+      {frame.index, tracking.T_world_camera, std::make_shared<const StoredView>(store(open, open_measured)),
+       0, kept.path_length_m, velocity, mean_velocity(kept, tracking.T_world_camera, frame.stamp_s),
+       kept.timing.current});
+  first_frame = kept.graph.keyframes.size() == 1 ? frame : Frame{};
   ++kept.counts.keyframes;
   kept.current = kept.graph.keyframes.size() - 1;
   kept.improved = 0;

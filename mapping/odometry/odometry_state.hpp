@@ -29,6 +29,7 @@ struct Odometry::State {
   std::future<KeyframeJobResult> job;
   std::optional<KeyframeJobResult> joined;  ///< the job's result, once it has been waited for
   int job_frames = 0;                       ///< frames since the job began
+  Frame first_frame;                        ///< empty once the first keyframe's velocity is known
   PairAligner pairs;                        ///< alignments of keyframes for optimise()
 
   explicit State(const OdometryConfig& chosen) : config(chosen), cache(chosen.graph.cached_keyframes) {}
@@ -39,7 +40,7 @@ struct Odometry::State {
   Tracking recover(const Frame& frame);
   [[nodiscard]] bool is_plausible(const Tracking& tracking, const Eigen::Isometry3d& T_world_expected) const;
   void take_evidence(const Frame& frame, const Tracking& tracking);
-  void deskew_first_keyframe(const Frame& frame);
+  void remake_first_keyframe();
   void improve_current(const Tracking& tracking);
   void cache_open(std::size_t keyframe);
   [[nodiscard]] bool is_far_from(std::size_t keyframe, const Tracking& tracking) const;

@@ -18,6 +18,8 @@ constexpr double kOffsetSigma_per_m = 0.02;
 // converge.
 constexpr double kIndependentPart = 0.05;
 
+constexpr int kDepthReadout = 0, kColourReadout = 1, kColourDelay = 2;  // indices of a TimingVector
+
 double weight(double sigma) { return 1.0 / (sigma * sigma); }
 
 TimingVector vector_of(const SensorTiming& timing) {
@@ -45,13 +47,15 @@ Solution solve(const TimingEstimate& estimate) {
 
 /// Returns the corrected value, or `current` if the correction is within its error.
 double corrected(double current, const Solution& solution, int parameter, double least, double most) {
-  constexpr double kSignificant = 3.0;
-  // While times are wrong, poses and keyframes have taken up a part of the error: one step corrects 20 to 60
-  // % of it on real and simulated recordings.
+  const double significant = parameter == kColourDelay ? 2.0 : 3.0;  // standard deviations
+  // The noise of velocities weakens the evidence: solutions are 60 to 70 % of the error on simulated
+  // recordings with delays of 20 and 40 ms.
   constexpr double kOverRelaxation = 1.5, kMostStep_s = 0.015;
   const double step_s = solution.correction(parameter);
-  if (!(std::abs(step_s) > kSignificant * solution.sigma(parameter))) return current;
-  return std::clamp(current + std::clamp(kOverRelaxation * step_s, -kMostStep_s, kMostStep_s), least, most);
+  if (!(std::abs(step_s) > significant * solution.sigma(parameter))) return current;
+  // A stated time may lie outside the limits.
+  return std::clamp(current + std::clamp(kOverRelaxation * step_s, -kMostStep_s, kMostStep_s),
+                    std::min(least, current), std::max(most, current));
 }
 
 /// Expresses the evidence relative to the corrected times, and lets it fade: it was linearised at earlier
@@ -71,7 +75,9 @@ TimingEstimate start_estimate(const SensorTiming& stated) { return {stated, stat
 
 bool add_evidence(TimingEstimate& estimate, const TimingEvidence& evidence) {
   constexpr int kFrames = 20;
-  constexpr double kMostReadout_s = 0.05, kMostDelay_s = 0.1;
+  // Registered with a delay above 55 ms, colour follows the errors of the velocity so closely that
+  // corrections have the wrong sign and grow.
+  constexpr double kMostReadout_s = 0.05, kMostDelay_s = 0.05;
   if (!evidence.H.allFinite() || !evidence.b.allFinite()) return false;
   estimate.sum.H += evidence.H;
   estimate.sum.b += evidence.b;
@@ -79,9 +85,9 @@ bool add_evidence(TimingEstimate& estimate, const TimingEvidence& evidence) {
   const Solution solution = solve(estimate);
   if (!solution.correction.allFinite()) return false;
   const SensorTiming& now = estimate.current;
-  const SensorTiming next{corrected(now.depth_readout_s, solution, 0, 0.0, kMostReadout_s),
-                          corrected(now.colour_readout_s, solution, 1, 0.0, kMostReadout_s),
-                          corrected(now.colour_delay_s, solution, 2, -kMostDelay_s, kMostDelay_s)};
+  const SensorTiming next{corrected(now.depth_readout_s, solution, kDepthReadout, 0.0, kMostReadout_s),
+                          corrected(now.colour_readout_s, solution, kColourReadout, 0.0, kMostReadout_s),
+                          corrected(now.colour_delay_s, solution, kColourDelay, -kMostDelay_s, kMostDelay_s)};
   if (next == now) return false;
   correct(estimate, next);
   return true;

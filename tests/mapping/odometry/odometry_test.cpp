@@ -104,6 +104,28 @@ TEST(Odometry, BeforeOneBareWallItSaysSoAndHoldsWhatItCannotSee) {
   for (std::size_t i = 1; i < all.size(); ++i) EXPECT_FALSE(all[i].trusted) << i;
 }
 
+TEST(Odometry, BeforeAPaintedWallFollowsColourThatIsLateFromTheFirstFrame) {
+  // Depth does not constrain the motion along the wall, colour alone does. The camera moves in the first
+  // frame already.
+  constexpr double kDelay_s = 0.04, kSpeed_mps = 0.4;
+  const test::Scene wall = test::plane({0, 1, 0}, 2.5);
+  const Eigen::Isometry3d start = test::looking_at({-0.2, 1.0, 1.2}, {-0.2, 2.5, 1.2});
+  const auto at = [&](double time_s) -> Eigen::Isometry3d {
+    return start * Eigen::Translation3d(kSpeed_mps * time_s, 0, 0);
+  };
+  OdometryConfig config;
+  config.timing = SensorTiming{.colour_delay_s = kDelay_s};
+  config.estimate_timing = false;
+  Odometry odometry(config);
+  for (int i = 0; i < 20; ++i) {
+    Frame frame = frame_at(at(i / 30.0), i, wall);
+    frame.colour = frame_at(at(i / 30.0 + kDelay_s), i, wall).colour;
+    const Tracking tracking = odometry.track(frame);
+    EXPECT_EQ(tracking.status, TrackStatus::kTracked) << i;
+    EXPECT_NEAR(tracking.T_world_camera.translation().x(), kSpeed_mps * i / 30.0, 0.005) << i;
+  }
+}
+
 TEST(Odometry, BeginsWithTheFirstFrameThatShowsAnything) {
   Odometry odometry;
   EXPECT_EQ(odometry.track(dark_frame(0)).status, TrackStatus::kTooFewPoints);

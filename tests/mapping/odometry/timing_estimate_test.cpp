@@ -46,7 +46,11 @@ TEST(TimingEstimate, StaysWithinWhatSensorsDo) {
   const SensorTiming found = after_frames(600, {0.4, -0.4, 3.0}, 1.0, 0.0001).current;
   EXPECT_LE(found.depth_readout_s, 0.05);
   EXPECT_GE(found.colour_readout_s, 0.0);
-  EXPECT_LE(found.colour_delay_s, 0.1);
+  EXPECT_LE(found.colour_delay_s, 0.05);
+  // A stated time beyond the limits is corrected towards them, in steps.
+  TimingEstimate late = start_estimate({0.0, 0.0, 0.08});
+  for (int i = 0; i < 20; ++i) add_evidence(late, evidence_of({0.0, 0.0, 0.075}, late, 1.0, 0.0001));
+  EXPECT_NEAR(late.current.colour_delay_s, 0.0725, 0.001);
 }
 
 TEST(TimingEstimate, IgnoresEvidenceThatIsNotFinite) {
