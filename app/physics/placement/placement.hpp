@@ -21,7 +21,7 @@ struct PlacementConfig {
   double max_range_m = 4.0;       ///< max depth of the surface along the camera's axis
   double max_away_m = 0.25;       ///< max distance of the returned point from SupportQuery::near_world
 };
-/// Throws Error such as "placement.cell_m = 0: must be in 0.005000..0.100000".
+/// Throws Error such as "placement.cell_m = 0: must be in 0.005..0.1".
 void require_valid(const PlacementConfig& config);
 
 /// Max radius of a footprint, m. The footprint is the circle that the object covers seen from above.
