@@ -47,12 +47,12 @@ Solution solve(const TimingEstimate& estimate) {
 
 /// Returns the corrected value, or `current` if the correction is within its error.
 double corrected(double current, const Solution& solution, int parameter, double least, double most) {
-  const double significant = parameter == kColourDelay ? 2.0 : 3.0;  // standard deviations
+  constexpr double kSignificant = 2.0;  // standard deviations
   // The noise of velocities weakens the evidence: solutions are 60 to 70 % of the error on simulated
   // recordings with delays of 20 and 40 ms.
   constexpr double kOverRelaxation = 1.5, kMostStep_s = 0.015;
   const double step_s = solution.correction(parameter);
-  if (!(std::abs(step_s) > significant * solution.sigma(parameter))) return current;
+  if (!(std::abs(step_s) > kSignificant * solution.sigma(parameter))) return current;
   // A stated time may lie outside the limits.
   return std::clamp(current + std::clamp(kOverRelaxation * step_s, -kMostStep_s, kMostStep_s),
                     std::min(least, current), std::max(most, current));
