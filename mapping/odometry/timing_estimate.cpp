@@ -48,8 +48,8 @@ Solution solve(const TimingEstimate& estimate) {
 /// Returns the corrected value, or `current` if the correction is within its error.
 double corrected(double current, const Solution& solution, int parameter, double least, double most) {
   constexpr double kSignificant = 2.0;  // standard deviations
-  // The noise of velocities weakens the evidence: solutions are 60 to 70 % of the error on simulated
-  // recordings with delays of 20 and 40 ms.
+  // Solutions are 60 to 70 % of the error on simulated recordings with delays of 20 and 40 ms, probably
+  // because velocities are noisy.
   constexpr double kOverRelaxation = 1.5, kMostStep_s = 0.015;
   const double step_s = solution.correction(parameter);
   if (!(std::abs(step_s) > kSignificant * solution.sigma(parameter))) return current;
