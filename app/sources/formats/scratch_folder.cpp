@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kScratchPrefix = "roomradar-scratch-";
 
-/// Opens and locks a folder of this user. Returns -1 if that fails, in particular if a process holds the
-/// lock.
+/// Opens and locks a folder of this user. Returns -1 if that fails; errno is EWOULDBLOCK if a process holds
+/// the lock.
 int lock_scratch(const fs::path& folder) {
   const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (opened < 0) return -1;
@@ -54,16 +54,22 @@ ScratchFolder::ScratchFolder(fs::path parent) {
   if (parent.empty()) parent = fs::temp_directory_path(fault);
   if (fault) throw Error("there is no folder for temporary files; set TMPDIR to one: " + fault.message());
   remove_abandoned(parent);
-  // Another process may take the new folder for abandoned before it is locked, and remove it.
+  // Before the new folder is locked, another process may take it for abandoned, lock it and remove it.
   constexpr int kTries = 10;
-  for (int i = 0; i < kTries && (i == 0 || !fs::exists(path_, fault)); ++i) {
-    if (locked_ >= 0) close(std::exchange(locked_, -1));
+  for (int i = 0; i < kTries; ++i) {
     std::string pattern = (parent / (std::string(kScratchPrefix) + "XXXXXX")).string();
     if (!mkdtemp(pattern.data()))
       throw Error(parent.string() + ": no temporary folder can be made there: " + std::strerror(errno));
-    path_ = pattern;
-    locked_ = lock_scratch(path_);
+    locked_ = lock_scratch(pattern);
+    const bool is_taken = locked_ < 0 && errno == EWOULDBLOCK;
+    if (!is_taken && fs::exists(pattern, fault)) {
+      path_ = pattern;
+      return;
+    }
+    if (locked_ >= 0) close(std::exchange(locked_, -1));
   }
+  throw Error(parent.string() +
+              ": temporary folders are removed as soon as they are made; set TMPDIR to another");
 }
 
 ScratchFolder::~ScratchFolder() {

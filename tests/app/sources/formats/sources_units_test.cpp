@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <bit>
 #include <chrono>
@@ -352,6 +353,26 @@ TEST(ScratchFolder, RemovesThoseOfKilledProcessesOnly) {
   EXPECT_TRUE(std::filesystem::exists(next.path()));
   EXPECT_TRUE(std::filesystem::exists(parent.path() / "roomradar-other"));
   EXPECT_TRUE(std::filesystem::is_symlink(parent.path() / "roomradar-scratch-linked"));
+}
+
+TEST(ScratchFolder, ProcessesThatBeginTogetherKeepTheirFolders) {
+  const test::TemporaryFolder parent;
+  std::array<pid_t, 4> children{};
+  for (pid_t& child : children) {
+    child = fork();
+    if (child != 0) continue;
+    for (int i = 0; i < 300; ++i) {
+      const ScratchFolder own(parent.path());
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+      if (!std::filesystem::exists(own.path())) _exit(1);
+    }
+    _exit(0);
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
 }
 
 /// Delivers this many of a source's frames, then nothing for the time being.
