@@ -40,16 +40,8 @@ bool is_within(const QualityField& field, int value) {
   return is_within(field, static_cast<double>(value)) && !(is_stride && value == 3);
 }
 
-/// Returns "1|2|4" as "1, 2 or 4".
-std::string listed(std::string_view unit) {
-  std::string list(unit);
-  for (std::size_t bar = list.rfind('|'), i = 0; bar != std::string::npos; bar = list.rfind('|'), ++i)
-    list.replace(bar, 1, i == 0 ? " or " : ", ");
-  return list;
-}
-
 [[noreturn]] void fail(const QualityField& field, std::string_view word) {
-  std::string rule = listed(field.unit);
+  std::string rule = words_of_choice(field.unit);
   if (rule == field.unit) {
     std::array<char, 64> range{};
     std::snprintf(range.data(), range.size(), "between %.10g and %.10g%s", field.low, field.high,
@@ -97,6 +89,14 @@ FieldWords words_of_fields(const Quality& quality, const Quality& defaults) {
 }
 
 }  // namespace
+
+std::string words_of_choice(std::string_view type) {
+  std::string words;
+  const std::size_t last = type.rfind('|');
+  for (std::size_t i = 0; i < type.size(); ++i)
+    words += type[i] != '|' ? std::string(1, type[i]) : i == last ? " or " : ", ";
+  return words;
+}
 
 void require_valid(const ScanQuality& quality) { require_valid_fields(quality); }
 void require_valid(const RunQuality& quality) { require_valid_fields(quality); }

@@ -48,6 +48,9 @@ struct QualityField {
   const char* old_option = "";   ///< former name on the command line; empty: none
 };
 
+/// Returns the words of a type such as "a|b|c" for a sentence: "a, b or c". Other text is unchanged.
+std::string words_of_choice(std::string_view type);
+
 /// Calls visit(QualityField, field) for each field, in the order of files and help.
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, ScanQuality>

@@ -30,14 +30,6 @@ CLI::Validator whole_within(std::int64_t low, std::int64_t high) {
       "", "whole_within");
 }
 
-std::string words_of_choice(const std::string& type) {
-  std::string words;
-  const std::size_t last = type.rfind('|');
-  for (std::size_t i = 0; i < type.size(); ++i)
-    words += type[i] != '|' ? std::string(1, type[i]) : i == last ? " or " : ", ";
-  return words;
-}
-
 void refuse_given(const CLI::App& command, const std::vector<std::string>& names, const char* why) {
   for (const std::string& name : names)
     if (command.count(name) > 0) throw CLI::ValidationError(name + why);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "app/quality/quality.hpp"
+
 namespace roomradar {
 
 /// Returns a check that a number is in low..high. Unlike CLI11's Range, the check rejects "nan".
@@ -15,9 +17,6 @@ CLI::Validator within(double low, double high, const std::string& unit);
 
 /// Returns a check that a number is a whole number in low..high.
 CLI::Validator whole_within(std::int64_t low, std::int64_t high);
-
-/// Returns the words of a type such as "a|b|c" for a sentence: "a, b or c". Other text is unchanged.
-std::string words_of_choice(const std::string& type);
 
 /// Throws CLI::ValidationError with the name and `why` if one of these options was given.
 void refuse_given(const CLI::App& command, const std::vector<std::string>& names, const char* why);

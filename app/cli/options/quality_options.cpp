@@ -28,9 +28,8 @@ void add_field_options(CLI::App& command, FieldWords& fixed) {
                 set_field(scratch, field.name, word);
               } catch (const Error& error) {
                 const std::string fault = error.what();  // "field = word: must be ...": the option says both
-                throw CLI::ValidationError(
-                    std::string(field.option) + " " + word,
-                    words_of_choice(fault.substr(std::min(fault.find("must be"), fault.size() - 1))));
+                throw CLI::ValidationError(std::string(field.option) + " " + word,
+                                           fault.substr(std::min(fault.find("must be"), fault.size() - 1)));
               }
               fixed.emplace_back(field.name, word);
             },
