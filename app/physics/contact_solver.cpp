@@ -3,7 +3,6 @@
 #include "app/physics/contact_solver.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "mapping/types/disjoint_sets.hpp"
@@ -20,16 +19,7 @@ bool is_movable(std::span<const SolverBody> bodies, std::size_t body) {
   return body < bodies.size() && bodies[body].inverse_mass_per_kg > 0.0;
 }
 
-void apply(const SolverContact& contact, std::span<SolverBody> bodies, const Vec3& direction,
-           const Vec3& turns, const Vec3& other_turns, double impulse_Ns) {
-  SolverBody& body = bodies[contact.body];
-  body.velocity.linear_mps += impulse_Ns * body.inverse_mass_per_kg * direction;
-  body.velocity.angular_rad_s += impulse_Ns * turns;
-  if (contact.other >= bodies.size()) return;
-  SolverBody& other = bodies[contact.other];
-  other.velocity.linear_mps -= impulse_Ns * other.inverse_mass_per_kg * direction;
-  other.velocity.angular_rad_s -= impulse_Ns * other_turns;
-}
+Eigen::Vector4d with_zero(const Vec3& v) { return {v.x(), v.y(), v.z(), 0.0}; }
 
 }  // namespace
 
@@ -52,9 +42,20 @@ Eigen::Vector3d slip_at(const SolverContact& contact, std::span<const SolverBody
   return own - velocity_at(bodies[contact.other].velocity, contact.other_offset_m);
 }
 
-Eigen::Vector3d ContactSolver::impulses_of(const SolverContact& contact, const Rows& rows) {
-  return {contact.impulse_Ns, contact.friction_impulse_Ns.dot(rows.x.direction),
-          contact.friction_impulse_Ns.dot(rows.y.direction)};
+/// Returns the velocity along a row of the body relative to the other one.
+inline double ContactSolver::SystemContact::slip_mps(int row, const Twist& own, const Twist& others) const {
+  const Row& r = rows[static_cast<std::size_t>(row)];
+  return ((own.linear_mps - others.linear_mps).cwiseProduct(r.direction) +
+          own.angular_rad_s.cwiseProduct(r.lever) - others.angular_rad_s.cwiseProduct(r.other_lever))
+      .sum();
+}
+
+inline void ContactSolver::SystemContact::apply(int row, double impulse_Ns, Twist& own, Twist& others) const {
+  const Row& r = rows[static_cast<std::size_t>(row)];
+  own.linear_mps += impulse_Ns * inverse_mass_per_kg * r.direction;
+  own.angular_rad_s += impulse_Ns * r.turns;
+  others.linear_mps -= impulse_Ns * other_inverse_mass_per_kg * r.direction;
+  others.angular_rad_s -= impulse_Ns * r.other_turns;
 }
 
 /// Joins movable bodies that touch, and sets each contact's system. A contact between immovable bodies has
@@ -77,8 +78,11 @@ void ContactSolver::find_systems(std::span<const SolverContact> contacts,
 void ContactSolver::solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling) {
   if (contacts.empty()) return;
   find_systems(contacts, bodies);
-  rows_.resize(contacts.size());
   rolling_.assign(bodies.size(), {Vec3::Zero(), 0.0});
+  twists_.clear();
+  for (const SolverBody& body : bodies)
+    twists_.push_back({with_zero(body.velocity.linear_mps), with_zero(body.velocity.angular_rad_s)});
+  twists_.emplace_back();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (system_of_contact_[i] != kNoOther) continue;
     contacts[i].impulse_Ns = 0.0;
@@ -86,113 +90,130 @@ void ContactSolver::solve(std::span<SolverContact> contacts, std::span<SolverBod
   }
   for (std::size_t system = 0; system < bodies.size(); ++system) {
     if (system_of_body_[system] != system) continue;
-    order_.clear();
+    system_.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      if (system_of_contact_[i] == system) order_.push_back(i);
-    if (order_.empty()) continue;
+      if (system_of_contact_[i] == system) add_contact(i, contacts[i], bodies);
+    if (system_.empty()) continue;
     members_.clear();
     for (std::size_t body = 0; body < bodies.size(); ++body)
       if (system_of_body_[body] == system) members_.push_back(body);
-    solve_system(contacts, bodies, rolling);
+    solve_system(bodies, rolling);
+    for (const SystemContact& solved : system_) {
+      SolverContact& contact = contacts[solved.index];
+      contact.impulse_Ns = solved.impulses_Ns.x();
+      contact.friction_impulse_Ns = (solved.impulses_Ns.y() * solved.rows[1].direction +
+                                     solved.impulses_Ns.z() * solved.rows[2].direction)
+                                        .head<3>();
+    }
+    for (const std::size_t member : members_) {
+      bodies[member].velocity.linear_mps = twists_[member].linear_mps.head<3>();
+      bodies[member].velocity.angular_rad_s = twists_[member].angular_rad_s.head<3>();
+    }
   }
 }
 
-void ContactSolver::solve_system(std::span<SolverContact> contacts, std::span<SolverBody> bodies,
-                                 double rolling) {
-  for (const std::size_t i : order_) {
-    SolverContact& contact = contacts[i];
-    const SolverBody& body = bodies[contact.body];
-    const SolverBody* other = contact.other < bodies.size() ? &bodies[contact.other] : nullptr;
-    const auto row_along = [&](const Vec3& direction) {
-      Row row;
-      row.direction = direction;
-      row.lever = contact.contact_offset_m.cross(direction);
-      row.turns = body.inverse_mass_per_kg * (body.inverse_inertia_m2 * row.lever);
-      double yields = body.inverse_mass_per_kg + row.lever.dot(row.turns);
-      row.other_lever.setZero();
-      row.other_turns.setZero();
-      if (other != nullptr) {
-        row.other_lever = contact.other_offset_m.cross(direction);
-        row.other_turns = other->inverse_mass_per_kg * (other->inverse_inertia_m2 * row.other_lever);
-        yields += other->inverse_mass_per_kg + row.other_lever.dot(row.other_turns);
-      }
-      row.effective_mass_kg = 1.0 / yields;
-      return row;
-    };
-    const Vec3 x = contact.normal.unitOrthogonal();
-    Rows& rows = rows_[i];
-    rows = {row_along(contact.normal), row_along(x), row_along(contact.normal.cross(x))};
-    for (const Row* row : {&rows.normal, &rows.x, &rows.y}) {
-      const double guess_Ns =
-          row == &rows.normal ? contact.impulse_Ns : contact.friction_impulse_Ns.dot(row->direction);
-      if (guess_Ns != 0.0) apply(contact, bodies, row->direction, row->turns, row->other_turns, guess_Ns);
+void ContactSolver::add_contact(std::size_t index, const SolverContact& contact,
+                                std::span<const SolverBody> bodies) {
+  const SolverBody& body = bodies[contact.body];
+  const SolverBody* other = contact.other < bodies.size() ? &bodies[contact.other] : nullptr;
+  const auto row_along = [&](const Vec3& direction) {
+    Row row;
+    const Vec3 lever = contact.contact_offset_m.cross(direction);
+    const Vec3 turns = body.inverse_mass_per_kg * (body.inverse_inertia_m2 * lever);
+    double yields = body.inverse_mass_per_kg + lever.dot(turns);
+    row.direction = with_zero(direction);
+    row.lever = with_zero(lever);
+    row.turns = with_zero(turns);
+    row.other_lever.setZero();
+    row.other_turns.setZero();
+    if (other != nullptr) {
+      const Vec3 other_lever = contact.other_offset_m.cross(direction);
+      const Vec3 other_turns = other->inverse_mass_per_kg * (other->inverse_inertia_m2 * other_lever);
+      yields += other->inverse_mass_per_kg + other_lever.dot(other_turns);
+      row.other_lever = with_zero(other_lever);
+      row.other_turns = with_zero(other_turns);
     }
-  }
+    row.effective_mass_kg = 1.0 / yields;
+    row.inverse_effective_mass_per_kg = yields;
+    return row;
+  };
+  const Vec3 x = contact.normal.unitOrthogonal(), y = contact.normal.cross(x);
+  const SystemContact& added = system_.emplace_back(
+      SystemContact{.rows = {row_along(contact.normal), row_along(x), row_along(y)},
+                    .impulses_Ns = {contact.impulse_Ns, contact.friction_impulse_Ns.dot(x),
+                                    contact.friction_impulse_Ns.dot(y)},
+                    .impulses_before_Ns = Vec3::Zero(),
+                    .search_Ns = Vec3::Zero(),
+                    .index = index,
+                    .body = contact.body,
+                    .other = other != nullptr ? contact.other : bodies.size(),
+                    .inverse_mass_per_kg = body.inverse_mass_per_kg,
+                    .other_inverse_mass_per_kg = other != nullptr ? other->inverse_mass_per_kg : 0.0,
+                    .leaves_mps = contact.leaves_mps,
+                    .friction = contact.friction,
+                    .arm_m = std::abs(contact.contact_offset_m.dot(contact.normal)),
+                    .other_arm_m = std::abs(contact.other_offset_m.dot(contact.normal))});
+  for (int row = 0; row < 3; ++row)
+    if (const double guess_Ns = added.impulses_Ns[row]; guess_Ns != 0.0)
+      added.apply(row, guess_Ns, twists_[added.body], twists_[added.other]);
+}
+
+void ContactSolver::solve_system(std::span<const SolverBody> bodies, double rolling) {
   double before = 0.0;  // squared norm of the change by the last sweep
-  search_.assign(order_.size(), Vec3::Zero());
   for (int sweeps = 0; sweeps < kMaxSweeps; ++sweeps) {
-    impulses_before_.clear();
-    for (const std::size_t i : order_) impulses_before_.push_back(impulses_of(contacts[i], rows_[i]));
-    const double turned_mps = rolling > 0.0 ? resist_rolling(contacts, bodies, rolling) : 0.0;
-    const double change_mps = sweep(contacts, bodies);
+    for (SystemContact& contact : system_) contact.impulses_before_Ns = contact.impulses_Ns;
+    const double turned_mps = rolling > 0.0 ? resist_rolling(bodies, rolling) : 0.0;
+    const double change_mps = sweep();
     if (std::max(change_mps, turned_mps) < kSettled_mps || sweeps + 1 == kMaxSweeps) return;
-    before = accelerate(contacts, bodies, before);
+    before = accelerate(before);
   }
 }
 
 /// Continues the changes of the past sweeps: conjugate gradients of Fletcher and Reeves, with restarts. The
 /// next sweep restores feasible impulses. Returns the squared norm of the last sweep's change.
-double ContactSolver::accelerate(std::span<SolverContact> contacts, std::span<SolverBody> bodies,
-                                 double before) {
+double ContactSolver::accelerate(double before) {
   double now = 0.0;
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const SolverContact& contact = contacts[order_[k]];
-    const Rows& rows = rows_[order_[k]];
-    Vec3& change = impulses_before_[k];
-    change = impulses_of(contact, rows) - change;
-    now += change.x() * change.x() / rows.normal.effective_mass_kg +
-           change.y() * change.y() / rows.x.effective_mass_kg +
-           change.z() * change.z() / rows.y.effective_mass_kg;
-  }
+  for (const SystemContact& contact : system_)
+    for (int row = 0; row < 3; ++row) {
+      const double change_Ns = contact.impulses_Ns[row] - contact.impulses_before_Ns[row];
+      now +=
+          change_Ns * change_Ns * contact.rows[static_cast<std::size_t>(row)].inverse_effective_mass_per_kg;
+    }
   const bool restarts = !(before > 0.0) || now > before;
   const double kept = restarts ? 0.0 : now / before;
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const Vec3 more_Ns = kept * search_[k];
-    search_[k] = more_Ns + impulses_before_[k];
+  for (SystemContact& contact : system_) {
+    const Vec3 change_Ns = contact.impulses_Ns - contact.impulses_before_Ns;
+    const Vec3 more_Ns = kept * contact.search_Ns;
+    contact.search_Ns = more_Ns + change_Ns;
     if (restarts || more_Ns.isZero(0.0)) continue;
-    SolverContact& contact = contacts[order_[k]];
-    const Rows& rows = rows_[order_[k]];
-    const std::array<const Row*, 3> all = {&rows.normal, &rows.x, &rows.y};
-    for (int axis = 0; axis < 3; ++axis)
-      apply(contact, bodies, all[axis]->direction, all[axis]->turns, all[axis]->other_turns, more_Ns[axis]);
-    contact.impulse_Ns += more_Ns.x();
-    contact.friction_impulse_Ns += more_Ns.y() * rows.x.direction + more_Ns.z() * rows.y.direction;
+    Twist own = twists_[contact.body], others = twists_[contact.other];
+    for (int row = 0; row < 3; ++row) contact.apply(row, more_Ns[row], own, others);
+    twists_[contact.body] = own;
+    twists_[contact.other] = others;
+    contact.impulses_Ns += more_Ns;
   }
   return now;
 }
 
 /// Applies rolling resistance; returns the greatest change of a body's angular momentum per kg and m.
-double ContactSolver::resist_rolling(std::span<const SolverContact> contacts, std::span<SolverBody> bodies,
-                                     double rolling) {
+double ContactSolver::resist_rolling(std::span<const SolverBody> bodies, double rolling) {
   for (const std::size_t i : members_) rolling_[i].limit_m2_rad_s = 0.0;
-  for (const std::size_t i : order_) {
-    const SolverContact& contact = contacts[i];
-    rolling_[contact.body].limit_m2_rad_s +=
-        contact.impulse_Ns * std::abs(contact.contact_offset_m.dot(contact.normal));
+  for (const SystemContact& contact : system_) {
+    rolling_[contact.body].limit_m2_rad_s += contact.impulses_Ns.x() * contact.arm_m;
     if (contact.other < bodies.size())
-      rolling_[contact.other].limit_m2_rad_s +=
-          contact.impulse_Ns * std::abs(contact.other_offset_m.dot(contact.normal));
+      rolling_[contact.other].limit_m2_rad_s += contact.impulses_Ns.x() * contact.other_arm_m;
   }
   double most = 0.0;
   for (const std::size_t i : members_) {
-    SolverBody& body = bodies[i];
+    const SolverBody& body = bodies[i];
+    Twist& twist = twists_[i];
     Rolling& resistance = rolling_[i];
     const double limit = rolling * resistance.limit_m2_rad_s * body.inverse_mass_per_kg;
-    Vec3 wanted = resistance.held_m2_rad_s - body.inertia_m2 * body.velocity.angular_rad_s;
+    Vec3 wanted = resistance.held_m2_rad_s - body.inertia_m2 * twist.angular_rad_s.head<3>();
     const double size = wanted.norm();
     if (size > limit) wanted *= limit / size;
     const Vec3 more = wanted - resistance.held_m2_rad_s;
-    body.velocity.angular_rad_s += body.inverse_inertia_m2 * more;
+    twist.angular_rad_s.head<3>() += body.inverse_inertia_m2 * more;
     resistance.held_m2_rad_s = wanted;
     most = std::max(most, more.lpNorm<Eigen::Infinity>());
   }
@@ -200,43 +221,38 @@ double ContactSolver::resist_rolling(std::span<const SolverContact> contacts, st
 }
 
 /// Solves each contact of the system once; returns the greatest change of a velocity.
-double ContactSolver::sweep(std::span<SolverContact> contacts, std::span<SolverBody> bodies) {
+double ContactSolver::sweep() {
   double change_mps = 0.0;
-  const auto slip_along = [&](const SolverContact& contact, const Row& row) {
-    const Velocity& own = bodies[contact.body].velocity;
-    double slip_mps = own.linear_mps.dot(row.direction) + own.angular_rad_s.dot(row.lever);
-    if (contact.other < bodies.size()) {
-      const Velocity& other = bodies[contact.other].velocity;
-      slip_mps -= other.linear_mps.dot(row.direction) + other.angular_rad_s.dot(row.other_lever);
-    }
-    return slip_mps;
-  };
-  for (const std::size_t i : order_) {
-    SolverContact& contact = contacts[i];
-    const Rows& rows = rows_[i];
-    const auto change = [&](const Row& row, double more_Ns) {
-      apply(contact, bodies, row.direction, row.turns, row.other_turns, more_Ns);
-      change_mps = std::max(change_mps, std::abs(more_Ns) / row.effective_mass_kg);
+  for (SystemContact& contact : system_) {
+    Twist own = twists_[contact.body], others = twists_[contact.other];
+    const auto change = [&](int row, double impulse_Ns) {
+      const double more_Ns = impulse_Ns - contact.impulses_Ns[row];
+      contact.apply(row, more_Ns, own, others);
+      contact.impulses_Ns[row] = impulse_Ns;
+      const Row& r = contact.rows[static_cast<std::size_t>(row)];
+      change_mps = std::max(change_mps, std::abs(more_Ns) * r.inverse_effective_mass_per_kg);
     };
-    const double enters_mps = contact.leaves_mps - slip_along(contact, rows.normal);
-    const double impulse_Ns = std::max(contact.impulse_Ns + rows.normal.effective_mass_kg * enters_mps, 0.0);
-    change(rows.normal, impulse_Ns - contact.impulse_Ns);
-    contact.impulse_Ns = impulse_Ns;
-    if (!(contact.friction > 0.0)) continue;
-
-    const double before_x = contact.friction_impulse_Ns.dot(rows.x.direction);
-    const double before_y = contact.friction_impulse_Ns.dot(rows.y.direction);
-    double x_Ns = before_x - rows.x.effective_mass_kg * slip_along(contact, rows.x);
-    double y_Ns = before_y - rows.y.effective_mass_kg * slip_along(contact, rows.y);
-    const double most_Ns = contact.friction * impulse_Ns;
-    const double size_Ns = std::sqrt(x_Ns * x_Ns + y_Ns * y_Ns);
-    if (size_Ns > most_Ns) {
-      x_Ns *= most_Ns / size_Ns;
-      y_Ns *= most_Ns / size_Ns;
+    /// The impulse along a row that ends the motion below a speed.
+    const auto impulse_for = [&](int row, double speed_mps) {
+      const double missing_mps = speed_mps - contact.slip_mps(row, own, others);
+      return contact.impulses_Ns[row] +
+             contact.rows[static_cast<std::size_t>(row)].effective_mass_kg * missing_mps;
+    };
+    change(0, std::max(impulse_for(0, contact.leaves_mps), 0.0));
+    if (contact.friction > 0.0) {
+      double x_Ns = impulse_for(1, 0.0);
+      double y_Ns = impulse_for(2, 0.0);
+      const double most_Ns = contact.friction * contact.impulses_Ns.x();
+      const double size_Ns = std::sqrt(x_Ns * x_Ns + y_Ns * y_Ns);
+      if (size_Ns > most_Ns) {
+        x_Ns *= most_Ns / size_Ns;
+        y_Ns *= most_Ns / size_Ns;
+      }
+      change(1, x_Ns);
+      change(2, y_Ns);
     }
-    change(rows.x, x_Ns - before_x);
-    change(rows.y, y_Ns - before_y);
-    contact.friction_impulse_Ns = x_Ns * rows.x.direction + y_Ns * rows.y.direction;
+    twists_[contact.body] = own;
+    twists_[contact.other] = others;
   }
   return change_mps;
 }

@@ -2,6 +2,7 @@
 // surfaces.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -76,35 +77,48 @@ class ContactSolver {
   void solve(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling);
 
  private:
+  using Vec4 = Eigen::Vector4d;  ///< three coordinates and 0: one register of four numbers
+
+  struct Twist {
+    Vec4 linear_mps = Vec4::Zero(), angular_rad_s = Vec4::Zero();
+  };
   /// A direction of a contact, and the velocity changes by a unit impulse along it.
   struct Row {
-    Eigen::Vector3d direction, lever, other_lever, turns, other_turns;
-    double effective_mass_kg;
+    Vec4 direction, lever, other_lever, turns, other_turns;
+    double effective_mass_kg, inverse_effective_mass_per_kg;
   };
-  struct Rows {
-    Row normal, x, y;
+  /// Contact of the system being solved, with its impulses along the normal and two tangents.
+  struct SystemContact {
+    std::array<Row, 3> rows;  ///< normal, x, y
+    Eigen::Vector3d impulses_Ns, impulses_before_Ns, search_Ns;
+    std::size_t index;        ///< of the contact in the span given to solve()
+    std::size_t body, other;  ///< indices into twists_
+    double inverse_mass_per_kg, other_inverse_mass_per_kg;
+    double leaves_mps, friction;
+    double arm_m, other_arm_m;  ///< distances of the centres of mass from the tangent plane
+
+    [[nodiscard]] double slip_mps(int row, const Twist& own, const Twist& others) const;
+    void apply(int row, double impulse_Ns, Twist& own, Twist& others) const;
   };
   struct Rolling {
     Eigen::Vector3d held_m2_rad_s;  ///< angular impulse per kg so far
     double limit_m2_rad_s;
   };
 
-  std::vector<Rows> rows_;
+  std::vector<Twist> twists_;  ///< per body, and at the end that of static surfaces: zero
+  std::vector<SystemContact> system_;
   std::vector<Rolling> rolling_;
   std::vector<std::size_t> system_of_body_;  ///< kNoOther: immovable
   std::vector<std::size_t> system_of_contact_;
-  /// Per contact of the system: impulses before the last sweep, then their change; search direction.
-  std::vector<Eigen::Vector3d> impulses_before_, search_;
-  std::vector<std::size_t> order_, members_;  ///< contacts and bodies of the system being solved
+  std::vector<std::size_t> members_;  ///< bodies of the system being solved
 
   void find_systems(std::span<const SolverContact> contacts, std::span<const SolverBody> bodies);
-  void solve_system(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double rolling);
-  /// Returns the impulses along the normal and the two tangents.
-  static Eigen::Vector3d impulses_of(const SolverContact& contact, const Rows& rows);
-  double sweep(std::span<SolverContact> contacts, std::span<SolverBody> bodies);
-  double accelerate(std::span<SolverContact> contacts, std::span<SolverBody> bodies, double before);
-  double resist_rolling(std::span<const SolverContact> contacts, std::span<SolverBody> bodies,
-                        double rolling);
+  /// Adds a contact to the system, and applies its guessed impulses.
+  void add_contact(std::size_t index, const SolverContact& contact, std::span<const SolverBody> bodies);
+  void solve_system(std::span<const SolverBody> bodies, double rolling);
+  double sweep();
+  double accelerate(double before);
+  double resist_rolling(std::span<const SolverBody> bodies, double rolling);
 };
 
 }  // namespace roomradar

@@ -23,7 +23,17 @@ struct PairBox {
 };
 struct PendingPair {
   PairBox object, scene;
-  float key;
+};
+/// Pairs of boxes still to be visited: scratch memory of visit_pairs().
+struct PendingPairs {
+  /// Entry of the queue, which may be a heap. Small, because a heap moves its entries often.
+  struct Entry {
+    float key;
+    std::uint32_t pair;  ///< index into `pairs`
+  };
+  std::vector<Entry> queue;
+  std::vector<PendingPair> pairs;
+  std::vector<std::uint32_t> unused;  ///< indices into `pairs`
 };
 /// Order in which pairs of boxes are visited.
 enum class PairOrder {
@@ -52,26 +62,27 @@ inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other
   return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
 }
 
-/// Cache of one leaf's triangles. Consecutive calls with the same leaf compute them once.
+/// Cache of some leaves' triangles: pairs of leaves near each other are visited in turn.
 class LeafTriangles {
  public:
   /// Returns the leaf's triangles; valid until the next call.
-  /// @param triangle  callable that returns triangle i of the tree; called only if the leaf differs from the
-  ///                  previous call's
+  /// @param triangle  callable that returns triangle i of the tree; called only if the leaf is not cached
   template <typename MakeTriangle>
   std::span<const FrameTriangle> of(const PairBox& leaf, const MakeTriangle& triangle) {
     assert(leaf.count <= kLeafTriangles);
-    if (leaf.first != first_ || leaf.count != count_) {
-      first_ = leaf.first;
-      count_ = leaf.count;
-      for (std::uint32_t i = 0; i < count_; ++i) triangles_[i] = triangle(first_ + i);
+    const std::size_t slot = leaf.first / kLeafTriangles % kSlots;
+    if (leaf.first != first_[slot] || leaf.count != count_[slot]) {
+      first_[slot] = leaf.first;
+      count_[slot] = leaf.count;
+      for (std::uint32_t i = 0; i < leaf.count; ++i) triangles_[slot][i] = triangle(leaf.first + i);
     }
-    return {triangles_.data(), count_};
+    return {triangles_[slot].data(), leaf.count};
   }
 
  private:
-  std::array<FrameTriangle, kLeafTriangles> triangles_;
-  std::uint32_t first_ = 0, count_ = 0;
+  static constexpr std::size_t kSlots = 32;  // 12 KB of triangles
+  std::array<std::uint32_t, kSlots> first_{}, count_{};
+  std::array<std::array<FrameTriangle, kLeafTriangles>, kSlots> triangles_;
 };
 
 /// An object's tree and one of the scene's trees, in a common frame. The frame has the scene mesh's axes, and
@@ -142,7 +153,7 @@ inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
 /// faces (see TriangleTree). Stops when leaf() returns -infinity. With PairOrder::kLeastFirst, also stops
 /// once all pending keys are at least the value that leaf() returned last.
 template <PairOrder order, typename Key, typename Leaf>
-void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
+void visit_pairs(const TreePair& trees, PendingPairs& pending, const Key& key, const Leaf& leaf) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
   const TriangleTree& object = trees.object;
   const TriangleTree& scene = trees.scene;
@@ -152,24 +163,39 @@ void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const
   const Eigen::Vector3f t = trees.T_frame_object.translation().cast<float>();
   const float slack_m = 16.0F * std::numeric_limits<float>::epsilon() *
                         (t.lpNorm<Eigen::Infinity>() + object.half_size().norm() + scene.half_size().norm());
-  const auto is_later = [](const PendingPair& a, const PendingPair& b) { return a.key > b.key; };
+  using Entry = PendingPairs::Entry;
+  const auto is_later = [](const Entry& a, const Entry& b) { return a.key > b.key; };
   const auto push = [&](const PairBox& o, const PairBox& s) {
     if (o.is_within_faces && s.is_within_faces) return;
     const float k = key(o, s);
     if (!(k < kNone)) return;
-    pending.push_back({o, s, k});
-    if constexpr (order == PairOrder::kLeastFirst) std::push_heap(pending.begin(), pending.end(), is_later);
+    auto place = static_cast<std::uint32_t>(pending.pairs.size());
+    if (pending.unused.empty()) {
+      pending.pairs.push_back({o, s});
+    } else {
+      place = pending.unused.back();
+      pending.unused.pop_back();
+      pending.pairs[place] = {o, s};
+    }
+    pending.queue.push_back({k, place});
+    if constexpr (order == PairOrder::kLeastFirst)
+      std::push_heap(pending.queue.begin(), pending.queue.end(), is_later);
   };
-  pending.clear();
+  pending.queue.clear();
+  pending.pairs.clear();
+  pending.unused.clear();
   const Eigen::Vector3f slack = Eigen::Vector3f::Constant(slack_m);
   push({t, R_abs * object.half_size() + slack, 0, 0, false},
        {Eigen::Vector3f::Zero(), scene.half_size() + slack, 0, 0, false});
   float bound = kNone;
-  while (!pending.empty()) {
-    if constexpr (order == PairOrder::kLeastFirst) std::pop_heap(pending.begin(), pending.end(), is_later);
-    const PendingPair pair = pending.back();
-    pending.pop_back();
-    if (order == PairOrder::kLeastFirst && !(pair.key < bound)) return;
+  while (!pending.queue.empty()) {
+    if constexpr (order == PairOrder::kLeastFirst)
+      std::pop_heap(pending.queue.begin(), pending.queue.end(), is_later);
+    const Entry next = pending.queue.back();
+    pending.queue.pop_back();
+    if (order == PairOrder::kLeastFirst && !(next.key < bound)) return;
+    const PendingPair pair = pending.pairs[next.pair];
+    pending.unused.push_back(next.pair);
     if (pair.object.count > 0 && pair.scene.count > 0) {
       bound = leaf(pair.object, pair.scene);
       if (bound == -kNone) return;

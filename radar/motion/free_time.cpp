@@ -25,6 +25,11 @@ double time_for(double allowed_m, double closing_m_s, double quadratic_m_s2) {
   return denominator > 0.0 ? 2.0 * allowed_m / denominator : kInfinity<double>;
 }
 
+/// Returns true if time_for() is at least enough_s, without its square root.
+bool is_enough(double enough_s, double allowed_m, double closing_m_s, double quadratic_m_s2) {
+  return enough_s * (closing_m_s + quadratic_m_s2 * enough_s) <= allowed_m;
+}
+
 /// Returns the distance by which a pair may approach. At least a hundredth of keep_m remains, because
 /// rounding would hide a plane in a smaller gap.
 double allowed_m(double distance_m, double keep_m) {
@@ -48,44 +53,65 @@ struct RelativeMotion {
 
   [[nodiscard]] Vec3 velocity_at(const Vec3& p) const { return linear + angular.cross(p - centre); }
   /// Returns the time until two boxes separated along an axis can reach their minimum distance; 0 if no axis
-  /// separates them.
-  [[nodiscard]] float free_s(const PairBox& o, const PairBox& s) const {
+  /// separates them, and infinity if the time is at least enough_s.
+  [[nodiscard]] float free_s(const PairBox& o, const PairBox& s, double enough_s) const {
     const Vec3 o_centre = o.centre.cast<double>(), o_half = o.half.cast<double>();
     const Vec3 between = o_centre - s.centre.cast<double>();
     const Vec3 velocity = velocity_at(o_centre);
     const Vec3 w = angular.cwiseAbs();
+    const Vec3 apart_m = between.cwiseAbs() - o_half - s.half.cast<double>();
+    const Vec3 side(between.x() > 0.0 ? 1.0 : -1.0, between.y() > 0.0 ? 1.0 : -1.0,
+                    between.z() > 0.0 ? 1.0 : -1.0);
+    const Vec3 spread_m_s(w.y() * o_half.z() + w.z() * o_half.y(), w.z() * o_half.x() + w.x() * o_half.z(),
+                          w.x() * o_half.y() + w.y() * o_half.x());
+    const Vec3 closing_m_s = spread_m_s - side.cwiseProduct(velocity);
+    const Vec3 fastest = fastest_m_s - side.cwiseProduct(linear);
+    Vec3 allowed;
+    for (int k = 0; k < 3; ++k) {
+      allowed[k] = allowed_m(apart_m[k], keep_m);
+      if (!(apart_m[k] > 0.0)) continue;
+      if (!tree_moves && enough_s * fastest[k] <= allowed[k]) return kInfinity<float>;
+      if (is_enough(enough_s, allowed[k], closing_m_s[k], quadratic_m_s2[k])) return kInfinity<float>;
+    }
     double free_s = 0.0;
     for (int k = 0; k < 3; ++k) {
-      const double apart_m = std::abs(between[k]) - o_half[k] - static_cast<double>(s.half[k]);
-      if (!(apart_m > 0.0)) continue;
-      const int l = (k + 1) % 3, m = (k + 2) % 3;
-      const double spread = w[l] * o_half[m] + w[m] * o_half[l];
-      const double side = between[k] > 0.0 ? 1.0 : -1.0;
-      const double allowed = allowed_m(apart_m, keep_m);
-      const double now = time_for(allowed, -side * velocity[k] + spread, quadratic_m_s2[k]);
-      const double ever = tree_moves ? 0.0 : time_for(allowed, -side * linear[k] + fastest_m_s[k], 0.0);
+      if (!(apart_m[k] > 0.0)) continue;
+      const double now = time_for(allowed[k], closing_m_s[k], quadratic_m_s2[k]);
+      const double ever = tree_moves ? 0.0 : time_for(allowed[k], fastest[k], 0.0);
       free_s = std::max({free_s, now, ever});
     }
     return static_cast<float>(free_s) * (1.0F - 1e-6F);
   }
-  /// Returns the time for a box and a scene triangle, separated by the triangle's plane.
-  [[nodiscard]] double free_s(const FrameTriangle& s, const PairBox& o) const {
+  /// Returns true if the plane of a scene triangle separates it from the box for enough_s.
+  [[nodiscard]] bool separates_for(double enough_s, const FrameTriangle& s, const PairBox& o) const {
     const Vec3 middle = o.centre.cast<double>(), half = o.half.cast<double>();
     const double side = s.normal.dot(middle - s.corners[0]) >= 0.0 ? 1.0 : -1.0;
     const Vec3 direction = side * s.normal, turning = direction.cross(angular);
     const double apart_m = direction.dot(middle - s.corners[0]) - direction.cwiseAbs().dot(half);
-    if (!(apart_m > 0.0)) return 0.0;
-    const double closing = -direction.dot(velocity_at(middle)) + turning.cwiseAbs().dot(half);
-    return time_for(allowed_m(apart_m, keep_m), closing,
-                    0.5 * turning.norm() * turn_rad_s * reach_m + tree_quadratic_m_s2);
+    if (!(apart_m > 0.0)) return false;
+    const double closing_m_s = -direction.dot(velocity_at(middle)) + turning.cwiseAbs().dot(half);
+    return is_enough(enough_s, allowed_m(apart_m, keep_m), closing_m_s,
+                     0.5 * turning.norm() * turn_rad_s * reach_m + tree_quadratic_m_s2);
+  }
+  /// Returns true if the object's triangle stays farther along the direction than face_at for enough_s.
+  [[nodiscard]] bool separates_for(double enough_s, const Vec3& direction, const FrameTriangle& o,
+                                   double face_at) const {
+    const double turning = direction.cross(angular).norm();
+    const double quadratic = 0.5 * turning * turn_rad_s * reach_m + tree_quadratic_m_s2;
+    const double fastest = -direction.dot(linear) + turning * reach_m;
+    for (const Vec3& corner : o.corners) {
+      const double apart_m = direction.dot(corner) - face_at;
+      if (!(apart_m > 0.0)) return false;
+      const double allowed = allowed_m(apart_m, keep_m);
+      if (!tree_moves && enough_s * fastest <= allowed) continue;
+      if (!is_enough(enough_s, allowed, -direction.dot(velocity_at(corner)), quadratic)) return false;
+    }
+    return true;
   }
   /// Returns the time for two triangles and a direction from the scene's to the object's, the least over the
   /// corners. Negative if the direction does not separate them.
   [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, const FrameTriangle& s) const {
-    return free_s(direction, o, range_along(direction, s.corners).high);
-  }
-  /// Returns the time for everything that lies no farther along the direction than face_at.
-  [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, double face_at) const {
+    const double face_at = range_along(direction, s.corners).high;
     const double turning = direction.cross(angular).norm();
     const double quadratic = 0.5 * turning * turn_rad_s * reach_m + tree_quadratic_m_s2;
     const double fastest = -direction.dot(linear) + turning * reach_m;
@@ -220,21 +246,22 @@ struct TreeFreedom {
 
   /// Returns the free time of two boxes; infinite if it exceeds the least found so far.
   [[nodiscard]] float key(const PairBox& o, const PairBox& s) const {
-    constexpr float kLongEnough = std::numeric_limits<float>::infinity();
-    const float free_s = course.free_s(o, s);
-    if (!(static_cast<double>(free_s) < result.free_s)) return kLongEnough;
+    constexpr float kLongEnough = kInfinity<float>;
+    const float free_s = course.free_s(o, s, result.free_s);
+    if (free_s == kLongEnough) return kLongEnough;
     if (are_large_against(o, s)) {
       const Vec3 centre = s.centre.cast<double>(), half = s.half.cast<double>();
       for (const FrameTriangle& t : trees.of_object(o)) {
         const Vec3 direction = t.normal.dot(t.corners[0] - centre) >= 0.0 ? t.normal : Vec3(-t.normal);
         const double face_at = direction.dot(centre) + direction.cwiseAbs().dot(half);
-        if (course.free_s(direction, t, face_at) < result.free_s) return free_s;
+        if (!course.separates_for(result.free_s, direction, t, face_at)) return free_s;
       }
       return kLongEnough;
     }
     if (are_large_against(s, o)) {
       for (const FrameTriangle& t : trees.of_scene(s)) {
-        if (course.free_s(t, o) < result.free_s && !(is_one_sided(kind) && is_behind(t, o))) return free_s;
+        const bool is_free = course.separates_for(result.free_s, t, o);
+        if (!is_free && !(is_one_sided(kind) && is_behind(t, o))) return free_s;
       }
       return kLongEnough;
     }
@@ -243,18 +270,19 @@ struct TreeFreedom {
 
   /// Finds the best of the planes between two triangles.
   void look(const FrameTriangle& o, const FrameTriangle& s) {
-    double free_s = -1.0;
     const auto is_long_enough = [&](const Vec3& direction) {
-      free_s = std::max(free_s, course.free_s(direction, o, s));
-      return free_s >= result.free_s;
+      return course.separates_for(result.free_s, direction, o, range_along(direction, s.corners).high);
     };
     const double side_of_scene = s.normal.dot(o.corners[0] - s.corners[0]) >= 0.0 ? 1.0 : -1.0;
     if (is_one_sided(kind) && range_along(s.normal, o.corners).high < s.normal.dot(s.corners[0])) return;
     const double side_of_object = o.normal.dot(s.corners[0] - o.corners[0]) >= 0.0 ? -1.0 : 1.0;
-    if (is_long_enough(side_of_scene * s.normal) || is_long_enough(side_of_object * o.normal)) return;
+    const std::array<Vec3, 2> normals = {side_of_scene * s.normal, side_of_object * o.normal};
+    if (is_long_enough(normals[0]) || is_long_enough(normals[1])) return;
     const auto [from, way] = shortest_way(o, s, 0.0);
     const double distance_m = way.norm();
     if (distance_m > 0.0 && is_long_enough(-way / distance_m)) return;
+    double free_s = std::max(course.free_s(normals[0], o, s), course.free_s(normals[1], o, s));
+    if (distance_m > 0.0) free_s = std::max(free_s, course.free_s(-way / distance_m, o, s));
     if (free_s >= 0.0 && distance_m > 0.0)
       free_s = std::max(free_s, course.free_s_turning(-way / distance_m, o, s, result.free_s));
     if (free_s >= result.free_s) return;
@@ -279,7 +307,7 @@ struct TreeFreedom {
 
 FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
                    const RadarScene& scene, SurfaceKindMask left_out, const TreeStates& trees) {
-  thread_local std::vector<PendingPair> pending;  // scratch
+  thread_local PendingPairs pending;  // scratch
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
   result.free_s = duration_s;

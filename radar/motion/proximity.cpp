@@ -49,7 +49,7 @@ bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const F
 SurfaceKindMask near_features(const TreeInstance& object, const RadarScene& scene, double reach_m,
                               SurfaceKindMask left_out, const TreeStates& states,
                               std::vector<ClosestPoint>& points) {
-  thread_local std::vector<PendingPair> pending;       // scratch
+  thread_local PendingPairs pending;                   // scratch
   thread_local std::vector<ClosestPoint> found, kept;  // scratch
   points.clear();
   SurfaceKindMask crossed = 0;
