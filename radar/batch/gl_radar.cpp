@@ -48,19 +48,19 @@ GlRadar::GlRadar(GlContext& context, const GlRadarConfig& config)
 }
 
 Contact GlRadar::query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
-                       std::span<const SceneMesh> scene) {
+                       std::span<const GpuSceneMesh> scene) {
   const GlQuery query{object, direction_world, distance_m, GlQuery::kNotInScene};
   Contact contact;
   query_all({&query, 1}, scene, {&contact, 1});
   return contact;
 }
 
-void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
+void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const GpuSceneMesh> scene,
                         std::span<Contact> contacts) {
   assert(contacts.size() == queries.size());
   std::fill(contacts.begin(), contacts.end(), Contact{});
   shown_ = {};
-  const auto has_bad_pose = [](const SceneMesh& s) {
+  const auto has_bad_pose = [](const GpuSceneMesh& s) {
     return s.instance.mesh != nullptr && !s.instance.T_world_mesh.matrix().allFinite();
   };
   if (std::any_of(scene.begin(), scene.end(), has_bad_pose)) return;
@@ -121,7 +121,7 @@ bool GlRadar::fit_atlases(std::size_t queries) {
 }
 
 /// Adds a query's draws to the batch; returns false if the batch has no tile left for them.
-bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene,
+bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const GpuSceneMesh> scene,
                   Contact& contact) {
   if (batch_.queries.size() == passes_.scene_tiles().tile_count()) return false;
   const Eigen::Vector3d u_mesh =
@@ -166,7 +166,7 @@ bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const Scene
 
 /// Adds a draw for each run of scene triangles that reaches the query's volume.
 void GlRadar::add_scene_draws(const GlQuery& query, const RadarOutline& outline, const RadarVolume& volume,
-                              const TileQuery& tile, std::span<const SceneMesh> scene) {
+                              const TileQuery& tile, std::span<const GpuSceneMesh> scene) {
   // The padding exceeds the float error of the renderer's own test for outside.
   const double pad_m = touching_m(outline, query.distance_m);
   const Eigen::Vector3d low(-pad_m / outline.pixel_m, -pad_m / outline.pixel_m, -outline.length_m - pad_m);
@@ -210,7 +210,7 @@ std::span<const SceneRun> GlRadar::runs_of(const Drawn& drawn) const {
 }
 
 /// Runs the exact test if a pixel contains scene that is neither ahead of the object nor behind it.
-void GlRadar::exact_fallback(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
+void GlRadar::exact_fallback(const GlQuery& query, const Drawn& drawn, std::span<const GpuSceneMesh> scene,
                              Contact& contact) {
   const bool is_doubtful = contact.status == ContactStatus::kNoTarget ||
                            (contact.status == ContactStatus::kContact && contact.contact_distance_m > 0.0);
@@ -220,7 +220,7 @@ void GlRadar::exact_fallback(const GlQuery& query, const Drawn& drawn, std::span
   for (const SceneRun& run : runs_of(drawn)) {
     if (run.scene_index == last_index) continue;  // another run of the same mesh
     last_index = run.scene_index;
-    const SceneMesh& s = scene[last_index];
+    const GpuSceneMesh& s = scene[last_index];
     if (s.instance.mesh->tree() == nullptr) return;
     exact_trees_.push_back({{s.instance.mesh->tree(), s.instance.T_world_mesh}, s.kind});
   }

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "radar/batch/gl_query.hpp"
+#include "radar/batch/gpu_scene_mesh.hpp"
 #include "radar/batch/least_gap.hpp"
 #include "radar/batch/mask_cache.hpp"
 #include "radar/batch/radar_volume.hpp"
-#include "radar/batch/scene_mesh.hpp"
 #include "radar/batch/tile_contact.hpp"
 #include "radar/batch/tile_passes.hpp"
 #include "radar/exact/cyber_radar.hpp"
@@ -78,13 +78,13 @@ class GlRadar {
   ///         with distance 0. If several pixels are equally near (a face that lands flat), the contact point
   ///         is in the pixel nearest to the centre of their bounding box.
   Contact query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
-                std::span<const SceneMesh> scene);
+                std::span<const GpuSceneMesh> scene);
 
   /// Runs many queries at once. The queries are drawn into shared textures, and their results are read back
   /// together.
   /// @param scene     surfaces that can be touched, including the queried objects, which can touch each other
   /// @param[out] contacts  one per query; must have the size of `queries`
-  void query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
+  void query_all(std::span<const GlQuery> queries, std::span<const GpuSceneMesh> scene,
                  std::span<Contact> contacts);
 
   /// Returns the images of the last call's last valid query (not kInvalidInput). All images are empty if the
@@ -121,12 +121,12 @@ class GlRadar {
   std::vector<SceneTree> exact_trees_;
 
   bool fit_atlases(std::size_t queries);
-  bool add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene, Contact& contact);
+  bool add(std::size_t index, const GlQuery& query, std::span<const GpuSceneMesh> scene, Contact& contact);
   void add_scene_draws(const GlQuery& query, const RadarOutline& outline, const RadarVolume& volume,
-                       const TileQuery& tile, std::span<const SceneMesh> scene);
+                       const TileQuery& tile, std::span<const GpuSceneMesh> scene);
   void draw_batch();
   [[nodiscard]] std::span<const SceneRun> runs_of(const Drawn& drawn) const;
-  void exact_fallback(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
+  void exact_fallback(const GlQuery& query, const Drawn& drawn, std::span<const GpuSceneMesh> scene,
                       Contact& contact);
 };
 

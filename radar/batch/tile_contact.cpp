@@ -15,7 +15,7 @@ const Eigen::Vector2d kSample_px(kSampleX_px, kSampleY_px);  // as in tile_shade
 }  // namespace
 
 Contact contact_of(const GlQuery& query, const RadarOutline& outline, const TileResult& result,
-                   std::span<const SceneRun> runs, std::span<const SceneMesh> scene) {
+                   std::span<const SceneRun> runs, std::span<const GpuSceneMesh> scene) {
   const double touching = touching_m(outline, query.distance_m);
   Contact contact;
   contact.pixel_m = outline.pixel_m;
@@ -45,7 +45,7 @@ Contact contact_of(const GlQuery& query, const RadarOutline& outline, const Tile
                        [](std::uint32_t key, const SceneRun& run) { return key < run.first_key; });
   if (result.key != std::numeric_limits<std::uint32_t>::max() && past != runs.begin()) {
     const SceneRun& run = *(past - 1);
-    const SceneMesh& met = scene[run.scene_index];
+    const GpuSceneMesh& met = scene[run.scene_index];
     const GpuMesh& mesh = *met.instance.mesh;
     const Triangle& triangle = mesh.triangles()[run.first_triangle + (result.key - run.first_key)];
     std::array<Eigen::Vector3d, 3> p;

@@ -5,9 +5,9 @@
 #include <span>
 
 #include "radar/batch/gl_query.hpp"
+#include "radar/batch/gpu_scene_mesh.hpp"
 #include "radar/batch/least_gap.hpp"
 #include "radar/batch/radar_volume.hpp"
-#include "radar/batch/scene_mesh.hpp"
 #include "radar/geometry/contact.hpp"
 
 namespace roomradar {
@@ -28,6 +28,6 @@ struct SceneRun {
 /// @param runs     triangle ranges that intersect the query's volume, by ascending first_key
 /// @param scene    the scene of the call, which SceneRun::scene_index refers to
 Contact contact_of(const GlQuery& query, const RadarOutline& outline, const TileResult& result,
-                   std::span<const SceneRun> runs, std::span<const SceneMesh> scene);
+                   std::span<const SceneRun> runs, std::span<const GpuSceneMesh> scene);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// gpu_mesh.hpp: a triangle mesh in the renderer's memory, with a CPU copy for exact queries.
+// gpu_mesh.hpp: a triangle mesh in OpenGL buffers, with a CPU copy for exact queries.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

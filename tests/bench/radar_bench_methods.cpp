@@ -65,7 +65,7 @@ Method gl_radar_on_mesh(GlContext& context, const FrameScene& frame, const Mesh&
   const Mesh* const mesh = &frame.mesh;
   return {"GL", radar_px, true, [=](const Pose& pose) {
             state->scene.upload(*mesh, MeshUsage::kStreamed);
-            const SceneMesh scene{{&state->scene, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic};
+            const GpuSceneMesh scene{{&state->scene, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic};
             return state->radar.query({&state->sensor, pose.T_world_sensor}, pose.direction_world, distance_m,
                                       {&scene, 1});
           }};

@@ -143,7 +143,7 @@ Row measure_objects_gl(GlContext& context, const FrameScene& frame, int count, i
   }
   GpuMesh depth(context);
   GlRadar radar(context, {.resolution_px = radar_px});
-  std::vector<SceneMesh> scene;
+  std::vector<GpuSceneMesh> scene;
   std::vector<GlQuery> queries;
   Row row = measure_frames(frame, meshes, count, [&](const Crowd& objects, std::vector<Contact>& contacts) {
     depth.upload(frame.mesh, MeshUsage::kStreamed);

@@ -31,7 +31,7 @@ int expect_bounds(const std::string& name, const Mesh& object, const Mesh& scene
   GpuMesh object_gpu(context), scene_gpu(context);
   object_gpu.upload(object, MeshUsage::kStatic);
   scene_gpu.upload(scene, MeshUsage::kStatic);
-  const SceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
+  const GpuSceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   std::vector<GlQuery> queries;
   for (const Throw& t : throws) {
     queries.push_back({{&object_gpu, t.T_world_object}, t.direction, t.distance_m, GlQuery::kNotInScene});
@@ -157,7 +157,7 @@ TEST(GlBounds, HoldAndAreNarrowAtTheExtremes) {
           GpuMesh cube_gpu(context), floor_gpu(context);
           cube_gpu.upload(cube.mesh, MeshUsage::kStatic);
           floor_gpu.upload(floor_mesh, MeshUsage::kStatic);
-          const SceneMesh target{{&floor_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
+          const GpuSceneMesh target{{&floor_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
           const Eigen::Vector3d down(0, 0, -1);
           const Contact got = radar.query({&cube_gpu, cube.T_world_mesh}, down, distance_m, {&target, 1});
           // At 1e6 m the world's double resolution displaces the cube by 1e-10 m.

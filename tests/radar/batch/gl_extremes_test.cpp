@@ -30,7 +30,7 @@ class GlExtremes : public testing::Test {
     GpuMesh object_gpu(context), scene_gpu(context);
     object_gpu.upload(object, MeshUsage::kStreamed);  // drops invalid triangles
     scene_gpu.upload(scene, MeshUsage::kStreamed);
-    const SceneMesh target{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
+    const GpuSceneMesh target{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     return radar.query({&object_gpu, T_world_object}, direction, distance_m, {&target, 1});
   }
   void expect_holds(const Mesh& object, const Eigen::Isometry3d& T_world_object,
@@ -108,7 +108,7 @@ TEST_F(GlExtremes, TenMillionTinyTriangles) {
   GpuMesh box_gpu(context), grid_gpu(context);
   box_gpu.upload(quarter_box(), MeshUsage::kStatic);
   grid_gpu.upload(grid, MeshUsage::kStreamed);
-  const SceneMesh target{{&grid_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
+  const GpuSceneMesh target{{&grid_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   const auto ask_at = [&](const Eigen::Isometry3d& T) {
     return radar.query({&box_gpu, T}, kDown, 2.0, {&target, 1});
   };

@@ -18,7 +18,7 @@ class GlFaults : public testing::Test {
   }
   Contact ask(GlRadar& radar) {
     const MeshInstance object{&cube, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.8))};
-    const SceneMesh scene{{&floor, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
+    const GpuSceneMesh scene{{&floor, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     return radar.query(object, {0, 0, -1}, 2.0, {&scene, 1});
   }
 
@@ -91,7 +91,7 @@ TEST_F(GlFaults, AMillionTriangles) {
   ASSERT_GT(ground.triangles.size(), 1'000'000U);
   GpuMesh ground_gpu(context);
   ground_gpu.upload(ground, MeshUsage::kStatic);
-  const SceneMesh scene{{&ground_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
+  const GpuSceneMesh scene{{&ground_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   GlRadar radar(context, {.resolution_px = 64});
   const Contact contact = radar.query({&cube, Eigen::Isometry3d(Eigen::Translation3d(0.3, 0.1, 0.5))},
                                       {0, 0, -1}, 1.0, {&scene, 1});

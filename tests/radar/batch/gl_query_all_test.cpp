@@ -63,14 +63,14 @@ class GlQueryAll : public testing::Test {
   GlContext context;
   std::vector<std::unique_ptr<TriangleTree>> trees;
   std::vector<std::unique_ptr<GpuMesh>> meshes;
-  std::vector<SceneMesh> scene;
+  std::vector<GpuSceneMesh> scene;
   std::vector<GlQuery> queries;
 };
 
 TEST_F(GlQueryAll, ObjectsAreSceneForEachOtherAndNotForThemselves) {
   GlRadar radar(context);
-  const SceneMesh pile[] = {{{meshes[0].get(), at(0, 0, 1.00)}, SurfaceKind::kObject},
-                            {{meshes[0].get(), at(0, 0, 1.26)}, SurfaceKind::kObject}};
+  const GpuSceneMesh pile[] = {{{meshes[0].get(), at(0, 0, 1.00)}, SurfaceKind::kObject},
+                               {{meshes[0].get(), at(0, 0, 1.26)}, SurfaceKind::kObject}};
   const GlQuery both[] = {{pile[0].instance, kDown, 0.5, 0}, {pile[1].instance, kDown, 0.5, 1}};
   std::vector<Contact> contacts(2);
   radar.query_all(both, pile, contacts);
@@ -87,7 +87,7 @@ TEST_F(GlQueryAll, AnswersAsEachAlone) {
     GlRadar alone(context, {.resolution_px = 32});
     int contacts = 0, overlaps = 0;
     for (std::size_t i = 0; i < queries.size(); ++i) {
-      std::vector<SceneMesh> others = scene;
+      std::vector<GpuSceneMesh> others = scene;
       others[i].instance.mesh = nullptr;
       const Contact contact =
           alone.query(queries[i].object, queries[i].direction_world, queries[i].distance_m, others);
@@ -134,7 +134,7 @@ TEST_F(GlQueryAll, KeptMasksAnswerAsNewOnes) {
 
 TEST_F(GlQueryAll, InvalidOnesAreSaidAndTheOthersAnswered) {
   GlRadar radar(context);
-  const SceneMesh floor = scene.back();
+  const GpuSceneMesh floor = scene.back();
   const GlQuery mixed[] = {{{meshes[0].get(), at(0, 0, 0.5)}, {0, 0, 0}, 1.0},
                            {{meshes[0].get(), at(0, 0, 0.5)}, kDown, 1.0},
                            {{nullptr, at(0, 0, 0.5)}, kDown, 1.0}};
@@ -150,7 +150,7 @@ TEST_F(GlQueryAll, WhatThePassesCannotTellIsSettledExactly) {
   // A peg inside the cup, behind the front wall as the cup moves sideways: the rear wall hits it.
   const Mesh cup = shapes::cup(0.04F, 0.1F, 0.004F, 16), peg = shapes::box({0.01F, 0.01F, 0.04F});
   upload(peg);
-  const SceneMesh target{{meshes.back().get(), at(0, 0, 0.06)}, SurfaceKind::kDynamic};
+  const GpuSceneMesh target{{meshes.back().get(), at(0, 0, 0.06)}, SurfaceKind::kDynamic};
   GlRadar radar(context), unsettled(context, {.exact_fallback = false});
   const MeshInstance object{meshes[2].get(), at(0, 0, 0)};
   const Eigen::Vector3d sideways(1, 0.1, 0);

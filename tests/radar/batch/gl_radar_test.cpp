@@ -48,9 +48,9 @@ class GlRadarTest : public testing::Test {
     meshes.back()->upload(mesh, usage);
     return meshes.back().get();
   }
-  SceneMesh scene_mesh(const Mesh& mesh,
-                       const Eigen::Isometry3d& T_world_mesh = Eigen::Isometry3d::Identity(),
-                       SurfaceKind kind = SurfaceKind::kStatic) {
+  GpuSceneMesh scene_mesh(const Mesh& mesh,
+                          const Eigen::Isometry3d& T_world_mesh = Eigen::Isometry3d::Identity(),
+                          SurfaceKind kind = SurfaceKind::kStatic) {
     return {{uploaded(mesh), T_world_mesh}, kind};
   }
 
@@ -61,7 +61,7 @@ class GlRadarTest : public testing::Test {
 };
 
 TEST_F(GlRadarTest, BallAboveFloorTravelsItsClearance) {
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({uploaded(sphere(0.3F)), at(0.1, 0.2, 1.0)}, kDown, 2.0, {&floor, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   // The sample nearest to the pole is up to 0.71 pixels away, on facets with a slope of 1 in 30: at most 0.11
@@ -76,7 +76,7 @@ TEST_F(GlRadarTest, BallAboveFloorTravelsItsClearance) {
 }
 
 TEST_F(GlRadarTest, FlatLandingIsReportedInTheMiddle) {
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({cube, at(0.5, -0.5, 0.4)}, kDown, 2.0, {&floor, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.3, 1e-6);
@@ -84,32 +84,32 @@ TEST_F(GlRadarTest, FlatLandingIsReportedInTheMiddle) {
 }
 
 TEST_F(GlRadarTest, NothingInTheWayIsNoTarget) {
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   EXPECT_EQ(radar.query({cube, at(0, 0, 1)}, -kDown, 5.0, {&floor, 1}).status, ContactStatus::kNoTarget);
   EXPECT_EQ(radar.query({cube, at(0, 0, 1)}, kDown, 0.5, {&floor, 1}).status, ContactStatus::kNoTarget);
   EXPECT_EQ(radar.query({cube, at(9, 0, 1)}, kDown, 5.0, {&floor, 1}).status, ContactStatus::kNoTarget);
   EXPECT_EQ(radar.query({cube, at(0, 0, 1)}, kDown, 5.0, {}).status, ContactStatus::kNoTarget);
-  const SceneMesh empty = scene_mesh({});
+  const GpuSceneMesh empty = scene_mesh({});
   EXPECT_EQ(radar.query({cube, at(0, 0, 1)}, kDown, 5.0, {&empty, 1}).status, ContactStatus::kNoTarget);
-  const SceneMesh null;
+  const GpuSceneMesh null;
   EXPECT_EQ(radar.query({cube, at(0, 0, 1)}, kDown, 5.0, {&null, 1}).status, ContactStatus::kNoTarget);
 }
 
 TEST_F(GlRadarTest, TouchingIsContactAtZero) {
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({cube, at(0, 0, 0.1)}, kDown, 0.5, {&floor, 1});
   EXPECT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.0, 1e-6);
 }
 
 TEST_F(GlRadarTest, TouchingObjectMayLeaveAndSlide) {
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   EXPECT_EQ(radar.query({cube, at(0, 0, 0.1)}, -kDown, 0.5, {&floor, 1}).status, ContactStatus::kNoTarget);
   EXPECT_EQ(radar.query({cube, at(0, 0, 0.1)}, {1, 0, 0}, 0.5, {&floor, 1}).status, ContactStatus::kNoTarget);
 }
 
 TEST_F(GlRadarTest, OverlapIsReportedWithItsDepth) {
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   for (const double depth_m : {0.001, 0.01, 0.02}) {
     const Contact contact = radar.query({cube, at(0, 0, 0.1 - depth_m)}, kDown, 0.5, {&floor, 1});
     EXPECT_EQ(contact.status, ContactStatus::kOverlap);
@@ -121,13 +121,13 @@ TEST_F(GlRadarTest, OverlapIsReportedWithItsDepth) {
 TEST_F(GlRadarTest,
        OverlappingPlateLiftsFreely) {  // the surface faces along the motion, so the object leaves it
   const GpuMesh* plate = uploaded(shapes::box({0.3F, 0.3F, 0.01F}));
-  const SceneMesh table = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh table = scene_mesh(shapes::floor(2.0F, 0.0F));
   EXPECT_EQ(radar.query({plate, at(0, 0, 0.003)}, -kDown, 0.5, {&table, 1}).status, ContactStatus::kNoTarget);
 }
 
 TEST_F(GlRadarTest, SurfaceFarInsideDoesNotHideWhatIsAhead) {
   // A shelf that cuts through the cube 10 cm behind its front, and the floor ahead.
-  const SceneMesh scene[] = {scene_mesh(shapes::floor(2.0F, 0.5F)), scene_mesh(shapes::floor(2.0F, 0.0F))};
+  const GpuSceneMesh scene[] = {scene_mesh(shapes::floor(2.0F, 0.5F)), scene_mesh(shapes::floor(2.0F, 0.0F))};
   const Contact contact = radar.query({cube, at(0, 0, 0.5)}, kDown, 1.0, scene);
   EXPECT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.4, 1e-6);
@@ -136,7 +136,7 @@ TEST_F(GlRadarTest, SurfaceFarInsideDoesNotHideWhatIsAhead) {
 TEST_F(GlRadarTest,
        SurfaceSeenFromBehindStopsTheObject) {  // a hand's mesh faces the camera, not the object
   Mesh ceiling_seen_from_above = shapes::floor(2.0F, 1.0F);
-  const SceneMesh scene =
+  const GpuSceneMesh scene =
       scene_mesh(ceiling_seen_from_above, Eigen::Isometry3d::Identity(), SurfaceKind::kDynamic);
   const Contact contact = radar.query({cube, at(0, 0, 0.5)}, -kDown, 1.0, {&scene, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
@@ -155,12 +155,12 @@ TEST_F(GlRadarTest, SceneInAHollowIsNotAnOverlap) {
   GlRadar deep(context, {.resolution_px = 128, .overlap_tolerance_m = 0.06});
   Mesh shelf;
   shapes::add_quad(shelf, {-0.02F, -1, 0.43F}, {0.02F, -1, 0.43F}, {0.02F, 1, 0.43F}, {-0.02F, 1, 0.43F});
-  const SceneMesh scene[] = {scene_mesh(shelf), scene_mesh(shapes::floor(2.0F, 0.0F))};
+  const GpuSceneMesh scene[] = {scene_mesh(shelf), scene_mesh(shapes::floor(2.0F, 0.0F))};
   const Contact contact = deep.query({uploaded(ring), T_world_ring}, kDown, 1.0, scene);
   EXPECT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.38, 2e-4);  // pixels of 1.9 mm on facets with a slope of 1 in 10
   // The same shelf inside the lower arc's tube is an overlap.
-  const SceneMesh inside[] = {scene_mesh(shelf, at(0, 0, -0.03)), scene[1]};
+  const GpuSceneMesh inside[] = {scene_mesh(shelf, at(0, 0, -0.03)), scene[1]};
   const Contact overlap = deep.query({uploaded(ring), T_world_ring}, kDown, 1.0, inside);
   EXPECT_EQ(overlap.status, ContactStatus::kOverlap);
   EXPECT_NEAR(overlap.contact_distance_m, -0.02, 1e-3);
@@ -171,8 +171,8 @@ TEST_F(GlRadarTest, PixelOutsideTheMaskSaysNothing) {
   // misses the pillar.
   const Mesh ball = sphere(0.1F);
   Mesh pillar = shapes::box({0.02F, 0.02F, 1.0F});
-  const SceneMesh scene[] = {scene_mesh(pillar, at(0.095, 0.095, -0.2)),
-                             scene_mesh(shapes::floor(2.0F, 0.0F))};
+  const GpuSceneMesh scene[] = {scene_mesh(pillar, at(0.095, 0.095, -0.2)),
+                                scene_mesh(shapes::floor(2.0F, 0.0F))};
   const Contact contact = radar.query({uploaded(ball), at(0, 0, 0.6)}, kDown, 1.0, scene);
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.5, 1e-4);
@@ -182,11 +182,11 @@ TEST_F(GlRadarTest, SurfaceEdgeOnIsNotInTheWayButItsRimIs) {
   // A vertical wall, perpendicular to the object's lower face: the cube comes down on its upper rim.
   Mesh wall;
   shapes::add_quad(wall, {0, -1, -1}, {0, 1, -1}, {0, 1, 0}, {0, -1, 0});
-  const SceneMesh sheet = scene_mesh(wall);
+  const GpuSceneMesh sheet = scene_mesh(wall);
   // A sheet without thickness has no pixel from above, so the sampled radar misses it.
   EXPECT_EQ(radar.query({cube, at(0, 0, 0.5)}, kDown, 1.0, {&sheet, 1}).status, ContactStatus::kNoTarget);
   // A slab two pixels thick is found.
-  const SceneMesh slab = scene_mesh(shapes::box({0.004F, 2.0F, 1.0F}), at(0, 0, -0.5));
+  const GpuSceneMesh slab = scene_mesh(shapes::box({0.004F, 2.0F, 1.0F}), at(0, 0, -0.5));
   const Contact contact = radar.query({cube, at(0, 0, 0.5)}, kDown, 1.0, {&slab, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.4, 1e-6);
@@ -196,7 +196,7 @@ TEST_F(GlRadarTest, SurfaceEdgeOnIsNotInTheWayButItsRimIs) {
 }
 
 TEST_F(GlRadarTest, DistancesFromATenthOfAMillimetreTo100Metres) {
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact near = radar.query({cube, at(0, 0, 0.10005)}, kDown, 1e-4, {&floor, 1});
   ASSERT_EQ(near.status, ContactStatus::kContact);
   EXPECT_NEAR(near.contact_distance_m, 5e-5, 1e-6);
@@ -210,7 +210,7 @@ TEST_F(GlRadarTest, LosesNothingAThousandKilometresFromZero) {
   for (const Eigen::Vector3d& place : {Eigen::Vector3d(1e6, 1e6, 1e6), Eigen::Vector3d(-1e6, 1e6, -1e6)}) {
     Mesh floor = shapes::floor(2.0F, 0.0F);
     floor.origin = place;
-    const SceneMesh scene = scene_mesh(floor);
+    const GpuSceneMesh scene = scene_mesh(floor);
     Eigen::Isometry3d T_world_cube = at(0.3, 0.2, 0.8);
     T_world_cube.pretranslate(place);
     const Contact contact = radar.query({cube, T_world_cube}, kDown, 2.0, {&scene, 1});
@@ -233,7 +233,7 @@ TEST_F(GlRadarTest, EveryAxisAndAHairOffIt) {
         Eigen::Isometry3d T_world_wall(
             Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -towards));
         T_world_wall.pretranslate(0.5 * towards);
-        const SceneMesh scene = scene_mesh(wall, T_world_wall);
+        const GpuSceneMesh scene = scene_mesh(wall, T_world_wall);
         const Contact contact = radar.query({cube, at(0, 0, 0)}, direction, 1.0, {&scene, 1});
         ASSERT_EQ(contact.status, ContactStatus::kContact) << direction.transpose();
         EXPECT_NEAR(contact.contact_distance_m, 0.4, 1e-6 + hair) << direction.transpose();
@@ -248,7 +248,7 @@ TEST_F(GlRadarTest, NanTrianglesInAStreamedSceneAreLeftOut) {
   scene_cpu.vertices.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.5F);
   scene_cpu.triangles.push_back({0, 1, 4});
   scene_cpu.triangles.push_back({0, 1, 77});
-  const SceneMesh scene{{uploaded(scene_cpu, MeshUsage::kStreamed)}, SurfaceKind::kDynamic};
+  const GpuSceneMesh scene{{uploaded(scene_cpu, MeshUsage::kStreamed)}, SurfaceKind::kDynamic};
   const Contact contact = radar.query({cube, at(0, 0, 0.8)}, kDown, 2.0, {&scene, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.7, 1e-6);
@@ -258,7 +258,7 @@ TEST_F(GlRadarTest, OneTriangleLargerThanTheVolume) {
   Mesh huge;
   huge.vertices = {{-1000, -900, 0}, {1100, -1000, 0}, {0, 1300, 0}};
   huge.triangles = {{0, 1, 2}};
-  const SceneMesh scene = scene_mesh(huge);
+  const GpuSceneMesh scene = scene_mesh(huge);
   const Contact contact = radar.query({cube, at(3.3, 1.7, 0.8)}, kDown, 2.0, {&scene, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.7, 5e-6);
@@ -267,7 +267,7 @@ TEST_F(GlRadarTest, OneTriangleLargerThanTheVolume) {
 TEST_F(GlRadarTest, InvalidInputIsSaid) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const auto status = [&](const MeshInstance& object, const Eigen::Vector3d& direction, double distance_m) {
     return radar.query(object, direction, distance_m, {&floor, 1}).status;
   };
@@ -286,7 +286,7 @@ TEST_F(GlRadarTest, InvalidInputIsSaid) {
 }
 
 TEST_F(GlRadarTest, NearestOfSeveralMeshesIsTouched) {
-  const SceneMesh scene[] = {
+  const GpuSceneMesh scene[] = {
       scene_mesh(shapes::floor(2.0F, 0.0F)),
       scene_mesh(shapes::box({0.1F, 0.1F, 0.1F}), at(0, 0, 0.05), SurfaceKind::kObject),
       scene_mesh(shapes::floor(2.0F, -0.5F), at(0, 0, 0), SurfaceKind::kDynamic)};
@@ -297,8 +297,8 @@ TEST_F(GlRadarTest, NearestOfSeveralMeshesIsTouched) {
 }
 
 TEST_F(GlRadarTest, ImagesObeyTheirDefinition) {
-  const SceneMesh scene[] = {scene_mesh(shapes::torus(80, 40, 0.15F, 0.05F, 0.01F), at(0, 0, 0.1)),
-                             scene_mesh(shapes::floor(0.05F, 0.0F))};
+  const GpuSceneMesh scene[] = {scene_mesh(shapes::torus(80, 40, 0.15F, 0.05F, 0.01F), at(0, 0, 0.1)),
+                                scene_mesh(shapes::floor(0.05F, 0.0F))};
   const Contact contact = radar.query({uploaded(sphere(0.2F)), at(0.03, 0, 0.8)}, kDown, 1.0, scene);
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   const RadarPictures pictures = radar.pictures();
@@ -321,7 +321,7 @@ TEST_F(GlRadarTest, ImagesObeyTheirDefinition) {
 }
 
 TEST_F(GlRadarTest, ResolutionsFrom1To4096) {
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   for (const int resolution_px : {1, 2, 3, 17, 512, 4096}) {
     GlRadar other(context, {.resolution_px = resolution_px});
     const Contact contact = other.query({cube, at(0, 0, 0.8)}, kDown, 2.0, {&floor, 1});
@@ -336,7 +336,7 @@ TEST_F(GlRadarTest, ResolutionsFrom1To4096) {
 
 TEST_F(GlRadarTest, LongObjectGetsSquarePixels) {
   const GpuMesh* rod = uploaded(shapes::box({1.0F, 0.05F, 0.05F}));
-  const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
+  const GpuSceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   ASSERT_EQ(radar.query({rod, at(0, 0, 0.5)}, kDown, 1.0, {&floor, 1}).status, ContactStatus::kContact);
   EXPECT_EQ(std::max(radar.pictures().volume.width_px, radar.pictures().volume.height_px), 128);
   EXPECT_EQ(std::min(radar.pictures().volume.width_px, radar.pictures().volume.height_px),

@@ -44,7 +44,7 @@ Errors measure(const Mesh& object, const Mesh& scene, int resolution_px, int cou
                                 Eigen::Vector3d(0.4, 0.4, 0.1).cwiseProduct(shapes::random_point(random)));
     const Eigen::Vector3d direction = Eigen::Vector3d(0, 0, -1) + 0.9 * shapes::random_point(random);
     const double reach_m = distance_m(random);
-    const SceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
+    const GpuSceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     const Contact got = radar.query({&object_gpu, T_world_object}, direction, reach_m, {&scene_mesh, 1});
     const auto expected_m =
         exact_travel(object, T_world_object, direction, reach_m, scene, Eigen::Isometry3d::Identity());

@@ -34,7 +34,7 @@ class RadarPicturesTest : public ::testing::Test {
     GpuMesh object_mesh(context), scene_mesh(context);
     object_mesh.upload(object, MeshUsage::kStatic);
     scene_mesh.upload(scene, MeshUsage::kStreamed);
-    const SceneMesh in_scene{{&scene_mesh, T_world_scene}, SurfaceKind::kStatic};
+    const GpuSceneMesh in_scene{{&scene_mesh, T_world_scene}, SurfaceKind::kStatic};
     static_cast<void>(gl.query({&object_mesh, T_world_object}, direction, kDistance_m, {&in_scene, 1}));
     return gl.pictures();
   }

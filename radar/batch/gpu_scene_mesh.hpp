@@ -1,4 +1,4 @@
-// scene_mesh.hpp: a scene's meshes in the renderer's memory, for GlRadar.
+// gpu_scene_mesh.hpp: a scene's meshes in OpenGL buffers, for GlRadar.
 #pragma once
 #include <span>
 
@@ -9,17 +9,16 @@
 namespace roomradar {
 
 /// A mesh that can be touched, its pose, and its kind.
-struct SceneMesh {
+struct GpuSceneMesh {
   MeshInstance instance;
   SurfaceKind kind = SurfaceKind::kStatic;
 };
-/// Returns true if the mesh is not null and has triangles.
-inline bool has_surface(const SceneMesh& s) {
+inline bool has_surface(const GpuSceneMesh& s) {
   return s.instance.mesh != nullptr && s.instance.mesh->triangle_count() > 0;
 }
 
 /// Builds the hierarchy over the bounding boxes of a scene's meshes, as SceneBoxes::build() does.
-inline void build(SceneBoxes& boxes, std::span<const SceneMesh> scene) {
+inline void build(SceneBoxes& boxes, std::span<const GpuSceneMesh> scene) {
   boxes.clear();
   for (std::size_t i = 0; i < scene.size(); ++i)
     if (has_surface(scene[i])) boxes.add(i, scene[i].instance.mesh->bounds(), scene[i].instance.T_world_mesh);
