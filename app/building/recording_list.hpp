@@ -17,10 +17,10 @@ struct ListedRecording {
 ///     hall: recordings/hall
 ///     office-1: recordings/office-1.bag
 ///
-/// Empty lines and lines that begin with # are left out. The order does not matter: the recordings are
+/// Empty lines and lines that begin with # are ignored. The order does not matter: the recordings are
 /// returned in order of their names.
-/// @throws Error with file, line and fault if the file cannot be read, a line has another form, a name occurs
-///         twice, or the list is empty
+/// @throws Error with file and fault if the file cannot be read, the list is empty, a name is duplicate, or a
+///         line is malformed (with its number)
 std::vector<ListedRecording> read_recording_list(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -11,18 +11,18 @@ namespace roomradar {
 /// A command of roomradar that writes its results to its own folder.
 struct Job {
   std::string name;                ///< also the name of the folder
-  double cost = 0.0;               ///< as stated in the manifest, in any unit; 0: not stated
+  double cost = 0.0;               ///< as stated in the manifest; 0: not stated, see PlannedJob::cost
   std::vector<std::string> words;  ///< command and arguments; placeholders are not replaced
-  std::vector<std::size_t> needs;  ///< indices of the jobs with folders that it reads; ascending
-  int line = 0;                    ///< line in the manifest, from 1
+  std::vector<std::size_t> needs;  ///< indices of the jobs whose folders this job reads; ascending
+  int line = 0;                    ///< 1-based line number in the manifest
 };
 
 struct Manifest {
-  std::filesystem::path path;  ///< absolute
+  std::filesystem::path path;  ///< absolute if from read_manifest()
   std::vector<Job> jobs;
 };
 
-/// Reads a manifest. Each line is a job:
+/// Reads a manifest with one job per line:
 ///
 ///     # two scans, and what changed between them
 ///     morning: prescan recordings/morning --map {}/map
@@ -30,12 +30,13 @@ struct Manifest {
 ///     change: map diff {morning}/map {evening}/map --html {}/change.html
 ///
 /// {} stands for the job's own folder, and {NAME} for the folder of another job, which is run first. Words
-/// are separated by blanks; words in '...' or "..." may contain blanks. A word, or a VALUE in --option=VALUE,
-/// that names an existing file or folder, relative to the manifest's folder, is an input. Empty lines and
-/// lines that begin with # are ignored.
+/// are separated by spaces or tabs; words in '...' or "..." may contain them. A word without placeholders is
+/// an input if it names an existing file or folder, relative to the manifest's folder. The same holds for the
+/// VALUE in --option=VALUE. Empty lines and lines that begin with # are ignored.
 ///
-/// @throws Error with file, line and fault if the file cannot be read, a line is not such a job, a name
-///         occurs twice or is unknown, jobs need each other in a cycle, or no word of a job contains {}
+/// @throws Error with file and fault if the file cannot be read or has no jobs; also with the line if a line
+///         is malformed, a name is duplicate or unknown, dependencies are cyclic, or no word of a job
+///         contains {}
 Manifest read_manifest(const std::filesystem::path& path);
 
 /// Parses the text of a manifest; see read_manifest().
@@ -43,15 +44,16 @@ Manifest read_manifest(const std::filesystem::path& path);
 Manifest parse_manifest(const std::string& text, const std::filesystem::path& path);
 
 /// Returns a word in quotation marks for a manifest. Placeholders remain placeholders. Throws Error if the
-/// word contains both kinds of quotation marks, or a line end.
+/// word contains both kinds of quotation marks, or a newline.
 std::string quoted_word(const std::string& word);
-/// Returns a quoted word without placeholders: { and } are doubled.
+/// Quotes text in which { and } are literal: doubles both, then quotes as quoted_word() does.
 std::string quoted_literal(const std::string& text);
 
-/// Returns true if a job may have this name: 1 to 100 letters, digits, - _ . that begin with neither . nor -.
+/// Returns true for a valid job name: 1 to 100 ASCII letters, digits, '-', '_' or '.', not starting with '.'
+/// or '-'.
 bool is_job_name(std::string_view name);
 
-/// Returns the text without leading and trailing blanks, tabs and carriage returns.
+/// Returns the text without leading and trailing spaces, tabs and carriage returns.
 std::string_view trimmed(std::string_view text);
 
 /// A part of a word: text, or a placeholder.

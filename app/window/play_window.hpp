@@ -14,17 +14,19 @@ namespace roomradar {
 struct PlayWindowResult {
   int status = 0;              ///< the value that the work returned
   bool wants_to_scan = false;  ///< the user asks to scan more of the room
-  /// If wants_to_scan: keeps the window open for the next user of open_window().
+  /// If wants_to_scan: owns the window, so that it stays open for the next caller of open_window(). Else
+  /// null.
   std::shared_ptr<void> window{};
 };
 
-/// Opens a window, runs `work` on another thread, and shows the snapshots of `work` until the user closes the
-/// window. The window remains open after `work` has returned. Call on the main thread.
+/// Opens a window, or reuses the open one with a new title. Runs `work` on another thread and shows the
+/// snapshots of `work`, also after `work` has returned. Ends when the user closes the window or asks to scan,
+/// when `work` throws, and when `work` returns after Ctrl-C. Waits for `work` to end. Call on the main
+/// thread.
 ///
-/// @param title      title of the window
 /// @param meshes     objects that can be added, in addition to the built-in teapot
 /// @param budget_ms  the run's time limit per frame; unset: none
-/// @param ui_scale   scale of text and panes; unset: that of the monitor
+/// @param ui_scale   scale of text and panes; unset: the monitor's scale, clamped to 1..3
 /// @throws Error with advice if the program was built without a window, or if there is no display with OpenGL
 ///         3.3. Exceptions of `work` are rethrown
 PlayWindowResult run_in_window(const std::string& title, const std::vector<ObjectSource>& meshes,

@@ -8,23 +8,26 @@
 
 namespace roomradar {
 
-/// Adds map `from` to map `into`: adds log-odds, and averages signed distances by weight. Each voxel of
-/// `into` gets the log-odds of `from` at its centre, and the distance interpolated from the samples of `from`
-/// around it. The result is exact if the grids coincide. If `into` is coarser than `from`, parts of thin
-/// surfaces are lost. Throws Error if a part of `from` is outside the octree of `into`.
+/// Adds map `from` to map `into`: adds log-odds, and averages signed distances and colours by weight. The
+/// log-odds added to a voxel of `into` are those of `from` at the voxel's centre. The averaged distance is
+/// interpolated from the samples of `from` around that centre, or extrapolated at the border of the samples.
+/// The result is exact if the grids coincide. If `into` is coarser than `from`, parts of thin surfaces are
+/// lost. Throws Error if a part of `from` is outside the octree of `into`.
 void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, StaticMap& into);
 
-/// Appends another session's keyframes, poses and counts to a map. The session must be in the map's world.
-/// The session's timestamps are shifted to follow the map's, unless they already do. Octree and mesh are
-/// unchanged.
+/// Appends another session's keyframes, poses, source name, frame counts (read and fused) and kStoppedSetting
+/// to a map. The session's poses must be in the map's world frame. The session's timestamps are shifted to
+/// begin at least 1/30 s after the map's last one. Octree, mesh and look-alikes are unchanged.
 void append_session(SavedMap& map, const SavedMap& session);
 
-/// Estimates T_a_b between two maps' worlds. b's surface must agree with a's surface and free space.
-/// Conversely, a's surface must agree with b's, unless almost none of it is in space known to b.
+/// Estimates T_a_b between the world frames of two maps. Returns kContradicted if one map's surface disagrees
+/// with the other map's surface and free space. A surface is not tested if almost none of it is in space
+/// known to the other map. If this is so for b's surface, registers a to b instead (overlap and agreement are
+/// then those of a's surface), and returns kNoOverlap if that fails.
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config = {});
 
-/// Merges two maps in a's world, at the finer of their resolutions, and re-extracts the surface with a's
-/// settings. Throws Error if the octree at this resolution cannot cover both maps, or if the resolutions
+/// Merges two maps in a's world frame, at the finer of their resolutions, and re-extracts the surface with
+/// a's settings. Throws Error if the octree at this resolution cannot cover both maps, or if the resolutions
 /// differ by more than a factor of four.
 SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b);
 

@@ -11,7 +11,8 @@ struct Lens {
   friend bool operator==(const Lens&, const Lens&) = default;
 };
 
-/// Point in normalised image coordinates: on the image plane at z = 1, x right, y down, without unit.
+/// Point of an image plane, x right, y down. Unless stated otherwise, in normalised image coordinates: on the
+/// plane z = 1, without unit.
 template <typename Scalar>
 struct PlanePoint {
   Scalar x{}, y{};

@@ -1,4 +1,4 @@
-// joint_motion.hpp: rigid motions of several bodies at the same time, until the first contact.
+// joint_motion.hpp: simultaneous rigid motions of several bodies, each until its first contact.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -16,16 +16,15 @@ namespace roomradar {
 /// Restores the orthonormality of T's rotation, which rounding errors degrade.
 void make_orthonormal(Eigen::Isometry3d& T);
 
-/// Ball that contains a body's whole path. Radius 0: the body does not move, and sets_that_meet() leaves it
-/// out.
+/// Ball that contains a body's whole path. Radius 0: the body does not move, and sets_that_meet() ignores it.
 struct PathBall {
   Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();
   double radius_m = 0.0;
 };
-/// Index of no mover.
+/// Stands for no mover.
 inline constexpr std::size_t kNoMover = static_cast<std::size_t>(-1);
 
-/// A body that moves together with others.
+/// A body that moves simultaneously with others.
 struct JointMover {
   Eigen::Isometry3d* T_world_object = nullptr;  ///< in and out
   RigidMotion motion;
@@ -43,22 +42,24 @@ struct JointMover {
   std::function<double(std::size_t stopped, double duration_s)> free_time_beside;
   /// Called after each change of the pose; may be null or empty.
   const std::function<void()>* moved = nullptr;
-  double gone_s = 0.0;       ///< out: time for which the body has moved
+  double gone_s = 0.0;       ///< out: duration of the body's motion so far, s
   bool has_stopped = false;  ///< out: the motion has ended; valid during the call, too
   ClosestPoint limited_by;   ///< out: feature that ended the motion; kind kNothing if another body's did
 };
 
-/// Moves all bodies at the same time, each until its first contact or the end of its duration. A body that
-/// meets another one stops with it; the other bodies move on, past the two at rest. A body's free time is a
-/// lower bound. When it ends, only this body is queried again, at the poses of that moment. The body's motion
-/// ends when a query gains less than 2 % of its duration (the first query: nothing), or after 13 queries.
-/// @param sets    bodies of different sets do not meet (sets_that_meet())
-/// @param worker  shares the bodies' first queries, then the sets, with the same results; may be null
+/// Moves all bodies simultaneously, each until its first contact or the end of its duration. Bodies that
+/// touch each other stop at the time of impact. The other bodies continue, with the stopped bodies as
+/// obstacles at rest. A body's free time is a lower bound. When that time ends, only this body is queried
+/// again, at the bodies' poses at that time. The body's motion ends when a query gains less than 2 % of the
+/// duration (the first query: nothing), or after 13 queries.
+/// @param sets    the paths of bodies of different sets do not intersect; see sets_that_meet()
+/// @param worker  runs some of the bodies' first queries, then some of the sets, on a second thread; results
+///                are the same without it; may be null
 void move_to_contact(std::span<const std::span<JointMover>> sets, WorkerThread* worker);
 /// Moves one set.
 void move_to_contact(std::span<JointMover> movers);
 
-/// Returns the connected components of overlapping balls, as indices in ascending order.
+/// Returns the connected components of overlapping path balls. Indices are ascending in each component.
 std::vector<std::vector<std::size_t>> sets_that_meet(std::span<const PathBall> paths);
 
 }  // namespace roomradar

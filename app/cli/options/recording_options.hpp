@@ -23,26 +23,26 @@ struct RecordOptions {
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().
   std::string calibration;
-  /// Format of the recording.
   RecordingFormat format = RecordingFormat::kTum;
 };
 
 struct SimulateOptions {
   /// Folder to write.
   std::string folder;
-  /// Room as after `sim:`, with or without keys.
+  /// Room in the syntax that follows `sim:`, with or without `?key=value` settings; see parse_sim_spec().
   std::string room = "table";
-  /// Seed of the camera path, the noise and a random room's furniture; unset: see SimOptions.
+  /// Seed of the camera path, the phases of moving objects, the noise, and the furniture of a random room,
+  /// flat or building; unset: see SimOptions.
   std::optional<std::uint64_t> seed;
   /// Number of frames; unset: see parse_sim_spec().
   std::optional<std::int64_t> frames;
   /// Name of the camera path: scan, view or swing; empty: see SimOptions.
   std::string path;
-  /// Walks of the building to record, each in a folder of its own; unset: one recording.
+  /// Range of walks (camera trajectories through the building, see SimOptions::walk) to record, each in its
+  /// own folder; unset: one recording.
   std::optional<FrameRange> walks;
   /// Moving objects, such as "hand,ball,person"; empty: none.
   std::string moving;
-  /// Format of the recording.
   RecordingFormat format = RecordingFormat::kTum;
 };
 

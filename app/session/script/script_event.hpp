@@ -15,31 +15,35 @@
 namespace roomradar {
 
 enum class Action {
-  kAdd,       ///< load an object's mesh; the object is outside the room until placed, dropped or thrown
+  kAdd,       ///< load an object's mesh; the object is outside the room until another action puts it there
   kPlace,     ///< put an object at a position, with zero velocity
   kDrop,      ///< let an object fall from above a point, or from above a level surface in view
   kThrow,     ///< put an object at a position, with a velocity
   kMaterial,  ///< change an object's mass, density, friction or restitution
   kRemove,    ///< take an object out of the room
   kTurn,      ///< rotate an object about its centre until the first contact
-  kCarry,     ///< move an object towards a position and hold it there until kRelease; obstacles stop it
+  /// Move an object towards a position and hold it there until kRelease. Obstacles stop it. An object outside
+  /// the room is put at the position.
+  kCarry,
   kRelease,   ///< let go of a carried object, with a velocity
   kSurfaces,  ///< change which surfaces can be touched
   kUnknown,   ///< make unknown space free or solid
   kRadar,     ///< change the radar's mode and resolution
-  kQuality,   ///< change the quality
+  kQuality,   ///< change quality settings, from the frame's stage ScriptEvent::from on
   kCamera,    ///< change which frame of the source is next
-  kCommit,    ///< add objects in view that stand still to the map, and remove vanished objects from it
-  kQuit,      ///< end the run before this frame
+  /// Add stationary objects in view to the session's copy of the map, and remove vanished objects from the
+  /// copy. The request expires after 1 s.
+  kCommit,
+  kQuit,  ///< end the run before this frame
 };
 
-/// Selection of the next frame.
+/// Command that selects the next frame, or the behaviour after the last one.
 enum class CameraPlay {
   kHold,    ///< the same frame again in each step, while time continues
-  kGo,      ///< the source's next frame
-  kRewind,  ///< the source's first frame
-  kLoop,    ///< after the source's last frame, continue with its first frame
-  kStay,    ///< after the source's last frame, repeat that frame
+  kGo,      ///< the source's next frame; ends kHold
+  kRewind,  ///< the source's first frame, if held after the next kGo; a live device throws Error
+  kLoop,    ///< from now on, the source's first frame follows its last frame
+  kStay,    ///< from now on, the source's last frame is repeated at the end
   /// The source's next frame. Its time is set to 1/30 s after the previous frame's, since a device's clock
   /// continues during a pause.
   kResume,
@@ -47,10 +51,10 @@ enum class CameraPlay {
 
 inline constexpr double kMaxTurn_deg = 3600.0;  ///< max angle of one kTurn, per axis
 
-/// One line of a script (script.hpp). Positions are those of the object's origin, in the world (m, +z up).
+/// One line of a script (script.hpp). Positions are in the world frame (m, +z up).
 struct ScriptEvent {
-  int line = 0;  ///< line number in the file, from 1; 0: not from a file
-  /// The event is due before the frame of the run with this index, from 0. Alternative to time_s.
+  int line = 0;  ///< 1-based line number in the file; 0: not from a file
+  /// Index, from 0, of the run's frame before which the event is due. Alternative to time_s.
   std::optional<std::int64_t> frame;
   /// The event is due before the first frame at or after this time of the run.
   std::optional<double> time_s;
@@ -60,16 +64,19 @@ struct ScriptEvent {
   std::string mesh;
   std::optional<double> size_m;  ///< kAdd: length of the longest side after scaling; unset: not scaled
   std::optional<UpAxis> up;      ///< kAdd: axis of the file that points up; unset: the format's default
-  BodyMaterial material;         ///< kAdd, kMaterial: unset values are unchanged
+  BodyMaterial material;         ///< an unset value is the default (kAdd) or unchanged (kMaterial)
   /// kAdd: origin of the model. kAsInFile is only for replaying sessions recorded before kNear was
   /// introduced.
   ModelOrigin origin = ModelOrigin::kNear;
-  /// kPlace, kDrop, kThrow, kCarry: position. kDrop without a position: above a level surface in view.
+  /// kPlace, kThrow, kCarry: position of the object's origin. kDrop: x and y of the object's origin, and
+  /// height z above which it is dropped; unset: the drop is above a level surface in view.
   std::optional<Eigen::Vector3d> position_world;
-  /// kDrop without a position. Set: the drop is above the surface point in view nearest to near_world. Unset:
-  /// it is above the surface point nearest to the image centre.
+  /// kDrop without a position. Set: the drop is above the free level place nearest to near_world, at most 25
+  /// cm away; without such a place, it is cancelled with a notice. Unset: it is above the free level place
+  /// nearest to the image centre, and waits for a later frame if there is none.
   std::optional<Eigen::Vector3d> near_world;
-  /// kDrop: initial height of the object's lowest vertex above the position or surface.
+  /// kDrop: initial height of the object's lowest vertex above the position or surface. Without a position,
+  /// it is reduced to 5 cm if the object would not stay otherwise.
   double height_m = 0.3;
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow, kRelease: velocity of the centre
                                                                  ///< of mass
@@ -84,7 +91,7 @@ struct ScriptEvent {
   bool unknown_is_solid = false;                             ///< kUnknown
   RadarConfig radar;                                         ///< kRadar
   RunQuality quality;                                        ///< kQuality
-  FramePart from = FramePart::kLocate;  ///< kQuality: first part of the frame that uses `quality`
+  FramePart from = FramePart::kLocate;  ///< kQuality: first processing stage of the frame that uses `quality`
   CameraPlay camera = CameraPlay::kGo;  ///< kCamera
 };
 

@@ -10,7 +10,8 @@
 
 namespace roomradar {
 
-/// Parameters of the true cameras. Their errors are as large as calibrations of real Kinects report.
+/// Parameters of the true cameras. They differ from the declared parameters by as much as calibrations of
+/// real Kinects report.
 struct SensorFaults {
   Intrinsics depth_camera, colour_camera;
   Lens depth_lens, colour_lens;
@@ -21,7 +22,8 @@ struct SensorFaults {
 };
 
 /// Returns the true cameras of a simulated device whose frames declare `depth_camera`, `colour_camera` and
-/// `T_colour_depth`. The errors are fixed, about 1 % in focal lengths and 3 px in principal points.
+/// `T_colour_depth`. The differences are constant, about 1 % in focal lengths and 3 px in principal points at
+/// 640 px width.
 SensorFaults sensor_faults(const Intrinsics& depth_camera, const Intrinsics& colour_camera,
                            const Eigen::Isometry3d& T_colour_depth);
 
@@ -29,13 +31,10 @@ SensorFaults sensor_faults(const Intrinsics& depth_camera, const Intrinsics& col
 /// rings about the image centre plus a linear slope. It corresponds to at most 3 mm at 1 m and 27 mm at 3 m.
 double inverse_depth_offset_per_m(const Intrinsics& depth_camera, double x_px, double y_px);
 
-/// Projection of each viewing ray of the true camera into the declared pinhole camera's image. One entry per
-/// pixel of the true camera.
+/// Pixel coordinates at which each viewing ray of the true camera projects into the declared pinhole camera's
+/// image. One entry per pixel of the true camera.
 using PixelRays = Image<PlanePoint<float>>;
-/// Computes the rays of a camera.
-/// @param truth  true camera
-/// @param lens   lens of the true camera
-/// @param said   declared pinhole camera
+/// Computes the PixelRays of the true camera `truth` with this lens, for the declared pinhole camera `said`.
 PixelRays pixel_rays(const Intrinsics& truth, const Lens& lens, const Intrinsics& said);
 
 }  // namespace roomradar
