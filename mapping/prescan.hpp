@@ -77,9 +77,9 @@ struct PrescanInput {
 /// final poses. To remove ghosts (surface of objects that moved), reads selected frames a third time and, if
 /// there are ghosts, a fourth time. To bake the texture, reads at most 160 frames once more.
 ///
-/// A new map's world has +z up. With recorded poses, the world's origin is the recording's. With tracked
-/// poses, the origin is on the floor below the first camera. If no level surface is measured, the origin is
-/// at the height of the first camera. With start.map, the map's world is kept.
+/// A new map's world frame has +z up. With recorded poses, the world's origin is the recording's. With
+/// tracked poses, the origin is on the floor below the first camera. If no level surface is measured, the
+/// origin is at the height of the first camera. With start.map, the map's world frame is kept.
 ///
 /// Stages timed: read, track, optimise, fuse, ghosts, surface, texture, coverage, checkpoint (time during
 /// which the work is blocked), and frame (track plus fuse of one frame, without reading).

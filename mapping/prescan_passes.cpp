@@ -196,7 +196,7 @@ Eigen::Isometry3d transform_to_new_map(const TrajectoryEstimate& found, PoseOrig
   return T_map_found;
 }
 
-/// Computes the transform from the tracker's world to that of an existing map.
+/// Computes the transform from the tracker's world frame to that of an existing map.
 Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEstimate& found,
                                    const SavedMap& map, const std::string& source) {
   constexpr std::size_t kPoints = 12'000;

@@ -20,7 +20,7 @@ struct PrescanWork {
   const PrescanProgress& progress;
   Checkpoints* checkpoints = nullptr;
   double reach_m = 0.0;                          ///< half the edge of the octree's cube, m
-  bool maps_recorded_world = false;              ///< the world of recorded poses is the octree's world
+  bool maps_recorded_world = false;              ///< the world frame of recorded poses is the octree's
   ScanObserver* observer = nullptr;              ///< null: none
   std::map<std::int64_t, double> track_ms = {};  ///< tracking time by frame index
   std::optional<FuseStatus> last_fused = {};     ///< status of the last frame passed to fuse()
@@ -38,7 +38,7 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map);
 
 /// Runs the second pass (fusion). Starts the pass from its beginning or resumes it from a checkpoint. Does
 /// nothing if the checkpoint was written after fusion.
-/// @param trajectory  poses of the frames to fuse, in the map's world
+/// @param trajectory  poses of the frames to fuse, in the map's world frame
 void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory, FusionPass& pass);
 
 /// Removes ghosts, then fuses their surroundings again. Starts this stage from its beginning or resumes it

@@ -35,7 +35,7 @@ struct TrajectoryEstimate {
 struct FusionPass {
   PrescanCounts counts;  ///< counts of the first pass
   TrajectoryEstimate found;
-  /// Maps points from the tracker's to the map's world.
+  /// Maps points from the tracker's to the map's world frame.
   Eigen::Isometry3d T_world_found = Eigen::Isometry3d::Identity();
   std::int64_t frames_read = 0;  ///< frames read in this pass
   StaticMap octree{0.01};
@@ -45,7 +45,7 @@ struct FusionPass {
   std::optional<std::int64_t> ghost_voxels;  ///< set once ghost removal is complete
 };
 
-/// Returns the trusted poses, in the map's world.
+/// Returns the trusted poses, in the map's world frame.
 std::vector<TimedPose> trusted_poses(const FusionPass& pass);
 
 inline constexpr const char* kTrackingStage = "track";

@@ -15,7 +15,7 @@ namespace roomradar {
 ///
 /// Surface that these frames do not show keeps the colours of `earlier` textures. Stages timed: read (per
 /// frame), texture (per frame, then the whole).
-/// @param mesh        surface of the map, in the world of `trajectory`
+/// @param mesh        surface of the map, in the world frame of `trajectory`
 /// @param trajectory  poses of the frames, with their stamps
 /// @throws Error if the source cannot be rewound
 std::shared_ptr<const SurfaceTexture> run_texture_pass(PrescanWork& work,

@@ -232,7 +232,7 @@ BuildingResult build_building(const BuildingWork& work, const RunStage& run_stag
   show(sentence_of(
       joined, std::to_string(pairs.size()) + " pairs may meet, " + std::to_string(joins.size()) + " joins"));
 
-  // All submaps in one world. The connected part with the most frames is the building.
+  // All submaps in one world frame. The connected part with the most frames is the building.
   SubmapReader reader(work, names);
   const TestOverlap test_overlap = [&reader](std::size_t a, std::size_t b,
                                              std::span<const PredictedPair> predicted) {

@@ -40,7 +40,7 @@ struct BuildingResult {
   std::vector<JoinedPair> joins;
   std::size_t kept = 0;  ///< submaps whose poses did not change since the last run
   /// Position error of all placed frames against the recorded poses, after one rigid alignment. Has no poses
-  /// if the recordings state none. The recorded poses must be in one world.
+  /// if the recordings state none. The recorded poses must be in one world frame.
   TrajectoryError recorded_error;
 };
 
@@ -48,7 +48,7 @@ struct BuildingResult {
 ///   track     tracks each recording alone, which gives its submaps
 ///   retrieve  finds pairs of submaps that may show the same place
 ///   join      verifies these pairs, and measures their relative poses
-///   (place)   solves for the poses of all submaps in one world; not a job
+///   (place)   solves for the poses of all submaps in one world frame; not a job
 ///   fuse      fuses each recording's frames with its final poses, and splits the result into tiles
 ///   tile      adds up the parts of each tile, and extracts its surface
 /// Jobs whose inputs have not changed are not run again. Recordings that cannot be tracked, or that no join

@@ -17,7 +17,7 @@ inline constexpr double kBlock_m = 2.0;
 
 /// The triangles whose centroid is in one cube of the world.
 struct RoomBlock {
-  std::uint64_t version = 0;  ///< from 1; grows when the triangles change
+  std::uint64_t version = 0;  ///< >= 1; increases when the triangles change
   std::uint64_t hash = 0;     ///< of the triangles, in any order
   std::size_t vertices = 0;
   Eigen::AlignedBox3d box_world;

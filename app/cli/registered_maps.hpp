@@ -17,12 +17,13 @@ Registration require_registered(const SavedMap& a, const SavedMap& b, const std:
 
 /// Differences between two maps.
 struct MapChanges {
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< maps points from b's world to a's world
-  std::vector<Change> changes;                              ///< largest first
+  /// Maps points from b's to a's world frame.
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
+  std::vector<Change> changes;  ///< largest first
 };
 
 /// Returns the objects that appeared in map b or vanished since map a. Registers the maps first, unless they
-/// are known to have the same world (share_world()). Throws Error as require_registered() does.
+/// are known to have the same world frame (share_world()). Throws Error as require_registered() does.
 MapChanges changes_between(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                            const std::string& name_b, Report& report);
 

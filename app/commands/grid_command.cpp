@@ -54,7 +54,7 @@ std::string_view recording_of(std::string_view source) {
   return range.find_first_not_of("0123456789:") == std::string_view::npos ? source.substr(0, at) : source;
 }
 
-/// Returns the reference's surface in the map's world.
+/// Returns the reference's surface in the map's world frame.
 Mesh reference_of(const FallthroughOptions& options, const SavedMap& map, Report& report) {
   if (options.reference.empty()) return map.mesh;
   SavedMap reference = load_map(options.reference);

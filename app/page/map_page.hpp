@@ -27,8 +27,8 @@ struct NamedMap {
 
 /// Writes a page of two maps of one room, with the objects that appeared and vanished between them. Throws
 /// Error as write_map_page() does.
-/// @param T_a_b    maps points from b's world to a's world
-/// @param changes  in the world of map a
+/// @param T_a_b    maps points from b's world frame to a's world frame
+/// @param changes  in the world frame of map a
 void write_diff_page(const NamedMap& a, const NamedMap& b, const Eigen::Isometry3d& T_a_b,
                      std::span<const Change> changes, const std::filesystem::path& path);
 

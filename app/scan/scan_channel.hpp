@@ -67,7 +67,7 @@ struct ShownScan {
 struct ScanOutcome {
   std::string text;                       ///< empty: the scan goes on
   std::shared_ptr<const Mesh> surface{};  ///< of the saved map; null: there is no map
-  std::vector<NumberedHole> holes{};      ///< inside the scan, in the map's world
+  std::vector<NumberedHole> holes{};      ///< inside the scan, in the map's world frame
 };
 
 /// Work of a scan after its last frame.

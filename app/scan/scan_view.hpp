@@ -32,8 +32,8 @@ class ScanView final : public ScanObserver {
  public:
   /// @param channel  must outlive the view
   /// @param max_memory_bytes, folder  see resources_now()
-  /// @param first_view  view, in the world of the map that is extended, that is shown as the next one until
-  ///                    the camera has been there; unset: none
+  /// @param first_view  view that is shown as the next one until the camera has been there, in the world
+  ///                    frame of the map that is extended; unset: none
   explicit ScanView(ScanChannel& channel, std::size_t max_memory_bytes = 0,
                     std::filesystem::path folder = ".", std::optional<NextView> first_view = {});
   ~ScanView() override;
@@ -52,7 +52,7 @@ class ScanView final : public ScanObserver {
     std::size_t anchor = 0;
     AnchorPoses T_world_anchor;
     bool has_moved = false;   ///< anchors moved since the last work
-    bool is_located = false;  ///< the odometry's world is that of the map
+    bool is_located = false;  ///< the odometry's world frame is that of the map
     std::vector<Eigen::Vector3f> path_world;
     std::vector<Keyframe> keyframes;  ///< only if the next view is to be searched
     ScanCounts counts;
@@ -95,7 +95,7 @@ class ScanView final : public ScanObserver {
     std::vector<Hole> holes;
   };
   struct Search {
-    std::optional<NextView> first_view;  ///< in the odometry's world
+    std::optional<NextView> first_view;  ///< in the odometry's world frame
     Explored last{};
     std::vector<NumberedHole> holes{};
     std::chrono::steady_clock::time_point begun{};

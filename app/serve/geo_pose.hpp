@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Position and heading of a map's world on the earth (WGS 84).
+/// Position and heading of a map's world frame on the earth (WGS 84).
 struct GeoAnchor {
   double latitude_deg = 0.0, longitude_deg = 0.0;  ///< position of the world's origin
   double height_m = 0.0;                           ///< height of the world's origin above the ellipsoid
@@ -22,8 +22,8 @@ struct GeoPose {
   Eigen::Quaterniond R_enu_camera = Eigen::Quaterniond::Identity();
 };
 
-/// Returns the pose of a camera in a map's world. z of the world must be up. Exact for any distance from the
-/// anchor. Source: NIMA TR8350.2, World Geodetic System 1984 (ellipsoid).
+/// Returns the pose of a camera in a map's world frame. The world's z axis must point up. Exact for any
+/// distance from the anchor. Source: NIMA TR8350.2, World Geodetic System 1984 (ellipsoid).
 GeoPose geo_pose_of(const GeoAnchor& anchor, const Eigen::Isometry3d& T_world_camera);
 
 /// Returns the Basic-Quaternion form. Source: Open Geospatial Consortium, GeoPose 1.0, 21-056r11.

@@ -25,8 +25,8 @@ struct SearchedMap {
 ///      "feature_inliers": N, "rival_inliers": N, "depth_agreement": 0..1, "overlap": 0..1,
 ///      "tiles": [{"name": ..., "glb": ..., "distance_m": ...}], "geopose": {...} or "local"}
 ///
-/// with the depth camera's pose in the map's world (camera: x right, y down, z forward) and the tiles within
-/// 5 m, the nearest first; or
+/// with the depth camera's pose in the map's world frame (camera: x right, y down, z forward) and the tiles
+/// within 5 m, the nearest first; or
 ///
 ///     {"found": false, "reason": "ambiguous", "sentence": "..."}
 ///

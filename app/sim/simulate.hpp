@@ -14,8 +14,8 @@ namespace roomradar {
 /// ground truth as
 ///   truth/depth/NNNNNN.png  exact depth, 16 bit, 1/5000 m; 0: outside the sensor's range
 ///   truth/moved/NNNNNN.png  8 bit; 255 if the nearest surface is a moving object
-///   truth/mover/NNNNNN.png  8 bit; 0 for the room, otherwise the number of the moving object in sim.json,
-///                           from 1; a crate that appears has the next number after the moving objects
+///   truth/mover/NNNNNN.png  8 bit; 0 for the room, otherwise the 1-based number of the moving object in
+///                           sim.json; a crate that appears has the next number after the moving objects
 ///   truth/revealed/NNNNNN.png  8 bit; 255 if a crate that has disappeared would be the nearest surface
 ///   truth/trajectory.txt    exact poses of the depth camera, TUM format
 ///   truth/room.ply          surface of the room, without moving objects; of a building, its rooms, corridors

@@ -8,7 +8,7 @@
 namespace roomradar {
 
 struct BuildingFloor {
-  double height_m = 0.0;  ///< z in the building's world
+  double height_m = 0.0;  ///< z in the building's world frame
   double area_m2 = 0.0;   ///< of the level surfaces within 10 cm of the height
 };
 

@@ -1,4 +1,4 @@
-// building_graph.hpp: places all recordings of a building in one world.
+// building_graph.hpp: places all recordings of a building in one world frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -55,9 +55,9 @@ struct BuildingGraph {
 /// Solves for all keyframes' poses. All joins must have the status kJoined. First chooses joins that do not
 /// contradict each other (join_choice.hpp). Initial poses come from a spanning tree of the joins with the
 /// most agreeing keyframes. The other joins are then added as robust constraints. Joins with an error above
-/// max_off_m are refused, the worst first, until none is left. The world of a connected component is that of
-/// its submaps' earlier poses, or of its first submap if none has earlier poses. Deterministic. Source:
-/// Kümmerle et al., g2o, ICRA 2011 (pose graph).
+/// max_off_m are refused, the worst first, until none is left. The world frame of a connected component is
+/// that of its submaps' earlier poses, or of its first submap if none has earlier poses. Deterministic.
+/// Source: Kümmerle et al., g2o, ICRA 2011 (pose graph).
 BuildingGraph solve_building(std::span<const GraphSubmap> submaps, std::span<const GraphJoin> joins,
                              const TestOverlap& test_overlap = {}, const GraphConfig& config = {});
 

@@ -12,15 +12,15 @@
 
 namespace roomradar {
 
-/// The camera's path in one recording, in a world of its own: +z up, the origin on the floor below the first
+/// The camera's path in one recording, in its own world frame: +z up, the origin on the floor below the first
 /// camera.
 struct Submap {
   std::string source;  ///< name of the recording
   std::int64_t frames_read = 0;
   SensorTiming timing;
   std::vector<TimedPose> trajectory;  ///< poses of the frames with a trusted pose, in order
-  std::vector<TimedPose> recorded;    ///< poses that the recording states, in its own world; empty: none
-  KeyframeDatabase keyframes;         ///< in order of frame_index
+  std::vector<TimedPose> recorded;  ///< poses that the recording states, in its own world frame; empty: none
+  KeyframeDatabase keyframes;       ///< in order of frame_index
 };
 
 /// Writes a submap to `folder`, which must exist: submap.bin and keyframes.bin. Throws Error if a file cannot
@@ -43,7 +43,7 @@ Eigen::Isometry3d pose_between(const Eigen::Isometry3d& a, const Eigen::Isometry
 /// Moves the poses of all frames with the keyframes' poses. A frame between two keyframes gets the mean of
 /// their corrections, interpolated by frame index.
 /// @param T_world_keyframe  one new pose per keyframe of the submap
-/// @return the trajectory in the new world; empty if the submap has no keyframe
+/// @return the trajectory in the new world frame; empty if the submap has no keyframe
 std::vector<TimedPose> corrected_trajectory(const Submap& submap,
                                             std::span<const Eigen::Isometry3d> T_world_keyframe);
 

@@ -37,8 +37,8 @@ struct SubmapJoin {
   /// With kJoined: refined by depth. With another status: as estimated from features where the submaps look
   /// alike, with `information` not set.
   std::vector<KeyframeLink> links;
-  /// Relative pose of the submaps' worlds near the links. Its error grows with the distance from the links,
-  /// by the drift of both submaps.
+  /// Relative pose of the submaps' world frames near the links. Its error grows with the distance from the
+  /// links, by the drift of both submaps.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   int agreeing = 0;        ///< number of keyframes of b whose features agree on T_a_b
   int expected = 0;        ///< keyframes of b that overlap enough with one of a to be recognised in it

@@ -18,8 +18,8 @@ struct PredictedPair {
 };
 
 /// Adds the pairs of one keyframe of b with all keyframes of a that have nearly its view.
-/// @param T_a_keyframe  poses of a's keyframes in a's world
-/// @param T_a_b         predicted pose of the keyframe of b in a's world
+/// @param T_a_keyframe  poses of a's keyframes in a's world frame
+/// @param T_a_b         predicted pose of the keyframe of b in a's world frame
 void predict_pairs(std::span<const Eigen::Isometry3d> T_a_keyframe, const Eigen::Isometry3d& T_a_b,
                    std::size_t b, double drift_m, std::vector<PredictedPair>& pairs);
 

@@ -13,7 +13,7 @@ enum class HoleKind {
 };
 std::string_view to_string(HoleKind kind);
 
-/// One unobserved region, in the map's world.
+/// One unobserved region, in the map's world frame.
 struct Hole {
   HoleKind kind = HoleKind::kUnknownSpace;
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();  ///< centre, m

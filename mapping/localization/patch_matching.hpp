@@ -13,8 +13,8 @@
 
 namespace roomradar {
 
-/// Patches of a keyframe database, in the world's frame, grouped by patch size. A patch that several
-/// keyframes show alike is stored once.
+/// Patches of a keyframe database, in the world frame, grouped by patch size. A patch that several keyframes
+/// show alike is stored once.
 struct PatchIndex {
   struct OfSize {
     /// First 64 bits of each patch's descriptor, contiguous in memory for fast comparison.

@@ -15,13 +15,13 @@ std::string_view to_string(ChangeKind kind);
 struct Change {
   ChangeKind kind = ChangeKind::kAppeared;
   Eigen::Vector3d position_world =
-      Eigen::Vector3d::Zero();    ///< centroid of its surface, in the world of map a
-  Eigen::AlignedBox3d box_world;  ///< bounding box of its surface, in the world of map a
+      Eigen::Vector3d::Zero();    ///< centroid of its surface, in the world frame of map a
+  Eigen::AlignedBox3d box_world;  ///< bounding box of its surface, in the world frame of map a
   double area_m2 = 0.0;           ///< area of its observed surface; two sides of a voxel count once
   /// Volume, within the box, that only the map without the object has as free space. Includes the object's
   /// unobserved interior.
   double volume_m3 = 0.0;
-  std::vector<Eigen::Vector3d> surface_world;  ///< centres of its surface voxels, in the world of map a
+  std::vector<Eigen::Vector3d> surface_world;  ///< centres of its surface voxels, in the world frame of map a
 };
 
 struct DiffConfig {
@@ -47,7 +47,7 @@ void require_valid(const DiffConfig& config);
 /// max_pose_error_m, or stand out from a plane by less, are not detected either. A pole a few centimetres
 /// thick that one scan measured only from beyond 3 m can be missing from that scan's map, and is then listed
 /// as a change.
-/// @param T_a_b  maps points from b's world to a's world
+/// @param T_a_b  maps points from b's world frame to a's world frame
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const DiffConfig& config = {});
 

@@ -29,7 +29,7 @@ struct MapInfo {
   std::int64_t frames_read = 0;
   std::int64_t frames_fused = 0;
   std::string up_source = "none";  ///< accelerometer, plane, given or none
-  /// Maps points from the recording's world to the map's world, where +z is up.
+  /// Maps points from the recording's to the map's world frame, where +z is up.
   Eigen::Isometry3d T_world_recorded = Eigen::Isometry3d::Identity();
   std::map<std::string, std::string> settings;  ///< prescan's settings, by name
 
@@ -49,8 +49,8 @@ struct MapInfo {
 /// had poses.
 bool knows_recorded_world(const MapInfo& info);
 
-/// Returns true if both maps are known to have the same world, since their keyframe files are equal. A map
-/// saved by a run in another map has that map's keyframes.
+/// Returns true if both maps are known to have the same world frame, since their keyframe files are equal. A
+/// map saved by a run in another map has that map's keyframes.
 bool share_world(const MapInfo& a, const MapInfo& b);
 
 /// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if

@@ -192,7 +192,7 @@ void require_alike(const SavedMap& a, const SavedMap& b) {
               " times: scan one of them again");
 }
 
-/// Throws Error if a map, in the merged map's world, is out of reach at this resolution.
+/// Throws Error if a map, in the merged map's world frame, is out of reach at this resolution.
 void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map, double resolution_m) {
   const Eigen::AlignedBox3d known = map.octree->counts().known_world;
   if (known.isEmpty()) return;

@@ -49,7 +49,7 @@ std::string describe(const Registration& registration);
 /// that the surfaces do not constrain, the keyframes' transform is kept. The result must then agree with a's
 /// surface and free space. Deterministic.
 ///
-/// @param surface_b  points sampled uniformly on the surface of b, in the world of b (see surface_points.hpp)
+/// @param surface_b  points sampled uniformly on b's surface (sample_surface()), in b's world frame
 Registration register_to(const StaticMap& octree_a, const KeyframeDatabase& database_a,
                          const KeyframeDatabase& database_b, std::span<const Eigen::Vector3d> surface_b,
                          const RegistrationConfig& config = {});

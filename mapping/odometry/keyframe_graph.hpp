@@ -34,7 +34,7 @@ struct KeyframeGraphConfig {
 struct KeyframeGraph {
   std::vector<Keyframe> keyframes;  ///< the first pose is constant if there are no anchors
   std::vector<PoseConstraint> constraints;
-  std::vector<PoseAnchor> anchors;  ///< measured poses of keyframes in the world of a known map
+  std::vector<PoseAnchor> anchors;  ///< measured poses of keyframes in the world frame of a known map
   /// Number of connected pairs that are at least three keyframes apart in sequence.
   std::int64_t loops_found = 0;
   std::int64_t loops_rejected = 0;

@@ -28,7 +28,7 @@ struct KeyframeJob {
 struct KeyframeJobResult {
   KeyframeGraph graph;  ///< input graph with the newest keyframe connected, and optimised poses
   MapKeyframe place;    ///< database entry of the newest keyframe
-  /// Pose of the newest keyframe in the earlier map's world; unset if it was not localised there.
+  /// Pose of the newest keyframe in the earlier map's world frame; unset if it was not localised there.
   std::optional<Eigen::Isometry3d> T_known_camera;
 };
 

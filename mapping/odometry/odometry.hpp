@@ -26,7 +26,7 @@ class Odometry {
 
   /// Sets the keyframe database of an earlier map; call before the first frame. Each new keyframe is
   /// localised in the earlier map if possible. Once a keyframe was localised, all poses, also those of
-  /// earlier frames, are in the earlier map's world. The earlier map's own poses stay constant.
+  /// earlier frames, are in the earlier map's world frame. The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
 
   /// Tracks the next frame and returns its current pose estimate. While tracking is lost, tries the last pose

@@ -38,7 +38,7 @@ struct Frame {
 
   SensorTiming timing;  ///< as the source states; all 0 if unknown
 
-  std::optional<Eigen::Isometry3d> T_world_camera;  ///< depth camera's pose in the recording's world
+  std::optional<Eigen::Isometry3d> T_world_camera;  ///< depth camera's pose in the recording's world frame
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame
 };
 

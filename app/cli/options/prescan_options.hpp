@@ -57,8 +57,8 @@ struct PrescanOptions {
   bool window = false;
   /// Signal of the window when tracking is lost.
   LostSignal lost_signal;
-  /// Place that the window asks to be scanned first, in the world of the map that is extended. No option sets
-  /// it.
+  /// Place that the window asks to be scanned first, in the world frame of the map that is extended. No
+  /// option sets it.
   std::optional<PlaceToScan> look_at;
   /// Scale of the window's text and panes; unset: the monitor's.
   std::optional<double> ui_scale;

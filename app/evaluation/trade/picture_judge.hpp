@@ -52,7 +52,7 @@ class PictureJudge {
   /// Returns the errors of one picture. The frame's colour camera must equal its depth camera.
   /// @param frame           frame with colour
   /// @param true_depth_m    exact depth, of the frame's size
-  /// @param T_world_camera  true camera pose, in the world of JudgedObject::T_world_object
+  /// @param T_world_camera  true camera pose, in the world frame of JudgedObject::T_world_object
   PictureErrors errors_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
                           const Eigen::Isometry3d& T_world_camera);
 

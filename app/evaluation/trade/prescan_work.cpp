@@ -53,8 +53,8 @@ double median_of(const std::map<std::string, StageSummary>& stages, const char* 
   return found == stages.end() ? kNotMeasured : found->second.median_ms;
 }
 
-/// Returns the transform from the map's world to the room's: mean rotation and translation over all poses.
-/// Positions alone would leave the rotation about a straight path undetermined.
+/// Returns the transform from the map's world frame to the room's: mean rotation and translation over all
+/// poses. Positions alone would leave the rotation about a straight path undetermined.
 Eigen::Isometry3d T_room_map_of(const std::vector<TimedPose>& trajectory, const std::vector<Frame>& frames) {
   Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
   for (const TimedPose& pose : trajectory) {

@@ -22,7 +22,7 @@ struct TrueView {
 struct RunScene {
   std::string name;
   SavedMap map;
-  /// Frames with true poses, in the recording's world.
+  /// Frames with true poses, in the recording's world frame.
   std::vector<Frame> frames;
   /// Ground truth of some frames; empty for recordings.
   std::vector<TrueView> true_views;

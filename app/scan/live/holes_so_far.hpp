@@ -11,7 +11,7 @@ namespace roomradar {
 
 /// A hole, and the number that it is shown with.
 struct NumberedHole {
-  int number = 0;  ///< from 1
+  int number = 0;  ///< 1-based
   Hole hole;
 };
 

@@ -37,7 +37,8 @@ struct SimOptions {
   /// Number of frames, >= 1. For the building, 0 means the whole walk, and frames beyond the walk are not
   /// delivered.
   std::int64_t frames = 300;
-  /// Size of the building. All walks of a building of one seed and size have the same world.
+  /// Size of the building. All walks of one seed and size are in the same building, with the same world
+  /// frame.
   BuildingSize building;
   /// Walk through the building: 0 to kLastWalk, or kRingWalk. It also seeds the path's sway and the noise.
   int walk = 0;
