@@ -23,8 +23,8 @@ namespace roomradar {
 struct Push {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, towards the body
-  /// Min speed of the body at point_world along the normal. Negative: max approach speed to a surface that
-  /// the body does not reach otherwise.
+  /// Min speed of the body at point_world along the normal. Negative: the body may approach the surface, at
+  /// up to -speed_mps.
   double speed_mps = 0.0;
   SurfaceKind touched = SurfaceKind::kDynamic;
 };
@@ -46,9 +46,10 @@ struct MovingBody {
   double dt_s = 0.0;             ///< length of the substep
   /// Called after each change of the body's pose, to update the other bodies' scenes. May be null.
   const std::function<void()>* moved = nullptr;
-  /// Apart from the bodies of the call, nothing has moved near the body since its last substep.
+  /// True if nothing but the bodies of the call has moved near the body since its last substep.
   bool is_undisturbed = false;
-  /// Per tree of the probe's scene: index of its body among the substep's bodies; kNoOther if it is none.
+  /// Per tree of the probe's scene: index of the tree's body among the substep's bodies; kNoOther if it has
+  /// none.
   std::vector<std::size_t> member_of_tree{};
 
   double left_s = 0.0;  ///< time of the substep that remains to be simulated
@@ -83,20 +84,21 @@ struct PastContact {
 struct ContactSystem {
   std::vector<SolverContact> contacts;
   std::vector<double> gap_m;       ///< per contact; 0 for a Push
-  std::vector<SurfaceKind> kinds;  ///< of the surface that SolverContact::body touches
+  std::vector<SurfaceKind> kinds;  ///< per contact: kind of the surface that SolverContact::body touches
   std::vector<const Push*> push;   ///< per contact; null if the contact is not a Push
   std::vector<SolverBody> bodies;
   std::vector<Bystander> bystanders;
   std::vector<PastContact> past;  ///< contacts of the last support solve, for warm starts
   std::vector<SleeperContacts> sleepers;
   ContactSolver solver;
-  /// Shares the queries of many bodies; made when first needed. Results are the same without.
+  /// Runs some of the queries of many bodies on a second thread; created when first needed. Results are the
+  /// same without it.
   std::unique_ptr<WorkerThread> worker;
-  bool is_one_thread = false;        ///< true: no worker is made
+  bool is_one_thread = false;        ///< true: no worker is created
   std::vector<std::size_t> upwards;  ///< scratch: indices of bodies by height
 };
 
-/// Returns the worker to share this number of bodies' queries with; null if one thread is as fast.
+/// Returns the worker for the queries of this number of bodies; null if one thread is as fast.
 WorkerThread* worker_for(std::size_t queried_bodies, ContactSystem& system);
 
 /// Returns true if the body is awake, has time left in the substep, and no surface intersects it.

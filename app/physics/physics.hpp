@@ -1,4 +1,4 @@
-// physics.hpp: rigid-body motion of virtual objects, with Cyber Radar queries for contacts.
+// physics.hpp: rigid-body motion of virtual objects; contacts are found by Cyber Radar queries.
 #pragma once
 #include <Eigen/Core>
 #include <functional>
@@ -19,8 +19,8 @@ struct AdvancedBody {
   /// Queries against a scene that contains all other bodies at their current poses; see `moved`.
   const CollisionQueries* probe = nullptr;
   double mass_kg = 1.0;  ///< > 0
-  /// A user's hand moves the body at its velocity, without gravity, friction and restitution. Other bodies
-  /// hardly slow it.
+  /// A user carries the body: it moves at its given velocity, without gravity, friction and restitution.
+  /// Other bodies hardly slow it.
   bool is_carried = false;
   double dt_s = 0.0;  ///< time since the body was last advanced, >= 0; 0 changes nothing
   /// No surface has moved near the body since it was last advanced, except bodies that were advanced with it.
@@ -34,7 +34,7 @@ struct AdvancedBody {
   double surface_speed_mps = 0.0;
   /// Directions towards dynamic surfaces, see depenetration_directions(); may be empty.
   std::span<const Eigen::Vector3d> depenetration_directions_world{};
-  /// Called after each change of the body's pose. Callers update the scenes of the other bodies in it.
+  /// Called after each change of the body's pose. Must update the scenes of the other bodies.
   std::function<void()> moved{};
   StepReport report{};  ///< out
   /// Out: closest features within contact distance before the body's last motion. Unchanged while it sleeps.
@@ -52,32 +52,32 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 /// cancels approach velocity, with restitution for impacts faster than bounce_mps. A second solve adds
 /// gravity, support and friction, without restitution. Both solve each connected component of bodies in
 /// contact as one system, so a body bears the weight of everything on it. Each body then moves with the mean
-/// of its velocities before and after the second solve, all bodies at the same time, each until its first
-/// time of impact (CollisionQueries::free_time). Two bodies that meet stop together; the others move on, past
-/// the two at rest. Bodies whose paths cannot meet are independent. The remaining time of a stopped body's
-/// substep is simulated in the same way from the new poses. Hence neither translation nor rotation tunnels,
-/// at any step size. No body enters another. A body that hardly moves in four motions, jammed between others,
-/// stays for the rest of the substep. Between contacts, the path is a parabola and angular momentum is
-/// conserved.
+/// of its velocities before and after the second solve, all bodies simultaneously, each until its first time
+/// of impact (CollisionQueries::free_time). Bodies that touch each other stop at the time of impact. The
+/// other bodies continue, with the stopped bodies as obstacles at rest. Bodies whose paths cannot intersect
+/// are independent. The remaining time of a stopped body's substep is simulated in the same way from the new
+/// poses. Hence neither translation nor rotation tunnels, at any step size. No body enters another. A body
+/// that hardly moves in four motions, jammed between others, stays for the rest of the substep. Between
+/// contacts, the path is a parabola and angular momentum is conserved.
 ///
 /// Bodies in the scene of AdvancedBody::probe that are not advanced in this call receive the opposite
-/// impulses. Their velocity changes at once, their pose when they are advanced.
+/// impulses. Their velocities change at once, their poses when they are advanced.
 ///
 /// A sleeping body wakes if another body hits it faster than 5 cm/s. It also wakes if the weight on it would
 /// set it in motion, unless it sleeps on a dynamic surface.
 ///
 /// If a surface overlaps a body before the step, the body is first translated out of the overlap. If a
-/// dynamic surface overlaps it from the side, the contacts with it are instead pushed at the speeds that
-/// remove the overlap in dt_s, see push_contacts(). The body then slides, rotates or tips. While a surface
-/// other than the pushing one intersects a body, the body does not rotate. It then moves by radar queries
-/// along its path.
+/// dynamic surface overlaps the body from the side, the surface instead pushes the body at their contacts, at
+/// the speeds that remove the overlap in dt_s; see push_contacts(). The body then slides, rotates or tips.
+/// While a surface other than the pushing one intersects a body, the body does not rotate. It then moves by
+/// radar queries along its path.
 ///
 /// Apart from contacts with moving bodies, a sleeping body is tested only along gravity and
 /// depenetration_directions_world; if it overlaps along gravity by more than 3 mm, also along four horizontal
-/// directions. Overlaps up to wake_overlap_m, such as from sensor noise, do not move it. For dynamic surfaces
-/// that move, the limit is less by the distance that they travel in dt_s. A body that fell asleep in contact
-/// with another body wakes when that other body moves by more than wake_moved_m or disappears. A sleeping
-/// body with a non-zero velocity wakes. At most max_advance_s is simulated per call.
+/// directions. Overlaps up to wake_overlap_m, such as from sensor noise, do not move it. For moving dynamic
+/// surfaces, this limit is reduced by the distance that they travel in dt_s. A body that fell asleep in
+/// contact with another body wakes when that other body moves by more than wake_moved_m or disappears. A
+/// sleeping body with a non-zero velocity wakes. At most max_advance_s is simulated per call.
 /// @param system  pass the same object in each call; its impulses warm-start the next solve
 void advance_together(std::span<AdvancedBody> bodies, const PhysicsConfig& config, ContactSystem& system);
 

@@ -82,7 +82,7 @@ JointMover::Free MovingSet::free_time(std::size_t mover, double duration_s) cons
   for (std::size_t tree = 0; tree < moving.member_of_tree.size(); ++tree) {
     const std::size_t other = moving.member_of_tree[tree];
     if (other == kNoOther || !is_active(bodies_[other])) continue;
-    if (mover_of_[other] == kNoMover) {  // their paths cannot meet
+    if (mover_of_[other] == kNoMover) {  // their paths cannot intersect
       trees.left_out[tree] = true;
       continue;
     }

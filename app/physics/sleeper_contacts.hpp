@@ -22,14 +22,15 @@ struct SleeperContacts {
 };
 
 /// Returns the body that a point of the scene lies on; null: a surface.
-/// @param others  per triangle tree of the scene, the body to which it belongs; later trees are surfaces
+/// @param others  one per triangle tree of the scene: the tree's body. Trees beyond the last entry are
+///                surfaces
 inline const Body* body_of(std::span<const SceneBody> others, const ClosestPoint& p) {
   return p.tree < others.size() ? others[p.tree].body : nullptr;
 }
 
 /// Copies a body's known contacts to `near` if they are still valid. Returns false if they are not.
 /// ClosestPoint::tree is set to the other body's index in `others`, which may have changed.
-/// @param others  per triangle tree of the scene, the body to which it belongs
+/// @param others  as in body_of()
 bool recall_contacts(std::span<const SleeperContacts> known, const Body& body,
                      std::span<const SceneBody> others, std::vector<ClosestPoint>& near);
 

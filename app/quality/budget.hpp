@@ -68,9 +68,9 @@ BudgetState start_budget(std::vector<BudgetStep> front, const BudgetConfig& conf
 /// load matters; BudgetState::scales adapts it to the current machine.
 double nominal_ms(FramePart part, const FrameLoad& load);
 
-/// Chooses the step for `part` and all later parts of the frame, and sets state.step. Call before the part
-/// begins. Within a frame, the step only becomes faster. The next frame begins with state.settled. If two
-/// frames within about ten switch to faster steps, state.settled becomes faster, too.
+/// Chooses the step (quality setting) for `part` and all later parts of the frame, and sets state.step. Call
+/// before the part begins. Within a frame, the step only becomes faster. The next frame begins with
+/// state.settled. If two frames within about ten switch to faster steps, state.settled becomes faster, too.
 /// @param elapsed_ms  time since the frame began
 /// @return index of the new step; unset if the step did not change
 std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config, FramePart part,

@@ -1,4 +1,4 @@
-// frame_load.hpp: the parts of a frame, and the quantities that predict their times.
+// frame_load.hpp: processing stages of a frame (parts), and the quantities that predict their times.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Parts of a frame's processing, in order. The quality can change before each part.
+/// Processing stages of a frame, called parts, in order. The quality can change before each part.
 enum class FramePart {
   kLocate,   ///< localisation and detection of dynamic pixels
   kMesh,     ///< mesh of the dynamic foreground
@@ -33,7 +33,7 @@ constexpr std::string_view to_string(FramePart part) {
   return "locate";
 }
 
-/// Quantities that predict the times of a frame's parts, known before the parts begin.
+/// Quantities that predict the times of a frame's parts. They are known before the parts begin.
 struct FrameLoad {
   /// Dynamic fraction of the depth pixels. Before kMesh: that of the previous frame.
   double dynamic_fraction = 0.0;

@@ -16,7 +16,6 @@ struct HatchedPatch {
 
 /// Draws orange stripes, 1 cm wide with gaps of 1 cm, over the pixels in which a patch is visible. Skips
 /// patches that are behind the camera, have a radius <= 0 or are not finite.
-/// @param camera        camera of the picture
 /// @param real_depth_m  depth of real surfaces, with the size of `picture`. Hides what is more than 3 cm
 ///                      farther away. Depth 0 hides nothing
 void hatch(std::span<const HatchedPatch> patches, const Intrinsics& camera,

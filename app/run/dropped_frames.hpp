@@ -12,8 +12,7 @@ struct DroppedFrames {
   /// Index of the first frame that was passed to see(), minus the number of frames read before it.
   std::optional<std::int64_t> first_index;
 
-  /// Updates the count with a frame.
-  /// @param index  index of the frame
+  /// Updates the count with the frame of this index.
   /// @param read   number of frames read so far, including this frame and frames that were unusable
   void see(std::int64_t index, std::int64_t read) {
     if (!first_index) first_index = index - (read - 1);

@@ -5,8 +5,8 @@
 
 namespace roomradar {
 
-/// Returns the frame's colour image or, without one, its depth as grey: white at 0.5 m, dark at 5 m, black
-/// without depth.
+/// Sets `picture` to the frame's colour image or, without one, to its depth as grey: white at 0.5 m, dark at
+/// 5 m, black without depth.
 void make_picture(const Frame& frame, ColourImage& picture);
 
 /// Returns a tint for the whole picture of make_picture(), one pixel per 8 x 8 of the picture: RGBA, red in

@@ -15,7 +15,7 @@ ListenAddress parse_listen_address(const std::string& text);
 /// Returns true if only programs on this machine can reach the address.
 bool is_loopback(const ListenAddress& address);
 
-/// Reads a token: the file's only line, 16 to 256 printable ASCII characters without blanks. Throws Error
+/// Reads a token: the file's only line, 16 to 256 printable ASCII characters without spaces. Throws Error
 /// naming the file and the fault, also if other users may read the file.
 std::string read_token(const std::filesystem::path& path);
 

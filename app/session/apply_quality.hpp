@@ -1,4 +1,4 @@
-// apply_quality.hpp: applies quality settings to a session's configuration; load of a frame.
+// apply_quality.hpp: applies quality settings to a session's configuration, and computes a frame's load.
 #pragma once
 #include <memory>
 #include <span>
@@ -15,7 +15,7 @@ namespace roomradar {
 void apply(const RunQuality& quality, SessionConfig& config);
 
 /// Returns the load of a frame, for budgets that choose the quality.
-/// @param dynamic_fraction  dynamic pixels of the last frame, relative to all
+/// @param dynamic_fraction  fraction of the last frame's pixels that are dynamic
 FrameLoad load_of(std::span<const std::unique_ptr<VirtualObject>> objects, double dynamic_fraction);
 
 }  // namespace roomradar

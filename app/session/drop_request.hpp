@@ -24,8 +24,8 @@ inline constexpr double kGentleDrop_m = 0.05;
 struct DropRequest {
   std::string name{};
   std::optional<Eigen::Vector3d> position_world{};  ///< unset: above a level surface in view
-  /// Used without position_world. Set: the search takes the surface point nearest to near_world, at most 25
-  /// cm away. Unset: the search takes the surface point nearest to the image centre.
+  /// Used without position_world. Set: the search takes the free level place nearest to near_world, at most
+  /// 25 cm away. Unset: the search takes the free level place nearest to the image centre.
   std::optional<Eigen::Vector3d> near_world{};
   /// Initial height of the object's lowest vertex above the position or surface. Without position_world, the
   /// height is reduced to kGentleDrop_m if the object would not stay otherwise.
@@ -55,10 +55,9 @@ struct DropScene {
 
 /// Result of find_drop_position().
 struct [[nodiscard]] DropPosition {
-  std::optional<Eigen::Vector3d>
-      /// Position of the object's origin for which its centre is above the surface point; z is the surface's
-      /// height. Unset: no surface was found.
-      position_world;
+  /// Position of the object's origin for which its centre is above the surface point; z is the surface's
+  /// height. Unset: no surface was found.
+  std::optional<Eigen::Vector3d> position_world;
   double height_m = 0.0;  ///< at most DropRequest::height_m
   /// End of a sentence: why no surface was found, or why the object may not stay or is dropped from a
   /// smaller height. Empty: the drop is as requested.
@@ -69,7 +68,7 @@ struct [[nodiscard]] DropPosition {
 /// fall freely and where it then stays. Dynamic surfaces count only if the scene has no static surface.
 /// Simulates a fall from drop.height_m, and from kGentleDrop_m if the object does not stay, for at most 6
 /// places. If the object stays in none of them, the first place is returned.
-/// @param camera                the depth camera
+/// @param camera                depth camera of the frame
 /// @param expected, foreground results for the current frame
 DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,
                                 const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,

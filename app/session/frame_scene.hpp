@@ -41,8 +41,8 @@ struct FrameForeground {
 };
 
 /// Rebuilds the touchable surfaces for each frame, in steps: render_expected(), find_dynamic(),
-/// mesh_surfaces(). Each step takes the results of the steps before it. Returned references are valid until
-/// the next call of the function that returned them. Not thread safe.
+/// mesh_surfaces(). Each step takes the results of earlier steps. Returned references are valid until the
+/// next call of the function that returned them. Not thread safe.
 class FrameScene {
  public:
   /// @param room     static mesh of the room, in the world
@@ -66,8 +66,8 @@ class FrameScene {
   void set_surfaces(SurfacePolicy surfaces);
   /// Replaces the frontier of unknown space; null: unknown space is free.
   void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
-  /// Replaces the room by the tiles of a building, and a frontier of unknown space that is not null by the
-  /// tiles' frontiers. `tiles` must outlive the scene.
+  /// Replaces the room by the tiles of a building. If the frontier of unknown space is not null, the tiles'
+  /// frontiers replace it. `tiles` must outlive the scene.
   void set_tiles(const TileWindow* tiles) { tiles_ = tiles; }
   /// Discards the expected depth. Call after the room's mesh has changed.
   void room_changed() { expected_.camera = {}; }
@@ -78,7 +78,7 @@ class FrameScene {
   const FrameForeground& find_dynamic(const Frame& frame, const ExpectedView& expected);
   /// With kMap, meshes the dynamic pixels and infers the back of the dynamic surface. The mesh has full
   /// resolution in the regions `fine`. With other policies, meshes all pixels.
-  /// @param expected, foreground  of this frame
+  /// @param expected, foreground  results of the previous steps for this frame
   void mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                      const ExpectedView& expected, const FrameForeground& foreground,
                      std::span<const FineRegion> fine = {});

@@ -53,7 +53,7 @@ class MapUpdater {
   MapUpdater(const MapUpdater&) = delete;
   MapUpdater& operator=(const MapUpdater&) = delete;
 
-  /// Requests a commit of the changes in view. Changes are added objects that stand still and removed
+  /// Requests a commit of the changes in view. Changes are added objects that are stationary, and removed
   /// objects. The request expires after 1 s of frame time.
   void ask() { asked_until_s_ = kNow; }
 
@@ -65,7 +65,7 @@ class MapUpdater {
   bool is_due(const Frame& frame);
   [[nodiscard]] ChangedRoom& room() { return room_; }
   /// Call after a frame's pixels have been labelled. Ignores a frame with the previous frame's index, since
-  /// in a repeated frame all objects appear to stand still.
+  /// in a repeated frame all objects appear to be stationary.
   void watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
              const Eigen::Isometry3d& T_world_camera);
 

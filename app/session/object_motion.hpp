@@ -66,7 +66,7 @@ bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scen
 /// steps of at most 15 mm, and push the object on the way. Hence a hand that moves by up to 15 cm per frame
 /// does not pass the object between two frames. An inferred back that engulfs the object (is_engulfed()) is
 /// left out of the object's scene.
-/// @param moving    this frame's surfaces; null: none is known to be dynamic
+/// @param moving    this frame's surfaces; null: no surface is known to be dynamic
 /// @param contacts  buffers; keeps impulses as initial guesses for a next call with the same objects
 /// @param counts    incremented by the contacts of this call
 /// @param radar_ms  incremented by the duration of the radar's queries, ms

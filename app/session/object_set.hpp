@@ -24,8 +24,9 @@
 
 namespace roomradar {
 
-/// Functions that take the name of an existing object throw Error if there is none of that name. Not thread
-/// safe: call all functions on the constructing thread, whose GL context is used.
+/// The virtual objects of a session. Functions that take the name of an existing object throw Error if there
+/// is none of that name. Not thread safe: call all functions on the constructing thread, whose GL context is
+/// used.
 class ObjectSet {
  public:
   /// All arguments must outlive the set. Changes of `config` take effect at the next call.
@@ -65,7 +66,7 @@ class ObjectSet {
 
   /// Searches surfaces in view for the waiting drops. If none is found, a drop near a point is cancelled with
   /// a notice. Other drops are retried after at least 10 frames.
-  /// @param expected, foreground  of this frame
+  /// @param expected, foreground  results for this frame
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                        const ExpectedView& expected, const FrameForeground& foreground,
                        std::int64_t frame_number);

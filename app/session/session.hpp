@@ -1,4 +1,4 @@
-// session.hpp: augmented reality in a saved room: computes a composed picture from each frame.
+// session.hpp: augmented reality in a saved room: composes a picture with virtual objects from each frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -93,11 +93,11 @@ class Session {
   void set_radar(const RadarConfig& config);
   /// Takes effect at once, depth_stride in the next frame. Throws Error if the quality is invalid.
   void set_quality(const RunQuality& quality);
-  /// Takes effect in the next frame, from part `part` on. Throws Error if the quality is invalid.
+  /// Takes effect in the next frame, from stage `part` on. Throws Error if the quality is invalid.
   void set_quality_from(FramePart part, const RunQuality& quality);
   /// Commits changes in view, see MapUpdater::ask(). Throws Error unless config().map_updates is set.
   void commit_changes();
-  /// Returns the notices since the last frame or call. The next frame's FrameResult::notices has the others.
+  /// Returns the notices created since the last frame or call. The next FrameResult::notices then omits them.
   std::vector<ObjectNotice> take_notices() { return objects_.take_notices(); }
   /// Returns the changes committed to the room so far.
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
@@ -151,7 +151,7 @@ class Session {
   FrameResult pass_through(const Frame& frame, StageTimes& times);  ///< not split: steps in their order
   /// Returns the time since the previous frame, s, >= 0; 0 for the first frame. Stores stamp_s.
   double seconds_since_last(double stamp_s);
-  /// Begins a part of the frame: applies the quality scheduled for it, and calls config.watch.
+  /// Begins a processing stage of the frame: applies the quality scheduled for it, and calls config.watch.
   void begin(FramePart part);
   /// Returns true in every n-th localised frame.
   [[nodiscard]] bool is_due_every(int n_frames) const { return frames_ % n_frames == 0; }

@@ -53,7 +53,7 @@ struct SessionConfig {
   PhysicsConfig physics;
   ComposeConfig picture;
   std::optional<MapUpdateConfig> map_updates;  ///< unset: the room does not change during the session
-  /// Tiles of a building, whose surfaces replace those of the map; unset: the map is that of a room.
+  /// Tiles of a building, whose surfaces replace those of the map; unset: the map is of a room.
   std::optional<TileWindowConfig> tiles;
   /// The settings from here to picture_every_n_frames trade accuracy for time. Users set them with
   /// RunQuality.
@@ -67,8 +67,9 @@ struct SessionConfig {
   /// A picture is made in every n-th frame. If > 1, objects are advanced only in frames without a picture.
   int picture_every_n_frames = 1;
   bool make_picture = true;  ///< false: pictures are not drawn; objects are simulated as usual
-  /// Called before each part of a frame, and with kDone after the last part. A returned quality takes effect
-  /// at once, for the part that begins. With kDone, the returned quality is ignored. Null: not called.
+  /// Called before each processing stage of a frame, and with kDone after the last one. A returned quality
+  /// takes effect at once, for the stage that begins. With kDone, the returned quality is ignored. Null: not
+  /// called.
   std::function<std::optional<RunQuality>(FramePart, const FrameLoad&)> watch;
   /// true: after each frame, Cyber Radar in its exact mode measures the max penetration depth of objects into
   /// the room and each other, along gravity.

@@ -29,7 +29,7 @@ struct SessionRoom {
 /// the object is not advanced unless it is carried.
 bool is_loaded_round(const SessionRoom& room, const VirtualObject& object);
 
-/// Sets the frontier of unknown space: the map's, which is extracted if it was not saved.
+/// Sets the frontier of unknown space to the map's. Extracts the frontier if it was not saved.
 void set_unknown(SessionRoom& room, const SavedMap& map);
 /// Replaces the surface, and the frontier of unknown space if it is set, by those of a committed change.
 void take_over(SessionRoom& room, ChangedRoom& changed);

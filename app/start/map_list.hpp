@@ -47,10 +47,9 @@ MapEntry describe_map(const std::filesystem::path& folder);
 /// map; newest first. Considers subfolders().
 std::vector<MapEntry> list_maps(const std::filesystem::path& folder);
 
-/// Loads the map, draws it and looks for holes. Takes about a second for a room. Never throws:
-/// MapDetails::fault states an error.
-/// @param width_px  width of the picture
-/// @param ground    colour around the room
+/// Loads the map, draws it in a picture of this width, and looks for holes. Takes about a second for a room.
+/// Never throws: MapDetails::fault states an error.
+/// @param ground  colour around the room
 MapDetails examine_map(const std::filesystem::path& folder, int width_px, Rgb ground);
 
 /// Returns the properties as lines of text, each a name and a value: date, size, area, holes, source.

@@ -34,7 +34,7 @@ class WindowContent {
 
 /// Shows the content that make_content() returns, until the content wants to quit or the window is closed.
 /// Draws after every event, otherwise four times a second.
-/// @param ui_scale  scale of text and panes; unset: that of the monitor
+/// @param ui_scale  scale of text and panes; unset: the monitor's scale, clamped to 1..3
 void show_until_closed(GlfwWindow& window, std::optional<double> ui_scale,
                        const std::function<std::unique_ptr<WindowContent>(const look::Fonts&)>& make_content);
 

@@ -1,4 +1,4 @@
-// foreground.hpp: labels the pixels of a depth frame that differ from the static model.
+// foreground.hpp: labels the pixels of a depth frame by comparison with the static model.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>

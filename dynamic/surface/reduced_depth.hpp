@@ -14,7 +14,7 @@ int usable_stride(const Intrinsics& depth_camera, int stride);
 /// half of the block's pixels, as at the border of a gap. Slivers thinner than half a reduced pixel are thus
 /// lost.
 /// @param stride   1, 2 or 4, from usable_stride()
-/// @param reduced  depth_m and depth_camera are overwritten; its other fields stay
+/// @param reduced  depth_m and depth_camera are overwritten; the other fields are unchanged
 void reduce_depth(const Frame& frame, int stride, Frame& reduced);
 
 }  // namespace roomradar

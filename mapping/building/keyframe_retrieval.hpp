@@ -62,7 +62,7 @@ GroupSimilarity compare_groups(std::span<const SubmapFeatures> a, std::span<cons
 GroupSimilarity compare_within(std::span<const SubmapFeatures> group, const RetrievalConfig& config = {});
 
 /// Adds the similarities of a submap's keyframes to those with other groups, and keeps the best `candidates`.
-/// @param number_of  by SimilarSubmap::submap of `found`: its number in `all`, ascending
+/// @param number_of  for each SimilarSubmap::submap in `found`, the number of that submap in `all`; ascending
 /// @return false if `found` has another number of keyframes or features than `all`
 bool add_similar(SubmapSimilarity& all, const SubmapSimilarity& found, std::span<const std::size_t> number_of,
                  const RetrievalConfig& config = {});

@@ -6,11 +6,11 @@
 
 namespace roomradar {
 
-/// Pixels of one preview, compared with another. Counts every fourth pixel of every fourth row.
+/// Pixel counts of one preview compared with another, over every fourth pixel of every fourth row.
 struct PreviewOverlap {
-  int valid = 0;    ///< pixels with depth of at most 4 m
-  int same = 0;     ///< of these, those at the other's surface
-  int through = 0;  ///< those in front of the other's surface: the other saw through them
+  int valid = 0;    ///< number of pixels with depth of at most 4 m
+  int same = 0;     ///< number of valid pixels at the other preview's surface
+  int through = 0;  ///< number of valid pixels in front of that surface: the other camera saw through them
 };
 
 /// Compares the depth of a keyframe with that of another.

@@ -54,7 +54,6 @@ class ContactPatch {
   /// @param gap  vertices of the intersection, with the gap at each
   /// @param contact_distance_m  distance to contact of this pair
   /// @param equally_m  points at most this much farther than contact_distance_m count as equally near
-  /// @param scene  the scene's triangle
   /// @param best_m  least distance to contact found so far
   void add(const TriangleGap& gap, double contact_distance_m, double equally_m, const FrameTriangle& scene,
            SurfaceKind kind, double best_m);

@@ -47,7 +47,7 @@ struct RadarSearch;
 /// (TriangleTree::is_closed()). Back-facing scene triangles do not count. Each pair of triangles intersects
 /// over an interval of the distance moved. A scene surface is inside a closed object over such intervals,
 /// too. Overlapping intervals are joined. The lower end of the joined interval that contains 0 is
-/// contact_distance_m = lower_m = upper_m. Moved back this far, the object is clear. An object sunk in the
+/// contact_distance_m = lower_m = upper_m. If moved back this far, the object is clear. An object sunk in the
 /// ground that moves along the ground is clear only where the ground ends. The search therefore stops at a
 /// work limit (kMostOverlapWork). Then contact_distance_m = upper_m is the lower end of the joined interval
 /// found so far, and lower_m is -infinity.

@@ -55,9 +55,9 @@ constexpr std::string_view to_string(SurfaceKind touched) {
 
 struct [[nodiscard]] Contact {
   ContactStatus status = ContactStatus::kInvalidInput;  // unset: failed
-  /// Distance to contact along the direction, m. Valid for kContact and kOverlap only. Negative for kOverlap.
-  /// Moved back by -contact_distance_m along the direction, the object clears the surfaces that face against
-  /// the motion.
+  /// Distance to contact along the direction, m. Valid for kContact and kOverlap only. Negative for kOverlap:
+  /// if the object is moved back by -contact_distance_m along the direction, it clears the surfaces that face
+  /// against the motion.
   double contact_distance_m = 0.0;
   /// Lower bound of the true distance to contact, m. kNoTarget: distance that is certainly free, at most the
   /// queried distance. kOverlap: contact_distance_m, or -infinity if the overlap is too deep to be measured

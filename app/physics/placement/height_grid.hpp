@@ -1,4 +1,4 @@
-// height_grid.hpp: height map of a view, seen from above.
+// height_grid.hpp: height map, seen from above, of the surfaces in a depth image.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

@@ -35,7 +35,6 @@ bool correct(const OdometrySnapshot& odometry, Anchors& anchors);
 
 /// Returns the anchor with the view most similar to the camera's, or makes a new anchor if none was made
 /// within 0.8 m and 40 degrees.
-/// @param frame_index  the frame's index
 std::size_t anchor_for(std::int64_t frame_index, const Eigen::Isometry3d& T_world_camera,
                        const OdometrySnapshot& odometry, Anchors& anchors);
 

@@ -20,7 +20,7 @@ struct Script {
 /// line, since its writing may have been interrupted.
 enum class LastLine { kWhole, kMayBeCut };
 
-/// Reads an events file. One event per line, words separated by blanks, # begins a comment:
+/// Reads an events file. One event per line, words separated by spaces or tabs, # begins a comment:
 ///
 ///     frame 0    add pot teapot size 0.2
 ///     frame 0    add chair chair.obj size 0.9 up z        longest side (m); axis of the file that points up
@@ -35,14 +35,14 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     time 5.5   turn pot 0 0 45                  about the world's axes (degrees)
 ///     time 5.6   carry pot 0.4 -0.1 1.0           moved to this position and held there
 ///     time 5.9   release pot velocity 0 0 0
-///     time 5.9   material pot mass 2 friction 0.1       what is not named stays; also density, restitution
+///     time 5.9   material pot mass 2 friction 0.1       others are unchanged; also density, restitution
 ///     time 6     remove pot
-///     time 7     commit                          objects in view that stand still are added to the map
+///     time 7     commit                          stationary objects in view are added to the map
 ///     frame 200  surfaces skirt                   holes, skirt, border or map
 ///     frame 210  unknown solid                    or free
 ///     frame 220  radar sampled 64                 mode exact or sampled; resolution in pixels
 ///     frame 225  quality depth_stride 2 shadows off       others as on the command line, or default
-///     frame 226  quality from physics move_every_n_frames 4      from its physics on; or mesh, compose
+///     frame 226  quality from physics move_every_n_frames 4      from the physics stage on; or mesh, compose
 ///     frame 230  camera hold                      repeats this frame; or go, rewind, loop, stay, resume
 ///     frame 300  quit
 ///

@@ -36,8 +36,8 @@ std::string_view word_of(const std::array<Word<Value>, kCount>& words, Value val
 
 std::string in_quotes(std::string_view text);
 
-/// Reads the blank-separated words of one line, in order. Error messages contain the file's name and the line
-/// number.
+/// Reads the words of one line, separated by spaces or tabs, in order. Error messages contain the file's name
+/// and the line number.
 class LineReader {
  public:
   /// @param where  name of the file, for error messages. `text` and `where` must outlive the reader

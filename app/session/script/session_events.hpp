@@ -11,7 +11,7 @@ namespace roomradar {
 inline constexpr const char* kOnlyObject = "object";
 
 /// Returns an object name derived from a mesh path: the file's name, without the folder, up to its first dot.
-/// Blanks and `#` become underscores.
+/// White space and `#` become underscores.
 std::string object_name(const std::string& mesh);
 
 /// Executes an event: adds, moves or removes an object, or changes a policy. Call it before the frame in

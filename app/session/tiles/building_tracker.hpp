@@ -1,4 +1,4 @@
-// building_tracker.hpp: localises the camera in a building, and loads the tiles round it.
+// building_tracker.hpp: localises the camera in a building, and loads the tiles around it.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace roomradar {
 /// Tracks the camera as locate() does. Relocalises it in the building by recognise_place(), since the cost of
 /// patches and correlative search grows with the building. A recognised place is refused if it looks like
 /// another place. It becomes the pose once its tiles are loaded, and aligning the frame with their surface
-/// keeps it at that place.
+/// does not move it away from that place.
 ///
 /// A tracked pose is supported if depth constrains it and at least 30 % of the measured pixels show loaded
 /// surface, or if recognise_place() returns the same place. A doubtful pose is one that is not supported, or
@@ -30,8 +30,8 @@ class BuildingTracker {
 
   /// Call before each frame. Returns true if the loaded surfaces have changed.
   bool begin_frame(double stamp_s) { return tiles_.begin_frame(stamp_s); }
-  /// Localises a frame, and chooses the tiles for its pose or for the place that it shows.
-  /// @param keyframe_database  of the whole building, with a complete index; patches are not used
+  /// Localises a frame, and chooses the tiles for its pose or for the recognised place.
+  /// @param keyframe_database  keyframes of the whole building, with a complete index; patches are not used
   /// @param dynamic_mask, expected_depth  as in locate()
   Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                   const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth);
@@ -53,8 +53,8 @@ class BuildingTracker {
   TileWindow tiles_;
   std::int64_t recognised_ = 0, ambiguous_ = 0;
   int doubtful_frames_ = 0;
-  bool is_contradicted_ = false;       ///< the depth contradicts the last tracked pose
-  bool is_refuted_ = false;  ///< so clearly that only recognise_place() at the same place keeps the pose
+  bool is_contradicted_ = false;  ///< the depth contradicts the last tracked pose
+  bool is_refuted_ = false;       ///< so clearly that only recognise_place() at the same place keeps the pose
   std::optional<double> supported_s_;  ///< stamp of the last frame whose pose was supported
   std::optional<Eigen::Isometry3d>
       T_world_place_;  ///< place recognised in the last frame, if it was untracked

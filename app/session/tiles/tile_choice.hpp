@@ -45,9 +45,9 @@ std::size_t loading_bytes(const BuildingTile& tile, bool has_unknown);
 double tile_distance_m(const BuildingTile& tile, const Eigen::Vector3d& position_world,
                        const Eigen::Vector3d& velocity_world_mps, const TileChoiceConfig& config);
 
-/// Returns the tiles with a surface that may be in view, by number of rays, largest first. At least 5 % of
-/// the rays from the camera to the points must enter the surface's bounding box. The depth along these rays
-/// is unknown until the tile is loaded; see hide_behind().
+/// Returns the tiles whose surface may be in view: at least 5 % of the rays from the camera to the points
+/// enter the surface's bounding box. Tiles with the most such rays are first. The depth along these rays is
+/// unknown until the tile is loaded; see hide_behind().
 std::vector<std::size_t> tiles_in_view(const BuildingInfo& building, const Eigen::Vector3d& position_world,
                                        std::span<const Eigen::Vector3d> points_world);
 
@@ -55,7 +55,7 @@ std::vector<std::size_t> tiles_in_view(const BuildingInfo& building, const Eigen
 /// Loaded tiles count as keep_m nearer, so a camera that moves back and forth between two tiles does not swap
 /// them. With max_bytes, the list ends before the first tile that does not fit, and may be empty.
 /// @param in_view    tiles to choose at any distance
-/// @param is_loaded  by tile
+/// @param is_loaded  one per tile of the building
 std::vector<std::size_t> choose_tiles(const BuildingInfo& building, const Eigen::Vector3d& position_world,
                                       const Eigen::Vector3d& velocity_world_mps,
                                       std::span<const std::size_t> in_view,

@@ -1,4 +1,5 @@
-// tile_window.hpp: loads the tiles of a building around the camera, and puts them to use between frames.
+// tile_window.hpp: loads the tiles of a building around the camera, and adds them to the scene between
+// frames.
 #pragma once
 #include <Eigen/Geometry>
 #include <chrono>
@@ -23,9 +24,9 @@
 
 namespace roomradar {
 
-/// A tile in use.
+/// A loaded tile that frames use.
 struct SessionTile {
-  std::size_t index;  ///< in the building's tiles
+  std::size_t index;  ///< index in BuildingInfo::tiles
   Shape shape;
   std::optional<RasterMesh> pieces;  ///< of `shape`, until a renderer takes them
   UnknownSurface unknown;            ///< without mesh
@@ -57,8 +58,9 @@ class TileWindow {
   /// Call before each frame. Drops up to two tiles that are no longer chosen, and adds a tile that is due.
   /// Returns true if the surfaces have changed.
   bool begin_frame(double stamp_s);
-  /// Chooses the tiles that contain the frame's surfaces, those near the camera, and those on its way, and
-  /// begins to load them. Call with the camera's pose, or with a possible pose of an untracked camera.
+  /// Chooses the tiles that contain the frame's surfaces, and those near the camera's present or predicted
+  /// position, and begins to load them. Call with the camera's pose, or with a possible pose of an untracked
+  /// camera.
   void follow(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   /// Returns true if the tiles that contain the surfaces of a frame at this pose are loaded, as far as memory
@@ -66,12 +68,12 @@ class TileWindow {
   [[nodiscard]] bool is_ready_for(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const;
   /// Returns true if all tiles of the building whose cubes intersect the box are loaded.
   [[nodiscard]] bool is_loaded(const Eigen::AlignedBox3d& box_world) const;
-  /// Returns true if the point is in unknown space that counts, or not in a loaded tile.
+  /// Returns true if the point is in unknown space (see is_unknown()), or not in a loaded tile.
   [[nodiscard]] bool is_unknown_at(const Eigen::Vector3d& p_world) const;
 
   [[nodiscard]] const std::vector<std::unique_ptr<SessionTile>>& tiles() const { return tiles_; }
   [[nodiscard]] const TileWindowConfig& config() const { return config_; }
-  /// By tile of the building.
+  /// One per tile of the building: true if it is loaded.
   [[nodiscard]] const std::vector<bool>& loaded() const { return is_loaded_; }
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
   /// Returns true if there is a fault that take_fault() has not returned: a tile that could not be read, or,

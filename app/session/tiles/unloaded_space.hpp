@@ -16,7 +16,6 @@ double ray_entry(const Eigen::AlignedBox3d& box_world, const Eigen::Vector3d& fr
 /// Sets a pixel's depth to 0 if its ray enters one of the boxes before it reaches that depth. A surface in
 /// the box may be nearer than the depth, so the depth is unknown there.
 /// @param boxes_world  bounding boxes of the surfaces of tiles that are not loaded
-/// @param camera       of the image
 void hide_behind(std::span<const Eigen::AlignedBox3d> boxes_world, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 

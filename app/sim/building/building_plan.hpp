@@ -79,7 +79,7 @@ struct PlannedStairs {
 struct BuildingPlan {
   std::uint64_t seed = 1;
   BuildingSize size;
-  /// Rooms, floor by floor; on each floor in the order in which a walk past all doors meets them: eastward
+  /// Rooms, floor by floor. On each floor, they are in the order of their doors along the corridors: eastward
   /// along corridor 0, westward along corridor 1 and so on.
   std::vector<PlannedRoom> rooms;
   /// Number of the first room of each floor, and the number of rooms at the end.

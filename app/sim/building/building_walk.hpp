@@ -1,4 +1,4 @@
-// building_walk.hpp: walks through a building, each one recording.
+// building_walk.hpp: walks (camera trajectories) through a building. Each walk gives one recording.
 #pragma once
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// The walk round the corridors, back to its start. Other walks are 0 to kLastWalk.
+/// Number of the walk around the corridors, back to its start. Other walks have the numbers 0 to kLastWalk.
 inline constexpr int kRingWalk = -1;
 inline constexpr int kLastWalk = 9999;
 /// Time between two points of a walk, and mean height of the camera above the floor.
@@ -15,7 +15,7 @@ inline constexpr double kWalkStep_s = 1.0, kEyeHeight_m = 1.45;
 
 /// Returns the numbers of the rooms that a walk visits, in the walk's order; empty for kRingWalk. Walks 0 to
 /// covering_walks() - 1 together visit all rooms. A stair walk leads from one floor to the next. Each other
-/// walk shares a room with the next walk that is not a stair walk. Later walks begin in any room.
+/// walk visits a room that the next walk other than a stair walk visits, too. Later walks begin in any room.
 std::vector<int> rooms_of_walk(const BuildingPlan& plan, int walk);
 /// Returns the number of walks that together visit all rooms: about 0.4 times the number of rooms, or half of
 /// it if there are several floors.

@@ -22,7 +22,7 @@ struct Lamp {
   double radius_m = 0.2;
 };
 
-/// A point of a walk through several rooms.
+/// A point of a walk (camera trajectory) through several rooms.
 struct WalkPoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< x and y in the world
   double yaw_rad = 0.0;  ///< azimuth of the view, counter-clockwise from +x; not wrapped along the walk

@@ -21,8 +21,7 @@ class SurfaceAppearance {
   SurfaceAppearance(const Room& room, std::span<const Solid> solids, std::span<const Material> materials,
                     double texel_m);
 
-  /// Returns the colour of a surface point. One thread at a time.
-  /// @param index           index of the solid
+  /// Returns the colour of a surface point of the solid with this index. One thread at a time.
   /// @param p_solid         the point in the solid's frame, m
   /// @param normal_solid    surface normal in the solid's frame
   /// @param footprint_m     width of one pixel on the surface, m; selects the mip level

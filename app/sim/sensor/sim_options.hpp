@@ -40,7 +40,8 @@ struct SimOptions {
   /// Size of the building. All walks of one seed and size are in the same building, with the same world
   /// frame.
   BuildingSize building;
-  /// Walk through the building: 0 to kLastWalk, or kRingWalk. It also seeds the path's sway and the noise.
+  /// Number of the walk (camera trajectory through the building): 0 to kLastWalk, or kRingWalk. It also seeds
+  /// the path's sway and the noise.
   int walk = 0;
   /// Frames per second, > 0.
   double rate_hz = 30.0;

@@ -37,8 +37,7 @@ struct OniNode {
 std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file);
 
 /// Decompresses 16 bit depth of the codecs 16zT (with a table of the values that occur) and 16zP (without).
-/// @param pixels  number of pixels
-/// @throws Error naming `where` if the data are damaged or have another number of pixels
+/// @throws Error naming `where` if the data are damaged or do not contain exactly `pixels` pixels
 std::vector<std::uint16_t> decompress_oni_depth(std::string_view packed, bool has_table, std::size_t pixels,
                                                 const std::string& where);
 

@@ -46,7 +46,7 @@ bool has_spool_list(const std::filesystem::path& folder);
 SpoolList read_spool_list(const std::filesystem::path& folder);
 
 /// Creates an empty list in a folder. Throws Error if it cannot be written.
-/// @param name  the source's name
+/// @param name       name of the source, stored in the header
 /// @param[out] list  stream, opened at the list's end
 void begin_spool_list(const std::filesystem::path& folder, const std::string& name, std::ofstream& list);
 

@@ -13,16 +13,17 @@ namespace roomradar {
 struct ScanWindowResult {
   int status = 0;              ///< the value that the work returned
   bool wants_to_play = false;  ///< the user asks to play in the map
-  std::shared_ptr<void>
-      window{};  ///< if wants_to_play: keeps the window open for the next user of open_window()
+  /// If wants_to_play: owns the window, so that it stays open for the next caller of open_window(). Else
+  /// null.
+  std::shared_ptr<void> window{};
 };
 
-/// Opens a window, runs `work` on another thread, and shows the state that `work` publishes until the user
-/// closes the window. The window remains open after `work` has returned, and shows the outcome. If the user
-/// closes the window earlier, `work` continues without it, as after Ctrl-C. Call on the main thread.
+/// Opens a window, or reuses the open one with a new title. Runs `work` on another thread and shows the state
+/// that `work` publishes, then its outcome. Ends when the user closes the window, discards the scan or asks
+/// to play. If the user closes the window earlier, `work` continues without it, as after Ctrl-C. Waits for
+/// `work` to end. Call on the main thread.
 ///
-/// @param title     title of the window
-/// @param ui_scale  scale of text and panes; unset: that of the monitor
+/// @param ui_scale  scale of text and panes; unset: the monitor's scale, clamped to 1..3
 /// @param lost_signal  signal when tracking is lost
 /// @throws Error with advice if the program was built without a window, or if there is no display with OpenGL
 ///         3.3. Exceptions of `work` are rethrown
