@@ -311,6 +311,17 @@ bool is_close(std::span<const TravelSpan> crossings, const std::optional<TravelS
   });
 }
 
+/// Returns true if a triangle of the scene may be inside the object, without crossing its surface, at the
+/// given distance along the motion: the judge sees surfaces only.
+bool may_enclose(const Named& object, const Mesh& scene, const Eigen::Vector3d& direction, double moved_m) {
+  const Eigen::Vector3d centre = object.mesh.T_world_mesh.translation() + moved_m * direction.normalized();
+  return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t corner) {
+      return (scene.vertices[corner].cast<double>() - centre).norm() < object.radius_m;
+    });
+  });
+}
+
 TEST(RadarBounds, OverlapIsToldWithItsDepth) {
   const Mesh ground = shapes::bumpy_ground(16);
   JudgedScene scene;
@@ -325,10 +336,14 @@ TEST(RadarBounds, OverlapIsToldWithItsDepth) {
     if (thing.name == "needle") continue;
     thing.mesh.T_world_mesh = random_pose(random, {0, 0, 0}, {0.4, 0.4, std::min(0.12, thing.radius_m)});
     const Eigen::Vector3d direction = shapes::random_point(random);
-    const auto crossings = exact_crossings(thing.mesh.mesh, thing.mesh.T_world_mesh, direction,
-                                           opposing(ground, direction), at(0, 0, 0));
+    const Mesh facing = opposing(ground, direction);
+    const auto crossings =
+        exact_crossings(thing.mesh.mesh, thing.mesh.T_world_mesh, direction, facing, at(0, 0, 0));
     const auto overlap = exact_overlap(crossings);
     if (is_close(crossings, overlap)) continue;
+    constexpr double kClear_m = 1e-4;  // moved back this much farther than the overlap
+    const bool overlaps_earlier = overlap && crossings.front().from_m < overlap->from_m;
+    if (overlaps_earlier && may_enclose(thing, facing, direction, overlap->from_m - kClear_m)) continue;
     const double depth_m = overlap ? -overlap->from_m : 0.0;
     for (CyberRadar* r : {&radar, &sampled}) {
       const Contact got = scene.query(*r, thing.mesh, direction, 0.5);
@@ -369,7 +384,10 @@ TEST(RadarBounds, WhatIsSunkMayLeave) {
     const auto crossings = exact_crossings(thing.mesh.mesh, thing.mesh.T_world_mesh, up, ground, at(0, 0, 0));
     if (crossings.empty()) continue;
     const double sunk_m = std::pow(10.0, -4.0 + 0.015 * (i % 200));  // 0.1 mm to 0.1 m
-    thing.mesh.T_world_mesh.pretranslate((crossings.back().to_m - sunk_m) * up.normalized());
+    // A needle that is sunk below the ground, or between two bumps, meets the ground again.
+    const double moved_m = crossings.back().to_m - sunk_m;
+    if (crossings.back().from_m >= moved_m) continue;
+    thing.mesh.T_world_mesh.pretranslate(moved_m * up.normalized());
     ++leaving;
     for (CyberRadar* radar : {&exact, &sampled}) {
       const Contact got = scene.query(*radar, thing.mesh, up, 0.5);
