@@ -258,11 +258,30 @@ std::vector<RigidMotion> Substep::motions() {
   return motions;
 }
 
+/// Returns the angular velocity after a motion: with the angular momentum before it. The path of a body in
+/// contact is not that of free rotation, and this momentum could have more energy on it: there the body turns
+/// more slowly.
+/// @param inertia_m2  before the motion
+Vec3 spin_after(const Body& body, const Eigen::Matrix3d& inertia_m2, const Vec3& spin_rad_s,
+                bool is_touched) {
+  const Vec3 momentum_m2_rad_s = inertia_m2 * spin_rad_s;
+  Vec3 after_rad_s = inertia_world_m2(body).inverse() * momentum_m2_rad_s;
+  const double energy_before = spin_rad_s.dot(momentum_m2_rad_s);
+  const double energy_after = after_rad_s.dot(momentum_m2_rad_s);
+  if (is_touched && energy_after > energy_before) after_rad_s *= std::sqrt(energy_before / energy_after);
+  return after_rad_s;
+}
+
 /// Moves the active bodies, and changes their velocities by the fraction of the time that they moved.
 void Substep::move() {
   constexpr double kProgress = 1e-3;  // fraction of the substep
   constexpr int kMaxStopsInPlace = 4;
   const std::vector<RigidMotion> planned = motions();
+  std::vector<bool> is_touched(system_.bodies.size());
+  for (const SolverContact& contact : system_.contacts) {
+    is_touched[contact.body] = true;
+    if (contact.other < is_touched.size()) is_touched[contact.other] = true;
+  }
   std::vector<Eigen::Matrix3d> inertias_m2;
   for (const MovingBody& moving : bodies_) inertias_m2.push_back(inertia_world_m2(*moving.body));
   const auto active = static_cast<std::size_t>(std::count_if(bodies_.begin(), bodies_.end(), is_active));
@@ -275,9 +294,8 @@ void Substep::move() {
     const double part = gone_s[i] / moving.left_s;
     Velocity& velocity = moving.velocity;
     velocity.linear_mps += part * (moving.after.linear_mps - velocity.linear_mps);
-    const Vec3 momentum_after =
-        inertia_m2 * (velocity.angular_rad_s + part * (moving.after.angular_rad_s - velocity.angular_rad_s));
-    velocity.angular_rad_s = inertia_world_m2(*moving.body).inverse() * momentum_after;
+    velocity.angular_rad_s += part * (moving.after.angular_rad_s - velocity.angular_rad_s);
+    velocity.angular_rad_s = spin_after(*moving.body, inertia_m2, velocity.angular_rad_s, is_touched[i]);
     limit(velocity, config_);
     moving.left_s -= gone_s[i];
     // A body that gets no further, jammed between others, stays for the rest of the substep.
