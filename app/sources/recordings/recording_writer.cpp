@@ -63,6 +63,13 @@ void require_size(const Image<Pixel>& image, const Intrinsics& camera, const std
                 std::to_string(camera.height_px));
 }
 
+void require_fakenect_size(const Frame& frame, const fs::path& folder) {
+  const auto fits = [](const auto& image) { return image.width == 640 && image.height == 480; };
+  if (!fits(frame.depth_m) || (!frame.colour.empty() && !fits(frame.colour)))
+    throw Error(folder.string() +
+                ": fakenect replays images of 640 x 480 only; choose the format tum, 7scenes or rosbag");
+}
+
 }  // namespace
 
 std::string_view to_string(RecordingFormat format) {
@@ -95,6 +102,7 @@ void RecordingWriter::write(const Frame& frame) {
   require_valid(frame.depth_camera, (where + "depth camera").c_str());
   require_size(frame.depth_m, frame.depth_camera, where + "depth");
   if (!frame.colour.empty()) require_size(frame.colour, frame.colour_camera, where + "colour");
+  if (format_ == RecordingFormat::kFakenect) require_fakenect_size(frame, folder_);
   if (frames_written_ > 0 && !(frame.stamp_s > last_stamp_s_))
     throw Error(where + "stamp " + fixed_6(frame.stamp_s) + " s is not later than the one before, " +
                 fixed_6(last_stamp_s_) + " s");
@@ -176,10 +184,6 @@ void RecordingWriter::write_seven_scenes(const Frame& frame) {
 }
 
 void RecordingWriter::write_fakenect(const Frame& frame) {
-  if (frame.depth_m.width != 640 || frame.depth_m.height != 480 ||
-      (!frame.colour.empty() && (frame.colour.width != 640 || frame.colour.height != 480)))
-    throw Error(folder_.string() +
-                ": fakenect replays images of 640 x 480 only; choose the format tum or 7scenes");
   const fs::path index_file = folder_ / "INDEX.txt";
   if (frames_written_ > 0 && frame.stamp_s - last_stamp_s_ > kLongestGap_s)
     left_out_s_ += frame.stamp_s - last_stamp_s_ - kLongestGap_s;

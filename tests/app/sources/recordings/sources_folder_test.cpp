@@ -265,6 +265,7 @@ TEST(RecordingWriter, RefusesWhatItCannotKeep) {
   EXPECT_EQ(writer.frames_written(), 1);
   RecordingWriter raw(folder.path() / "raw", RecordingFormat::kFakenect);
   EXPECT_TRUE(contains(error_of([&] { raw.write(some_frame(0)); }), "640 x 480"));
+  EXPECT_TRUE(fs::is_empty(folder.path() / "raw"));  // another format can be written there
 }
 
 TEST(RecordingWriter, SaysThatTheDiskIsFull) {
