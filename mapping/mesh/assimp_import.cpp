@@ -1,4 +1,5 @@
-// assimp_import.cpp: checks a file's claims, and works around assimp's faults.
+// assimp_import.cpp: checks the sizes that a file declares before assimp reads it, and works around bugs of
+// assimp.
 #include "mapping/mesh/assimp_import.hpp"
 
 #include <assimp/DefaultIOSystem.h>

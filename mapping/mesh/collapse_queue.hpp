@@ -1,4 +1,4 @@
-// collapse_queue.hpp: edges to collapse, cheapest first.
+// collapse_queue.hpp: priority queue of edges to collapse, cheapest first.
 #pragma once
 #include <algorithm>
 #include <array>

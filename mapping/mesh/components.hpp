@@ -11,14 +11,14 @@ namespace roomradar {
 /// Returns the connected components of the vertices, by shared triangles.
 DisjointSets<std::uint32_t> components_of(const Mesh& mesh);
 
-/// Returns a mesh of the given triangles and the vertices they use, in order of first use. Their vertex
-/// indices refer to `mesh`.
+/// Returns a mesh of the given triangles and the vertices they use, in order of first use. The vertex indices
+/// in `triangles` refer to `mesh`.
 Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles);
 
 /// Drops connected components (by shared vertices) with an area below min_component_area_m2, and unused
 /// vertices.
-/// @param is_cut  called with the index of a vertex; true: its component may be larger than the mesh shows,
-///                and is kept. Empty: no component is cut
+/// @param is_cut  callback on a vertex index. True: the vertex's component may continue beyond this mesh, and
+///                is kept whatever its area. Empty: no component is cut
 Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2,
                            const std::function<bool(std::uint32_t)>& is_cut = {});
 

@@ -7,9 +7,9 @@
 
 namespace roomradar {
 
-/// Collapses edges while every vertex of `full` stays within its tolerance_m of the triangles that replace
-/// its adjacent ones. tolerance_m has one value per vertex, in m, >= 0. Vertices with tolerance 0 are
-/// constrained. They do not move, and no new edge connects two of them. A new vertex's distance from
+/// Collapses edges while every vertex of `full` stays within its tolerance_m of the new triangles that
+/// replace its adjacent triangles. tolerance_m has one value per vertex, in m, >= 0. Vertices with tolerance
+/// 0 are constrained. They do not move, and no new edge connects two of them. A new vertex's distance from
 /// `full_surface`, the surface of `full`, is at most the larger tolerance of the two vertices it replaces.
 /// Vertices keep their indices. Vertices that were merged into others remain in the list, unreferenced. Used
 /// by mesh_simplify.cpp only.

@@ -1,4 +1,4 @@
-// mesh_borders.cpp: walks along the edges that have only one triangle.
+// mesh_borders.cpp: links border half-edges to loops, and measures the loops.
 #include "mapping/mesh/mesh_borders.hpp"
 
 #include <Eigen/Geometry>

@@ -13,8 +13,8 @@ struct BorderLoop {
   std::vector<std::uint32_t> vertices;  ///< in order; the surface is on the left, seen from outside
   Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();  ///< length-weighted mean of the edges
   /// Unit mean normal of the triangles along the border, towards the side from which the surface was
-  /// observed. A camera that observes the missing surface looks along the opposite direction. Zero if the
-  /// normals cancel each other.
+  /// observed. A camera that faces the missing surface looks along -outward_world. Zero if the normals cancel
+  /// each other.
   Eigen::Vector3d outward_world = Eigen::Vector3d::Zero();
   double length_m = 0.0;  ///< perimeter
   double size_m = 0.0;    ///< extent along the loop's longest principal axis
@@ -26,8 +26,9 @@ struct BorderLoop {
 
 /// Extracts all border loops, longest first. Loops of equal length are sorted by their lowest vertex index. A
 /// loop visits each of its vertices once, so holes that touch at a vertex are two loops. Each border edge is
-/// in exactly one loop. An edge that two triangles use in the same direction (impossible on an orientable
-/// surface), and none in the other, is a border edge of the first of them.
+/// in exactly one loop. Two triangles may use an edge in the same direction, if the surface is not
+/// orientable. If no triangle uses the opposite direction, the edge is a border edge of the first triangle
+/// only.
 std::vector<BorderLoop> border_loops(const Mesh& mesh);
 
 }  // namespace roomradar

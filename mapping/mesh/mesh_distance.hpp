@@ -12,7 +12,7 @@ namespace roomradar {
 /// Hashed grid of a mesh's triangles, for nearest-surface queries. Keeps a reference to the mesh.
 class MeshDistanceQuery {
  public:
-  /// @param reach_m  max distance (> 0) that queries can find
+  /// @param reach_m  max distance that queries can find, m, > 0
   MeshDistanceQuery(const Mesh& mesh, float reach_m);
 
   /// Returns the distance (m) from a point, given relative to the mesh's origin, to the nearest surface.
@@ -41,13 +41,13 @@ class MeshDistanceQuery {
   template <typename Visit>
   void visit_near(const Eigen::Vector3f& p, const Visit& visit) const;
 
-  /// Sphere around a triangle.
+  /// Bounding sphere of a triangle.
   struct Sphere {
     Eigen::Vector3f centre;
     float radius_m;
   };
-  /// Returns true if the triangle is farther from p than distance_m. Rules out most triangles of a cube
-  /// without their vertices; false proves nothing.
+  /// Conservative test by the bounding sphere: true only if the triangle is farther from p than distance_m.
+  /// Rejects most triangles of a cube without a look-up of their vertices.
   [[nodiscard]] bool is_farther(std::uint32_t triangle, const Eigen::Vector3f& p, float distance_m) const {
     constexpr float kRounding = 1.0001F;
     const Sphere& sphere = spheres_[triangle];

@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// A mesh with one texture, which contains the light of the room.
+/// A mesh with one texture, into which the room's lighting is baked.
 struct TexturedMesh {
   Mesh mesh;
   /// One per vertex; (0, 0) is the texture's top left corner, (1, 1) its bottom right corner.
@@ -32,8 +32,8 @@ Mesh read_mesh(const std::filesystem::path& path);
 /// empty or inconsistent, or writing fails.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
-/// Writes a textured mesh as .glb, with the texture in it, or as .obj, with NAME.mtl and NAME.jpg beside it.
-/// The material is matt: highlights are in the texture, which contains the room's light. Throws Error as
+/// Writes a textured mesh as .glb, with the texture in it, or as .obj, with NAME.mtl and NAME.jpg in the same
+/// folder. The material is matt, since lighting and highlights are baked into the texture. Throws Error as
 /// above, also for other extensions.
 void write_mesh(const TexturedMesh& textured, const std::filesystem::path& path);
 

@@ -11,7 +11,8 @@ namespace roomradar {
 
 /// Returns the bytes of a little-endian .ply. Its properties are x y z and, if present, nx ny nz as float,
 /// red green blue as uchar, and triangles as `vertex_indices`. The mesh's origin is added to the vertices.
-/// Does not use assimp. assimp 5.2 declares colours as bytes but writes floats, so its files cannot be read.
+/// Does not use assimp: assimp 5.2 declares colours as bytes but writes floats, so its .ply files with
+/// colours are unreadable.
 std::string ply_bytes(const Mesh& mesh);
 
 /// Decodes a file with the layout of ply_bytes(), 20 times as fast as assimp. Vertices keep their order;
@@ -20,9 +21,9 @@ std::string ply_bytes(const Mesh& mesh);
 /// triangles.
 std::optional<Mesh> mesh_of_ply(std::string_view bytes, const std::filesystem::path& path);
 
-/// Erases degenerate triangles: those whose first two sides, with vertices rounded as in a file (origin
-/// added), enclose an angle with a sine of at most 1e-12. These include all triangles that reading a file
-/// drops because their area is 0.
+/// Erases degenerate triangles: the sine of the angle at the first vertex is at most 1e-12, or a side at this
+/// vertex has length 0. Positions are rounded to float with the origin added, as ply_bytes() writes them.
+/// These include all triangles that mesh_of_ply() drops.
 void erase_flat_triangles(Mesh& mesh);
 
 }  // namespace roomradar

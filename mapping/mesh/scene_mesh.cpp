@@ -1,4 +1,4 @@
-// scene_mesh.cpp: walks the nodes of an assimp scene.
+// scene_mesh.cpp: traverses the nodes of an assimp scene, and transforms their meshes.
 #include "mapping/mesh/scene_mesh.hpp"
 
 #include <assimp/scene.h>

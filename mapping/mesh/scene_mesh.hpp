@@ -10,7 +10,8 @@ struct aiScene;
 
 namespace roomradar {
 
-/// Range of vertices and triangles that come from one mesh of the assimp scene.
+/// Range of vertices and triangles that come from one mesh of one node. A mesh that several nodes use has one
+/// part per node.
 struct ScenePart {
   unsigned source = 0;  ///< index in aiScene::mMeshes
   std::uint32_t first_vertex = 0, vertex_count = 0;

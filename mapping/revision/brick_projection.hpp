@@ -15,7 +15,7 @@ namespace roomradar {
 
 inline constexpr float kNearestProjected_m = 0.1F;  // min depth, m, for projection into the image
 
-/// Returns false if nothing within radius_m of the centre can be in the image.
+/// Conservative visibility test: false only if no point of the sphere around the centre can be in the image.
 inline bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_camera, double radius_m) {
   if (centre_camera.z() < kNearestProjected_m - radius_m) return false;
   const double nearest_z = std::max(centre_camera.z() - radius_m, static_cast<double>(kNearestProjected_m));
@@ -26,14 +26,13 @@ inline bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_
          pixel.y() < camera.height_px + margin_px;
 }
 
-/// A brick of 8 x 8 x 8 voxels. The caller has a list of cells, in which the cells of each brick form a
-/// contiguous range.
+/// A brick of 8 x 8 x 8 voxels. Its cells are at begin to end - 1 in the caller's list of cells.
 struct CellBrick {
   VoxelIndex first = VoxelIndex::Zero();
   std::size_t begin = 0, end = 0;
 };
 
-/// Place of a cell in its brick.
+/// Position of a cell in its brick.
 struct CellInBrick {
   std::size_t offset = 0;  ///< brick_offset() of its lowest voxel
   bool coarse = false;     ///< its edge is two voxels, not one
@@ -41,7 +40,7 @@ struct CellInBrick {
 
 class BrickProjection {
  public:
-  /// The frame must be valid (depth_fault_of()).
+  /// Requires a frame for which depth_fault_of() returns an empty text.
   BrickProjection(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double resolution_m)
       : camera_(frame.depth_camera),
         T_camera_world_(T_world_camera.inverse()),
@@ -62,7 +61,7 @@ class BrickProjection {
   [[nodiscard]] float fx() const { return fx_; }
 
   /// Calls visit(cell index, cell centre in the camera frame, pixel x, y) for each cell that projects into
-  /// the image and is nearer than farthest_m.
+  /// the image at a depth below farthest_m.
   /// @param cell_at  callable that returns the CellInBrick of a cell index
   template <typename CellAt, typename Visit>
   void for_each_nearer(float farthest_m, std::span<const CellBrick> bricks, const CellAt& cell_at,

@@ -1,4 +1,4 @@
-// chosen_frames.cpp: a future holds the result of the frame that is being read.
+// chosen_frames.cpp: seeks to each chosen frame, and reads the next one asynchronously.
 #include "mapping/revision/chosen_frames.hpp"
 
 #include <utility>

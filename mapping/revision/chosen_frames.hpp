@@ -1,4 +1,4 @@
-// chosen_frames.hpp: reads chosen frames of a recording once more, the next one on a second thread.
+// chosen_frames.hpp: reads selected frames of a recording again, with read-ahead on a second thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -30,8 +30,9 @@ class ChosenFrames {
   ChosenFrames(FrameSource& source, std::span<const FusedFrame> fused, std::vector<std::size_t> chosen,
                StageTimes& times);
 
-  /// Fills `frame` with the next chosen frame, and `index` with its index in `fused`. Leaves out frames that
-  /// the source does not deliver as before. Returns false after the last. Rethrows Error of the source.
+  /// Fills `frame` with the next chosen frame, and `index` with its index in `fused`. Leaves out a frame if
+  /// the source now delivers another frame index, or no readable frame, at its position. Returns false after
+  /// the last frame. Rethrows Error of the source.
   bool next(Frame& frame, std::size_t& index);
 
  private:
@@ -40,7 +41,7 @@ class ChosenFrames {
   std::vector<std::size_t> chosen_;
   StageTimes& times_;
   std::size_t next_ = 0;       ///< index in chosen_
-  std::int64_t position_ = 0;  ///< of the source
+  std::int64_t position_ = 0;  ///< position of the source
   Frame ahead_;                ///< filled by the second thread
   std::future<bool> is_read_;  ///< declared last: its destructor waits for the thread
 

@@ -6,9 +6,9 @@
 namespace roomradar {
 
 struct GhostConfig {
-  /// A frame sees through a sample (a voxel with a signed distance) if its depth exceeds the sample's by more
-  /// than the largest of the four margins below. margin_m (metres) and margin_sigmas (standard deviations of
-  /// depth) cover noise and tracking errors.
+  /// A frame sees through a sample (a voxel with a signed distance) if the frame's depth there exceeds the
+  /// sample's depth by more than the largest of the four margins below. margin_m (metres) and margin_sigmas
+  /// (standard deviations of depth) cover noise and tracking errors.
   float margin_m = 0.03F;
   float margin_sigmas = 4.0F;
   /// Margin per metre of depth. Covers a pose error of 1.7 degrees on a slanted surface, and sensors that are
@@ -22,7 +22,8 @@ struct GhostConfig {
   float window_radius_m = 0.03F;
   /// Min fraction of the window's pixels that must have depth. The centre pixel must always have depth.
   float min_measured_share = 0.5F;
-  int min_through = 3;  ///< min frames that see through a sample; fewer suffice beside such samples
+  /// Min frames that see through a sample; one suffices for samples connected to such samples.
+  int min_through = 3;
   /// Min fraction of frames that see through a ghost's sample, relative to all frames that measure it or see
   /// through it.
   float min_through_share = 0.1F;

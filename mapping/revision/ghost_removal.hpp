@@ -32,9 +32,9 @@ GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fus
                             StaticMap& map, StageTimes& times, const GhostProgress& progress = {});
 
 /// Fuses the surroundings of the removed voxels again, from frames with different views, starting with frame
-/// revision.next. Leaves out pixels that measured the departed objects. Their measurements had shifted the
-/// surface behind the objects. Between frames, e.g. in calls of `progress`, `map` and `revision` are the
-/// complete state for resuming. Reads no frame if no voxel was removed.
+/// revision.next. Leaves out pixels that measured the departed objects: such measurements had biased the
+/// signed distances of the surface behind the objects. Between frames, e.g. in calls of `progress`, `map` and
+/// `revision` are the complete state for resuming. Reads no frame if no voxel was removed.
 ///
 /// @throws Error if the source cannot be rewound
 void refuse_surroundings(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,

@@ -1,4 +1,5 @@
-// ghost_zone.cpp: marks the bricks around ghosts and computes the pixels they project to.
+// ghost_zone.cpp: marks bricks around removed voxels, and masks the pixels that measure remaining surface
+// there.
 #include "mapping/revision/ghost_zone.hpp"
 
 #include <algorithm>

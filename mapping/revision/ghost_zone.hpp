@@ -30,8 +30,8 @@ class GhostZone {
   [[nodiscard]] SampleAction fate_of(const SurfaceSample& sample) const;
   /// Returns true if the voxel is at most two voxels from a brick that the zone overlaps or touches.
   [[nodiscard]] bool reaches(const VoxelIndex& voxel) const;
-  /// Returns true if the zone overlaps or touches the brick or one of its 26 neighbours: reaches() is false
-  /// elsewhere.
+  /// Returns true if the zone overlaps or touches the brick or one of its 26 neighbours. If false, reaches()
+  /// is false for all voxels of the brick.
   /// @param first  the brick's minimum-corner voxel
   [[nodiscard]] bool touches(const VoxelIndex& first) const;
   /// Returns true if any part of the zone may be in the camera's image.

@@ -14,9 +14,9 @@ namespace roomradar {
 
 /// For each surface cell of the map, counts the frames that measure it and the frames that see through it.
 /// Example: a hand that rests on a table for half of the recording is measured in as many frames as the
-/// table. Only the frames that see the table through the hand distinguish the hand from static surface.
-/// Frames without depth at the cell count as AbsenceVotes. A coarse cell is judged as a whole, as eight
-/// voxels.
+/// table. Only frames that measure the table behind the hand's voxels distinguish the hand from static
+/// surface. Frames without depth at the cell are counted in AbsenceVotes. All eight voxels of a coarse cell
+/// get the same verdict.
 class GhostVotes {
  public:
   /// Copies the map's surface cells. These have a sample and are occupied or have a signed distance of at
@@ -32,9 +32,10 @@ class GhostVotes {
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects through which frames see
     std::vector<VoxelIndex> absent;  ///< voxels of departed objects without measured depth behind
-    /// Other occupied surface that a frame observed, where the GhostZone of `ghosts` and `absent` reaches.
+    /// Other occupied surface that a frame observed, within GhostZone::reaches() of the zone of `ghosts` and
+    /// `absent`.
     std::vector<VoxelIndex> still;
-    /// Surface of an earlier scan, which no frame measured or saw through, where that zone reaches.
+    /// Surface of an earlier scan that no frame measured or saw through, within reaches() of the same zone.
     std::vector<VoxelIndex> unseen;
   };
   /// Classifies the voxels. Each list is in Morton order.

@@ -1,4 +1,4 @@
-// refuse_region.hpp: erases samples in a region of the static map, and fuses current frames there.
+// refuse_region.hpp: replaces surface in a region of the static map by the surface in current frames.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -45,8 +45,8 @@ struct RegionView {
 ///
 /// @param views  frames of one static scene. Pass several, since the noise of a single frame would become
 ///               surface
-/// @return the box (world, m) in which surface may have changed, without pixels fused more than 1 m outside
-///         the region's box; empty if nothing changed
+/// @return the box (world frame, m) in which surface may have changed; empty if nothing changed. Ignores
+///         pixels fused more than 1 m outside the region's box
 Eigen::AlignedBox3d refuse_region(StaticMap& map, const WorldRegion& region,
                                   std::span<const RegionView> views);
 

@@ -1,5 +1,5 @@
-// unmeasured_evidence.cpp: votes from colour and missing depth, and groups of voxels that are gone by these
-// votes.
+// unmeasured_evidence.cpp: votes from colour and missing depth, and connected components of voxels that these
+// votes find absent.
 #include "mapping/revision/unmeasured_evidence.hpp"
 
 #include <algorithm>

@@ -13,14 +13,15 @@
 namespace roomradar {
 
 /// Evidence from frames that do not measure a voxel's surface. Missing depth alone does not prove that the
-/// surface is gone, since dark and glossy surfaces give no depth at grazing angles. Colour distinguishes the
-/// two. A moment later, from the same camera position, the pixels of a dark or glossy surface still have
-/// their colour. Those of a departed object do not.
+/// surface is gone, since dark and glossy surfaces give no depth at grazing angles. Colour distinguishes both
+/// cases. In a later frame from the same camera position, the pixels of a dark or glossy surface still have
+/// their colour. The pixels of a departed object do not.
 struct AbsenceVotes {
   enum class State : std::uint8_t { kUnknown, kMeasured, kGone };
 
-  std::uint16_t gone = 0;  ///< frames with hardly any depth at and around the voxel
-  /// Frames without depth at the voxel and in most pixels around it, and without nearer depth around it.
+  std::uint16_t gone = 0;  ///< frames without depth at the voxel and in over 75 % of the pixels around it
+  /// Frames without depth at the voxel and in over 50 % of the pixels around it, and without nearer depth in
+  /// the other pixels around it.
   std::uint16_t unmeasured = 0;
   std::uint16_t last_look = 0;      ///< index of the frame that last measured the voxel or found it gone
   std::uint16_t turn_change = 0;    ///< sum over `turns` of the largest change of a colour channel
@@ -41,9 +42,9 @@ class AbsenceVoter {
   /// Adds the vote of a frame that measures the voxel's surface in the pixel to which the voxel projects.
   void measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const;
   /// Adds the vote of a frame that has no depth in pixel (x, y), to which the voxel projects.
-  /// @param measured_share  fraction of pixels with depth, within about 3 cm of the voxel
-  /// @param beside_nearer   true if one of these pixels is nearer than the voxel. The nearer surface may then
-  ///                        shadow the projector's light
+  /// @param measured_share  fraction of the pixels within about 3 cm of the voxel that have depth
+  /// @param beside_nearer   true if one of these pixels has a smaller depth than the voxel. The nearer
+  ///                        surface may then shadow the projector's light
   /// @param has_colour      true if the voxel's colour is tracked
   void unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera, float measured_share,
                   bool beside_nearer, bool has_colour, AbsenceVotes& votes) const;
@@ -69,8 +70,8 @@ bool may_be_absent(const AbsenceVotes& votes, int seen);
 /// Returns true if the voxel's evidence suffices to remove it together with a connected core voxel.
 bool may_go_along(const AbsenceVotes& votes, int seen);
 
-/// Returns the candidates in connected components of at least min_group_voxels that changed colour between
-/// measured and gone. `votes` is indexed by VotedVoxel::position.
+/// Returns the candidates in connected components of at least min_group_voxels voxels whose colour changed
+/// between measured and gone. `votes` is indexed by VotedVoxel::position.
 std::vector<VotedVoxel> find_absent(std::span<const VotedVoxel> candidates,
                                     std::span<const AbsenceVotes> votes, double min_group_voxels);
 

@@ -1,4 +1,5 @@
-// chart_texels.hpp: the texels of a chart, and the point of the surface that each of them shows.
+// chart_texels.hpp: rasterises a chart's triangles into its texels, and computes barycentric coordinates in
+// the atlas.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>

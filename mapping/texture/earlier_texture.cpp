@@ -1,4 +1,4 @@
-// earlier_texture.cpp: nearest triangle of the earlier mesh, and its place in the earlier atlas.
+// earlier_texture.cpp: nearest triangle of the earlier mesh, and look-up in the earlier atlas.
 #include "mapping/texture/earlier_texture.hpp"
 
 #include <algorithm>

@@ -17,7 +17,7 @@ namespace roomradar {
 /// Looks up colours of an earlier surface by position and normal.
 class EarlierTexture {
  public:
-  /// @param mesh  mesh that the texture fits; may have been transformed into the world frame of the lookups
+  /// @param mesh  mesh for which the texture was baked, in the world frame of the look-ups
   /// @throws Error if the texture's image cannot be decoded
   EarlierTexture(Mesh mesh, const SurfaceTexture& texture);
   EarlierTexture(const EarlierTexture&) = delete;

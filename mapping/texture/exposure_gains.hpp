@@ -1,4 +1,4 @@
-// exposure_gains.hpp: equalises the exposure of views by the surface that they share.
+// exposure_gains.hpp: equalises the exposure of views, from surface points that several views show.
 #pragma once
 #include <span>
 
@@ -7,11 +7,11 @@
 
 namespace roomradar {
 
-/// Sets TextureView::gain of all views. Each channel of each view gets the factor that brings its colours to
-/// the median colour of some thousand points of the surface, over all views that show them. Because of the
-/// medians, highlights, shadows and moved objects have no effect. Views that share fewer than 20 points with
-/// others get gain 1. The geometric mean of the other gains is 1. If more than 2 % of the points would be
-/// white, all gains are then lowered, by at most 40 %.
+/// Sets TextureView::gain of all views. The gain of a channel brings the view's colours to the median over
+/// all views, at some thousand surface points. Medians suppress the effect of highlights, shadows and moved
+/// objects. Only points that several views show are used; a view with fewer than 20 such points has gain 1.
+/// The geometric mean of the other gains is 1. If more than 2 % of the points would be white, all gains are
+/// finally scaled down, to at least 60 %.
 /// @param mesh  with normals
 void even_exposure(const Mesh& mesh, std::span<TextureView> views);
 

@@ -1,4 +1,4 @@
-// mesh_raster.hpp: CPU rasteriser that finds the triangle of a mesh that each pixel of a camera sees.
+// mesh_raster.hpp: CPU rasteriser: depth and triangle index of a mesh at each pixel of a camera.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// surface_texture.cpp: a hash of a mesh, and its vertices along the seams of a texture.
+// surface_texture.cpp: hash of a mesh, and duplication of its vertices along the seams of a texture.
 #include "mapping/texture/surface_texture.hpp"
 
 #include <bit>

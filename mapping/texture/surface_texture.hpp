@@ -1,5 +1,5 @@
-// surface_texture.hpp: a texture of a map's surface: an atlas of its colours, and where each triangle lies in
-// it.
+// surface_texture.hpp: texture of a map's surface: a colour atlas, and the texture coordinates of each
+// triangle.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -19,14 +19,14 @@ struct SurfaceTexture {
   int height_px = 0;
   std::vector<std::uint8_t> atlas_jpeg;            ///< sRGB
   std::vector<std::array<AtlasPoint, 3>> corners;  ///< one per triangle of the mesh, in its order
-  std::uint64_t mesh_fingerprint = 0;              ///< of the mesh that the texture belongs to
+  std::uint64_t mesh_fingerprint = 0;  ///< fingerprint() of the mesh for which the texture was baked
 };
 
 /// Returns a hash of the mesh's vertices and triangles, without colours and normals. Writing the mesh to a
 /// file and reading it back does not change the hash.
 std::uint64_t fingerprint(const Mesh& mesh);
 
-/// Returns true if the texture was made for this mesh.
+/// Returns true if the texture was baked for this mesh.
 bool fits(const SurfaceTexture& texture, const Mesh& mesh);
 
 /// Returns the mesh with texture coordinates and without colours. Vertices with several positions in the

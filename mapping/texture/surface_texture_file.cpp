@@ -1,4 +1,5 @@
-// surface_texture_file.cpp: reads and writes the texture's points as one binary file, beside its picture.
+// surface_texture_file.cpp: reads and writes texture coordinates as a binary file, and the atlas as a JPEG
+// file.
 //
 // All numbers are little-endian. The body: width and height of the atlas (2 u32), fingerprint of the mesh
 // (u64), then two columns of u16 (see compressed_columns.hpp) with x and y of the triangles' corners, three

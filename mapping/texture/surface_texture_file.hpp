@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// Writes the atlas to `picture` (JPEG), and all else to `points`, a binary file with a checksum. Throws
-/// Error if a file cannot be written.
+/// Writes the atlas to `picture` (JPEG). Writes texture coordinates, size and fingerprint to `points`, a
+/// binary file with a checksum. Throws Error if a file cannot be written.
 void write_surface_texture(const SurfaceTexture& texture, const std::filesystem::path& picture,
                            const std::filesystem::path& points);
 

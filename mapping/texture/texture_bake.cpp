@@ -1,5 +1,4 @@
-// texture_bake.cpp: finds the views that show a block of texels best, and computes the texels' colours from
-// them.
+// texture_bake.cpp: selects the best views per block of texels, and blends their colours.
 #include "mapping/texture/texture_bake.hpp"
 
 #include <algorithm>

@@ -18,20 +18,21 @@ struct TextureConfig {
 };
 
 /// Divides the mesh into charts and gives each texel the colour of the views that show it best, i.e. from
-/// near, from the front, sharp, and away from the picture's border. A texel's side is 80 % of the best
-/// picture's pixel on the surface, but at least min_texel_m.
+/// near, from the front, sharp, and away from the picture's border. A chart's texel size is 80 % of the best
+/// view's pixel size on the surface, or that of an earlier texture if smaller. It is at least min_texel_m,
+/// and larger if the atlas would exceed max_side_px.
 ///
-/// Detail comes from the best view, or from views that are almost as good. The colour without detail is the
-/// mean of all good views, so no seam shows where the best view changes. Views whose colour is far from the
-/// median of three or more views are left out: they show a moved object or a reflection. Texels that no view
-/// shows get the colours of earlier textures of the room, else the mesh's. The result does not depend on the
-/// number of threads.
+/// Blends in two frequency bands: high frequencies come from the best views, low frequencies are a mean over
+/// all good views. No seam thus shows where the best view changes. If three or more views show a texel, those
+/// far from their median colour are outliers (a moved object, a reflection) and are left out. Texels that no
+/// view shows get the colours of earlier textures of the room, else the mesh's. The result does not depend on
+/// the number of threads.
 ///
 /// Time: about 1 s per million texels on one processor. Memory: about 10 bytes per texel besides the views.
 /// @param mesh   with normals and colours
 /// @param views  with gains from even_exposure()
-/// @return an empty texture (no corners) if there are neither views nor earlier textures, or too many charts
-///         for an atlas
+/// @return an empty texture (no corners) if the mesh has no triangles or normals, if there are neither views
+///         nor earlier textures, or if there are too many charts for an atlas
 /// Source: Waechter, Moehrle, Goesele, Let there be color!, ECCV 2014 (choice of views); Burt, Adelson, A
 /// multiresolution spline with application to image mosaics, ACM TOG 1983 (two bands).
 SurfaceTexture bake_texture(const Mesh& mesh, std::span<const TextureView> views,

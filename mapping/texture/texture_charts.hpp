@@ -9,14 +9,15 @@
 
 namespace roomradar {
 
-/// Connected triangles, projected along their mean normal. No two of them overlap in the projection.
+/// Connected triangles, projected along their mean normal. In the projection, earlier triangles cover less
+/// than a tenth, or less than 2 texels, of each triangle.
 struct TextureChart {
   std::vector<std::uint32_t> triangles;
-  /// Rows: unit vectors along x and y of the texture.
+  /// Rows: unit vectors along the texture's x and y, in the mesh's frame.
   Eigen::Matrix<float, 2, 3> axes = Eigen::Matrix<float, 2, 3>::Zero();
-  Eigen::Vector2f low_m = Eigen::Vector2f::Zero();      ///< lowest coordinates along the axes
-  Eigen::Vector2f size_m = Eigen::Vector2f::Zero();     ///< extent along the axes
-  float texel_m = 0.0F;                                 ///< edge of a texel
+  Eigen::Vector2f low_m = Eigen::Vector2f::Zero();      ///< lowest coordinates along the axes, m
+  Eigen::Vector2f size_m = Eigen::Vector2f::Zero();     ///< extent along the axes, m
+  float texel_m = 0.0F;                                 ///< edge of a texel on the surface, m
   Eigen::Vector2i corner_px = Eigen::Vector2i::Zero();  ///< top left texel in the atlas, padding included
   Eigen::Vector2i size_px = Eigen::Vector2i::Zero();    ///< padding included
 };
@@ -32,8 +33,8 @@ inline Eigen::Vector2f atlas_point(const TextureChart& chart, const Eigen::Vecto
 
 /// Grows charts from the largest triangles over neighbours whose normals differ by less than 50 degrees from
 /// the chart's mean, to an extent of about a metre. Each triangle is in one chart. A triangle that would
-/// overlap others of its chart starts another one. Sets size and axes of the charts, and texel_m from the
-/// mean of texels_per_m over the chart's triangles.
+/// overlap others of its chart becomes the seed of another chart. Sets size and axes of the charts, and
+/// texel_m from the mean of texels_per_m over the chart's triangles.
 /// @param texels_per_m  wanted number of texels per metre, one per triangle, > 0
 std::vector<TextureChart> texture_charts(const Mesh& mesh, std::span<const float> texels_per_m);
 

@@ -11,24 +11,24 @@
 
 namespace roomradar {
 
-/// Data of a frame for baking. Takes about 4 bytes per pixel of the picture.
+/// Colour image of a frame, prepared for baking. Takes about 4 bytes per pixel.
 struct TextureView {
   Intrinsics camera;  ///< colour camera
   ColourImage colour;
-  ColourImage low;  ///< the picture without detail, an eighth of its size
+  ColourImage low;  ///< low-pass filtered picture, an eighth of its width and height
   /// Max depth, m, at which the picture shows the mesh, in an image of half the picture's size. 0: the
-  /// picture does not show the mesh, since the frame measured a surface that is not in the mesh.
+  /// picture does not show the mesh, since no triangle projects there or the frame measured another depth.
   DepthImage shown_m;
   Eigen::Isometry3f T_camera_local =
-      Eigen::Isometry3f::Identity();               ///< from points relative to the mesh's origin
+      Eigen::Isometry3f::Identity();               ///< maps points relative to the mesh's origin
   float sharpness = 1.0F;                          ///< 0..1
   std::array<float, 3> gain = {1.0F, 1.0F, 1.0F};  ///< per channel; equalises the exposure
 };
 
-/// Makes a view of a frame. Leaves out pixels whose measured depth differs from the mesh's, since they show a
-/// moved object, and the neighbours of these pixels. Also leaves out pixels beside the silhouette of a nearer
-/// surface.
-/// @param T_world_camera    pose of the frame's depth camera; the mesh is in the world
+/// Prepares a frame's colour image for baking. Leaves out pixels whose measured depth differs from the
+/// mesh's, since they show a moved object, and the neighbours of these pixels. Also leaves out pixels next to
+/// the silhouette of a nearer surface.
+/// @param T_world_camera    pose of the frame's depth camera, in the world frame of the mesh
 /// @param image_speed_pxps  see ViewCandidate
 TextureView make_texture_view(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const Mesh& mesh,
                               double image_speed_pxps);
@@ -53,7 +53,7 @@ struct ShownPoint {
 ShownPoint shown(const TextureView& view, const Eigen::Vector3f& p_local, const Eigen::Vector3f& normal);
 
 /// Returns the colour at a pixel of TextureView::colour, interpolated and multiplied by the gain, 0..255.
-/// low_colour_at() returns the colour without detail.
+/// low_colour_at() samples the low-pass filtered picture.
 Eigen::Array3f colour_at(const TextureView& view, const Eigen::Vector2f& pixel);
 Eigen::Array3f low_colour_at(const TextureView& view, const Eigen::Vector2f& pixel);
 

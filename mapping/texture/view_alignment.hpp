@@ -1,4 +1,4 @@
-// view_alignment.hpp: corrects the poses of views by the colours of the surface that they share.
+// view_alignment.hpp: photometric refinement of the poses of views.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -14,30 +14,30 @@ namespace roomradar {
 /// A point of the mesh's surface.
 struct MeshPoint {
   std::uint32_t triangle = 0;
-  Eigen::Vector3f weights = Eigen::Vector3f::Zero();  ///< of the triangle's vertices
+  Eigen::Vector3f weights = Eigen::Vector3f::Zero();  ///< barycentric
   Eigen::Vector3f p_local = Eigen::Vector3f::Zero();  ///< relative to the mesh's origin
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit
 };
 
-/// @param weights  of the triangle's vertices, summing to 1
+/// @param weights  barycentric coordinates in the triangle
 MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3f& weights);
 
-/// Returns about `count` points, evenly distributed over the surface; the same at each call.
+/// Returns about `count` points, evenly distributed over the surface. Deterministic.
 std::vector<MeshPoint> sample_mesh(const Mesh& mesh, std::size_t count);
 
 /// Changes the pose of each view such that its colours agree with those of the other views on the surface.
-/// The poses of tracking have errors of some millimetres, which are some pixels of a picture. Also, colour
-/// may come from another camera and another time than depth. Alternates two steps, at an eighth, a quarter
-/// and then half of the pictures' size. Each point's brightness becomes the mean over the views that show it.
-/// Each view is then aligned to these means by a Gauss-Newton step. Visibility stays that of the first poses,
-/// from which views move by some centimetres at most.
+/// Tracked poses have errors of some millimetres, which correspond to some pixels. Also, colour may come from
+/// another camera and another time than depth. Alternates two steps, at an eighth, a quarter and then half of
+/// the pictures' size. Each point's brightness becomes the mean over the views that show it. Each view is
+/// then aligned to these means by a Gauss-Newton step. Visibility is computed only at the initial poses,
+/// since corrections are some centimetres at most.
 /// @param mesh   with normals
 /// @param views  with gains from even_exposure()
 /// Source: Zhou, Koltun, Color map optimization for 3D reconstruction with consumer depth cameras, ACM TOG
 /// 2014.
 void align_views(const Mesh& mesh, std::span<TextureView> views);
 
-/// Aligns one view to points of known brightness (0..255) in the same way.
+/// Aligns one view to points of known brightness (0..255), with the Gauss-Newton steps of align_views().
 /// @param brightness  one per point; negative: unknown
 void align_view(std::span<const MeshPoint> points, std::span<const float> brightness, TextureView& view);
 

@@ -1,4 +1,5 @@
-// view_selection.cpp: parts of a scan with almost the same view, and the sharpest frame of each.
+// view_selection.cpp: divides a scan into segments with almost the same view, and chooses the slowest frame
+// of each.
 #include "mapping/texture/view_selection.hpp"
 
 #include <algorithm>
