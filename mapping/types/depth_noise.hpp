@@ -12,7 +12,7 @@ namespace roomradar {
 struct DepthNoise {
   float base_m = 0.0012F;
   float linear = 0.0F;              ///< m per m of depth
-  float quadratic_per_m = 0.0019F;  ///< of a triangulating sensor
+  float quadratic_per_m = 0.0019F;  ///< 1/m; the growth with depth of a triangulating sensor
   float from_m = 0.4F;
   float grazing = 0.0001F;  ///< factor of the term for the angle of incidence, m^1.5
   friend bool operator==(const DepthNoise&, const DepthNoise&) = default;
@@ -44,8 +44,8 @@ Floats depth_sigmas_m(const DepthNoise& noise, const Floats& depth_m) {
 /// Standard deviation, m, of a measurement of weight 1 in a map: that of a Kinect v1 at 1 m.
 inline const float kUnitWeightSigma_m = depth_sigma_m(DepthNoise{}, 1.0F);
 
-/// Returns the least depth, m, of at least DepthNoise::from_m, at which depth_sigma_m() is sigma_m or more;
-/// infinite if there is none.
+/// Inverse of depth_sigma_m(): returns the smallest depth, m, whose standard deviation is at least sigma_m.
+/// Searches from DepthNoise::from_m upwards. Returns infinity if there is no such depth.
 inline float depth_of_sigma_m(const DepthNoise& noise, float sigma_m) {
   const float rest_m = std::max(sigma_m - noise.base_m - noise.linear * noise.from_m, 0.0F);
   if (rest_m == 0.0F) return noise.from_m;
@@ -66,8 +66,8 @@ inline float depth_sigma_m(const DepthNoise& noise, float depth_m, float inciden
          noise.grazing / std::sqrt(std::max(depth_m, 0.1F)) * theta * theta / (from_grazing * from_grazing);
 }
 
-/// Returns a lower bound, within 1 %, of the relative standard deviation at any depth > 0, depth_sigma_m() /
-/// z.
+/// Returns a lower bound of the relative standard deviation depth_sigma_m(z) / z over all depths z > 0. It is
+/// at most about 1 % below the minimum.
 inline float least_relative_sigma(const DepthNoise& noise) {
   // Without a quadratic part, the relative deviation falls towards `linear`. Otherwise its minimum is where
   // the derivative of base / z + quadratic (z - from)^2 / z is 0.

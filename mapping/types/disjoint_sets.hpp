@@ -1,4 +1,4 @@
-// disjoint_sets.hpp: sets of indices that are joined, as in connected components.
+// disjoint_sets.hpp: union-find over indices, e.g. for connected components.
 #pragma once
 #include <numeric>
 #include <vector>

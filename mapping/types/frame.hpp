@@ -11,20 +11,20 @@
 namespace roomradar {
 
 /// Times at which a sensor reads the rows of its images. Row y of h rows is read (y - (h - 1) / 2) / h *
-/// readout_s after the image's middle. A readout of 0 s is a global shutter.
+/// readout_s after the middle of the image's readout. A readout of 0 s is a global shutter.
 struct SensorTiming {
   double depth_readout_s = 0.0;
   double colour_readout_s = 0.0;
-  /// Time of the middle of the colour image minus that of the depth image, beyond the difference of their
-  /// stamps.
+  /// Error of the stamps' difference: the true time of colour minus depth (middles of their readouts) is the
+  /// difference of their stamps plus colour_delay_s.
   double colour_delay_s = 0.0;
   friend bool operator==(const SensorTiming&, const SensorTiming&) = default;
 };
 
-/// In names, `camera` alone means the depth camera.
+/// Images, cameras, pose and gravity of one instant. In names, `camera` alone means the depth camera.
 struct Frame {
   std::int64_t index = 0;  ///< index in the recording from 0, skipped frames included
-  double stamp_s = 0.0;    ///< sensor time; number in the file name / 30 if the recording has no times
+  double stamp_s = 0.0;    ///< sensor time; if the recording has no times, the number in the file name / 30
 
   DepthImage depth_m;  ///< same size as depth_camera
   Intrinsics depth_camera;
@@ -42,7 +42,7 @@ struct Frame {
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame
 };
 
-/// Copies index, times, cameras, pose and gravity. The images of `to` stay.
+/// Copies index, times, cameras, pose and gravity. The images of `to` are unchanged.
 inline void copy_all_but_images(const Frame& from, Frame& to) {
   to.index = from.index;
   to.stamp_s = from.stamp_s;

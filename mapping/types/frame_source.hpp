@@ -16,8 +16,9 @@ enum class ReadStatus {
 
 struct [[nodiscard]] ReadResult {
   ReadStatus status = ReadStatus::kEnd;
-  std::string fault;     ///< a sentence; only with kSkipped
-  bool waiting = false;  ///< only with kSkipped: a live source delivered no frame in time; none was lost
+  std::string fault;  ///< a sentence; only with kSkipped
+  /// Only with kSkipped: a live source had no new frame before its time-out; no frame was lost.
+  bool waiting = false;
 };
 
 /// Delivers frames in the order of their timestamps. Not thread safe.

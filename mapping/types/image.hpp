@@ -40,8 +40,8 @@ struct Image {
   const Pixel* row(int y) const { return pixels.data() + index(0, y); }
 };
 
-/// Depth along the optical axis, m; 0: no measurement. Always finite and >= 0. Frame sources guarantee these
-/// limits. All other code relies on them.
+/// Depth along the optical axis, m; 0: no measurement. Always finite and >= 0: frame sources guarantee this
+/// range, and all other code relies on it.
 using DepthImage = Image<float>;
 using ColourImage = Image<Rgb>;
 /// Mask with one byte per pixel, 0 or 255.

@@ -1,4 +1,4 @@
-// linear_algebra.hpp: wrappers of Eigen's solvers for small dense problems, which are thus compiled only
+// linear_algebra.hpp: wrappers of Eigen's solvers for small dense problems, so that these are compiled only
 // once.
 //
 // Eigen's decompositions take seconds to compile in every source that instantiates them.
@@ -19,8 +19,8 @@ struct SymmetricEigen {
   Eigen::Matrix<double, N, N> vectors;
 };
 
-/// Returns the eigendecomposition of a symmetric matrix. Reads only its lower triangle. Matrices that are not
-/// finite do not converge.
+/// Returns the eigendecomposition of a symmetric matrix. Reads only its lower triangle. `converged` is false
+/// for matrices that are not finite.
 SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A);
 SymmetricEigen<6> symmetric_eigen(const Matrix6d& A);
 

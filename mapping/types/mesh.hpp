@@ -1,4 +1,5 @@
-// mesh.hpp: triangle meshes. Vertices are floats relative to a local origin, and thus precise far from zero.
+// mesh.hpp: triangle meshes. Vertices are floats relative to a local origin, so they stay precise far from
+// the world's origin.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

@@ -1,6 +1,7 @@
-// simd8f.hpp: vector of eight floats, such as one per sibling voxel, in an AVX2 and a portable version. Both
-// versions give bit-identical results, since neither fuses multiply and add. Maps are therefore bit-identical
-// on every machine. Files that use them must be compiled with -ffp-contract=off.
+// simd8f.hpp: SIMD vector of eight floats (e.g. of eight sibling voxels), in an AVX2 and a portable version.
+// Both versions give bit-identical results, since neither uses fused multiply-add. Maps are therefore
+// bit-identical on every machine. Source files that use them must be compiled with
+// -ffp-contract=off.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -21,8 +21,8 @@ inline constexpr const char* kTrajectoryHeader = "# stamp_s tx ty tz qx qy qz qw
 /// Returns a pose's line in a trajectory file, with its end of line.
 std::string trajectory_line(const TimedPose& pose);
 
-/// Writes one line per pose in order, `stamp tx ty tz qx qy qz qw` (s, m, unit quaternion). Reading restores
-/// values within 1e-9. Throws Error if the file cannot be written.
+/// Writes one line per pose in order, `stamp tx ty tz qx qy qz qw` (s, m, unit quaternion). Values read back
+/// differ by at most 1e-9. Throws Error if the file cannot be written.
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory);
 
 /// Reads a file written by write_trajectory(). Lines starting with # are comments. frame_index counts the
@@ -37,9 +37,9 @@ struct TrajectoryError {
   Eigen::Isometry3d T_reference_estimate = Eigen::Isometry3d::Identity();
 };
 
-/// Computes the absolute trajectory error (ATE), the distances between positions matched by frame index after
-/// the best rigid alignment (scale 1). TrajectoryError::poses is 0 if fewer than 3 positions match. Source:
-/// Horn 1987; Sturm et al., IROS 2012.
+/// Computes the absolute trajectory error (ATE): distances between positions of equal frame index, after the
+/// best rigid alignment (scale 1). TrajectoryError::poses is 0 if fewer than 3 positions match. Source: Horn
+/// 1987; Sturm et al., IROS 2012.
 TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
                                           const std::vector<TimedPose>& reference);
 
@@ -50,8 +50,8 @@ std::optional<Eigen::Isometry3d> pose_alignment(const std::vector<TimedPose>& es
                                                 const std::vector<TimedPose>& reference);
 
 /// Returns the distance between the last positions of both trajectories, m, after aligning their first poses.
-/// Returns 0 if a trajectory is empty. Both first poses must belong to one frame, and both last poses to one
-/// frame.
+/// Returns 0 if a trajectory is empty. The first poses of both trajectories must be of the same frame, as
+/// must the last poses.
 double end_gap_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference);
 
 }  // namespace roomradar

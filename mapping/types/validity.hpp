@@ -1,5 +1,4 @@
-// validity.hpp: checks of cameras, poses, frames and triangles that return values and do not throw, for
-// per-frame code.
+// validity.hpp: non-throwing validity checks of cameras, poses, frames and triangles, for per-frame code.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -42,7 +42,7 @@ constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint3
 
 inline constexpr int kCellsRound = 27;
 inline constexpr int kOwnCell = 13;
-/// Returns the offset from a cell to its i-th neighbour, 0 <= i < 27. For i = kOwnCell, the offset is zero.
+/// Returns the offset from a cell to its i-th neighbour, 0 <= i < 27; zero for i = kOwnCell.
 inline Eigen::Vector3i neighbour_offset(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// png.cpp: libpng, whose errors jump back into the functions that call setjmp(). No object with a destructor
-// may live in those functions, since errors jump over it.
+// png.cpp: wraps libpng. Its errors longjmp() into the functions that call setjmp(), and would skip
+// destructors there. Those functions must therefore not own objects with destructors.
 #include "mapping/types/codecs/png.hpp"
 
 #include <png.h>

@@ -15,8 +15,8 @@ struct Rgba {
   friend bool operator==(const Rgba&, const Rgba&) = default;
 };
 
-/// Decodes a PNG of any type. Channels of 16 bits are reduced to their upper 8 bits, grey and palettes become
-/// colours. The picture gets the PNG's size, at most 16,384 px per side.
+/// Decodes a PNG of any type. Channels of 16 bits are reduced to their upper 8 bits. Grey and palette images
+/// are converted to RGBA. Resizes `picture` to the PNG's size, at most 16,384 px per side.
 /// @return the fault, nullopt if there is none. After a fault the picture's pixels are unspecified
 [[nodiscard]] std::optional<std::string> decode_png(std::string_view bytes, Image<Rgba>& picture);
 /// Decodes a PNG of any type and drops its transparency.
@@ -27,7 +27,7 @@ struct Rgba {
 [[nodiscard]] std::optional<std::string> decode_png(std::string_view bytes, Image<std::uint16_t>& picture);
 
 enum class PngEffort {
-  kFast,   ///< one filter and runs of equal bytes only: half the time
+  kFast,   ///< one filter type, and run-length encoding only: half the time
   kSmall,  ///< libpng's choice of filters, level 3
 };
 

@@ -1,4 +1,4 @@
-// block_pool.hpp: memory for many equal blocks that are addressed by numbers, for several threads.
+// block_pool.hpp: pool allocator of equally sized blocks, addressed by 32-bit numbers, for several threads.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -17,13 +17,13 @@ namespace roomradar {
 
 /// Max number of threads that may change one pool at a time.
 inline constexpr unsigned kMaxLanes = kMaxThreads;
-/// Lane of the calling thread, below kMaxLanes: number of the list of free blocks that the thread uses.
-/// Threads that change one pool at the same time need different lanes.
+/// Lane of the calling thread, below kMaxLanes: index of the free list that the thread uses. Threads that
+/// change one pool concurrently need different lanes.
 inline thread_local unsigned pool_lane = 0;
 
 /// Pool of equally sized blocks that are addressed by 32-bit numbers. Blocks never move. References thus stay
 /// valid while other blocks are allocated. Number 0 is reserved and means "none". Threads of different lanes
-/// may take, give back and access blocks at the same time, but not the same block.
+/// may concurrently allocate, free and access different blocks.
 template <typename Block>
 class BlockPool {
  public:
@@ -52,7 +52,8 @@ class BlockPool {
     --lanes_[pool_lane].in_use;
     lanes_[pool_lane].free.push_back(number);
   }
-  /// Makes blocks that other lanes gave back available to the first lane. No other thread may use the pool.
+  /// Moves the free lists of all other lanes to the first lane. No other thread may use the pool during the
+  /// call.
   void gather_free() {
     for (Lane& lane : std::span(lanes_).subspan(1)) {
       lanes_[0].free.insert(lanes_[0].free.end(), lane.free.begin(), lane.free.end());

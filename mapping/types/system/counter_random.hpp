@@ -1,4 +1,4 @@
-// counter_random.hpp: counter-based random numbers, determined by a seed and a counter.
+// counter_random.hpp: counter-based random numbers: a pure function of seed and counter.
 #pragma once
 #include <cstdint>
 

@@ -20,9 +20,9 @@ namespace roomradar {
 /// @throws Error naming the file if some bytes could not be written; the partial file is removed
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
-/// Returns the reason why a file cannot be written at this path, as the end of a sentence. Reasons are a
-/// folder that does not exist, is not writable or does not hold files (/proc), and a full disk. Writes
-/// nothing. Returns an empty string if none of these reasons applies now.
+/// Returns the reason why a file cannot be written at this path, as the end of a sentence. Detects a folder
+/// that does not exist, is not writable or whose file system accepts no files (/proc), and a full disk.
+/// Writes nothing. Returns an empty string if none of these is the case.
 [[nodiscard]] std::string why_not_writable(const std::filesystem::path& path);
 
 /// Throws Error naming the file and the cause if `stream` has failed. Call it after writing to `path` through

@@ -1,4 +1,4 @@
-// parallel_for.hpp: shares independent pieces of work among threads.
+// parallel_for.hpp: distributes independent work items over threads.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-inline constexpr unsigned kMaxThreads = 8;  ///< more gain nothing: memory access limits the work
+inline constexpr unsigned kMaxThreads = 8;  ///< more threads are no faster: memory bandwidth is the limit
 
 /// Returns the number of processors that this process may use, at most kMaxThreads.
 inline unsigned hardware_threads() {
@@ -17,8 +17,8 @@ inline unsigned hardware_threads() {
 }
 
 /// Calls work(piece, thread) for each piece in 0..pieces-1, on up to `threads` threads. The number of a
-/// thread is below `threads`; 0 is the caller's. Each piece goes to the next idle thread, so results must not
-/// depend on the order of the pieces. Waits for all threads, and rethrows an exception of `work`.
+/// thread is below `threads`; 0 is the caller's. Idle threads take the next piece, so results must not depend
+/// on the order of the pieces. Waits for all threads, and rethrows an exception of `work`.
 template <typename Work>
 void parallel_for(std::size_t pieces, unsigned threads, const Work& work) {
   std::atomic<std::size_t> next = 0;

@@ -33,8 +33,8 @@ class StageTimes {
     return std::forward<Work>(work)();
   }
   void add_ms(std::string_view stage, double elapsed_ms);
-  /// Returns the nearest-rank percentiles of each stage, accurate to 0.3 % between 1 us and an hour. Count
-  /// and maximum are exact. The map is empty if nothing was timed.
+  /// Returns nearest-rank percentiles per stage, accurate to 0.3 % for times from 1 us to one hour. Count and
+  /// maximum are exact. The map is empty if nothing was timed.
   [[nodiscard]] std::map<std::string, StageSummary> summaries() const;
   /// Calls work(stage, count, newest_ms) for each stage.
   template <typename Work>

@@ -11,8 +11,8 @@
 
 namespace roomradar {
 
-/// Lowers the priority of a thread of this process, so that others do not wait for it. Threads that it starts
-/// later have the low priority, too. It cannot be raised again.
+/// Lowers the priority of a thread of this process. Threads that it starts later inherit the low priority.
+/// The priority cannot be raised again.
 /// @param thread  0: the calling thread
 /// @param nice    0: as usual; 19: lowest
 void lower_priority(pid_t thread = 0, int nice = 10);
@@ -23,7 +23,7 @@ std::set<pid_t> threads_of_process();
 /// Owns a thread that sleeps between calls of run(). On a machine with one processor there is no thread, and
 /// the two tasks run one after the other. Results must not depend on the order of the tasks. Call run() from
 /// one thread only, and not from inside run(). If the worker last ran on the caller's processor, run() moves
-/// it to another.
+/// the worker to another one.
 class WorkerThread {
  public:
   WorkerThread();
