@@ -12,8 +12,8 @@ namespace roomradar {
 enum class TrackStatus {
   kTracked,       ///< all six degrees of freedom are constrained by the measurements
   kTooFewPoints,  ///< too few correspondences; the returned pose is the initial guess
-  /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. They keep the initial
-  /// guess's values. The others are aligned.
+  /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. Unconstrained ones
+  /// keep the initial guess's values; the others are aligned.
   kDegenerate,
   /// The image disagrees with the references at the aligned pose, or the correction is too large
   /// (AlignConfig). The returned pose is the guess.
@@ -21,12 +21,12 @@ enum class TrackStatus {
 };
 std::string_view to_string(TrackStatus status);
 
-/// Result of an alignment. A default-constructed Tracking means failed.
+/// Result of an alignment. A default-constructed Tracking is a failed alignment.
 struct [[nodiscard]] Tracking {
   TrackStatus status = TrackStatus::kDiverged;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< always finite
   double rms_m = -1.0;           ///< RMS point-to-plane distance of the inliers, m; < 0: no result
-  double inlier_fraction = 0.0;  ///< fraction of the correspondences whose distance is within the noise
+  double inlier_fraction = 0.0;  ///< fraction of the correspondences that are inliers (PointMatches::inliers)
   /// Fraction of the image's points that have a correspondence in the first reference.
   double overlap = 0.0;
   /// Number of unconstrained degrees of freedom, 0..6.
@@ -50,20 +50,22 @@ struct AlignConfig {
   /// Max point-to-plane distance of a correspondence at the coarsest level, m. The limit is halved at each
   /// finer level, but never below 0.03 m.
   float gate_m = 0.10F;
-  /// Residual with weight 1/4 in the robust kernel at the finest level, in standard deviations.
+  /// Scale of the robust kernel at the finest level, in standard deviations: a residual of this size has
+  /// weight 1/4.
   float robust_sigma = 2.5F;
   /// Standard deviation of intensity residuals, in grey levels of 0..255. 0: intensity is not used.
   float intensity_sigma = 8.0F;
   int min_points = 150;  ///< min number of correspondences at the finest level
   float min_inlier_fraction = 0.3F;
-  /// Min mean squared cosine between the normals and a direction that depth constrains. At smaller values,
-  /// noise of the normals alone would make a direction look constrained.
+  /// Depth constrains a direction if the mean squared cosine between the normals and this direction is at
+  /// least this. With a smaller threshold, noise of the normals alone would make a direction look
+  /// constrained.
   float min_constraint = 0.001F;
   /// Max standard deviation of the pose along a constrained direction, m. Above it, the direction counts as
   /// unconstrained.
   float max_uncertainty_m = 0.01F;
-  /// Max correction of the guess, for the translation in m and for the rotation in rad. Larger corrections
-  /// count as kDiverged.
+  /// Max correction of the guess: of the translation in m, and of the rotation in rad (the same number). A
+  /// larger correction is kDiverged.
   float max_correction_m = 0.5F;
 };
 
@@ -77,7 +79,7 @@ struct PosedReference {
 /// iteration recomputes the velocity from its current pose.
 struct ReadoutMotion {
   Eigen::Isometry3d T_world_before = Eigen::Isometry3d::Identity();
-  double dt_s = 0.0;       ///< time since that pose; 0: the velocity is not known and taken as 0
+  double dt_s = 0.0;  ///< time from that pose to the image; 0: the velocity is unknown and assumed to be 0
   double readout_s = 0.0;  ///< readout time of the depth image; 0: global shutter
 };
 

@@ -1,5 +1,5 @@
-// keyframe.hpp: keyframes in compact form, with which later frames are aligned and into which the depth of
-// later frames is averaged.
+// keyframe.hpp: compact keyframes. Later frames are aligned with a keyframe, and their depth is averaged into
+// it.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -34,7 +34,7 @@ struct Keyframe {
   double path_length_m = 0.0;
   CameraVelocity velocity = {};         ///< of the camera at `frame_index`
   CameraVelocity steady_velocity = {};  ///< mean over several frames up to `frame_index`
-  SensorTiming timing = {};             ///< times with which the view's intensity was registered
+  SensorTiming timing = {};             ///< sensor times used to register the view's intensity to its depth
 };
 
 /// Returns a measure of how much two viewpoints differ: distance / 0.8 m + angle / 35 degrees. At 1, the two
@@ -48,7 +48,8 @@ StoredView store(const ViewPyramid& pyramid, const Image<std::uint8_t>& measured
 void restore(const StoredView& view, const ViewConfig& config, ViewPyramid& pyramid);
 
 /// Averages the depth of `other` into the finest level of `pyramid`, in the pixels where both show the same
-/// surface. Increments `measured` in these pixels, up to 60. Then the mean becomes a moving average.
+/// surface. Increments `measured` in these pixels, up to 60. From there on, the mean is an exponential moving
+/// average.
 void improve_depth(ViewPyramid& pyramid, Image<std::uint8_t>& measured, const ViewPyramid& other,
                    const Eigen::Isometry3d& T_other_pyramid);
 

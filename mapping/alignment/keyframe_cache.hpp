@@ -15,7 +15,7 @@ struct CachedKeyframe {
   SourcePoints live;
 };
 
-/// Members of a CachedKeyframe to prepare. Otherwise `reference` stays empty.
+/// Members of a CachedKeyframe to prepare. kLive: only `live`; `reference` stays empty.
 enum class PreparedParts { kAll, kLive };
 
 std::shared_ptr<CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
@@ -36,8 +36,8 @@ class KeyframeCache {
                                             const ViewConfig& config);
   /// Caches `made` as the keyframe's entry; replaces an existing entry.
   void put(std::size_t keyframe, std::shared_ptr<CachedKeyframe> made);
-  /// Removes the entry that put() would replace or evict, so that the caller can reuse its memory. Returns
-  /// null if put() would remove none.
+  /// Removes and returns the entry that put() would replace or evict, so that the caller can reuse its
+  /// memory. Returns null if put() would remove no entry.
   std::shared_ptr<CachedKeyframe> make_room(std::size_t keyframe);
 
  private:

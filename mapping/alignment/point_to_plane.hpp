@@ -34,18 +34,18 @@ struct Exposure {
 struct PointMatches {
   NormalEquations depth, colour;
   std::size_t met = 0;  ///< number of points that project to a pixel with a surface
-  /// Number of correspondences whose distance is within the gate and below 4 standard deviations of one
-  /// measurement (2.8 of the difference between two).
+  /// Number of correspondences whose distance is within the gate and below 4 standard deviations of a single
+  /// measurement, i.e. 2.8 of the difference of two measurements.
   std::size_t inliers = 0;
   double squares = 0.0;  ///< sum of the inliers' squared distances, m^2
-  /// Weighted sums over the correspondences with two known intensities. n sums the weights. live and
-  /// reference sum the intensities, live_live and reference_reference their squares.
+  /// Weighted sums over the correspondences with two known intensities, for match_exposure(): the weights
+  /// (n), the intensities, and their squares.
   double n = 0.0, live = 0.0, reference = 0.0, live_live = 0.0, reference_reference = 0.0;
 };
 
 /// Limits and weights of the residuals.
 struct MatchLimits {
-  float gate_m;  ///< max point-to-plane distance of a correspondence
+  float gate_m;  ///< max point-to-plane distance of a correspondence, m
   /// 1 / scale of the Geman-McClure kernel. The scale is the residual, in standard deviations, with weight
   /// 1/4.
   float inverse_soft;
@@ -62,7 +62,7 @@ Real robust_weight(const Real& x) {
 
 /// Projects the points into the reference to find correspondences, and sums their residuals. Residuals are
 /// the distance to the reference's plane and, if exposure.known, the difference of intensity. They are
-/// linearised in the camera's twist in the camera frame.
+/// linearised with respect to the camera's twist in the camera frame.
 /// @param motion  motion of the points during their image's readout
 /// @param[in,out] pass  sums to which the residuals are added. Only the upper triangle of H is filled
 /// @param arithmetic    results are bit-identical for all values

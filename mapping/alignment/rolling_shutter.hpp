@@ -1,4 +1,4 @@
-// rolling_shutter.hpp: motion of a camera while its image is read row by row.
+// rolling_shutter.hpp: rolling-shutter model: motion of a camera while its image is read row by row.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@ struct CameraVelocity {
   Eigen::Vector3d angular_radps = Eigen::Vector3d::Zero();
 };
 
-/// Returns true if a motion over dt_s gives a usable velocity: for 1 ms to 0.2 s.
+/// Returns true if dt_s is in 1 ms to 0.2 s. A motion over any other time gives no usable velocity.
 bool gives_velocity(double dt_s);
 /// Returns the constant velocity of a camera that moves by T_before_after in dt_s. Returns 0 if
 /// gives_velocity(dt_s) is false or the motion is not finite.

@@ -24,21 +24,22 @@ struct TimingEvidence {
   TimingVector b = TimingVector::Zero();
 };
 
-/// Pose and velocity of the camera when a view was taken. The colour delay is estimated with the steady
-/// velocity. The noise of a single pose both shifts the points and changes `velocity`, which would look like
-/// a delay.
+/// Pose and velocity of the camera when a view was taken. The colour delay is estimated with steady_velocity.
+/// With `velocity`, the noise of a single pose would look like a delay, since it shifts both the points and
+/// the velocity.
 struct MovingView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   CameraVelocity velocity;
   CameraVelocity steady_velocity;  ///< mean over several frames
-  SensorTiming timing;             ///< times with which the view was made
+  SensorTiming timing;             ///< sensor times used to register the view's intensity to its depth
 };
 
 /// Linearises the residuals of an aligned image in the camera's pose and in the parameters, and eliminates
-/// the pose. The corrections are those of camera.timing. If the reference's intensity was registered with
-/// other times, its displacement by the difference is taken off. Two images taken at equal velocities
-/// constrain no times. Uses every fourth point of the second finest level, or of the only level.
-/// @param live  points of the image before any correction
+/// the pose. The parameters are corrections of camera.timing. If the reference's intensity was registered
+/// with other sensor times, the displacement due to the difference is subtracted. Two images taken at equal
+/// velocities do not constrain the times. Uses every fourth point of the second finest level, or of the only
+/// level.
+/// @param live  points of the image before any rolling-shutter correction
 TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camera,
                                const TargetView& reference, const MovingView& view);
 

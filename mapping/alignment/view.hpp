@@ -30,8 +30,9 @@ struct TargetView {
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Fits a plane to each pixel's neighbourhood. A pixel gets no surface if it has no depth or is at the
-/// image's border. It gets none if its neighbourhood has too few samples or is not flat within the noise.
+/// Fits a plane to each pixel's neighbourhood. A pixel has no plane (normal zero) if it has no depth or is at
+/// the image's border. The same holds if its neighbourhood has too few samples or is not flat within the
+/// noise.
 /// @param arithmetic  results are bit-identical for all values
 void make_target_view(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world_view,
                       const ViewConfig& config, TargetView& reference,

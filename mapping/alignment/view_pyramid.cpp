@@ -1,4 +1,5 @@
-// view_pyramid.cpp: halves images surface by surface, and registers intensity to depth.
+// view_pyramid.cpp: downsamples depth without averaging across discontinuities, and registers intensity to
+// depth.
 #include "mapping/alignment/view_pyramid.hpp"
 
 #include <algorithm>

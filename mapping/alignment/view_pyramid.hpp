@@ -8,8 +8,9 @@
 
 namespace roomradar {
 
-/// Max relative difference between two depths that count as one surface: 5 cm at 1 m. Four pixels apart in a
-/// 320 pixel wide image, the depths of a plane seen at 75 degrees differ by this much.
+/// Max relative difference between two depths that count as one surface: 5 cm at 1 m. On a plane seen at 75
+/// degrees from its normal, the depths of two pixels differ by this much if the pixels are four apart in a
+/// 320 px wide image.
 inline constexpr float kSameSurface = 0.05F;
 
 struct ViewConfig {
@@ -34,7 +35,7 @@ struct ViewPyramid {
     Image<float> intensity;            ///< 0..255; -1: unknown; empty image: no colour
   };
   std::vector<Level> levels;
-  DepthNoise noise;  ///< of the depth's sensor
+  DepthNoise noise;  ///< noise model of the depth sensor
   /// Scratch: the colour image in grey levels, averaged down to about the finest level's size.
   Image<float> grey;
 };
@@ -49,8 +50,8 @@ struct FrameMotion {
 /// level is at most finest_width_px wide. Leaves out depths outside min_depth_m..max_depth_m, and intensity
 /// outside the colour camera's view. The frame's images must have their cameras' sizes. Reuses memory
 /// allocated in `pyramid`.
-/// @param motion  accounts for the time between a point's depth and its colour when looking up intensity.
-///                Depth is not moved
+/// @param motion  compensates for the time between a point's depth and colour when its intensity is looked
+///                up. Depth is not moved
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
                   const FrameMotion& motion = {});
 

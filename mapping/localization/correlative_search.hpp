@@ -10,9 +10,9 @@
 
 namespace roomradar {
 
-/// Grid of cubes that stores the nearness of the closest surface per cube.
+/// Truncated distance transform of surfaces on a grid of cubes, stored inverted as nearness.
 struct ShapeGrid {
-  Eigen::Vector3d low = Eigen::Vector3d::Zero();  ///< lower corner of the first cube, in the world, m
+  Eigen::Vector3d low = Eigen::Vector3d::Zero();  ///< lower corner of the first cube, in the world frame, m
   double cell_m = 0.0;
   std::array<int, 3> size{};  ///< number of cubes along x, y and z
   /// Nearness by cube, x fastest, then y, then z. It is kOnSurface in a cube with a surface, and decreases
@@ -42,7 +42,7 @@ struct ShapeCandidate {
 /// roll come from gravity. Deterministic. Returns an empty vector if almost no depth is valid or down_camera
 /// is not a unit vector. Source: Olson, Real-Time Correlative Scan Matching, ICRA 2009.
 ///
-/// @param down_camera  unit direction of gravity in the camera's frame (-z in the world)
+/// @param down_camera  unit direction of gravity in the camera's frame (-z in the world frame)
 std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Intrinsics& camera,
                                             const Eigen::Vector3d& down_camera, const ShapeIndex& known,
                                             std::size_t most);

@@ -1,4 +1,4 @@
-// feature_index.cpp: hash tables of descriptors, at randomly chosen bits.
+// feature_index.cpp: locality-sensitive hashing of descriptors by bit sampling.
 #include "mapping/localization/feature_index.hpp"
 
 #include <algorithm>

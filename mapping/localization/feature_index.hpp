@@ -1,4 +1,4 @@
-// feature_index.hpp: index that finds the keyframes with similar features without comparing all of them.
+// feature_index.hpp: locality-sensitive hash index of keyframes by their feature descriptors.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -23,8 +23,8 @@ inline constexpr unsigned kFeatureHashBits = 20;
 /// and Motwani, Approximate nearest neighbors, STOC 1998 (bit sampling).
 class FeatureIndex {
  public:
-  /// Adds the next keyframe, which gets the number size(). Uses its first kIndexedFeatures descriptors. Uses
-  /// 8 bytes per descriptor and table, at most 38 kB per keyframe; 19 kB once its entries are sorted.
+  /// Adds the next keyframe under the number size(). Indexes its first kIndexedFeatures descriptors. Uses 8
+  /// bytes per descriptor and table, at most 38 kB per keyframe; 19 kB once its entries are sorted.
   void add(std::span<const Descriptor> descriptors);
   /// Sorts the entries of keyframes that add() has not sorted yet. candidates() is several times as fast
   /// afterwards, with the same result.
@@ -32,9 +32,9 @@ class FeatureIndex {
   /// Returns the number of keyframes in the index.
   [[nodiscard]] std::size_t size() const { return keyframes_; }
 
-  /// Returns the numbers of the keyframes with the most collisions with `query`, best first. Counts each
-  /// collision of two descriptors in each table. Returns at most `count` keyframes, all with at least one
-  /// collision.
+  /// Returns the numbers of the keyframes with the most collisions with `query`, best first. Two descriptors
+  /// that collide in several tables count once per table. Returns at most `count` keyframes, all with at
+  /// least one collision.
   /// @param accept  called with a keyframe's number; false: the keyframe is left out. Empty: all are accepted
   [[nodiscard]] std::vector<std::size_t> candidates(std::span<const Descriptor> query, std::size_t count,
                                                     const std::function<bool(std::size_t)>& accept) const;
@@ -43,7 +43,7 @@ class FeatureIndex {
   static constexpr std::size_t kMaxKeyframes = 500'000;  ///< later keyframes are not indexed
 
  private:
-  /// A descriptor in a bucket. Buckets are linked lists in one array: many small arrays that grow beside
+  /// A descriptor in a bucket. Buckets are linked lists in one array: many small arrays that grow between
   /// large images would fragment the heap.
   struct Entry {
     std::uint32_t rest_and_keyframe;  ///< hash bits that the bucket does not imply, and the keyframe's number
@@ -56,7 +56,7 @@ class FeatureIndex {
 
   unsigned sorted_bucket_bits_ = 0;  ///< bits of a hash that select a bucket of `sorted_`
   std::vector<std::uint32_t>
-      begin_;  ///< by bucket of `sorted_`, of all tables, and one more: where it begins
+      begin_;  ///< start offset in `sorted_` of each bucket of each table, then the end
   std::vector<std::uint32_t> sorted_;  ///< rest_and_keyframe of the older keyframes, bucket by bucket
 };
 

@@ -31,9 +31,9 @@ struct MapKeyframe {
 
 /// Two places of the map that look alike, such as two rooms with the same furniture.
 struct LookAlike {
-  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< camera position in the one place, m
-  /// Moves the one place onto the other: cameras near p_world see nearly the same at T_world_camera and at
-  /// T_other_this * T_world_camera.
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< camera position at this place, m
+  /// Maps this place onto the other. For a camera near p_world, the views from T_world_camera and from
+  /// T_other_this * T_world_camera are almost the same.
   Eigen::Isometry3d T_other_this = Eigen::Isometry3d::Identity();
 };
 
@@ -45,7 +45,7 @@ struct KeyframeDatabase {
   FeatureIndex index{};
 };
 
-/// Adds all keyframes to the database's index that it lacks.
+/// Adds to the database's index all keyframes that are not in it.
 void update_index(KeyframeDatabase& keyframe_database);
 
 /// Max number of features, and of patches, per keyframe. The limit bounds the cost of matching all pairs.

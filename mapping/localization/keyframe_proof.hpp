@@ -1,4 +1,4 @@
-// keyframe_proof.hpp: proves a frame's pose relative to a keyframe by the depth of both.
+// keyframe_proof.hpp: geometric verification of a frame's pose relative to a keyframe, by the depth of both.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace roomradar {
 /// Makes the pyramid of a keyframe's preview.
 void make_preview_pyramid(const MapKeyframe& keyframe, const ViewConfig& view, ViewPyramid& pyramid);
 
-/// Makes the preview a target of align(), posed at the identity.
+/// Converts a preview to a target of align(), with the identity as its pose.
 TargetView target_of(const ViewPyramid& preview, const ViewConfig& view);
 
 struct KeyframeProof {
@@ -22,29 +22,29 @@ struct KeyframeProof {
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
   double agreement = 0.0;  ///< fraction of the common pixels whose depths agree
   double overlap = 0.0;    ///< fraction of the frame's points that the keyframe sees, too
-  TargetView target;       ///< the keyframe's preview, posed at the identity; for joint_pose()
+  TargetView target;       ///< the keyframe's preview, with the identity as its pose; for joint_pose()
 };
 
-/// Refines a pose from features with the keyframe's depth. The refined pose must agree with the depth and
-/// with the features.
+/// Refines the pose of a feature match by alignment with the keyframe's depth. KeyframeProof::holds is true
+/// if the refined pose agrees with the depth and is within 12 cm and 0.12 rad of the feature match's pose.
 KeyframeProof prove_with_features(const SourcePoints& live, const MapKeyframe& keyframe,
                                   const KeyframeMatch& match, double min_depth_agreement,
                                   const ViewConfig& view);
 
-/// A keyframe that proves the frame's pose.
+/// A keyframe that verifies the frame's pose.
 struct KeyframeWitness {
   std::size_t keyframe = 0;  ///< index in the database
   int feature_inliers = 0;
   KeyframeProof proof;
 };
-/// Returns the frame's pose in the world by one witness.
+/// Returns the frame's pose in the world frame, according to one witness.
 Eigen::Isometry3d pose_by(const KeyframeWitness& witness, const KeyframeDatabase& keyframe_database);
 
 /// Returns the witness with the most inliers, then the highest agreement. `witnesses` must not be empty.
 const KeyframeWitness& best_of(std::span<const KeyframeWitness> witnesses);
 
-/// Returns the best witness's pose in the world, refined over the depth of all witnesses that agree with it,
-/// because each keyframe's pose has an error.
+/// Returns the frame's pose in the world frame, aligned jointly with all witnesses that agree with the best
+/// one. This averages the errors of the keyframes' poses.
 Eigen::Isometry3d joint_pose(std::span<const KeyframeWitness> witnesses, const KeyframeWitness& best,
                              const SourcePoints& live, const KeyframeDatabase& keyframe_database);
 

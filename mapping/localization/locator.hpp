@@ -41,8 +41,8 @@ struct Locator {
   ViewConfig expected_view{.finest_width_px = 160, .noisy = false};
   AlignConfig align;
   /// Alignment settings with a higher min_constraint. Bumps of the mesh then do not count as constraining a
-  /// direction. Used for poses that depth alone must constrain. Also used for a second alignment if the first
-  /// loses more than a third of the matching patches.
+  /// direction. Used for poses that depth alone must constrain. Also used to repeat an alignment after which
+  /// more than a third of the matching patches no longer match.
   AlignConfig strict_align{.min_constraint = 0.01F};
   RelocaliseConfig relocalise;
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< pose of the previous frame; unset while lost
@@ -51,7 +51,7 @@ struct Locator {
   int unverified_frames = 0;  ///< number of consecutive frames whose depth contradicts the tracked pose
   /// Number of further frames whose depth must contradict the pose before the next search of the map.
   int recheck_cooldown_frames = 0;
-  /// Last pose before tracking was lost. locate() tries to resume there in the first 30 lost frames.
+  /// Last pose before tracking was lost. locate() tries this pose in the first 30 frames after the loss.
   std::optional<Eigen::Isometry3d> T_world_lost;
   int lost_frames = 0;
 

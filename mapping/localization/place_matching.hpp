@@ -11,9 +11,9 @@ namespace roomradar {
 
 /// Returns the indices in `keyframe_database` of the keyframes with the most feature matches to `place`, best
 /// first. Returns at most `count` keyframes, each with at least `min_matches` matches. Compares only the
-/// strongest FeatureIndex::kIndexedFeatures features of each keyframe. Of the keyframes in the database's
-/// FeatureIndex, compares only the first 40 + 2 * `count` candidates(), so that time hardly grows with the
-/// database.
+/// strongest FeatureIndex::kIndexedFeatures features of each keyframe. Compares all keyframes that are not in
+/// the database's FeatureIndex, and the first 40 + 2 * `count` candidates() of the index. With a complete
+/// index, the time hardly grows with the database.
 /// @param accept  called with a keyframe's index; false: the keyframe is left out. Empty: all are accepted
 std::vector<std::size_t> most_alike(const MapKeyframe& place, const KeyframeDatabase& keyframe_database,
                                     std::size_t count, int min_matches,

@@ -39,18 +39,19 @@ double uncertainty_m(const Tracking& tracking);
 /// Returns true if enough patches match known patches at this pose. If depth constrains all directions, 15
 /// suffice. Where floorboards or tiles repeat, about twenty patches match even at a wrong pose. If depth
 /// leaves a direction unconstrained, 40 patches must therefore match, or 25 if more than 75 % of the compared
-/// patches match and fit_of() > 0.9. In all cases, more than 35 % of the compared patches must match.
+/// patches match and fit_of() > 0.9. In addition, more than 35 % of the compared patches must match.
 bool is_verified_by_patches(const PoseHypothesis& hypothesis);
 
 /// Returns true if at least 12 patches were compared, and more than 20 % of them match. At wrong poses, fewer
-/// do.
+/// patches match.
 bool is_supported_by_patches(const PatchAgreement& appearance);
 
 /// Returns true if the pose is certain, without regard to other hypotheses. Its uncertainty must be at most
-/// 15 mm, and the model must cover 20 % of the valid depth. In addition, patches or depth must prove the
-/// pose. Patches do if many match known ones and the depth does not contradict the pose. Depth does if it
-/// alone constrains the pose, the model covers half of it, more than 70 to 90 % of the common pixels agree,
-/// at most 3 % see through the model, and the patches do not contradict the pose.
+/// 15 mm, and the model must cover 20 % of the valid depth. In addition, patches or depth must verify the
+/// pose. Patches verify the pose if is_verified_by_patches() and the depth does not contradict the pose.
+/// Depth verifies the pose if it constrains all directions, the patches do not contradict the pose, and three
+/// limits hold: the model covers half of the valid depth, at most 3 % of the common pixels see through the
+/// model, and more than 90 % agree (70 % if more than 12 patches match).
 bool is_certain(const PoseHypothesis& hypothesis);
 
 /// Returns true if another hypothesis, at a different pose, explains the frame about as well as `best`. With

@@ -9,7 +9,7 @@ namespace roomradar {
 /// Pixel counts of one preview compared with another, over every fourth pixel of every fourth row.
 struct PreviewOverlap {
   int valid = 0;    ///< number of pixels with depth of at most 4 m
-  int same = 0;     ///< number of valid pixels at the other preview's surface
+  int same = 0;     ///< number of valid pixels on the other preview's surface
   int through = 0;  ///< number of valid pixels in front of that surface: the other camera saw through them
 };
 

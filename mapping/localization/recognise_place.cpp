@@ -1,4 +1,4 @@
-// recognise_place.cpp: candidates by features, proofs by depth, then a search for rivals elsewhere.
+// recognise_place.cpp: candidates by features, verification by depth, then a search for rival poses.
 #include "mapping/localization/recognise_place.hpp"
 
 #include <algorithm>

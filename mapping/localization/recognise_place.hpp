@@ -1,4 +1,4 @@
-// recognise_place.hpp: finds the place of a single frame in a large map, and refuses if two places fit.
+// recognise_place.hpp: localises a single frame in a large map, and detects ambiguity between similar places.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -16,7 +16,7 @@ enum class PlaceStatus {
   kNoKeyframes,  ///< the database is empty
   kNoDepth,      ///< the frame has almost no valid depth
   kNoColour,     ///< the frame has no colour image, or almost no features
-  kNoMatch,      ///< no keyframe has enough of the frame's features
+  kNoMatch,      ///< no keyframe matches enough features of the frame
   kNotVerified,  ///< features match, but the depth disagrees
   kAmbiguous,    ///< keyframes at another pose fit about as well
 };
@@ -28,20 +28,21 @@ struct [[nodiscard]] RecognisedPlace {
   std::vector<Eigen::Isometry3d> T_world_others;  ///< if ambiguous: the other poses that fit about as well
   std::int64_t keyframe = -1;                     ///< index of the best keyframe in the database; -1: none
   int feature_inliers = 0;                        ///< features that agree with the pose, in the best keyframe
-  int rival_inliers = 0;         ///< features that agree with another pose; 0: none is proved
+  /// Max number of features that agree with another verified pose; 0: there is no such pose.
+  int rival_inliers = 0;
   double depth_agreement = 0.0;  ///< fraction of the pixels seen from both whose depths agree
   double overlap = 0.0;          ///< fraction of the frame's depth that the best keyframe sees
   explicit operator bool() const { return status == PlaceStatus::kFound; }
 };
 
 /// Localises a frame with colour, as relocalise() does, and then looks for rivals: poses farther than 0.3 m
-/// or 0.3 rad away that fit about as well. Rivals are poses proved by features and depth, with at least half
-/// of the inliers. Keyframes more than 3 m from the pose are searched separately, since the keyframes of one
-/// of two similar rooms may fill the list of candidates. Rivals are also the poses that the database's
-/// look-alikes within 2.5 m give: the right place may have been recorded from other views only. A pose is no
-/// rival if keyframes with a similar view contradict the frame more at this pose than at the found pose. Time
-/// hardly grows with the database if its index is complete. Deterministic. Does not throw, even for corrupt
-/// frames. Thread safe.
+/// or 0.3 rad away that fit about as well. Rivals are verified by features and depth, and have at least half
+/// as many inliers as the found pose. Keyframes more than 3 m from the found pose are searched separately,
+/// since the keyframes of one of two similar rooms may fill the list of candidates. Poses implied by the
+/// database's look-alikes within 2.5 m are rivals, too, since the right place may have been recorded from
+/// other views only. A pose is dropped as a rival if the depth of keyframes with similar views agrees with
+/// the frame clearly less there than at the found pose. Time hardly grows with the database if its index is
+/// complete. Deterministic. Does not throw, even for corrupt frames. Thread safe.
 RecognisedPlace recognise_place(const Frame& frame, const KeyframeDatabase& keyframe_database,
                                 const RelocaliseConfig& config = {});
 

@@ -66,7 +66,7 @@ struct KeyframePair {
 };
 
 /// Adds both alignments of a pair as constraints if they agree with each other and are within the assumed
-/// drift of the current poses. Returns whether they were added. A pair that is at least three keyframes apart
+/// drift of the current poses. Returns true if they were added. A pair that is at least three keyframes apart
 /// in sequence is counted as a loop, in loops_found or loops_rejected.
 bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const KeyframeGraphConfig& config);
 
@@ -74,8 +74,8 @@ bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const Keyfr
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const ConnectConfig& config, KeyframeCache& cache);
 
-/// Connects the newest keyframe to older keyframes near it. If there are more than max_edges_new, chooses
-/// max_edges_new of them, spread evenly over the order of view_distance().
+/// Connects the newest keyframe to older keyframes near it. If more than max_edges_new keyframes are near,
+/// chooses max_edges_new of them, spread evenly over the order of view_distance().
 void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache);
 
 /// Optimises all keyframe poses to fit the constraints and anchors.

@@ -10,9 +10,9 @@
 namespace roomradar {
 
 /// Chooses at most max_edges_rebuild older keyframes with views similar to that of `newer`. Divides the
-/// keyframes with similar views, in order of time, into that many groups, so that each visit to a part of the
-/// room is represented. From each group, chooses the keyframe with the most similar view, and prefers
-/// keyframes that are already aligned with `newer`.
+/// keyframes with similar views, in order of time, into max_edges_rebuild groups, so that each visit to a
+/// part of the room is represented. From each group, chooses a keyframe that is already aligned with `newer`
+/// if there is one; among several, the one with the most similar view.
 /// @param aligned  pairs that are aligned already, sorted by (newer, older)
 std::vector<std::size_t> choose_older(std::span<const Keyframe> keyframes, std::size_t newer,
                                       std::span<const KeyframePair> aligned,
@@ -33,10 +33,11 @@ void close_loops(KeyframeGraph& graph, std::vector<KeyframePair> aligned, const 
 /// Aligns keyframes with older ones on its own thread while more keyframes are added. Not thread safe.
 class PairAligner {
  public:
-  /// Call whenever a keyframe was added. A keyframe's depth must be final once advance() has returned a
-  /// number above its index. Final keyframes are aligned in batches; waits if the last batch is still being
+  /// Call whenever a keyframe was added. Once advance() has returned n, callers must not change the depth of
+  /// keyframes 0 to n - 1. Aligns these final keyframes in batches; waits if the last batch is still being
   /// aligned.
-  /// @return the number of keyframes whose depth is final. The newest four never are
+  /// @return the number n of keyframes whose depth is final: a multiple of 8 that excludes at least the
+  ///         newest four
   std::size_t advance(const std::vector<Keyframe>& keyframes, const ConnectConfig& config);
   /// Waits for the last batch, and returns all pairs aligned so far, sorted by (newer, older).
   std::vector<KeyframePair> finish();

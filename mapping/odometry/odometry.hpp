@@ -16,7 +16,8 @@ struct OdometrySnapshot;
 /// Tracks a camera against keyframes, closes loops, and returns all poses at the end. The world frame is the
 /// camera frame of the first usable frame, unless frames come with poses (add_posed()) or the camera is
 /// localised in a known map. Two background threads connect new keyframes to older ones, and align keyframes
-/// for optimise(). Their results are used at fixed frames, so poses do not depend on timing. Not thread safe.
+/// for optimise(). Their results are applied after a fixed number of frames, so poses do not depend on thread
+/// timing. Not thread safe.
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config = {});
@@ -25,8 +26,8 @@ class Odometry {
   ~Odometry();
 
   /// Sets the keyframe database of an earlier map; call before the first frame. Each new keyframe is
-  /// localised in the earlier map if possible. Once a keyframe was localised, all poses, also those of
-  /// earlier frames, are in the earlier map's world frame. The earlier map's own poses stay constant.
+  /// localised in the earlier map if possible. Once a keyframe was localised, all poses are in the earlier
+  /// map's world frame, including poses of earlier frames. The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
 
   /// Tracks the next frame and returns its current pose estimate. While tracking is lost, tries the last pose

@@ -37,7 +37,7 @@ struct OdometryConfig {
   int improve_every = 5;
   /// Number of frames after which the background thread's result for a new keyframe is applied.
   int apply_result_after_frames = 4;
-  /// Initial times of the sensor. Unset: those that the first frame states.
+  /// Initial readout times and colour delay. Unset: the values of the first frame.
   std::optional<SensorTiming> timing;
   bool estimate_timing = true;  ///< correct the times while tracking
 };

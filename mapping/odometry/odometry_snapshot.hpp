@@ -15,11 +15,11 @@
 
 namespace roomradar {
 
-/// Frame with a pose relative to a keyframe. The frame moves with the keyframe.
+/// Frame with a pose relative to a keyframe. When the keyframe is moved, the frame's world pose changes, too.
 struct KeptFrame {
   std::int64_t frame_index = 0;
   double stamp_s = 0.0;
-  /// Index of the keyframe. Unset: T_keyframe_camera is the frame's pose in the world, and constant.
+  /// Index of the keyframe. Unset: T_keyframe_camera is the frame's constant pose in the world frame.
   std::optional<std::size_t> keyframe;
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
   TrackStatus status = TrackStatus::kDiverged;
@@ -52,13 +52,13 @@ struct OdometrySnapshot {
   TimingEstimate timing;
 };
 
-/// Returns a frame's present pose in the world.
+/// Returns a frame's present pose in the world frame.
 Eigen::Isometry3d T_world_camera_of(const OdometrySnapshot& kept, const KeptFrame& frame);
 
-/// Returns the camera's mean velocity over the last 0.09 s or slightly more, or since the first frame if that
-/// is later. Returns 0 if a frame in this time has no trusted pose, if the stamps do not increase, or if the
-/// time is outside 1 ms to 0.2 s. Two consecutive frames would give a velocity too noisy for compensating the
-/// colour delay.
+/// Returns the camera's mean velocity over 0.09 s or slightly more, up to now_s; over less time if the
+/// recording began later. Returns 0 if a frame in this time has no trusted pose, if the stamps do not
+/// increase, or if the time is outside 1 ms to 0.2 s. A velocity from two consecutive frames would be too
+/// noisy to compensate the colour delay.
 CameraVelocity mean_velocity(const OdometrySnapshot& kept, const Eigen::Isometry3d& T_world_now,
                              double now_s);
 
@@ -77,8 +77,7 @@ PredictedMotion predict(const OdometrySnapshot& kept, double stamp_s);
 /// current keyframe.
 /// @param moved  keyframes of kept.graph with new poses, in the same order; the newest keyframes may be
 ///               missing
-/// @return correction T_new_old of the current keyframe: its new pose in the world times the inverse of its
-///         old pose
+/// @return correction T_new_old of the current keyframe: its new world pose times the inverse of its old one
 Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept);
 
 /// Applies the background thread's result. Returns the correction of the current keyframe, as
@@ -99,7 +98,7 @@ void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking);
 /// frame. Depth of removed frames stays averaged into older keyframes.
 void forget_frames_from(std::int64_t frame_index, OdometrySnapshot& kept);
 
-/// Returns all frames, with their present poses in the world.
+/// Returns all frames, with their present poses in the world frame.
 std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept);
 
 }  // namespace roomradar

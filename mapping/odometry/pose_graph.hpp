@@ -21,8 +21,8 @@ struct PoseConstraint {
   bool robust = false;
 };
 
-/// Measured pose of a camera in the world. The measurement may be an outlier, so the solver uses a robust
-/// kernel.
+/// Measured pose of a camera in the world frame. The measurement may be an outlier, so the solver uses a
+/// robust kernel.
 struct PoseAnchor {
   std::size_t pose = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();

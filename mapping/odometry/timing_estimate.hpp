@@ -23,10 +23,10 @@ TimingEstimate start_estimate(const SensorTiming& stated);
 /// @return true if `current` changed
 bool add_evidence(TimingEstimate& estimate, const TimingEvidence& evidence);
 
-/// Returns true if the current times differ from those of the start by more than 8 ms. The recording should
-/// then be tracked again from its beginning with the current times. Callers test this after kProbeFrames
-/// frames, or at the end of a shorter recording. With 300 frames instead of 100, tracking was no more
-/// accurate (kitchen, fr1_rpy, a simulated delay of 40 ms), and three times as much work was repeated.
+/// Returns true if a current time differs from the stated one by more than 8 ms. The recording should then be
+/// tracked again from its beginning with the current times. Callers test this after kProbeFrames frames, or
+/// at the end of a shorter recording. With 300 frames instead of 100, tracking was no more accurate (kitchen,
+/// fr1_rpy, a simulated delay of 40 ms), and three times as much work was repeated.
 bool are_times_wrong(const TimingEstimate& estimate);
 inline constexpr std::int64_t kProbeFrames = 100;
 inline constexpr int kMostRestarts = 3;

@@ -27,7 +27,7 @@ struct UpDirection {
 
 /// Up direction that a user states.
 struct GivenUp {
-  /// Unit vector in the poses' world; unset: the cameras' mean -y axis.
+  /// Unit vector in the poses' world frame; unset: the cameras' mean -y axis.
   std::optional<Eigen::Vector3d> up_world;
 };
 
@@ -36,7 +36,7 @@ struct GivenUp {
 class UpEstimator {
  public:
   /// Adds the frame's gravity, if measured. Adds normals of its depth image, sampled on a grid of 20 columns.
-  /// Both are rotated into the world.
+  /// Both are rotated into the world frame.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   /// Returns the up direction from the first usable source:
