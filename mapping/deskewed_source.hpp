@@ -1,4 +1,5 @@
-// deskewed_source.hpp: corrects the rolling shutter of a source's frames by the camera's known motion.
+// deskewed_source.hpp: corrects rolling shutter and colour delay of a source's frames, from known camera
+// poses.
 #pragma once
 #include <map>
 #include <vector>
@@ -9,10 +10,10 @@
 
 namespace roomradar {
 
-/// Delivers the frames of another source with depth as a global shutter would have seen it at the middle of
-/// the readout, and with T_colour_depth for the time of the colour image. Frames without neighbours of known
-/// pose are unchanged. Depth is also unchanged if no row would move by more than about half a pixel. The
-/// other source must outlive this one.
+/// Delivers the frames of another source, corrected for the camera's motion. Depth is as a global shutter
+/// would have seen it at the middle of the readout. T_colour_depth accounts for the delay of the colour
+/// image. Frames without neighbours of known pose are unchanged. Depth is also unchanged if no row would move
+/// by more than about half a pixel. The other source must outlive this one.
 class DeskewedSource final : public FrameSource {
  public:
   /// @param trajectory  poses in the order of their stamps

@@ -55,10 +55,10 @@ struct PrescanResult {
   SurfaceStats surface;
 };
 
-/// Callback after each frame. `stage` is "track", "track again" (from the first frame, with better times of
-/// the sensor), "fuse" or "ghosts", and `note` states the frame's outcome. Also called with "surface" before
-/// the surface is extracted, and with "texture" before the texture is baked. While tracking, the note also
-/// states the surface area observed in total and in the last second.
+/// Callback after each frame. `stage` is "track", "track again" (from the first frame, with corrected sensor
+/// times), "fuse" or "ghosts", and `note` states the frame's outcome. Also called with "surface" before the
+/// surface is extracted, and with "texture" before the texture is baked. While tracking, the note also states
+/// the surface area observed in total and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
 class Checkpoints;
@@ -77,9 +77,9 @@ struct PrescanInput {
 /// final poses. To remove ghosts (surface of objects that moved), reads selected frames a third time and, if
 /// there are ghosts, a fourth time. To bake the texture, reads at most 160 frames once more.
 ///
-/// A new map's world frame has +z up. With recorded poses, the world's origin is the recording's. With
-/// tracked poses, the origin is on the floor below the first camera. If no level surface is measured, the
-/// origin is at the height of the first camera. With start.map, the map's world frame is kept.
+/// A new map's world frame has +z up. With recorded poses, the origin of the world frame is the recording's.
+/// With tracked poses, the origin is on the floor below the first camera. If no level surface is measured,
+/// the origin is at the height of the first camera. With start.map, the map's world frame is kept.
 ///
 /// Stages timed: read, track, optimise, fuse, ghosts, surface, texture, coverage, checkpoint (time during
 /// which the work is blocked), and frame (track plus fuse of one frame, without reading).

@@ -18,7 +18,7 @@ struct PrescanCounts {
   std::int64_t frames_lost = 0;  ///< readable, but without a trusted pose; not fused
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
-  std::int64_t restarts = 0;      ///< times that tracking began again with corrected times of the sensor
+  std::int64_t restarts = 0;      ///< number of times that tracking restarted with corrected sensor times
   std::int64_t ghost_voxels = 0;  ///< surface voxels removed by ghost removal
   /// Frames of the interrupted pass (tracking or fusion) that were finished at the checkpoint. They are not
   /// processed again.

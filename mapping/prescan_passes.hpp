@@ -20,7 +20,7 @@ struct PrescanWork {
   const PrescanProgress& progress;
   Checkpoints* checkpoints = nullptr;
   double reach_m = 0.0;                          ///< half the edge of the octree's cube, m
-  bool maps_recorded_world = false;              ///< the world frame of recorded poses is the octree's
+  bool maps_recorded_world = false;              ///< true if recorded poses are in the octree's world frame
   ScanObserver* observer = nullptr;              ///< null: none
   std::map<std::int64_t, double> track_ms = {};  ///< tracking time by frame index
   std::optional<FuseStatus> last_fused = {};     ///< status of the last frame passed to fuse()

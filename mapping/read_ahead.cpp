@@ -1,4 +1,4 @@
-// read_ahead.cpp: a future holds the result of the frame that is being read.
+// read_ahead.cpp: reads the next frame asynchronously.
 #include "mapping/read_ahead.hpp"
 
 #include <utility>

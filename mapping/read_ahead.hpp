@@ -11,7 +11,7 @@ namespace roomradar {
 /// The caller must not use the source meanwhile.
 class ReadAhead {
  public:
-  /// @param frames  number to read; a live source would wait for more
+  /// @param frames  number of frames to read. Reading ahead beyond it would block on a live source
   ReadAhead(FrameSource& source, std::int64_t frames) : source_(source), left_(frames) {}
 
   /// As FrameSource::next(). Returns kEnd after the last frame. Rethrows errors of the source.
@@ -19,7 +19,7 @@ class ReadAhead {
 
  private:
   FrameSource& source_;
-  std::int64_t left_;                ///< frames to be delivered; those that cannot be read are included
+  std::int64_t left_;                ///< frames still to be delivered, including unreadable ones
   Frame ahead_;                      ///< filled by the second thread
   std::future<ReadResult> is_read_;  ///< declared last: its destructor waits for the thread
 };

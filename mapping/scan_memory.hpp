@@ -20,8 +20,9 @@ struct MemoryEstimate {
 
 /// Estimates the memory from four single frames, evenly spread over the source. Uses only the first frame if
 /// the source cannot seek. Assumes that the octree grows by the mean size of one frame's octree every 80
-/// frames, up to 20 times this size. The estimate is accurate within a factor of 1.5 for walks around rooms
-/// and tables. Rewinds the source. Returns nullopt if rewinding fails or none of these frames is readable.
+/// frames, up to 20 times this size. The estimate is accurate within a factor of 1.5 for camera trajectories
+/// around rooms and tables. Rewinds the source. Returns nullopt if rewinding fails or none of these frames is
+/// readable.
 std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolution_m);
 
 }  // namespace roomradar

@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// Follows the first pass of a prescan. Calls come from the prescan's thread. They cannot change the scan,
-/// but their time is added to that of the frame.
+/// Follows the first pass of a prescan. The prescan's thread makes the calls, and their time adds to the
+/// frame's. The only way to change the scan is take_undo_s().
 class ScanObserver {
  public:
   ScanObserver() = default;
@@ -22,8 +22,8 @@ class ScanObserver {
   virtual void after_frame(const Frame& frame, const Tracking& tracking, const Odometry& odometry,
                            const StageTimes& times) = 0;
 
-  /// Called after after_frame(). Returns the duration of the scan's end to undo, s by the frames' stamps; 0:
-  /// none. After an undo, the camera must return to where it was at that time.
+  /// Called after after_frame(). Returns how many seconds at the end of the scan to undo, by the frames'
+  /// stamps; 0: none. To be tracked again, the camera must then return to its pose at that time.
   virtual double take_undo_s() { return 0.0; }
   /// Called when the frames from this index on have been removed from the scan.
   virtual void forgot_frames(std::int64_t /*from_index*/) {}

@@ -1,4 +1,4 @@
-// texture_pass.cpp: chooses frames by the tracked motion, and reads them once more.
+// texture_pass.cpp: chooses frames by pose and image speed, reads them again, and bakes the texture.
 #include "mapping/texture_pass.hpp"
 
 #include <algorithm>

@@ -12,14 +12,14 @@
 
 namespace roomradar {
 
-/// Max standard deviation, m, of the signed distances of surface that counts as well observed. Computed from
-/// the samples' weights. About 4 frames from 2 m reach it, or 22 from 3 m.
+/// Max standard deviation, m, of the signed distances of surface that counts as well observed. It is computed
+/// from the samples' weights. About 4 frames from a distance of 2 m suffice, or 22 frames from 3 m.
 inline constexpr double kSeenWell_m = 0.003;
 
 /// Draws orthographic projections of the surface from above and from two sides. Back faces are left out, so
 /// walls and ceiling do not hide the room. The view is rotated about the vertical so that most walls run
-/// along the picture's axes. Arrows show the world's axes. Surface that is not well observed is orange.
-/// Border cells of holes are violet (unknown space) or blue (end of the scan). The first 12 holes are
+/// along the picture's axes. Arrows show the axes of the world frame. Surface that is not well observed is
+/// orange. Border cells of holes are violet (unknown space) or blue (end of the scan). The first 12 holes are
 /// numbered from 1, in the order of `holes`. A line shows the camera's path. The picture includes scale and
 /// legend, and has about 1600 x 1000 pixels. For an empty surface, the picture says that there is none.
 ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Frontier& frontier,

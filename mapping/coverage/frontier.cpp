@@ -1,4 +1,5 @@
-// frontier.cpp: patches of the border of known space.
+// frontier.cpp: finds border cells of known space, tests whether they are enclosed, and groups them into
+// holes.
 #include "mapping/coverage/frontier.hpp"
 
 #include <algorithm>

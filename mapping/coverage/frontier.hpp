@@ -11,8 +11,8 @@ struct FrontierConfig {
   double cell_m = 0.08;       ///< edge of the search grid's cells; at least the map's resolution
   double min_area_m2 = 0.06;  ///< smaller holes are ignored as noise
   double max_size_m = 1.5;    ///< max distance of a hole's cells from its first cell
-  /// Min fraction of the rays from a border cell into the unknown that end at a surface. At or above it, the
-  /// cell is inside the scan.
+  /// A border cell is inside the scan if at least this fraction of the rays from the cell into unknown space
+  /// end at a surface.
   double min_enclosed = 0.5;
   /// Border cells below min_enclosed are inside, too, if the area of their connected component is at most
   /// this fraction of the area of the scan's bounding box, seen along the component's mean normal.
@@ -34,10 +34,11 @@ struct Frontier {
   std::vector<FrontierCell> cells;
 };
 
-/// Finds the border cells: unknown cells that share a face with a free cell. Adjacent border cells, all
-/// inside the scan or all at its end, form one hole of limited size. Faces count with their area projected
-/// along the border's normal, since the staircase of a slanted border has a larger area. Returns no holes if
-/// no cell is occupied. Throws Error if the config is invalid. FrontierConfig::cell_m is not used.
+/// Finds the border cells: unknown cells that share a face with a free cell. Connected border cells of one
+/// kind (inside the scan, or at its end) form one hole, limited by max_size_m. A hole's area sums its faces
+/// projected along the border's normal, since the faces of a slanted border form a staircase with a larger
+/// area. Returns no holes if no cell is occupied. Throws Error if the config is invalid.
+/// FrontierConfig::cell_m is not used.
 Frontier find_frontier(const OccupancyCells& grid, const FrontierConfig& config = {});
 /// As above, in the octree's occupancy_cells().
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config = {});

@@ -11,9 +11,10 @@ namespace roomradar {
 class StaticMap;
 struct Frontier;
 
-/// Returns the frontier's holes and the surface's holes. The latter are border loops of at least
-/// min_border_size_m that surface surrounds. Leaves out loops whose centre is within three cell widths of a
-/// frontier hole's cell. Sorts by area, largest first; the scan's outer borders come last.
+/// Returns the frontier's holes and the mesh's holes. The latter are border loops that do not enclose a
+/// component, with a BorderLoop::size_m of at least min_border_size_m. Leaves out loops whose centre is
+/// within three cell widths of a frontier hole's cell. Sorts by area, largest first; the scan's outer borders
+/// come last.
 std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                              double min_border_size_m = 0.12);
 

@@ -12,9 +12,9 @@
 namespace roomradar {
 
 /// Counts cells of 10 cm that contain measured surface. Uses every 16th pixel in both directions, up to 4 m
-/// depth. A cell counts as 0.01 m2. The area is about right for surface along the world's axes, and up to 1.7
-/// times too large for diagonal surface. Takes about 50 microseconds per frame. If poses drift, surface that
-/// is seen again later may count twice.
+/// depth. A cell counts as 0.01 m2. The area is about right for surface along the world frame's axes, and up
+/// to 1.7 times too large for diagonal surface. Takes about 50 microseconds per frame. If poses drift,
+/// surface that is seen again later may count twice.
 class ObservedArea {
  public:
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);

@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// A grid of cells, aligned with the world's axes. All space outside it is unknown.
+/// A grid of cells, aligned with the world frame's axes. All space outside the grid is unknown.
 struct OccupancyCells {
   double cell_m = 0.0;                              ///< edge of a cell
   Eigen::Vector3i first = Eigen::Vector3i::Zero();  ///< the grid's lowest cell; cell 0 begins at the origin
@@ -38,10 +38,10 @@ struct OccupancyCells {
   }
 };
 
-/// Copies an octree. A cell is occupied if any of its voxels is occupied, else free if at least half of its
-/// volume is free. Returns an empty grid for an empty map.
-/// @param cell_m  is rounded to a multiple of the map's resolution; larger cells are used if there would be
-///                more than 16 million
+/// Resamples an octree to coarse cells. A cell is occupied if any of its voxels is occupied, else free if at
+/// least half of its volume is free. Returns an empty grid for an empty map.
+/// @param cell_m  edge of a cell, m; rounded to a multiple of the map's resolution, and enlarged if there
+///                would be more than 16 million cells
 OccupancyCells occupancy_cells(const StaticMap& map, double cell_m);
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
-// level_surfaces.cpp: connected components of level triangles; a histogram of the heights of level depth
-// pixels.
+// level_surfaces.cpp: connected components of horizontal triangles; histogram of the heights of horizontal
+// surface in the keyframes.
 #include "mapping/map/level_surfaces.hpp"
 
 #include <algorithm>

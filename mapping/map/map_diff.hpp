@@ -18,8 +18,8 @@ struct Change {
       Eigen::Vector3d::Zero();    ///< centroid of its surface, in the world frame of map a
   Eigen::AlignedBox3d box_world;  ///< bounding box of its surface, in the world frame of map a
   double area_m2 = 0.0;           ///< area of its observed surface; two sides of a voxel count once
-  /// Volume, within the box, that only the map without the object has as free space. Includes the object's
-  /// unobserved interior.
+  /// Volume within the box that is free in the map without the object, and not free in the other map.
+  /// Includes the object's unobserved interior.
   double volume_m3 = 0.0;
   std::vector<Eigen::Vector3d> surface_world;  ///< centres of its surface voxels, in the world frame of map a
 };

@@ -34,11 +34,11 @@ struct SavedMap {
   LazyPart<std::shared_ptr<const SurfaceTexture>> texture{std::shared_ptr<const SurfaceTexture>()};
 };
 
-/// Writes the map to a folder beside `folder` (folder.partial-PID) and syncs it. Then renames it to `folder`
-/// atomically. Extracts the border of unknown space from map.octree and map.mesh, and writes it to
-/// unknown.bin. A texture that does not fit the mesh is left out. Afterwards `folder` is the complete new map
-/// or, after an Error, unchanged. Creates parent folders. Throws Error if `folder` exists and is not a map,
-/// the map has no surface or too many triangles, or the disk fails.
+/// Writes the map to folder.partial-PID, syncs that folder to disk, and renames it to `folder` atomically.
+/// Extracts the border of unknown space from map.octree and map.mesh, and writes it to unknown.bin. A texture
+/// that does not fit the mesh is left out. Afterwards `folder` is the complete new map or, after an Error,
+/// unchanged. Creates parent folders. Throws Error if `folder` exists and is not a map, the map has no
+/// surface or too many triangles, or the disk fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);
 
 /// Reads a map of this or an earlier format version. Verifies the sizes of all files, and the checksum of

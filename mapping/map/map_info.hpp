@@ -49,16 +49,16 @@ struct MapInfo {
 /// had poses.
 bool knows_recorded_world(const MapInfo& info);
 
-/// Returns true if both maps are known to have the same world frame, since their keyframe files are equal. A
-/// map saved by a run in another map has that map's keyframes.
+/// Returns true if the keyframe files of both maps are equal, so that both have the same world frame. This is
+/// the case if one map was saved by a run in the other.
 bool share_world(const MapInfo& a, const MapInfo& b);
 
 /// Returns the settings for extracting the map's surface again. max_deviation_m is prescan's value if
 /// info.settings has one, else the default. Throws Error if the stored value is invalid.
 SurfaceConfig surface_config_of(const MapInfo& info);
 
-/// Returns where the up direction of a map is from, for a user: "from gravity", "from a level surface", "as
-/// given by --up", "not known", or the text itself if it is no MapInfo::up_source.
+/// Describes the source of a map's up direction for users: "from gravity", "from a level surface", "as given
+/// by --up" or "not known". Returns up_source itself if it is not a valid MapInfo::up_source.
 std::string describe_up(const std::string& up_source);
 
 /// Returns the output of `roomradar map info`.

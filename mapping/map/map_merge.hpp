@@ -20,10 +20,10 @@ void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, Static
 /// begin at least 1/30 s after the map's last one. Octree, mesh and look-alikes are unchanged.
 void append_session(SavedMap& map, const SavedMap& session);
 
-/// Estimates T_a_b between the world frames of two maps. Returns kContradicted if one map's surface disagrees
-/// with the other map's surface and free space. A surface is not tested if almost none of it is in space
-/// known to the other map. If this is so for b's surface, registers a to b instead (overlap and agreement are
-/// then those of a's surface), and returns kNoOverlap if that fails.
+/// Estimates T_a_b between the world frames of two maps. Registers b to a, and tests b's surface against a's
+/// surface and free space; see register_to(). If almost no surface of b is in space known to a, registers a
+/// to b and tests a's surface instead. Overlap and agreement are then those of a's surface. Returns
+/// kNoOverlap if this fails, too.
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config = {});
 
 /// Merges two maps in a's world frame, at the finer of their resolutions, and re-extracts the surface with

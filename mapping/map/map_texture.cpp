@@ -1,4 +1,4 @@
-// map_texture.cpp: carries textures from surface to surface.
+// map_texture.cpp: bakes the texture of a re-extracted surface from earlier textures.
 #include "mapping/map/map_texture.hpp"
 
 #include <utility>

@@ -1,4 +1,4 @@
-// map_texture.hpp: the textures of maps whose surface was extracted again.
+// map_texture.hpp: transfers textures to surfaces that were extracted again.
 #pragma once
 #include <Eigen/Geometry>
 #include <memory>

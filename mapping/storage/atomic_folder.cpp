@@ -1,5 +1,5 @@
-// atomic_folder.cpp: writes beside the target, syncs and renames. Uses Linux calls, because the standard
-// library can only rename.
+// atomic_folder.cpp: syncs and renames folders, with Linux system calls, since the standard library cannot
+// sync or exchange.
 #include "mapping/storage/atomic_folder.hpp"
 
 #include <fcntl.h>

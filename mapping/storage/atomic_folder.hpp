@@ -13,12 +13,12 @@ void sync_to_disk(const std::filesystem::path& path);
 /// in `ready`. Throws Error, with both unchanged, if the file system fails.
 void put_in_place(const std::filesystem::path& ready, const std::filesystem::path& target);
 
-/// New folder beside `target`, named target.partial-PID. The destructor removes the folder unless commit()
-/// succeeded.
+/// New folder target.partial-PID, in the parent folder of `target`. The destructor removes the folder unless
+/// commit() succeeded.
 class AtomicFolder {
  public:
-  /// Creates the folder and its parents. Removes partial folders that killed processes left beside `target`.
-  /// If interrupted_replacement_of() returns a folder, renames that folder back to `target`. Throws Error on
+  /// Creates the folder and its parents. Removes partial folders of `target` that killed processes left. If
+  /// interrupted_replacement_of() returns a folder, renames that folder back to `target`. Throws Error on
   /// failure.
   explicit AtomicFolder(const std::filesystem::path& target);
   ~AtomicFolder();
@@ -49,9 +49,10 @@ std::string folder_version(const std::filesystem::path& folder);
 /// Throws an Error that says that the folder is replaced faster than it can be read.
 [[noreturn]] void fail_replaced_too_often(const std::filesystem::path& folder);
 
-/// Calls read() until the folder is not replaced during the call, and returns that call's result. The result
-/// is thus from a single version of the folder, even if another process replaces it. Throws Error after 100
-/// attempts. Rethrows an exception of read() only if the folder was not replaced during that call.
+/// Repeats read() until the folder is not replaced during the call, and returns the result of that call. The
+/// result is thus from a single version of the folder, even while another process replaces the folder. Throws
+/// Error after 100 attempts. Rethrows an exception of read() only if the folder was not replaced during that
+/// call.
 template <typename Read>
 auto read_consistent(const std::filesystem::path& folder, const Read& read) {
   constexpr int kAttempts = 100;

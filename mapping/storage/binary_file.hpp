@@ -47,7 +47,7 @@ class BinaryReader {
     take(&number, 1, what);
     return number;
   }
-  /// Takes the next `count` bytes, which stay where they are.
+  /// Takes the next `count` bytes. Returns a view of them, without a copy.
   std::string_view take_bytes(std::size_t count, const char* what) {
     require(count, 1, what);
     const std::string_view taken = bytes_.substr(0, count);

@@ -29,7 +29,7 @@ using WriteCheckpointFiles =
 /// two checkpoints. If the disk fails, throws Error or std::filesystem::filesystem_error. The caller must
 /// then call discard_unfinished().
 /// @param last_number    number of the last complete checkpoint; 0: none
-/// @param on_disk_until  time. Files in the folder that were last written before it count as synced
+/// @param on_disk_until  files in the folder that were last written before this time count as synced
 void write_checkpoint(const std::filesystem::path& folder, std::int64_t number, std::int64_t last_number,
                       const std::string& stage, const WriteCheckpointFiles& write_files,
                       std::filesystem::file_time_type on_disk_until);

@@ -1,4 +1,4 @@
-// compressed_columns.cpp: byte planes through zstd.
+// compressed_columns.cpp: splits items into byte planes, and compresses these with zstd.
 #include "mapping/storage/compressed_columns.hpp"
 
 #include <zstd.h>

@@ -15,8 +15,8 @@
 namespace roomradar {
 
 /// Appends `count` items of `item_bytes` bytes each: the count (u64), the number of compressed bytes (u64),
-/// and one zstd frame. The frame holds the first bytes of all items, then their second bytes, and so on:
-/// bytes of equal significance compress better side by side.
+/// and one zstd frame. The frame contains byte planes: the first bytes of all items, then their second bytes,
+/// and so on. Bytes of equal significance compress better if they are adjacent.
 void put_column(std::string& out, const void* items, std::size_t count, std::size_t item_bytes);
 template <typename Number>
 void put_column(std::string& out, const std::vector<Number>& numbers) {
