@@ -34,9 +34,10 @@ struct ChangePoint {
   float steady_s = 0.0F;  ///< total duration of the frames that confirmed the point
   float unseen_s = 0.0F;  ///< time since a frame last showed its position
   std::uint32_t id = 0;
-  std::uint16_t sightings = 1;     ///< number of frames averaged into position
-  std::uint8_t contradiction = 0;  ///< +2 per contradicting frame, -1 per confirming one; dropped above 7
-  bool as_it_was = true;           ///< confirmed by the last frame
+  std::uint16_t sightings = 1;  ///< number of frames averaged into position
+  /// +2 per contradicting frame, -1 per confirming one; above 7, the point is dropped.
+  std::uint8_t contradiction = 0;
+  bool as_it_was = true;  ///< confirmed by the last frame
   LastingKind kind = LastingKind::kCame;
 };
 
@@ -73,9 +74,9 @@ void reserve(std::size_t max_points, ChangeClusters& clusters);
 void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, float seconds, float link_m,
                      ChangeClusters& clusters);
 
-/// Appends the objects that reach the thresholds of ChangeTrackerConfig. The thresholds are a number of
-/// cells, and fractions of steady cells, core cells (kWent only) and seen points. Call after
-/// sort_into_cells() with the same points and kind.
+/// Appends the objects that reach the thresholds of ChangeTrackerConfig: min_cells, and the min fractions of
+/// steady cells, core cells (kWent only) and seen points. Call after sort_into_cells() with the same points
+/// and kind.
 void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Eigen::Vector3d& origin_world,
                  const ChangeTrackerConfig& config, ChangeClusters& clusters,
                  std::vector<LastingChange>& changes);

@@ -1,4 +1,4 @@
-// change_tracker.cpp: looks up points frame by frame.
+// change_tracker.cpp: projects the points into each frame, and confirms, contradicts or drops them.
 #include "dynamic/foreground/change_tracker.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// change_tracker.hpp: detects lasting changes, that is, added objects that stay and removed objects.
+// change_tracker.hpp: detects lasting changes: objects that were added and stay, and objects that were
+// removed.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>

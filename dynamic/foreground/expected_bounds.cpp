@@ -1,4 +1,5 @@
-// expected_bounds.cpp: noise, slope, and edges within reach of each block of the expected depth.
+// expected_bounds.cpp: per block of the expected depth: standard deviation from noise and slope, and edges
+// within reach.
 #include "dynamic/foreground/expected_bounds.hpp"
 
 #include <algorithm>

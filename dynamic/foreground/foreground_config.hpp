@@ -22,9 +22,9 @@ struct ForegroundConfig {
   float edge_error_m = 0.02F;
   float edge_error_rad = 0.005F;  ///< additional shift by rotation error, 0.3 degrees
   int hole_reach_px = 16;         ///< hole pixels farther than this from the hole's edge stay kNotKnown
-  /// Max distance of a weak pixel from a strong pixel. Weak pixels farther away are dropped. The distance
-  /// covers a region's outline, but not all of a misplaced table or chair that touches the region. The weak
-  /// pixels of the table would count against the region.
+  /// Max distance of a weak pixel from a strong pixel. Weak pixels farther away are dropped. The distance is
+  /// large enough for a region's outline, but smaller than a misplaced table or chair that touches the
+  /// region. All weak pixels of the table would count against the region.
   int weak_reach_px = 20;
   int min_region_px = 60;         ///< min pixels of a region; smaller regions are noise
   float min_region_m2 = 0.0003F;  ///< min area of a region in the world: 3 cm2

@@ -31,10 +31,10 @@ void stretch(const Value* blocks, int width_px, Value* pixels) {
   for (int x = whole * kBlock_px; x < width_px; ++x) pixels[x] = blocks[whole];
 }
 
-/// Sets each block to the best value of itself and the eight blocks that are `step` away along rows, columns
-/// and diagonals. If every block of `from` has the best value within a radius of r blocks, and step <= 2 r +
-/// 1, the result is the best value within r + step. `better(a, b)` returns the better of two values.
-/// `along_rows` is scratch. `from` and `to` may be one vector.
+/// Dilation step: sets each block to the best value of itself and the eight blocks that are `step` away along
+/// rows, columns and diagonals. If every block of `from` has the best value within a radius of r blocks, and
+/// step <= 2 r + 1, the result is the best value within r + step. `better(a, b)` returns the better of two
+/// values. `along_rows` is scratch. `from` and `to` may be one vector.
 template <typename Value, typename Better>
 void spread(const BlockGrid& grid, const std::vector<Value>& from, int step, const Better& better,
             std::vector<Value>& along_rows, std::vector<Value>& to) {

@@ -1,4 +1,4 @@
-// pixel_evidence.cpp: weighs pixels row by row, then spreads the evidence over blocks.
+// pixel_evidence.cpp: compares pixels row by row, then dilates the evidence over blocks.
 #include "dynamic/foreground/pixel_evidence.hpp"
 
 #include <algorithm>

@@ -21,8 +21,8 @@ using LabelImage = Image<PixelLabel>;
 
 /// Evidence bits of one pixel. A weak pixel's depth differs from the model by more than RowBounds::weak_m. A
 /// strong pixel's depth differs by more than RowBounds::strong_m. An ambiguous pixel's difference is strong,
-/// but a model edge displaced within its error could explain it. The before bits are set where the previous
-/// frame had a region of that kind.
+/// but a model edge displaced within its error could explain it. kMovedBefore and kRevealedBefore are set
+/// where the previous frame had a moved or a revealed region.
 inline constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kAmbiguousMoved = 4, kWeakRevealed = 8,
                               kStrongRevealed = 16, kAmbiguousRevealed = 32, kMovedBefore = 64,
                               kRevealedBefore = 128;
@@ -76,8 +76,8 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
 void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m,
                          const ExpectedBounds& bounds, PixelEvidence& evidence);
 
-/// Clears the weak bit of a pixel without strong evidence of that kind (moved or revealed) within reach_px,
-/// rounded up to blocks.
+/// Clears kWeakMoved of pixels without strong moved evidence within reach_px, rounded up to blocks. Does the
+/// same for kWeakRevealed and revealed evidence.
 void drop_far_weak(const DepthImage& depth_m, int reach_px, const BlockGrid& grid, PixelEvidence& evidence);
 
 }  // namespace roomradar

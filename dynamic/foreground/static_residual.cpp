@@ -1,4 +1,5 @@
-// static_residual.cpp: spread of live minus expected inverse depth.
+// static_residual.cpp: standard deviation of measured minus expected inverse depth, from a histogram
+// quantile.
 #include "dynamic/foreground/static_residual.hpp"
 
 #include <algorithm>

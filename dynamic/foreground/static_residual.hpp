@@ -19,8 +19,9 @@ struct StaticResidual {
   std::array<int, 256> histogram{};  ///< scratch: differences from 0 to 0.03 / m
 };
 
-/// Updates misfit_per_m from one frame. The value grows at once, shrinks over some frames, and stays within
-/// 0.0006 to 0.007 per metre. Pixels whose inverse depth differs by 0.03 / m or more are left out as dynamic.
+/// Updates misfit_per_m from one frame. The value rises immediately, falls by 10 % of the difference per
+/// frame, and stays within 0.0006 to 0.007 / m. Pixels whose inverse depth differs by 0.03 / m or more are
+/// left out as dynamic.
 void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, const DepthNoise& noise,
                    StaticResidual& fit);
 

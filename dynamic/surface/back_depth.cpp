@@ -1,4 +1,4 @@
-// back_depth.cpp: distance from the outline, and the bulge that follows from it.
+// back_depth.cpp: distance transform from the outline, and the back's bulge from it.
 #include "dynamic/surface/back_depth.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// cell_jumps.cpp: compares neighbouring pixels, and grows surfaces by shifts of bits.
+// cell_jumps.cpp: compares neighbouring pixels, and finds connected surfaces by bit shifts.
 #include "dynamic/surface/cell_jumps.hpp"
 
 #include <bit>

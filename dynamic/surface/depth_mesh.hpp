@@ -24,7 +24,8 @@ struct DepthMeshConfig {
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const DepthMeshConfig& config);
 
-/// Buffers that the meshers reuse from frame to frame; their content is meaningless between calls.
+/// Buffers of mesh_masked() and mesh_whole(), reused from frame to frame. Their content is meaningless
+/// between calls.
 struct DepthMeshScratch {
   std::vector<std::uint32_t> vertex_above, vertex_here;  // vertex index per grid column, in two rows
   std::vector<float> filled_m;                           // image with its gaps filled, for skirts

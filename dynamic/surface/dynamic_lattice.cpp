@@ -1,4 +1,4 @@
-// dynamic_lattice.cpp: planes through windows of 5 x 5 pixels, and means over opposite pixels.
+// dynamic_lattice.cpp: fits planes to windows of 5 x 5 pixels, and averages opposite pixels.
 #include "dynamic/surface/dynamic_lattice.hpp"
 
 #include <algorithm>

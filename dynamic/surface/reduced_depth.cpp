@@ -1,4 +1,4 @@
-// reduced_depth.cpp: block by block, in inverse depth.
+// reduced_depth.cpp: finds the dominant surface of each block, and averages its inverse depth.
 #include "dynamic/surface/reduced_depth.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// rtin.cpp: finds the triangles to be bisected, from the smallest to the largest.
+// rtin.cpp: finds the triangles to bisect, from the smallest to the largest.
 #include "dynamic/surface/rtin.hpp"
 
 #include <cmath>

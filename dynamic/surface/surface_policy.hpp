@@ -1,4 +1,4 @@
-// surface_policy.hpp: choices of the surfaces that a virtual object can touch in a frame.
+// surface_policy.hpp: policies that choose the surfaces that a virtual object can touch in a frame.
 #pragma once
 #include <string_view>
 

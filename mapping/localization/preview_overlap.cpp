@@ -1,4 +1,4 @@
-// preview_overlap.cpp: projects the pixels of one preview into the other.
+// preview_overlap.cpp: projects the depth pixels of one preview into the other.
 #include "mapping/localization/preview_overlap.hpp"
 
 #include <cmath>

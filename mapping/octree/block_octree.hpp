@@ -1,7 +1,7 @@
 // block_octree.hpp: octree into which depth frames are fused. Private to StaticMap. Keys, depth, log-odds and
 // pruning are OctoMap's, and static_map_file.cpp writes the octree in OctoMap's file formats. Eight siblings
-// share one block of one cache line, where OctoMap makes nine separate allocations. A frame changes about
-// 50,000 groups of eight voxels, and memory access dominates its time.
+// share one block of one cache line, where OctoMap makes nine separate allocations. Fusing a frame changes
+// about 50,000 groups of eight voxels, and memory access dominates the time.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -23,8 +23,8 @@ inline constexpr int kKeyOrigin = 32768;      // key of the voxel whose lower co
 /// 1, since OctoMap treats a probability of one half as occupied.
 using LogOdds = std::int16_t;
 
-/// State of a node. It is unknown, a cube (a node of uniform log-odds without children), an inner block
-/// (eight child nodes), or a leaf block (eight cells).
+/// State of a node: unknown, a cube (uniform log-odds, no children), an inner block (eight child nodes), or a
+/// leaf block (eight cells).
 class Slot {
  public:
   Slot() = default;
@@ -57,8 +57,8 @@ struct alignas(32) InnerBlock {
 };
 static_assert(sizeof(InnerBlock) == 32);
 
-/// The eight cells of a node. At depth 15, they are voxels. At depth 14, they have an edge of two voxels
-/// (coarse cells, see cell_levels.hpp); there, at least one has a signed distance. A cell behind a surface
+/// The eight cells of a node. At depth 15, the cells are voxels. At depth 14, they are coarse cells with an
+/// edge of two voxels (cell_levels.hpp), of which at least one has a signed distance. A cell behind a surface
 /// may have a signed distance although its occupancy is unknown.
 struct alignas(64) LeafBlock {
   std::array<LogOdds, 8> log_odds{};
@@ -122,7 +122,7 @@ struct KeyRange {
     return (place.key <= last).all() && (place.key + (place.edge_voxels() - 1) >= first).all();
   }
 };
-/// Returns the range for a box in the world, m. The range has no keys if the box is empty.
+/// Returns the range for a box in the world frame, m. The range has no keys if the box is empty.
 KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m);
 
 class BlockOctree {
@@ -155,8 +155,8 @@ class BlockOctree {
 
   /// Prunes `node`, whose children are `block`, and returns the node's new state. If all eight children are
   /// unknown or equal cubes without a signed distance, the node's block is freed and the node becomes unknown
-  /// or a cube. Otherwise, a node that is a block keeps it (`block` must be that block). Any other node gets
-  /// a new block with a copy of `block`.
+  /// or a cube. Otherwise, a node that is a block is returned unchanged; `block` must be its own block. For
+  /// any other node, allocates a new block with a copy of `block`.
   Slot prune(Slot node, const InnerBlock& block) {
     if (alike(block)) {
       if (node.is_block()) inner_.give_back(node.number());
@@ -216,9 +216,10 @@ class BlockOctree {
   BlockPool<ColourBlock> colours_;
 };
 
-/// Returns true if a sensor may have observed a cube of these log-odds. A sensor observes free space in small
-/// cubes and only the surface of solids: free cubes have an edge of at most 8,192 voxels, occupied ones of at
-/// most 4 m. Larger cubes mean a damaged file. The limits also bound loops over the voxels of a cube.
+/// Returns true if a cube of these log-odds may result from a sensor's measurements. Free cubes have an edge
+/// of at most 8,192 voxels. Occupied cubes have an edge of at most 4 m, since sensors observe only the
+/// surface of solids. Larger cubes mean a damaged file. The limits also bound loops over the voxels of a
+/// cube.
 bool is_plausible_cube(const BlockOctree& tree, LogOdds log_odds, unsigned depth);
 
 struct SubtreeSize {

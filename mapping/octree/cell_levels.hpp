@@ -1,6 +1,7 @@
-// cell_levels.hpp: cells of two sizes. Cells are voxels where a frame measured a surface at close range, and
-// have twice the edge of a voxel where only frames from farther away did. A coarse cell stands for its eight
-// voxels. Close frames refine it, and nothing makes fine cells coarse again. Private to StaticMap.
+// cell_levels.hpp: cells of two sizes. A cell is a voxel (fine) where a frame measured the surface at close
+// range. Where only frames from farther away measured it, a cell is coarse: its edge is two voxels, and it
+// represents eight voxels. Close frames refine coarse cells. Fine cells never become coarse. Private to
+// StaticMap.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,13 +10,13 @@
 
 namespace roomradar {
 
-/// Returns the depth, m, from which on frames write coarse cells. There, the standard deviation of depth is
-/// 1 / FusionConfig::max_cell_sigmas of a coarse cell's edge. Infinite if that is beyond max_range_m, or if
-/// max_cell_sigmas is 0.
+/// Returns the depth, m, from which on frames write coarse cells. At this depth, the standard deviation of
+/// depth is a coarse cell's edge divided by FusionConfig::max_cell_sigmas. Infinite if the depth is beyond
+/// max_range_m, or if max_cell_sigmas is 0.
 float coarse_from_m(double resolution_m, const FusionConfig& config);
 
-/// The nodes of equal size on the six sides of a node. Index 2 axis is the lower side, 2 axis + 1 the upper
-/// side. Unknown where the octree has no node of that size.
+/// The six face neighbours of a node, as nodes of the same size. Index 2 axis is the lower side, 2 axis + 1
+/// the upper side. A neighbour is unknown if the octree has no node of that size.
 using Sides = std::array<Slot, 6>;
 /// Returns the sides of child i of a node with the children `block` and the sides `of_parent`.
 Sides sides_of_child(const BlockOctree& tree, const InnerBlock& block, const Sides& of_parent, unsigned i);
@@ -26,11 +27,11 @@ Sides sides_of_child(const BlockOctree& tree, const InnerBlock& block, const Sid
 std::array<std::int16_t, 8> voxel_distances(const BlockOctree& tree, const LeafBlock& coarse,
                                             const Sides& sides, unsigned i);
 
-/// Replaces a coarse leaf block by the voxels that it stands for. Each takes its cell's log-odds, weight and
-/// colour. Distances are interpolated within the block. Samples in front of a surface are dropped outside the
-/// truncation band of voxels, which is narrower than that of coarse cells. Otherwise close frames would have
-/// to correct them. Samples behind the surface are kept, since on a surface seen obliquely even adjacent
-/// samples are outside the band. Returns the node's new state.
+/// Replaces a coarse leaf block by the voxels that it represents. Each voxel has its cell's log-odds, weight
+/// and colour. Distances are interpolated within the block. Samples in front of a surface are dropped outside
+/// the truncation band of voxels, which is narrower than that of coarse cells. Otherwise close frames would
+/// have to correct such samples. Samples behind the surface are kept, since on a surface seen obliquely even
+/// adjacent samples are outside the band. Returns the node's new state.
 Slot refined(BlockOctree& tree, Slot node);
 
 /// Returns true if a node at kCoarseDepth has no fine samples, so that its cells may be coarse: it is not an

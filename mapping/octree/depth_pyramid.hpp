@@ -15,8 +15,8 @@
 namespace roomradar {
 
 /// Half-widths of the truncation band. Signed distances are fused within this distance in front of and behind
-/// a measured surface. The band is at most as wide as that of a Kinect v1 at FusionConfig::max_range_m, or
-/// truncation_voxels coarse cells if that is wider.
+/// a measured surface. The half-width is at most that of a Kinect v1 at FusionConfig::max_range_m, or
+/// truncation_voxels coarse cells, whichever is larger.
 class TruncationBand {
  public:
   TruncationBand(double resolution_m, const FusionConfig& config);
@@ -32,7 +32,7 @@ class TruncationBand {
  private:
   float voxels_, sigmas_, voxel_m_, coarse_from_m_;
   DepthNoise noise_;
-  float most_m_;  ///< greatest distance that the octree can store
+  float most_m_;  ///< max distance that the octree can store
 };
 
 /// Bounds of the depth, along the optical axis, over all pixels of a rectangle. Space nearer than `front` is
@@ -67,9 +67,10 @@ struct DepthPyramid {
 };
 
 /// Builds the pyramid, reusing its memory. Pixels without depth prove no space free or occluded. Small gaps
-/// take the bounds of the pixels around them, so that single dropouts do not leave the space in front of a
-/// wall unknown. Gaps are small below 4 x 4 pixels, or 2 x 2 for query rectangles of up to seven pixels per
-/// side. A pixel whose depth exceeds max_range_m makes space free up to max_range_m.
+/// are filled with the bounds of the pixels around them, so that single dropouts do not leave the space in
+/// front of a wall unknown. A gap is small if it is below 4 x 4 pixels, or below 2 x 2 for query rectangles
+/// of up to seven pixels per side. A pixel whose depth exceeds max_range_m makes space free up to
+/// max_range_m.
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid);
 

@@ -12,10 +12,10 @@
 namespace roomradar {
 
 /// Fuses the frame in one descent from the root. Call build_pyramid() and collect_hits() for this frame and
-/// `scratch` first. A node wholly in front of the measured depth is a miss as a whole. A node wholly occluded
-/// or outside the image is unchanged. All other nodes are split down to leaves. A leaf that contains a ray
-/// endpoint is a hit. A leaf whose centre is in front of the depth of the pixel to which it projects is a
-/// miss. Hits and misses add to the log-odds. Signed distance, weight and colour are averaged into leaves
+/// `scratch` first. All voxels of a node wholly in front of the measured depth are misses. A node wholly
+/// occluded or outside the image is unchanged. All other nodes are split down to leaves. A leaf that contains
+/// a ray endpoint is a hit. A leaf whose centre is in front of the depth of the pixel to which it projects is
+/// a miss. Hits and misses add to the log-odds. Signed distance, weight and colour are averaged into leaves
 /// within the truncation band. Sources: Hornung et al., OctoMap, Autonomous Robots 2013, equations (2) and
 /// (4) (log-odds and clamping); Curless and Levoy, SIGGRAPH 1996, equations (3) and (4), with 1/sigma^2 as
 /// weight (projective TSDF).

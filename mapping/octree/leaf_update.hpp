@@ -24,7 +24,7 @@ inline float weight_at(const DepthNoise& noise, float depth_m) {
 /// Edge of the cells that an update changes.
 enum class CellSize { kVoxel, kCoarse };
 
-/// Measurements of eight cells. Each comes from the pixel to which the cell's centre projects.
+/// Measurements of eight cells, each from the pixel to which the cell's centre projects.
 template <typename Float8>
 struct Observed {
   EightPoints<Float8> p_camera;  ///< centres of the cells, m
@@ -109,7 +109,7 @@ class LeafUpdate {
   /// distance exceeds 0.7 of the truncation distance. Without samples, the voxels can merge with the free
   /// space around them.
   ///
-  /// Without `clear`, most samples are kept. Beside edges and on obliquely seen surfaces, seeing through a
+  /// Without `clear`, most samples are kept. Next to edges and on obliquely seen surfaces, seeing through a
   /// voxel is caused by noise more often than by a change. Samples behind a surface are different: frames see
   /// through them only if the surface has gone. Each such frame subtracts kCancelled times its weight from
   /// the sample's weight. Otherwise an object too close to a wall for `clear` would leave its back side in

@@ -22,7 +22,8 @@ void visit_cells(const BlockOctree& tree, const KeyRange& range,
 void revise_samples(BlockOctree& tree, const FusionConfig& config, const KeyRange& range,
                     const std::function<SampleAction(const SurfaceSample&)>& decide);
 
-/// Adds a leaf's log-odds, averages in a sample, or adds the part of a map that is in a range of keys.
+/// Adds evidence of another map: the log-odds of a leaf, a sample (as a weighted mean), or all in a range of
+/// keys.
 void add_evidence(BlockOctree& tree, const FusionConfig& config, const MapLeaf& leaf);
 void add_evidence(BlockOctree& tree, const SurfaceSample& sample);
 void add_evidence(BlockOctree& tree, const FusionConfig& config, const BlockOctree& other,

@@ -14,7 +14,7 @@
 
 namespace roomradar {
 
-/// Node with log-odds. Leaves at the two finest depths may have a signed distance, too (if weight > 0).
+/// Node with log-odds. Leaves at the two finest depths may also have a signed distance, if weight > 0.
 /// Log-odds of exactly 0 (probability one half) mean unknown. Leaves behind a surface may have a signed
 /// distance although their occupancy is unknown. Unknown leaves without signed distance are not stored.
 class OctoMapNode : public octomap::OcTreeNode {

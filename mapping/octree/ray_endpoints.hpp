@@ -1,4 +1,4 @@
-// ray_endpoints.hpp: collects the endpoints of a frame's rays by leaf block. Private to StaticMap.
+// ray_endpoints.hpp: collects the endpoints of a frame's rays, grouped per leaf block. Private to StaticMap.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -19,8 +19,7 @@ class BlockHits {
   BlockHits(std::uint64_t block_code, unsigned voxels) : bits_(block_code << 8U | voxels) {}
   [[nodiscard]] std::uint64_t block_code() const { return bits_ >> 8U; }
   [[nodiscard]] unsigned voxels() const { return bits_ & 0xFFU; }
-  /// Returns the index among its siblings of the node at `depth` (1 to 15) on the path from the root to the
-  /// block.
+  /// Returns the child index of the node at `depth` (1 to 15) on the path from the root to the block.
   [[nodiscard]] unsigned child(unsigned depth) const {
     return static_cast<unsigned>(bits_ >> (8U + 3U * (kLeafDepth - 1 - depth))) & 7U;
   }

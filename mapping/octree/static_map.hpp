@@ -28,7 +28,8 @@ enum class FuseStatus {
 };
 std::string_view to_string(FuseStatus status);
 
-/// Integer voxel coordinates. The lower corner of voxel `index` is at index * resolution_m in the world.
+/// Integer voxel coordinates. The lower corner of voxel `index` is at index * resolution_m in the world
+/// frame.
 using VoxelIndex = Eigen::Vector3i;
 
 /// Fused measurements of the surface near one voxel's centre.
@@ -68,8 +69,9 @@ struct MapCounts {
   Eigen::AlignedBox3d occupied_world;
 };
 
-/// With resolution r, the octree covers +-32768 r around the world's origin (+-327 m at 1 cm). Concurrent
-/// const calls are thread safe. Calls that change the map need exclusive access.
+/// Octree of occupancy and signed distances. With resolution r, it covers +-32768 r around the origin of the
+/// world frame (+-327 m at 1 cm). Concurrent const calls are thread safe. Calls that change the map need
+/// exclusive access.
 class StaticMap {
  public:
   /// Creates an empty map. Throws Error if resolution_m is not within 0.001..1 m or the config is invalid.
@@ -95,8 +97,8 @@ class StaticMap {
                      const std::function<void(const SurfaceSample&)>& visit) const;
 
   /// Calls visit(sample, edge_voxels) for each cell with a signed distance that has a voxel in the box, in
-  /// Morton order. The edge of a cell is 1 or 2 voxels. The sample's voxel is the cell's lowest, its distance
-  /// that of the cell's centre.
+  /// Morton order. The edge of a cell is 1 or 2 voxels. SurfaceSample::voxel is the cell's lowest voxel, and
+  /// distance_m is at the cell's centre.
   void visit_cells(const Eigen::AlignedBox3d& box_world,
                    const std::function<void(const SurfaceSample&, int)>& visit) const;
 
@@ -107,21 +109,21 @@ class StaticMap {
   /// other map must have the same resolution. Throws Error if the cube is not a valid octree node or the
   /// log-odds are not finite.
   void add_evidence(const MapLeaf& leaf);
-  /// Averages signed distance and colour of another map's sample into the voxel's own sample, by weight. The
-  /// given sample's occupancy is ignored. Throws Error if the voxel is outside the octree, the distance or
-  /// weight is not finite, or the weight is not > 0.
+  /// Merges another map's sample into the voxel's own sample: weighted means of signed distance and colour.
+  /// The given sample's occupancy is ignored. Throws Error if the voxel is outside the octree, the distance
+  /// or weight is not finite, or the weight is not > 0.
   void add_evidence(const SurfaceSample& sample);
 
   /// Adds all log-odds and samples of another map of the same resolution, in the same world frame. Coarse
   /// cells stay coarse where this map has no fine samples. Throws Error if the resolutions differ.
   void add_evidence(const StaticMap& other);
-  /// Adds only what is in a cube of voxels. Added to an empty map, this copies a part of the other map.
-  /// Throws Error if the resolutions differ, or if the cube's lowest voxel or edge is no multiple of 4.
+  /// As above, restricted to a cube of voxels. On an empty map, this copies a part of the other map. Throws
+  /// Error if the resolutions differ, or if the cube's lowest voxel or edge is no multiple of 4.
   void add_evidence(const StaticMap& other, const VoxelIndex& lowest_voxel, int edge_voxels);
 
   /// Calls `decide` in Morton order for each voxel that has a signed distance or is occupied, and applies the
-  /// returned action. The weight is 0 without a signed distance. Pruned nodes have no samples and are not
-  /// visited.
+  /// returned action. SurfaceSample::weight is 0 for voxels without a signed distance. Pruned nodes have no
+  /// samples and are not visited.
   void revise_samples(const std::function<SampleAction(const SurfaceSample&)>& decide);
   /// Revises only voxels whose centre is in the box.
   void revise_samples(const Eigen::AlignedBox3d& box_world,
@@ -139,8 +141,9 @@ class StaticMap {
   /// Writes the complete map as compressed blocks, a quarter of the size of .ot. Throws Error if the file
   /// cannot be written.
   void write(const std::filesystem::path& path) const;
-  /// Reads a file written by write(), with equal log-odds, distances, weights and colours. If it was written
-  /// with another config, they are rounded to this config's steps. Validates like read_ot().
+  /// Reads a file written by write(). Log-odds, distances, weights and colours are equal to those written. If
+  /// the file was written with another config, they are rounded to this config's steps. Validates like
+  /// read_ot().
   static StaticMap read(const std::filesystem::path& path, const FusionConfig& config = {});
   /// Writes the complete map in OctoMap's .ot format, with tree type "RoomRadarOcTree". Throws Error if the
   /// file cannot be written.

@@ -1,4 +1,4 @@
-// tsdf_bricks.cpp: bricks by the Morton code of their place, and the bricks around one.
+// tsdf_bricks.cpp: hash index of bricks, and look-ups in a brick's neighbourhood.
 #include "mapping/octree/tsdf_bricks.hpp"
 
 #include "mapping/types/voxel_key.hpp"

@@ -32,7 +32,7 @@ struct Brick {
   std::array<TsdfSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
 };
 
-/// Bricks of samples, found by their lowest voxel.
+/// Bricks of samples, with a hash index by their lowest voxel.
 class TsdfBricks {
  public:
   /// Makes bricks of unknown samples at these lowest voxels, which must be distinct.

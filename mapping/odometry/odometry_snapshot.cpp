@@ -1,4 +1,4 @@
-// odometry_snapshot.cpp: moves of keyframes, and the poses that move with them.
+// odometry_snapshot.cpp: moves keyframes and the poses that depend on them, and predicts motion.
 #include "mapping/odometry/odometry_snapshot.hpp"
 
 #include <algorithm>

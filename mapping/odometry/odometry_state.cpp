@@ -1,4 +1,4 @@
-// odometry_state.cpp: the current keyframe: its choice, its refinement, and the results of its background
+// odometry_state.cpp: handles the current keyframe: choice, depth refinement, and results of the background
 // job.
 #include "mapping/odometry/odometry_state.hpp"
 
