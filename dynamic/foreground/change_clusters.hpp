@@ -30,7 +30,8 @@ struct LastingChange {
 
 /// A point on a surface that appeared or disappeared, with its observation times.
 struct ChangePoint {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the tracker's origin, world axes
+  /// Relative to the tracker's origin, in the axes of the world frame.
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();
   float steady_s = 0.0F;  ///< total duration of the frames that confirmed the point
   float unseen_s = 0.0F;  ///< time since a frame last showed its position
   std::uint32_t id = 0;

@@ -38,9 +38,9 @@ struct DepthMeshScratch {
 /// @param depth_m         height x width, metres along the optical axis, 0 = no measurement
 /// @param dynamic_mask      same size; not 0: dynamic
 /// @param T_world_camera  pose of the depth camera
-/// @param mesh            overwritten, allocations kept. Origin at the camera's position, world axes, unit
-///                        normals, counter-clockwise towards the camera, no colours. Empty if no pixel is
-///                        dynamic
+/// @param mesh            overwritten, allocations kept. Origin at the camera's position, axes of the world
+///                        frame, unit normals, counter-clockwise towards the camera, no colours. Empty if no
+///                        pixel is dynamic
 void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
                  DepthMeshScratch& scratch, Mesh& mesh);

@@ -16,9 +16,9 @@
 
 namespace roomradar {
 
-/// Meshes of a frame's dynamic surfaces. Both have their origin at the camera's position, world axes and no
-/// colours. Both are empty if no pixel is dynamic. If DynamicSurfaceConfig::has_back is set, the two meshes
-/// together are closed: their triangles use every edge equally often in both directions.
+/// Meshes of a frame's dynamic surfaces. Both have their origin at the camera's position, the axes of the
+/// world frame, and no colours. Both are empty if no pixel is dynamic. If DynamicSurfaceConfig::has_back is
+/// set, the two meshes together are closed: their triangles use every edge equally often in both directions.
 struct DynamicSurface {
   Mesh seen_world;  ///< counter-clockwise towards the camera, unit normals
   /// Assumed (never observed) back and side walls, counter-clockwise seen from outside, without normals.

@@ -12,8 +12,8 @@ struct DynamicSurfaceConfig {
   /// Max deviation of the mesh, in depth, from the average over 5 x 5 pixels.
   float deviation_sigmas = 0.8F;
   float flat_sigmas = 2.0F;  ///< max RMS distance of 5 x 5 pixels from a plane; above it: a bend
-  /// Max RMS distance of a cut cell's pixels from the cell's triangles. Above it, the cell gets a vertex at
-  /// every pixel.
+  /// Max RMS distance of a cut cell's pixels from the cell's triangles. Above it, the cell is full: every
+  /// pixel becomes a vertex.
   float cut_sigmas = 2.5F;
   float jump_sigmas = 4.0F;          ///< max noise, in sigmas, between the depths of one surface
   float jump_incidence_deg = 80.0F;  ///< max angle between view ray and normal of one surface

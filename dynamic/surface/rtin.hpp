@@ -30,8 +30,8 @@ struct Rtin {
 ///
 /// @param values      one per point, valid at the corners of wanted cells
 /// @param tolerances  one per point: max difference between the value and the triangle at this point
-/// @param needed      input and output, one per point. Must be 1 at all corners of unwanted cells beside a
-///                    wanted cell, else 0. Marked points become 1. Entries of 1 stay 1
+/// @param needed      input and output, one per point. Must be 1 at all corners of unwanted cells adjacent to
+///                    a wanted cell, else 0. Marked points become 1. Entries of 1 stay 1
 void find_needed(const Rtin& grid, std::span<const float> values, std::span<const float> tolerances,
                  std::span<std::uint8_t> needed);
 

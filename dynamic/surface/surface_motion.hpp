@@ -16,10 +16,10 @@ void dynamic_points(const DepthImage& depth_m, const MaskImage& dynamic_mask, co
                     const Eigen::Isometry3d& T_world_camera, std::vector<Eigen::Vector3d>& points_world);
 
 /// Estimates the translation of a surface between two frames near a point, by registration of the surface's
-/// points. Candidates are translations of points of the last frame to those points of this frame that are
-/// farthest from all points of the last frame. The best candidate is refined by iterative closest points. A
-/// point more than 3 cm from every point of the other frame has no match. For a hand that enters the view or
-/// rotates, the result is thus the translation of its part near the point.
+/// points. A candidate is zero, or the translation from a point of the last frame to a new point. New points
+/// are the four points of this frame that are farthest from all points of the last frame. The best candidate
+/// is refined by ICP. A point more than 3 cm from every point of the other frame has no match. For a hand
+/// that enters the view or rotates, the result is thus the translation of its part near the point.
 /// @param before_world, now_world  points of the surface, see dynamic_points()
 /// @param centre_world, reach_m    only points of `now_world` within reach_m of the centre count
 /// @param farthest_m               max translation found

@@ -22,8 +22,8 @@ std::shared_ptr<CachedKeyframe> prepare_keyframe(const StoredView& view, const V
                                                  PreparedParts parts = PreparedParts::kAll);
 
 /// Caches at most `capacity` keyframes and evicts the least recently used. A returned entry stays valid after
-/// its eviction while the caller keeps the pointer. Copies of a cache share their present entries and are
-/// otherwise independent. Not thread safe.
+/// its eviction while the caller keeps the pointer. A copy of a cache shares the entries present at the time
+/// of copying, and is otherwise independent. Not thread safe.
 class KeyframeCache {
  public:
   explicit KeyframeCache(std::size_t capacity, PreparedParts parts = PreparedParts::kAll)

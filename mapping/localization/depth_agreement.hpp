@@ -7,7 +7,7 @@ namespace roomradar {
 /// Pixel counts over every fourth pixel of every fourth row of a depth image.
 struct DepthAgreement {
   int valid = 0;  ///< number of pixels with a measurement
-  int both = 0;   ///< number of those pixels where the map's model has a surface, too
+  int both = 0;   ///< number of valid pixels at which the map's model has a surface, too
   /// Number of pixels in `both` whose two inverse depths differ by less than 0.02 / m. The tolerance covers
   /// sensor noise and distortion of the map.
   int alike = 0;

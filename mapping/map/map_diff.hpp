@@ -44,7 +44,7 @@ void require_valid(const DiffConfig& config);
 /// Returns the changes, largest first. Regions that are unknown in one of the maps count as unchanged.
 /// Surface at which one map's scan ends, and the roughness of surfaces measured from far away, count as
 /// unchanged, too. Objects smaller than the clearance are not detected. Objects that moved by less than
-/// max_pose_error_m, or stand out from a plane by less, are not detected either. A pole a few centimetres
+/// max_pose_error_m, or protrude from a plane by less, are not detected either. A pole a few centimetres
 /// thick that one scan measured only from beyond 3 m can be missing from that scan's map, and is then listed
 /// as a change.
 /// @param T_a_b  maps points from b's world frame to a's world frame

@@ -18,7 +18,7 @@ Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles);
 /// Drops connected components (by shared vertices) with an area below min_component_area_m2, and unused
 /// vertices.
 /// @param is_cut  callback on a vertex index. True: the vertex's component may continue beyond this mesh, and
-///                is kept whatever its area. Empty: no component is cut
+///                is kept regardless of its area. Empty: no component is cut
 Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2,
                            const std::function<bool(std::uint32_t)>& is_cut = {});
 

@@ -66,7 +66,7 @@ struct DepthPyramid {
   [[nodiscard]] int cells_down(int level) const { return ((height_px - 1) >> level) + 1; }
 };
 
-/// Builds the pyramid, reusing its memory. Pixels without depth prove no space free or occluded. Small gaps
+/// Builds the pyramid, reusing its memory. Pixels without depth mark no space as free or occluded. Small gaps
 /// are filled with the bounds of the pixels around them, so that single dropouts do not leave the space in
 /// front of a wall unknown. A gap is small if it is below 4 x 4 pixels, or below 2 x 2 for query rectangles
 /// of up to seven pixels per side. A pixel whose depth exceeds max_range_m makes space free up to

@@ -168,8 +168,8 @@ class LeafUpdate {
   [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
     return ((Float8::load(block.distance) < Float8(behind_)) & (Float8::load(block.log_odds) <= 0.0F)).bits();
   }
-  // Returns those voxels of behind_surface() at which this frame measures a depth farther than the voxel's
-  // stored surface by more than the truncation distance.
+  // Returns the voxels of behind_surface() that this frame sees through: its depth exceeds the depth of the
+  // voxel's stored surface by more than the truncation distance.
   [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
     const Float8 further =
         observed.distance_m * (1.0F / tree_.units().distance_m) - Float8::load(block.distance);

@@ -25,8 +25,8 @@ std::vector<KeyframePair> align_pairs(std::span<const Keyframe> keyframes, std::
                                       std::size_t last, std::span<const KeyframePair> aligned,
                                       const ConnectConfig& config, int threads);
 
-/// Replaces all constraints by those of `aligned`, and of the pairs that choose_older() chooses. Aligns the
-/// latter on two threads. Deterministic.
+/// Replaces all constraints. The new ones are from `aligned` and from the pairs that choose_older() chooses,
+/// which are aligned on two threads. Deterministic.
 /// @param aligned  pairs that are aligned already, sorted by (newer, older)
 void close_loops(KeyframeGraph& graph, std::vector<KeyframePair> aligned, const ConnectConfig& config);
 

@@ -17,9 +17,9 @@ struct TimingEstimate {
 
 TimingEstimate start_estimate(const SensorTiming& stated);
 
-/// Adds one frame's evidence. After every 20 frames, corrects those times that differ from their estimates by
-/// more than two standard deviations. Corrected readouts are within 0 to 50 ms, corrected delays within -50
-/// to 50 ms, unless the stated time lies outside.
+/// Adds one frame's evidence. After every 20 frames, solves for corrections of the times, and applies each
+/// correction that exceeds two standard deviations. Corrected readouts are within 0 to 50 ms, corrected
+/// delays within -50 to 50 ms, unless the stated time lies outside.
 /// @return true if `current` changed
 bool add_evidence(TimingEstimate& estimate, const TimingEvidence& evidence);
 

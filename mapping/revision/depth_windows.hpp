@@ -1,5 +1,5 @@
-// depth_windows.hpp: sparse table that gives the minimum depth in any square window of a depth image with
-// four lookups.
+// depth_windows.hpp: sparse table for the minimum depth in square windows of a depth image, with four
+// look-ups per query.
 #pragma once
 #include <cstdint>
 #include <vector>

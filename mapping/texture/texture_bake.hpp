@@ -23,8 +23,8 @@ struct TextureConfig {
 /// and larger if the atlas would exceed max_side_px.
 ///
 /// Blends in two frequency bands: high frequencies come from the best views, low frequencies are a mean over
-/// all good views. No seam thus shows where the best view changes. If three or more views show a texel, those
-/// far from their median colour are outliers (a moved object, a reflection) and are left out. Texels that no
+/// all good views. No seam thus shows where the best view changes. If three or more views show a texel, views
+/// far from the median colour are outliers (a moved object, a reflection) and are left out. Texels that no
 /// view shows get the colours of earlier textures of the room, else the mesh's. The result does not depend on
 /// the number of threads.
 ///

@@ -1,7 +1,6 @@
 // simd8f.hpp: SIMD vector of eight floats (e.g. of eight sibling voxels), in an AVX2 and a portable version.
 // Both versions give bit-identical results, since neither uses fused multiply-add. Maps are therefore
-// bit-identical on every machine. Source files that use them must be compiled with
-// -ffp-contract=off.
+// bit-identical on every machine. Source files that use the versions must be compiled with -ffp-contract=off.
 #pragma once
 #include <algorithm>
 #include <array>
