@@ -1,4 +1,4 @@
-// block_cache.hpp: cache of the blocks of a file that were decompressed last.
+// block_cache.hpp: cache of a file's most recently decompressed blocks.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace roomradar {
 
-/// A block of a file, as stored.
+/// Location of a block in the file, its stored and decompressed sizes, and its compression.
 struct PackedBlock {
   std::uint64_t offset = 0, packed_bytes = 0, bytes = 0;
   Compression compression = Compression::kNone;
 };
 
-/// Keeps the last four blocks, or more if they fit in 64 MB. The messages of one frame, and the transforms
-/// around its time, are in neighbouring blocks, so reading in order decompresses each block once. Not thread
-/// safe.
+/// Caches the four blocks decompressed last, and more while all cached blocks fit in 64 MiB. Messages and
+/// transforms of one frame are in neighbouring blocks. Reading in order therefore decompresses each block
+/// once. Not thread safe.
 class BlockCache {
  public:
   /// Returns the block `number`, decompressed unless it is cached. The reference is valid until the next

@@ -8,7 +8,7 @@ namespace roomradar {
 
 enum class Compression { kNone, kBz2, kLz4, kZstd, kZlib };
 
-/// Max size of a decompressed block. Recorders write blocks of about 1 MB, at most some images.
+/// Max size of a decompressed block. Recorders write blocks of about 1 MB, or of a few images.
 inline constexpr std::uint64_t kMaxBlock_bytes = std::uint64_t{1} << 29;
 
 /// Decompresses a bz2 stream, LZ4 frame, zstd frame or zlib stream that contains exactly `size` bytes.

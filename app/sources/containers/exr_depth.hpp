@@ -7,10 +7,11 @@
 
 namespace roomradar {
 
-/// Decodes a single-part scan-line OpenEXR image with one channel, half or float, m along the optical axis,
-/// stored raw or compressed by zip. Values that are not finite or <= 0 become 0. Throws Error naming `where`
-/// if the image is damaged, of another form, or has a side that is not in 1..16384. Does not use the OpenEXR
-/// library, which allocates memory by the sizes in a damaged header. Source: openexr.com, File Layout.
+/// Decodes a single-part scan-line OpenEXR image with one channel: depth along the optical axis, m, as half
+/// or float, uncompressed or zip-compressed. Values that are not finite or <= 0 become 0. Throws Error naming
+/// `where` if the image is damaged, is another kind of OpenEXR image, or has a side outside 1..16384 px. Does
+/// not use the OpenEXR library, which allocates memory for whatever sizes a damaged header states. Source:
+/// openexr.com, File Layout.
 void decode_exr_depth(std::string_view bytes, const std::string& where, DepthImage& depth_m);
 
 }  // namespace roomradar

@@ -12,11 +12,11 @@ struct MatroskaTrack {
   std::uint64_t number = 0;
   std::string name;           ///< such as "DEPTH"
   std::string codec;          ///< such as "V_MJPEG"
-  std::string codec_private;  ///< data of the codec; at most 64 kB
+  std::string codec_private;  ///< initialisation data of the codec; at most 64 kB
   std::uint64_t width_px = 0, height_px = 0;
 };
 
-/// Bytes of a block or an attachment in the file.
+/// Location of a block's data in the file, with its track and time.
 struct MatroskaBlock {
   std::uint64_t track = 0;
   double stamp_s = 0.0;
@@ -36,8 +36,8 @@ struct MatroskaIndex {
 /// Returns true if the file begins with an EBML header.
 [[nodiscard]] bool is_matroska(const std::filesystem::path& path);
 
-/// Walks the elements of the file and reads their headers; skips the data of blocks. A file that ends within
-/// a cluster, because the recorder was stopped, is read up to there.
+/// Reads the headers of the file's elements; skips the data of blocks. A file that ends within a cluster,
+/// because its recorder was killed, is read up to its end.
 /// @throws Error if the file is not Matroska, or an element before the first cluster is damaged
 /// Source: IETF RFC 8794 (EBML), RFC 9559 (Matroska).
 MatroskaIndex index_matroska(const RandomAccessFile& file);

@@ -1,4 +1,4 @@
-// mcap.hpp: MCAP files, a form of ROS 2's bags.
+// mcap.hpp: MCAP files, a container format of ROS bags.
 #pragma once
 #include <filesystem>
 
@@ -9,10 +9,10 @@ namespace roomradar {
 /// Returns true if the file begins as an MCAP file does.
 [[nodiscard]] bool is_mcap(const std::filesystem::path& path);
 
-/// Opens an MCAP file and lists its messages of ROS 2 (CDR), or of ROS 1 if it holds none of ROS 2. Chunks
-/// (none, lz4, zstd) with a message index are skipped, and decompressed when a message in them is read.
-/// Chunks without one are decompressed to list them. A file whose recorder was stopped is read up to its last
-/// whole record.
+/// Opens an MCAP file and lists its ROS 2 messages (CDR), or its ROS 1 messages if no channel uses CDR. A
+/// chunk (uncompressed, lz4 or zstd) with a message index is decompressed only when one of its messages is
+/// read. A chunk without a message index is decompressed at once, to list its messages. A file without an
+/// end, because its recorder was killed, is read up to its last complete record.
 /// @throws Error naming the file if it is not MCAP, or a chunk is damaged
 /// Source: mcap.dev, specification.
 MessageLog open_mcap(const std::filesystem::path& path);

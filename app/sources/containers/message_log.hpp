@@ -1,4 +1,4 @@
-// message_log.hpp: time-stamped messages on topics, as ROS 1 and ROS 2 bags hold them.
+// message_log.hpp: time-stamped messages on topics, as in ROS 1 and ROS 2 bags.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -30,7 +30,7 @@ struct MessageLog {
   std::string name{};
   MessageEncoding encoding = MessageEncoding::kRos1;
   std::vector<MessageTopic> topics{};
-  std::vector<MessageEntry> messages{};  ///< by stamp
+  std::vector<MessageEntry> messages{};  ///< sorted by stamp
   /// True if the first bytes of a message can be read without reading, or decompressing, much more.
   bool reads_starts = false;
   /// Returns the bytes of a message, at most max_bytes of them. Throws Error if they cannot be read.
@@ -44,13 +44,13 @@ struct MessageLog {
 /// Returns a type's name as ROS 1 writes it: without the "/msg" of ROS 2.
 [[nodiscard]] std::string ros1_type_name(std::string type);
 
-/// Returns the number of the topic of this name, which is added if there is none.
+/// Returns the index of the topic with this name in `topics`. Appends the topic if no topic has the name.
 std::uint32_t number_of_topic(const MessageTopic& topic, std::vector<MessageTopic>& topics);
 
-/// Returns the messages of a topic, by stamp.
+/// Returns the messages of a topic, in the log's order.
 [[nodiscard]] std::vector<MessageEntry> messages_of(const MessageLog& log, std::uint32_t topic);
 
-/// Sorts the messages by stamp. Messages of one stamp keep their order.
+/// Sorts the messages by stamp. Messages with equal stamps keep their order.
 void sort_by_stamp(MessageLog& log);
 
 }  // namespace roomradar

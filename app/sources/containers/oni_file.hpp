@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// Kind of a node, by the data that it delivers.
+/// Type of the data that a node delivers.
 enum class OniNodeKind : std::uint32_t { kDevice = 1, kDepth = 2, kImage = 3, kIr = 4 };
 
 struct OniFrame {
@@ -30,13 +30,13 @@ struct OniNode {
 /// Returns true if the file begins as a .oni file does.
 [[nodiscard]] bool is_oni(const std::filesystem::path& path);
 
-/// Reads the properties of all nodes and lists their frames; skips the data. A file whose recorder was
-/// stopped is read up to its last whole record.
-/// @throws Error naming the file if it is not a .oni file of version 1.0, or a record before the data is
-///         damaged
+/// Reads the properties of all nodes and lists their frames; skips the data. A file without an end, because
+/// its recorder was killed, is read up to its last complete record.
+/// @throws Error naming the file if it is not a .oni file of version 1.0, or a record is damaged
 std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file);
 
-/// Decompresses 16 bit depth of the codecs 16zT (with a table of the values that occur) and 16zP (without).
+/// Decompresses 16 bit depth of the codecs 16zT (pixels are indices into a table of values) and 16zP (pixels
+/// are the values).
 /// @throws Error naming `where` if the data are damaged or do not contain exactly `pixels` pixels
 std::vector<std::uint16_t> decompress_oni_depth(std::string_view packed, bool has_table, std::size_t pixels,
                                                 const std::string& where);

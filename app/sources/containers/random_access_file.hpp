@@ -1,4 +1,4 @@
-// random_access_file.hpp: reads parts of a file that is too large for memory.
+// random_access_file.hpp: reads byte ranges of a file that is too large for memory.
 #pragma once
 #include <cstdint>
 #include <filesystem>

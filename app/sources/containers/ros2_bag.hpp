@@ -1,4 +1,4 @@
-// ros2_bag.hpp: bags of ROS 2, as SQLite databases (.db3) or MCAP files.
+// ros2_bag.hpp: ROS 2 bags: SQLite databases (.db3), MCAP files, and folders of them.
 #pragma once
 #include <filesystem>
 
@@ -9,9 +9,8 @@ namespace roomradar {
 /// Returns true for an SQLite database named *.db3, an MCAP file, and a folder with metadata.yaml.
 [[nodiscard]] bool is_ros2_bag(const std::filesystem::path& path);
 
-/// Opens a bag and lists its messages. A folder's files are the parts of one bag. Messages that are
-/// compressed one by one (zstd) are decompressed. Bags that are compressed as a whole (.db3.zstd) are not
-/// read.
+/// Opens a bag and lists its messages. The .db3 and MCAP files of a folder form one bag. Individually
+/// compressed messages (zstd) are decompressed. Files compressed as a whole (.db3.zstd) are rejected.
 /// @throws Error naming the file if it is damaged, or compressed as a whole
 MessageLog open_ros2_bag(const std::filesystem::path& path);
 

@@ -7,7 +7,7 @@ namespace roomradar {
 
 inline constexpr std::string_view kRosBagMagic = "#ROSBAG V2.0\n";
 
-/// Kinds of records, as their field "op" states them.
+/// Record types, the values of a record's field "op".
 enum class RosBagOp : std::uint8_t {
   kMessage = 2,
   kBagHeader = 3,

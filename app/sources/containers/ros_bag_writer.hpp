@@ -10,27 +10,27 @@
 
 namespace roomradar {
 
-/// A type of messages as ROS identifies it.
+/// A ROS message type.
 struct RosType {
   std::string_view name;        ///< such as "sensor_msgs/Image"
   std::string_view md5;         ///< of the definition, 32 hexadecimal digits
-  std::string_view definition;  ///< its fields and those of the types that it contains
+  std::string_view definition;  ///< message definition, including the definitions of nested types
 };
 
-/// Writes a bag (format 2.0) of uncompressed chunks of some MB, with an index after each chunk and at the
-/// end.
+/// Writes a bag (format 2.0) of uncompressed chunks of about 4 MiB, with an index after each chunk and one at
+/// the end.
 class RosBagWriter {
  public:
   /// Throws Error if the file cannot be written.
   explicit RosBagWriter(const std::filesystem::path& path);
 
-  /// Adds a topic and returns its number.
+  /// Adds a topic and returns its index, from 0.
   std::uint32_t add_topic(std::string_view name, const RosType& type);
   /// Appends a message, encoded for ROS 1. `time` has seconds in the lower 32 bits, nanoseconds above, see
   /// ros_time(). Throws Error if the file cannot be written.
   void write(std::uint32_t topic, std::uint64_t time, std::string_view message);
-  /// Writes the last chunk and the index. Without it, the bag can be read up to its last whole chunk. Throws
-  /// Error if they cannot be written.
+  /// Writes the last chunk and the index. A bag without close() can be read up to its last complete chunk.
+  /// Throws Error if the file cannot be written.
   void close();
 
  private:
@@ -51,7 +51,7 @@ class RosBagWriter {
   std::uint64_t position_ = 0;
   std::vector<std::string> connections_;  // records, by topic
   std::string chunk_;
-  std::map<std::uint32_t, std::vector<Indexed>> index_;  // of the chunk, by topic
+  std::map<std::uint32_t, std::vector<Indexed>> index_;  // index of the current chunk, by topic
   std::vector<ChunkInfo> chunks_;
 };
 

@@ -39,14 +39,14 @@ struct RosCompressedImage {
   std::string_view data;
 };
 
-/// sensor_msgs/CameraInfo, as far as it is used here.
+/// The used fields of sensor_msgs/CameraInfo.
 struct RosCameraInfo {
   RosHeader header;
   std::uint32_t height = 0, width = 0;
   std::string distortion_model;
   std::vector<double> D;
   std::array<double, 9> K{};   ///< row-major
-  std::array<double, 12> P{};  ///< row-major, of the rectified image
+  std::array<double, 12> P{};  ///< projection matrix of the rectified image, row-major
 };
 
 /// sensor_msgs/Imu, its acceleration only.
@@ -55,7 +55,7 @@ struct RosAcceleration {
   Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// geometry_msgs/TransformStamped: maps from the frame `child` to the frame of the header.
+/// geometry_msgs/TransformStamped: transforms points from the frame `child` to the frame header.frame_id.
 struct RosTransform {
   RosHeader header;
   std::string child;
@@ -63,7 +63,7 @@ struct RosTransform {
   Eigen::Vector4d q_xyzw = Eigen::Vector4d::Zero();
 };
 
-/// Decode messages. All throw Error naming `where` if the message is cut short or damaged.
+/// Decode messages. All functions throw Error naming `where` if the message is truncated or damaged.
 RosHeader read_header(const MessageBytes& message);
 RosImage read_image(const MessageBytes& message);
 RosCompressedImage read_compressed_image(const MessageBytes& message);

@@ -1,4 +1,4 @@
-// sqlite_file.hpp: reads tables of an SQLite database that is not trusted.
+// sqlite_file.hpp: reads tables of an untrusted SQLite database.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -12,7 +12,7 @@ struct sqlite3;
 
 namespace roomradar {
 
-/// A row of a query's result. Callers read each column by the type that they expect.
+/// A row of a query's result. Callers read each column as the type that they expect.
 class SqliteRow {
  public:
   explicit SqliteRow(void* statement) : statement_(statement) {}
@@ -32,7 +32,7 @@ class SqliteFile {
   explicit SqliteFile(const std::filesystem::path& path);
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Returns true if the database has ordinary tables of all these names; a view may be named like a table.
+  /// Returns true if the database has tables with all these names. Views and virtual tables do not count.
   [[nodiscard]] bool has_tables(const std::vector<std::string>& names) const;
   /// Returns true if the table has the column.
   [[nodiscard]] bool has_column(const std::string& table, const std::string& column) const;
@@ -40,7 +40,7 @@ class SqliteFile {
   /// Throws Error naming the file if the database is damaged or lacks a column.
   void query(const std::string& sql, const std::vector<std::int64_t>& values,
              const std::function<void(const SqliteRow&)>& use) const;
-  /// Returns at most max_bytes of the bytes in a row's column, without reading the rest.
+  /// Returns the first max_bytes bytes of a row's column, or all if it has fewer, without reading the rest.
   [[nodiscard]] std::string read_up_to(const char* table, const char* column, std::int64_t row,
                                        std::uint64_t max_bytes) const;
 

@@ -4,7 +4,7 @@
 
 namespace roomradar {
 
-/// Converts a pose from ARKit's world, with y up, to a world with z up.
+/// Converts a pose from ARKit's world frame (y up) to roomradar's world frame (z up).
 inline Eigen::Isometry3d world_from_arkit_world(const Eigen::Isometry3d& T_arkitworld_camera) {
   Eigen::Isometry3d T_world_arkitworld = Eigen::Isometry3d::Identity();
   T_world_arkitworld.linear() << 1, 0, 0,  //
@@ -21,7 +21,7 @@ inline Eigen::Isometry3d world_from_arkit(const Eigen::Isometry3d& T_arkitworld_
   return world_from_arkit_world(T_arkitworld_arkitcamera * T_arkitcamera_camera);
 }
 
-/// Returns the unit direction of gravity in the camera's frame, for a world with z up.
+/// Returns the unit direction of gravity in the camera frame, for a world frame with z up.
 inline Eigen::Vector3d down_in_camera(const Eigen::Isometry3d& T_world_camera) {
   return -T_world_camera.linear().row(2).transpose();
 }

@@ -12,7 +12,7 @@ namespace roomradar {
 struct AzureCalibration {
   CameraRig rig;  ///< with a colour camera if a colour size was given
   RationalLens depth_lens, colour_lens;
-  /// Maps directions in the accelerometer's frame to the depth camera's.
+  /// Rotates directions from the accelerometer's frame to the depth camera's frame.
   Eigen::Matrix3d R_depth_accelerometer = Eigen::Matrix3d::Identity();
 };
 

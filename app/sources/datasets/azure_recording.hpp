@@ -7,9 +7,9 @@
 namespace roomradar {
 
 /// Lists the frames of a Matroska file with the tracks DEPTH (16 bit big-endian, mm), COLOR (MJPG, NV12, YUY2
-/// or BGRA; optional) and IMU (optional), and the attachment calibration.json. Depth and colour have their
-/// own cameras and lenses. Gravity comes from the accelerometer.
-/// @throws Error naming the file if it is damaged, has no depth track, or its calibration cannot be used
+/// or BGRA; optional) and IMU (optional), and the attachment calibration.json. Depth and colour images each
+/// have their own intrinsics and lens distortion. Gravity comes from the accelerometer.
+/// @throws Error naming the file if it is damaged, has no depth track, or has an unusable calibration
 IndexedRecording index_azure_recording(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -16,8 +16,8 @@
 
 namespace roomradar {
 
-/// Max time between the depth and the colour image of a frame. Devices run at 30 Hz or less, and may miss
-/// images.
+/// Max time between the depth and the colour image of a frame. Devices deliver at most 30 images/s of each
+/// kind and may miss some, so the nearest colour image may be almost a period away.
 inline constexpr double kPairWithin_s = kDevicePairing.tolerance_s;
 
 /// A frame of a recording before its images are read.
@@ -43,27 +43,27 @@ struct IndexedRecording {
   std::function<void(std::size_t frame, DepthImage&)> read_depth{};
   /// Called for frames with has_colour.
   std::function<void(std::size_t frame, ColourImage&)> read_colour{};
-  /// Replaces IndexedFrame::T_world_camera; unset: not used.
+  /// If set, called instead of reading IndexedFrame::T_world_camera.
   std::function<std::optional<Eigen::Isometry3d>(std::size_t frame)> read_pose{};
-  /// Replaces IndexedFrame::down_camera; unset: not used.
+  /// If set, called instead of reading IndexedFrame::down_camera.
   std::function<std::optional<Eigen::Vector3d>(std::size_t frame)> read_down{};
 };
 
-/// Returns a source of the recording's frames that can rewind and seek. Frames without fault must have
-/// increasing stamps; others are reported as faults. Lens distortion is removed. Unreadable frames are
-/// skipped; next() throws Error after ten in a row.
+/// Returns a source of the recording's frames that can rewind and seek. A frame whose stamp is not later than
+/// that of the last usable frame is a faulty frame. Lens distortion is removed. Faulty and unreadable frames
+/// are skipped. next() throws Error after ten skipped frames in a row.
 /// @throws Error if the recording has no frames, or a camera or `options.depth_camera` is invalid
 std::unique_ptr<FrameSource> indexed_source(IndexedRecording recording, const SourceOptions& options = {});
 
-/// Assigns colour images to depth images by their stamps, within `tolerance_s`. Sets has_colour and
-/// colour_after_depth_s of `frames`, and the fault of frames whose stamp is not later than that of the frame
-/// before. Leaves out frames with a fault. `colour_s` has stamps in increasing order.
-/// @return the number of the colour image per frame; unset where has_colour is false
+/// Pairs depth images with colour images whose stamps differ by at most `tolerance_s`. Sets has_colour and
+/// colour_after_depth_s of `frames`, and the fault of frames whose stamp is not later than the previous
+/// frame's. Ignores frames that already have a fault. Stamps in `colour_s` must increase.
+/// @return the index of the colour image per frame; unset where has_colour is false
 std::vector<std::optional<std::size_t>> pair_colours(const std::vector<double>& colour_s, double tolerance_s,
                                                      std::vector<IndexedFrame>& frames);
 
-/// Sets the stamps of all frames. If they do not increase, as in files whose writer had no clock, frame N
-/// gets N / 30 s.
+/// Sets the stamps of all frames to `stamps_s`. If any stamp is not later than the one before, as in files
+/// whose writer had no clock, sets the stamp of each frame N to N / 30 s instead.
 void set_stamps(const std::vector<double>& stamps_s, std::vector<IndexedFrame>& frames);
 
 /// Returns the text of a size, "640 x 480".

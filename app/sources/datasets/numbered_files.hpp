@@ -1,4 +1,4 @@
-// numbered_files.hpp: images in a folder whose names are numbers, and their size.
+// numbered_files.hpp: lists the image files in a folder whose names are numbers, and reads their image size.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -14,18 +14,18 @@
 namespace roomradar {
 
 /// Returns the files in `folder` whose name is a number >= 0, with one of the extensions, by number. Of
-/// several files with one number, returns the one whose extension is first in the list. Empty if there is no
-/// such folder.
+/// several files with the same number, returns the file whose extension is first in the list. Returns an
+/// empty map if the folder does not exist.
 std::map<std::int64_t, std::filesystem::path> numbered_files(
     const std::filesystem::path& folder, std::initializer_list<std::string_view> extensions);
 
-/// Returns the size of the first image, among the first ten files, whose header can be read. Throws Error
-/// naming `where` if there is none.
+/// Returns the image size in the first readable header among the first ten files. Throws Error naming `where`
+/// if none is readable.
 ImageSize size_of_first_png(const std::vector<std::filesystem::path>& files,
                             const std::filesystem::path& where);
 
-/// Returns the depth camera of a device whose depth is registered to colour: the colour camera, scaled to
-/// depth images of this size. Throws Error naming `where` if the shapes of the images differ.
+/// Returns the intrinsics of depth that is registered to colour: those of the colour camera, scaled to the
+/// size `depth`. Throws Error naming `where` if the aspect ratios of depth and colour differ.
 Intrinsics scaled_to_depth(const Intrinsics& colour, ImageSize depth, const std::string& where);
 
 }  // namespace roomradar

@@ -7,10 +7,10 @@
 namespace roomradar {
 
 /// Lists the frames of a .oni file: depth (16zT, 16zP or raw; mm, or 0.1 mm), colour (JPEG or raw RGB, YUV,
-/// grey). Cameras follow from the recorded field of view, else from a PrimeSense's, 58.6 degrees. For depth
-/// that is not registered, the depth camera is assumed to be 2.5 cm beside the colour camera. Mirrored images
-/// are mirrored back.
-/// @throws Error naming the file if it is damaged, or holds no depth
+/// grey). Intrinsics follow from the recorded horizontal field of view, or from a PrimeSense's (58.6 degrees)
+/// if the file has none. If depth is not registered to colour, a baseline of 2.5 cm is assumed. Mirrored
+/// images are mirrored back.
+/// @throws Error naming the file if it is damaged, contains no depth, or its depth has another codec
 IndexedRecording index_oni_recording(const std::filesystem::path& path);
 
 }  // namespace roomradar

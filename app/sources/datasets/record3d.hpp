@@ -6,17 +6,18 @@
 
 namespace roomradar {
 
-/// Returns true if `folder` holds an export by Record3D: `metadata` and a folder `depth`.
+/// Returns true if `folder` contains the file `metadata` and the folder `depth`, as an export by Record3D
+/// does.
 [[nodiscard]] bool is_record3d(const std::filesystem::path& folder);
 
-/// Reads the list of an export by Record3D ("EXR + RGB"):
+/// Lists the frames of an export by Record3D ("EXR + RGB"):
 ///   metadata      JSON: w, h: colour size; dw, dh: depth size, px; K: intrinsics at w x h, column-major;
 ///                 poses: qx qy qz qw x y z (m) per frame; frameTimestamps (s) per frame
 ///   depth/N.exr   depth of frame N, m;  rgb/N.jpg: its colour image
-/// N has no leading zeros. More poses than frames may be listed. The recorded camera frame has y up and z
-/// backwards, the recorded world has y up; both are converted to roomradar's, so the world has z up. The
-/// depth is registered to the colour camera. Gravity follows from the poses, whose world ARKit aligns with
-/// it.
+/// N has no leading zeros. Without frameTimestamps, stamps are N / fps, with 30 as the default of fps.
+/// `poses` may be longer than the number of frames. The recorded camera frame has y up and z backwards, and
+/// the recorded world frame has y up. Both are converted to roomradar's axes. Depth is registered to the
+/// colour camera. Gravity follows from the poses, since ARKit aligns its world frame with gravity.
 /// @throws Error naming the file if the metadata are damaged or do not fit the images
 IndexedRecording index_record3d(const std::filesystem::path& folder);
 

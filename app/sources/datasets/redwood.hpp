@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// Returns true if `folder` holds a recording of Redwood or Open3D: depth, color (or colour, image, rgb), and
-/// a trajectory (*.log) or Open3D's intrinsic.json or camera_intrinsic.json.
+/// Returns true if `folder` contains a recording of Redwood or Open3D: depth, color (or colour, image, rgb),
+/// and a trajectory (*.log) or Open3D's intrinsic.json or camera_intrinsic.json.
 [[nodiscard]] bool is_redwood(const std::filesystem::path& folder);
 
 /// Lists the frames of a recording of Redwood or Open3D:
@@ -15,18 +15,19 @@ namespace roomradar {
 ///   color/N.jpg  or .png; depth is registered to it
 ///   *.log        per frame a line of three integers, then the 4 x 4 pose, camera to world (m)
 ///
-/// Without a JSON file with intrinsics, these are a PrimeSense's: 525 px at a width of 640.
-/// Stamps are N / 30 s.
+/// Without a JSON file, the intrinsics are a PrimeSense's, with a focal length of 525 px at a width of 640
+/// px. Stamps are N / 30 s.
 /// @throws Error naming the file and line if the trajectory or the intrinsics are damaged
 IndexedRecording index_redwood(const std::filesystem::path& folder);
 
-/// Returns true if `folder` holds a recording of ICL-NUIM in TUM's form: depth, rgb and a trajectory
+/// Returns true if `folder` contains a recording of ICL-NUIM in TUM format: depth, rgb and a trajectory
 /// *.gt.freiburg.
 [[nodiscard]] bool is_icl_nuim(const std::filesystem::path& folder);
 
 /// Lists the frames of a recording of ICL-NUIM: depth/N.png (1/5000 m), rgb/N.png, and per frame a line
-/// `N x y z qx qy qz qw` in *.gt.freiburg. Its cameras have fx = 481.2 and fy = -480 px: their y points up,
-/// which makes their frames left-handed. Camera and world are mirrored in y here. Stamps are N / 30 s.
+/// `N x y z qx qy qz qw` in *.gt.freiburg. Intrinsics are fx = 481.2 px and fy = -480 px, that is, y points
+/// up and the camera frame is left-handed. The reader mirrors camera and world frame in y. Stamps are N / 30
+/// s.
 /// @throws Error naming the file and line if the trajectory is damaged
 IndexedRecording index_icl_nuim(const std::filesystem::path& folder);
 

@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// A topic of images, and its camera.
+/// A topic of images, and the intrinsics and lens of its camera.
 struct RosStream {
   std::uint32_t topic = 0;
   bool is_compressed = false;
@@ -21,23 +21,24 @@ struct RosStream {
   int width_px = 0, height_px = 0;
   Intrinsics camera{};
   RationalLens lens{};
-  std::vector<MessageEntry> messages{};  ///< by time of reception
+  std::vector<MessageEntry> messages{};  ///< sorted by time of reception
 };
 
 struct RosStreams {
   RosStream depth;
-  std::optional<RosStream> colour;  ///< unset: there is none with a camera_info
+  std::optional<RosStream> colour;  ///< unset: no colour topic has a camera_info
 };
 
 /// Returns the topics of depth images (16UC1, mono16, 32FC1 or compressedDepth) and of colour images. Of
-/// several depth topics, one that is not registered to colour is preferred.
-/// @throws Error naming the topics that were found if none is depth, or the topic has no camera_info
+/// several depth topics, prefers one that is not registered to colour.
+/// @throws Error naming the topics that were found if there is no depth topic, or the depth topic has no
+///         camera_info
 RosStreams find_streams(const MessageLog& log);
 
 /// Returns the length of a unit of 16 bit depth, m: from the option Depth Units of a RealSense, else 0.001.
 double depth_unit_m(const MessageLog& log, const RosStream& depth);
 
-/// Decode a message of the stream. Throw Error if it is damaged or of an encoding that is not known.
+/// Decode a message of the stream. Throw Error if it is damaged or its encoding is not supported.
 void decode_ros_depth(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,
                       double unit_m, DepthImage& depth_m);
 void decode_ros_colour(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,

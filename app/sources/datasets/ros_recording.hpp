@@ -8,16 +8,16 @@
 
 namespace roomradar {
 
-/// Topic on which roomradar writes T_world_camera as the 16 numbers of a matrix, row by row, without loss of
-/// bits.
+/// Topic on which roomradar writes T_world_camera as a row-major 4 x 4 matrix of doubles, without rounding.
 inline constexpr const char* kPoseTopic = "/roomradar/T_world_camera";
 
-/// Lists the frames of a recording of ROS: depth and colour images with their camera_info, each in its own
-/// camera. Poses come from roomradar's topic, else from tf, if the depth camera's frame moves in it. Gravity
-/// comes from an IMU whose frame tf, or a RealSense's extrinsics, relate to the depth camera. Stamps are
-/// those of the message headers. For compressed files, whose headers cannot be read at once, they are the
-/// times of reception, shifted by the median difference of the first messages.
-/// @throws Error naming the file and its topics if it holds no depth images or no camera_info
+/// Lists the frames of a recording of ROS: depth and colour images with their camera_info, each with its own
+/// intrinsics. Poses come from kPoseTopic, else from tf if the depth camera's frame moves in tf. Gravity
+/// comes from an IMU with known extrinsics to the depth camera (from tf or a RealSense's topics). Stamps are
+/// those of the message headers. In compressed files, reading all headers takes too long. There, stamps are
+/// the times of reception, plus the median offset from reception to header stamp over the first five
+/// messages.
+/// @throws Error naming the file and its topics if it contains no depth images or no camera_info
 IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& log);
 
 /// Opens a bag of ROS 1.

@@ -11,24 +11,25 @@
 
 namespace roomradar {
 
-/// Holds the static transforms, and the times of the moving ones. Moving transforms are read around the time
-/// of a query.
+/// Stores the tree and its static transforms. Messages with moving transforms are read again per query,
+/// around its time.
 class RosTransforms {
  public:
-  /// Reads all messages of tf_static and the first 500 of tf, fewer in a compressed file; damaged ones are
-  /// left out.
+  /// Reads all messages of tf_static and the first 500 of tf, fewer in a compressed file. Ignores damaged
+  /// messages.
   /// @param log  must outlive this object
   explicit RosTransforms(const MessageLog& log);
 
-  /// Returns the transform between two frames that do not move relative to each other; nullopt if the tree
-  /// does not connect them.
+  /// Returns the constant transform from frame `b` to frame `a`. Returns nullopt if the tree does not connect
+  /// them, or if a transform between them moves.
   [[nodiscard]] std::optional<Eigen::Isometry3d> T_a_b(const std::string& a, const std::string& b) const;
 
   /// Returns true if `frame` moves relative to the root of its tree.
   [[nodiscard]] bool moves(const std::string& frame) const;
 
-  /// Returns the pose of `frame` in the root of its tree at a time of the message headers. Returns nullopt if
-  /// nothing moves, or a moving transform has no messages within 0.15 s before and after.
+  /// Returns the pose of `frame` in the root frame of its tree. `stamp_s` is a time on the clock of the
+  /// message headers. Returns nullopt if `frame` does not move, or a moving transform has no message within
+  /// 0.15 s before or none within 0.15 s after.
   [[nodiscard]] std::optional<Eigen::Isometry3d> T_root_frame(const std::string& frame, double stamp_s) const;
 
  private:

@@ -1,4 +1,4 @@
-// rtabmap.hpp: databases of RTAB-Map, also of its apps for phones.
+// rtabmap.hpp: databases of RTAB-Map and of its phone apps.
 #pragma once
 #include <filesystem>
 
@@ -9,11 +9,12 @@ namespace roomradar {
 /// Returns true for an SQLite database named *.db with RTAB-Map's tables Node, Data and Link.
 [[nodiscard]] bool is_rtabmap(const std::filesystem::path& path);
 
-/// Lists the nodes with depth: a JPEG or PNG, depth as PNG (16 bit, mm; or four bytes, a float in m), the
-/// pose of the robot or phone as odometry estimated it (12 floats), and the camera with its pose on the
-/// robot. Depth may be smaller than colour; both are of one camera. Stamps are Node.stamp. Nodes are key
-/// frames, often a second apart.
-/// @throws Error naming the file if it is damaged, older than version 0.18, or holds no or several cameras
+/// Lists the nodes with depth: colour (JPEG or PNG), depth (PNG of 16 bit, mm, or of four bytes per pixel, a
+/// float in m), the odometry pose of the robot or phone (12 floats), and the camera's intrinsics and pose on
+/// the robot. Depth may have fewer pixels than colour, but is registered to it. Stamps are Node.stamp. Nodes
+/// are keyframes, often a second apart.
+/// @throws Error naming the file if it is damaged, older than version 0.18, or contains no camera or several
+///         cameras
 /// Source: RTAB-Map, DBDriverSqlite3, CameraModel.
 IndexedRecording index_rtabmap(const std::filesystem::path& path);
 

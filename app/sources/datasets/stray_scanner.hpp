@@ -6,18 +6,18 @@
 
 namespace roomradar {
 
-/// Returns true if `folder` holds a recording by Stray Scanner: odometry.csv, camera_matrix.csv and depth.
+/// Returns true if `folder` contains a recording by Stray Scanner: odometry.csv, camera_matrix.csv and depth.
 [[nodiscard]] bool is_stray_scanner(const std::filesystem::path& folder);
 
 /// Lists the frames of a recording by Stray Scanner:
 ///   depth/000000.png       depth, mm
-///   confidence/000000.png  0, 1 or 2; pixels of confidence 0 count as not measured
+///   confidence/000000.png  0, 1 or 2; depth of confidence 0 is set to 0 (invalid)
 ///   rgb.mp4                colour; frame N is the video's frame N
 ///   camera_matrix.csv      3 x 3 intrinsics for the video's size; depth has the same camera, scaled
 ///   odometry.csv           timestamp (s), frame, x, y, z (m), qx, qy, qz, qw: camera to world
 ///
-/// The recorded camera's axes are roomradar's. The recorded world has y up and is converted to z up.
-/// Gravity follows from the poses, whose world ARKit aligns with it; imu.csv is not needed.
+/// The recorded camera's axes are roomradar's. The recorded world frame has y up and is converted to z up.
+/// Gravity follows from the poses, since ARKit aligns its world frame with gravity. imu.csv is not read.
 /// @throws Error naming the file and line if a list is damaged, or the video cannot be opened
 IndexedRecording index_stray_scanner(const std::filesystem::path& folder);
 

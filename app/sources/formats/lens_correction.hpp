@@ -20,12 +20,13 @@ PlanePoint<double> distorted(const PlanePoint<double>& p, const RationalLens& le
 class LensCorrection {
  public:
   /// @param real  the camera with its lens; its intrinsics must be valid
-  /// Throws Error naming `where` if a coefficient is not finite or the lens folds the image's centre.
+  /// Throws Error naming `where` if a coefficient is not finite or the distortion is not monotonic near the
+  /// image centre.
   LensCorrection(const Intrinsics& real, const RationalLens& lens, const char* where);
 
   /// Returns the pinhole camera of the corrected images. Its size and principal point are those of the real
-  /// camera. Its focal lengths are reduced until the middles of all four edges of the real image are inside,
-  /// at most to half of the real camera's.
+  /// camera. Its focal lengths are reduced until the image contains the midpoints of all four edges of the
+  /// real image, but never below half of the real camera's.
   [[nodiscard]] const Intrinsics& ideal() const { return ideal_; }
 
   /// Resamples by nearest neighbour. Pixels outside the real image are 0. The image must have the camera's

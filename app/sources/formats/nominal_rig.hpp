@@ -34,9 +34,9 @@ inline constexpr DepthNoise kPhoneLidarNoise{0.002F, 0.004F, 0.0F, 0.0F, 0.0001F
 /// V1 and V2, Sensors 2021.
 inline constexpr DepthNoise kTimeOfFlightNoise{0.001F, 0.0F, 0.0004F, 0.5F, 0.0001F};
 
-/// Stereo of a RealSense D435: disparity is accurate to 0.08 px at a focal length of 640 px and a baseline of
-/// 5 cm, so sigma = 0.5 mm + 0.08 z^2 / (640 * 0.05). Source: Intel, Best-Known-Methods for Tuning RealSense
-/// D400 Depth Cameras, section on RMS error.
+/// Noise of a RealSense D435's stereo depth: disparity is accurate to 0.08 px at a focal length of 640 px and
+/// a baseline of 5 cm, so sigma = 0.5 mm + 0.08 z^2 / (640 * 0.05). Source: Intel, Best-Known-Methods for
+/// Tuning RealSense D400 Depth Cameras, section on RMS error.
 inline constexpr DepthNoise kRealSenseNoise{0.0005F, 0.0F, 0.0025F, 0.0F, 0.0001F};
 
 /// Distance of a PrimeSense's or Xtion's colour camera from its depth camera, m.

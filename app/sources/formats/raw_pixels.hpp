@@ -20,12 +20,12 @@ enum class ColourPixels { kRgb8, kBgr8, kRgba8, kBgra8, kMono8, kYuyv, kUyvy, kN
 struct RawLayout {
   int width_px = 0;
   int height_px = 0;
-  std::size_t row_bytes = 0;  ///< bytes from row to row; 0: rows without padding
+  std::size_t row_bytes = 0;  ///< row stride in bytes; 0: rows without padding
 };
 
 /// Converts depth. `unit_m` is the length of one unit, m.
-/// @throws Error naming `where` if a side is not in 1..16384, unit_m is not > 0, or `bytes` are fewer than
-///         the layout needs
+/// @throws Error naming `where` if a side is outside 1..16384 px, unit_m is not > 0, or `bytes` is shorter
+///         than the layout requires
 void convert_depth(std::string_view bytes, const RawLayout& layout, DepthPixels pixels, double unit_m,
                    const std::string& where, DepthImage& depth_m);
 

@@ -26,8 +26,8 @@ inline void say_on_stderr(const std::string& sentence) {
 
 struct SourceOptions {
   /// Intrinsics of the depth camera. They replace those in the recording's files and the defaults of its
-  /// format. Their size must match the depth image's. If depth and colour have the same view (TUM and
-  /// numbered folders without camera.json), the colour camera's intrinsics are derived from them.
+  /// format. Their size must match the depth image's. If depth is registered to colour (TUM and numbered
+  /// folders without camera.json), the colour camera's intrinsics are derived from them.
   std::optional<Intrinsics> depth_camera;
   /// Depth mode of a live Kinect.
   KinectDepth kinect_depth = KinectDepth::kRaw;

@@ -33,12 +33,12 @@ void sort_by_stamp(std::vector<StampedAcceleration>& accelerations);
                                                      double stamp_s, double within_s);
 
 /// Returns the pose of a translation (m) and a quaternion x y z w. Returns nullopt if a number is not finite
-/// or the quaternion's norm is outside 0.9 to 1.1; some trackers write zeros when lost.
+/// or the quaternion's norm is outside 0.9 to 1.1; some trackers write zeros when tracking is lost.
 [[nodiscard]] std::optional<Eigen::Isometry3d> rigid_pose(const Eigen::Vector3d& t_m,
                                                           const Eigen::Vector4d& q_xyzw);
 
 /// Returns the pose of a rotation and a translation (m). Returns nullopt if a number is not finite or the
-/// left part is not a rotation, see nearest_rotation().
+/// left 3 x 3 block is not a rotation, see nearest_rotation().
 [[nodiscard]] std::optional<Eigen::Isometry3d> rigid_transform(const Eigen::Matrix<double, 3, 4>& matrix);
 
 }  // namespace roomradar
