@@ -1,4 +1,4 @@
-// held_out.hpp: scores a mesh by held-out frames (tracked, but not fused into it).
+// held_out.hpp: scores a mesh by held-out frames, which were tracked but not fused into the mesh.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,7 +11,7 @@ namespace roomradar {
 
 struct HeldOutScore {
   std::int64_t frames = 0;  ///< number of held-out frames with a pose
-  /// Number of compared pixels. These are every 4th pixel in both directions with 0 < depth <= 4 m.
+  /// Number of compared pixels: every 4th pixel in both directions, if 0 < depth <= 4 m.
   std::int64_t pixels = 0;
   double cover = 0.0;  ///< fraction of the compared pixels in which the mesh is visible (covered pixels)
   /// Median of |mesh depth - measured depth| over covered pixels; resolution 0.05 mm.

@@ -37,9 +37,10 @@ struct ScannedRoom {
   Mesh unknown_world;  ///< frontier of unknown space
 };
 /// Simulates a prescan of the room with noisy depth at known poses, fuses the frames and extracts the
-/// surface. If scan.maps contains this room's map, made by this version with the same settings, loads it.
+/// surface. Loads the room's map instead if scan.maps contains one from this program version and the same
+/// settings.
 /// @param progress  called after each frame, possibly from several threads concurrently
-/// @throws Error if no surface was found, or a stored map is damaged or of another source
+/// @throws Error if no surface was found, or a stored map is damaged or belongs to another source
 ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std::function<void()>& progress);
 
 /// A scanned room in GPU memory, with one FrameScene per policy.
@@ -52,8 +53,9 @@ struct MappedRoom {
   MappedRoom(GlContext& context, ScannedRoom room);
 };
 
-/// Room of a run's scenario, and the scenario's number in that room. Rooms take turns. The number in the room
-/// determines occluder, motion and shape, so each room gets all combinations.
+/// Room of a run's scenario, and the scenario's number in that room. Successive scenarios are assigned to the
+/// rooms in rotation. The number in the room determines occluder, motion and shape, so all combinations occur
+/// in each room.
 struct ScenarioTurn {
   std::size_t room = 0;     ///< index of the room
   std::int64_t number = 0;  ///< number of the scenario in that room

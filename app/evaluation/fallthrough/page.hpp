@@ -16,7 +16,7 @@ struct FailurePicture {
 
 /// Writes a self-contained file that loads nothing from the network. Does nothing if `path` is empty. Throws
 /// Error if the file cannot be written.
-/// @param about  line of text with the number of scenarios, the seed, the rooms and the machine
+/// @param about  text line with the number of scenarios, the seed, the rooms and the machine
 void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
                 const std::vector<FailurePicture>& pictures, const std::filesystem::path& path);
 

@@ -29,7 +29,7 @@ struct GridCell {
   Eigen::Vector3d start_world = Eigen::Vector3d::Zero();
   bool has_truth = false;  ///< true if the reference surface stops the ball
   double true_travel_m = 0.0;
-  /// True if the contact with the reference surface is not visible in the frame, or there is no contact.
+  /// True if the contact point on the reference surface is not visible in the frame, or there is no contact.
   bool is_hidden = false;
   std::array<GridDrop, kPolicyCount> drops;
 };
@@ -50,15 +50,15 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
 /// thresholds are those of judge().
 struct GridTotals {
   int cells = 0, passed = 0, false_stops = 0;
-  int false_stops_at_unknown = 0;  ///< those of false_stops that rest on the frontier of unknown space
+  int false_stops_at_unknown = 0;  ///< false stops on the frontier of unknown space
   std::array<int, 6> rested_on{};  ///< number of balls, indexed by SurfaceKind
 };
 GridTotals totals_of(const Grid& grid, std::size_t policy, bool hidden_only);
 std::string table_of(const Grid& grid);
 
-/// Draws one plan of the grid per policy, side by side. A cell's colour is that of the surface kind on which
-/// its ball rests, pale unless GridCell::is_hidden. A dark outline marks a ball that passed through the
-/// reference surface.
+/// Draws one plan of the grid per policy, side by side. A cell's colour shows the surface kind on which its
+/// ball rests. The colour is pale unless GridCell::is_hidden. A dark outline marks a ball that passed through
+/// the reference surface.
 ColourImage draw_plan(const Grid& grid);
 
 }  // namespace roomradar

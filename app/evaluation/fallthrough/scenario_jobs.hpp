@@ -1,4 +1,5 @@
-// scenario_jobs.hpp: splits the scenarios of a run into jobs of `roomradar farm`, and joins their results.
+// scenario_jobs.hpp: splits the scenarios of a run into jobs of `roomradar farm`, and merges the jobs'
+// results.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -10,16 +11,16 @@
 
 namespace roomradar {
 
-/// Returns the manifest: a job that scans the rooms, and one per options.job_size scenarios. More scenarios
-/// add jobs. Jobs with options.job_size scenarios stay as they are.
+/// Returns the manifest: a job that scans the rooms, and one job per options.job_size scenarios. More
+/// scenarios add jobs and leave all full jobs unchanged.
 std::string scenario_manifest(const FallthroughOptions& options);
 
 /// Returns the folder of the rooms' maps, which the manifest's first job writes.
 std::filesystem::path maps_of_jobs(const std::filesystem::path& folder);
 
 /// Returns the rows of all jobs that have results, in the scenarios' order.
-/// @param faults  reasons of the jobs that have no results, by their names
-/// @throws Error if a file is damaged or holds other scenarios than its job's
+/// @param faults  by name of job: why the job has no results
+/// @throws Error if a file is damaged or contains scenarios of another job
 std::vector<ScenarioRow> joined_rows(const FallthroughOptions& options,
                                      const std::map<std::string, std::string>& faults);
 

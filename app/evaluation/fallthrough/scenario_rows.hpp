@@ -1,4 +1,4 @@
-// scenario_rows.hpp: results of scenarios as a file, so that several processes can share a run.
+// scenario_rows.hpp: file with the results of scenarios, so that several processes can divide a run.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace roomradar {
 
-/// Writes rows as JSON. Every number reads back as the same number. Throws Error if the file cannot be
+/// Writes rows as JSON. read_rows() reads exactly the same numbers. Throws Error if the file cannot be
 /// written.
 void write_rows(const std::vector<ScenarioRow>& rows, const std::filesystem::path& path);
 
-/// Reads what write_rows() wrote. Throws Error if the file cannot be read or is of another form.
+/// Reads what write_rows() wrote. Throws Error if the file cannot be read or its contents are not such rows.
 std::vector<ScenarioRow> read_rows(const std::filesystem::path& path);
 
 }  // namespace roomradar

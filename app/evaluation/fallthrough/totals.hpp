@@ -39,7 +39,7 @@ struct PolicyTotals {
 };
 std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>& rows);
 
-/// Returns the nearest-rank percentile `part`, 0 to 1; NaN if there are no values.
+/// Returns the nearest-rank quantile at the fraction `part`, 0 to 1; NaN if there are no values.
 double percentile(std::vector<double> values, double part);
 /// Returns text such as "3.2 mm", or "-" for a value that is not finite.
 std::string millimetres(double metres);

@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// Frames of a scenario, rendered on first use. If the occluder does not move, frame 0 stands for all.
+/// Frames of a scenario, rendered on first use. If the occluder does not move, all frames are frame 0.
 class ScenarioFrames {
  public:
   ScenarioFrames(const Scenario& scenario, const Room& room) : scenario_(scenario), room_(room) {}
@@ -40,7 +40,7 @@ struct Trial {
   double travelled_m = 0.0;
   Verdict verdict;
   SurfaceKind rested_on = SurfaceKind::kNothing;
-  double frame_ms = 0.0;  ///< time to make the first frame's surfaces, plus the mean time of a radar query
+  double frame_ms = 0.0;  ///< time to create the first frame's surfaces, plus the mean time of a radar query
 };
 
 /// One frame of a trial.
@@ -52,7 +52,7 @@ struct TrialStep {
 };
 using WatchTrial = std::function<void(const TrialStep& step)>;
 
-/// Settings by which the surfaces of a trial are made.
+/// Settings for the surfaces of a trial.
 struct TrialSurfaces {
   SurfacePolicy policy = SurfacePolicy::kMap;  ///< policy of the scene
   int depth_stride = 1;                        ///< factor by which depth images are reduced: 1, 2 or 4
@@ -60,12 +60,12 @@ struct TrialSurfaces {
 };
 
 /// Sets the scene's surfaces to those of one frame of the scenario, with the camera at T_world_believed.
-/// Returns the run time, ms. With kMap, detects the foreground of frame 0 once before, untimed, so that the
-/// detection has previous labels.
+/// Returns the run time, ms. For kMap and frame 0, first runs the foreground detection once more, untimed: it
+/// replaces the labels of the previous scenario, which the timed detection would otherwise use.
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
                   std::span<const FineRegion> about_objects, FrameScene& scene);
 
-/// Runs the scenario frame by frame. Makes the policy's surfaces from each camera frame, with the camera at
+/// Runs the scenario frame by frame. Creates the policy's surfaces from each camera frame, with the camera at
 /// Scenario::T_world_believed, and moves the object as far as the radar permits. Ends when the object stops
 /// or has travelled Scenario::limit_m.
 Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& surfaces,

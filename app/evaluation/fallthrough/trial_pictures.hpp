@@ -18,10 +18,10 @@ class SideView {
 
   /// Draws the sections of room and occluder at a frame's time.
   [[nodiscard]] ColourImage room_at(int frame) const;
-  /// Adds the lines in which surfaces intersect the plane. Static surfaces are black, dynamic ones blue,
+  /// Draws the lines in which surfaces intersect the plane. Static surfaces are black, dynamic ones blue,
   /// inferred backs violet, and the frontier of unknown space red.
   void add_surfaces(std::span<const SceneTree> surfaces, ColourImage& picture) const;
-  /// Adds the section of the object after travelling travelled_m, with alpha `part`.
+  /// Draws the section of the object after travelling travelled_m, with the alpha value `part`.
   void add_object(double travelled_m, Rgb colour, double part, ColourImage& picture) const;
 
  private:
@@ -37,7 +37,8 @@ class SideView {
 
 /// Returns the camera's depth image, shaded and scaled to width_px.
 ColourImage camera_view(const Scenario& scenario, const Frame& frame, int width_px);
-/// Draws the outline of the object after travelling travelled_m into the camera's view.
+/// Draws the outline of the object after travelling travelled_m into the camera's view, with the alpha value
+/// `part`.
 void add_outline(const Scenario& scenario, double travelled_m, Rgb colour, double part, ColourImage& picture);
 
 /// Returns camera view and section side by side, with the object at its start (blue), at the true contact

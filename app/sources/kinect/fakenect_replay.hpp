@@ -1,5 +1,5 @@
-// fakenect_replay.hpp: prepares a recording for replay by fakenect, libfreenect's replay library. fakenect
-// does not check files.
+// fakenect_replay.hpp: prepares a recording for replay by fakenect, libfreenect's replay library, which does
+// not check files.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -13,9 +13,9 @@ namespace roomradar {
 
 /// Environment variable that names the recording to replay.
 inline constexpr const char* kFakenectPath = "FAKENECT_PATH";
-/// Returns the folder in FAKENECT_PATH if fakenect is loaded instead of libfreenect. fakenect then replays
-/// the folder's recording in place of a device. Returns nullopt if libfreenect is loaded, even if the
-/// variable is set.
+/// Returns the folder in FAKENECT_PATH if fakenect is loaded instead of libfreenect, and thus replays the
+/// folder's recording in place of a device. Returns nullopt if libfreenect is loaded, even if the variable is
+/// set.
 std::optional<std::filesystem::path> replayed_folder();
 
 /// Protects the process from broken files. fakenect reads past the end of a truncated image, and exits if a

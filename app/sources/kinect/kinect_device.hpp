@@ -13,8 +13,8 @@
 
 namespace roomradar {
 
-/// Callbacks of KinectDevice::serve(). Images are in the device's buffers. Stamps are the 32 bit stamps of
-/// its clock.
+/// Callbacks of KinectDevice::serve(). Images are in the device's buffers, valid during the call. `ticks` is
+/// the 32 bit stamp of the device's clock.
 struct KinectListener {
   /// Called per depth image, with 640 x 480 values in the requested KinectDepth mode. Another number of
   /// values means a broken image.
@@ -35,7 +35,8 @@ class KinectDevice {
   /// Passes images that have arrived to the listener. Waits up to `patience_s` for an image. Returns false if
   /// the device was disconnected or its replay has ended.
   virtual bool serve(double patience_s) = 0;
-  /// Reads the device's accelerometer, for acceleration_g(). Must not be called by the listener.
+  /// Reads the device's accelerometer and stores the reading for acceleration_g(). Must not be called by the
+  /// listener.
   virtual void ask_acceleration() = 0;
   /// Returns the last accelerometer reading, g, or nullopt if there is none.
   [[nodiscard]] virtual std::optional<Eigen::Vector3d> acceleration_g() const = 0;

@@ -14,7 +14,7 @@ namespace roomradar {
 /// Reads the device in a thread for as long as the object exists. If the device sends no depth image for
 /// config.silence_s, or is disconnected, the feed calls config.say and reopens the device until it responds.
 /// Frame numbers continue across such a gap, and stamps advance by the elapsed host time. A device that sends
-/// depth but no colour is reopened once. Then it is used without colour.
+/// depth but no colour is reopened once; if colour is still missing, frames have depth only.
 class KinectFeed {
  public:
   using Take = KinectQueue::Take;

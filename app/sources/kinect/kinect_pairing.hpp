@@ -1,4 +1,4 @@
-// kinect_pairing.hpp: assigns time stamps to a Kinect's images and pairs depth with colour.
+// kinect_pairing.hpp: assigns timestamps to a Kinect's images and pairs depth with colour.
 #pragma once
 #include <Eigen/Core>
 #include <chrono>
@@ -36,7 +36,8 @@ class KinectPairing {
   bool add_depth(std::span<const std::uint16_t> pixels, std::uint32_t ticks,
                  const std::function<KinectFrame()>& memory,
                  const std::optional<Eigen::Vector3d>& acceleration_g);
-  /// Adds a colour image. Returns false if its size is wrong. The depth image then has no colour.
+  /// Adds a colour image. Returns false and ignores the image if its size is wrong; its depth image then has
+  /// no colour.
   /// @param bytes  640 x 480 x 3 values
   /// @param ticks  stamp of the device's clock
   bool add_colour(std::span<const std::uint8_t> bytes, std::uint32_t ticks);

@@ -29,8 +29,8 @@ struct KinectConstants {
 /// is that of `nominal`. Parameters are one focal length for both axes, the principal point, the rotation,
 /// and the translation along x. The parameters partly compensate for each other. A weak prior therefore pulls
 /// each of them towards its value in `nominal`. Returns nullopt for fewer than 50 correspondences, without a
-/// nominal colour camera, and if the RMS error is above 3 px. In the last case, the factory calibration is
-/// not of the assumed form.
+/// nominal colour camera, and if the RMS error is above 3 px. A larger error means that the calibration data
+/// do not have the assumed layout.
 std::optional<CameraRig> fit_kinect_rig(const std::vector<SeenByBoth>& seen_by_both,
                                         const CameraRig& nominal);
 

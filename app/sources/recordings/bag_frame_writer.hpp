@@ -1,4 +1,4 @@
-// bag_frame_writer.hpp: writes frames as messages of ROS 1.
+// bag_frame_writer.hpp: writes frames to a ROS 1 bag.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -10,10 +10,10 @@
 
 namespace roomradar {
 
-/// Writes a bag with the topics that ROS drivers of depth cameras have: depth in m (32FC1), colour (rgb8),
-/// their camera_info, gravity as the acceleration of an IMU at rest, poses and the pose of the colour camera
-/// in tf. Poses are written a second time as matrices (kPoseTopic), since conversion to the quaternions of tf
-/// loses the last bits.
+/// Writes a bag with the topics that ROS drivers of depth cameras publish: depth in m (32FC1), colour (rgb8),
+/// and their camera_info. Gravity is written as the acceleration of an IMU at rest. Camera poses and the
+/// extrinsics of the colour camera are written to tf. Camera poses are also written as matrices (kPoseTopic),
+/// since conversion to tf's quaternions rounds.
 class BagFrameWriter {
  public:
   /// Throws Error if the file cannot be written.

@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// Opens a recording, a folder or a file, and recognises its format by its content. Formats of other programs
-/// are listed in app/sources/README.md (index_foreign()). The other formats are folders:
+/// Opens a recording (folder or file) and recognises its format by its content. Formats of other programs are
+/// listed in app/sources/README.md (index_foreign()). The other formats are folders:
 ///   fakenect      INDEX.txt with d-*.pgm (raw 11 bit), r-*.ppm, a-*.dump (accelerometer)
 ///   TUM RGB-D     depth.txt, rgb.txt; optional groundtruth.txt, accelerometer.txt
 ///   7-Scenes      frame-XXXXXX.depth.png, .color.jpg, .color.png or .color.none (empty: no colour),
@@ -21,9 +21,9 @@ namespace roomradar {
 ///
 /// Image files are read on demand. next() reports unreadable frames as FrameSource describes. The source can
 /// rewind and seek, and knows its number of frames.
-/// @throws Error if the folder is absent, empty or of none of these formats (the message lists them). Also
-///         throws if a list in it is unusable, none of its first ten frames can be read, or the intrinsics do
-///         not match the images
+/// @throws Error if the folder is absent, empty or in none of these formats (the message lists them). Also
+///         throws if one of its lists is unusable, none of its first ten frames is readable, or the
+///         intrinsics do not match the images
 std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder,
                                          const SourceOptions& options = {});
 

@@ -10,13 +10,13 @@
 
 namespace roomradar {
 
-/// Returns the kind of the recording at `path`, a file or folder, such as "Record3D export". The kind is
-/// recognised by the content; a folder with one file of these kinds counts as that file. Returns an empty
-/// string for other kinds, which index_foreign() does not read.
+/// Returns the kind of the recording at `path`, a file or folder, such as "Record3D export". Recognises the
+/// kind by the content. A folder with one file of these kinds counts as that file. Returns an empty string
+/// for kinds that index_foreign() does not read.
 [[nodiscard]] std::string foreign_kind(const std::filesystem::path& path);
 
 /// Lists the frames of a recording of another program. Returns nullopt if foreign_kind() is empty. A
-/// camera.json beside the one file of a folder replaces the cameras and lenses.
+/// camera.json in the folder of that one file replaces the cameras and lenses.
 /// @throws Error naming the file if the recording is damaged or lacks depth images or cameras
 std::optional<IndexedRecording> index_foreign(const std::filesystem::path& path);
 

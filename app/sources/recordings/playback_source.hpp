@@ -26,7 +26,7 @@ constexpr std::string_view to_string(AtEnd at_end) {
 }
 
 /// Delivers the frames of an inner source, and can hold (repeat the last frame), rewind and loop. Stamps
-/// always increase, since callers simulate physics by them. A repeated frame, and the first frame after a
+/// always increase, since callers simulate physics with them. A repeated frame, and the first frame after a
 /// rewind, a hold or a pause, have a stamp 1/30 s after the previous frame's. After a hold, the stamp is
 /// later if more time has passed on the source's clock. Index and pose are those of the inner source.
 class PlaybackSource final : public FrameSource {

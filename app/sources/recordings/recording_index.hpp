@@ -64,8 +64,8 @@ void pair_up(StampPairing& pairing, const std::vector<ListedImage>& colours,
              std::vector<RecordedFrame>& frames);
 
 /// Reads a 7-Scenes pose, a 4 x 4 matrix from camera to world. Replaces its rotation by the nearest exact
-/// rotation. Rotations in recordings deviate by about 1e-4. Returns nullopt if an entry is not finite.
-/// Tracking was then lost during recording. Throws Error naming the file if it is missing or not a pose.
+/// rotation. Rotations in recordings deviate by about 1e-4. Returns nullopt if an entry is not finite, as
+/// recorders write when tracking is lost. Throws Error naming the file if it is missing or not a pose.
 std::optional<Eigen::Isometry3d> read_pose_file(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -24,8 +24,8 @@ std::string_view to_string(RecordingFormat format);
 ///                 frame / 30 s. A frame without colour gets an empty file frame-N.color.none.
 ///   kFakenect     stamps to 1/60 us plus a common offset, depth quantised as by the Kinect (invalid
 ///                 beyond 9.9 m), colour, gravity to 1/819 g; no poses. Gaps over 30 s become 30 s, since
-///                 the device's clock wraps after 72 s. 640 x 480 only, the one size that fakenect
-///                 replays.
+///                 the device's clock wraps after 72 s. 640 x 480 px only, since fakenect replays no other
+///                 size.
 ///   kRosBag       recording.bag: depth and poses bit for bit, stamps to 1 ns, colour, gravity. All values
 ///                 that other programs need are in the bag.
 /// Colour is stored without loss. All frames must have the cameras of the first frame. They are written to

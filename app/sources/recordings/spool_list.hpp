@@ -1,4 +1,4 @@
-// spool_list.hpp: files of a spool (a frame cache on disk), that is, a list of the frames and their images.
+// spool_list.hpp: files of a spool (a frame cache on disk): a list of the frames, and their images.
 //
 // The list, list.bin, begins with "RRSPOOL3" and the source's name. For each frame follow the size of its
 // entry in bytes (u32) and the entry. A size of 0 marks the end of the source. The images are in N.images,

@@ -33,11 +33,11 @@ class SpooledSource final : public FrameSource {
   explicit SpooledSource(std::unique_ptr<FrameSource> source,
                          const std::filesystem::path& parent_folder = {});
 
-  /// Caches frames in `folder`. The folder is not removed. Frames of an earlier process in the folder are
-  /// delivered first. Indices and stamps of the source's frames then continue from the last of those frames.
+  /// Caches frames in `folder`, which is not removed. Frames that an earlier process cached in the folder are
+  /// delivered first. Indices and stamps of the source's frames then continue from the last cached frame.
   /// @param source      may be null if has_end(folder)
-  /// @param most_ahead  max number of unread frames. At this number, the source is not read, and a live
-  ///                    source loses frames
+  /// @param most_ahead  max number of unread frames. While this number is reached, the source is not read, so
+  ///                    a live source loses frames
   /// @throws Error if the folder cannot be created, or its list.bin is not a spool's list
   static std::unique_ptr<SpooledSource> kept(std::unique_ptr<FrameSource> source,
                                              const std::filesystem::path& folder,
@@ -73,7 +73,7 @@ class SpooledSource final : public FrameSource {
   void take(SpoolList left);
   void stop_capture();
   bool wait_for_reader();
-  // The following two run in the background thread.
+  // capture() and capture_one() run in the background thread.
   void capture();
   bool capture_one(Frame& frame);
 

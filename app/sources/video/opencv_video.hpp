@@ -1,4 +1,4 @@
-// opencv_video.hpp: the entry point of the module for videos.
+// opencv_video.hpp: the entry point of the video codec module.
 #pragma once
 #include "app/sources/video/video_codecs.hpp"
 

@@ -1,4 +1,4 @@
-// video_file.hpp: frames of a video by number.
+// video_file.hpp: random access to the frames of a video.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// A video, decoded by the module for videos. Not thread safe.
+/// A video, decoded by the video codec module. Not thread safe.
 class VideoFile {
  public:
   /// Throws Error naming the file if it cannot be opened or a side is not in 1..16384.
@@ -20,9 +20,9 @@ class VideoFile {
 
   [[nodiscard]] int width_px() const { return width_px_; }
   [[nodiscard]] int height_px() const { return height_px_; }
-  /// Decodes frame `number`, from 0, as stored, without the rotation that the file states. Fast for
-  /// consecutive frames; for others, decoding starts at the key frame before them. Throws Error if the video
-  /// has no such frame.
+  /// Decodes frame `number`, from 0, as stored, that is, without applying the rotation that the file states.
+  /// Consecutive frames are fast. For other frames, decoding starts at the previous key frame. Throws Error
+  /// if the video has no such frame.
   void read(std::size_t number, ColourImage& image);
 
  private:
