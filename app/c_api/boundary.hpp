@@ -1,4 +1,4 @@
-// boundary.hpp: boundary between C++ and C, which converts exceptions to a status and a sentence.
+// boundary.hpp: boundary between C++ and C, which converts exceptions to a status and an error message.
 // Elsewhere in app/c_api, exceptions are not caught.
 #pragma once
 #include <mutex>
@@ -10,25 +10,26 @@
 
 namespace roomradar::c_api {
 
-/// Exception of a call that is refused, with the status to return. Other exceptions become FAILED (Error),
-/// OUT_OF_MEMORY or INTERNAL.
+/// Exception for an invalid call, with the status to return. Exceptions of type Error become FAILED. Other
+/// exceptions become OUT_OF_MEMORY or INTERNAL.
 class Refusal : public std::runtime_error {
  public:
   Refusal(roomradar_status of, const std::string& sentence) : std::runtime_error(sentence), status(of) {}
   roomradar_status status;
 };
 
-/// Sentence of a handle's last failed call.
+/// Error message of a handle's last failed call.
 struct HandleError {
   std::mutex mutex;
   std::string sentence;
 };
 
-/// Turns the exception that is being handled into a status. Stores "CALL: sentence" for the thread and, if
-/// `error` is not null, for the handle. If memory is short, the sentences may be empty.
+/// Returns the status of the exception that is being handled. Stores the error message "CALL: MESSAGE" for
+/// the thread and, if `error` is not null, for the handle. If memory is exhausted, the stored messages may be
+/// empty.
 roomradar_status status_of_exception(const char* call, HandleError* error) noexcept;
 
-/// Returns work()'s status, or OK if it returns none. Exceptions become a status.
+/// Returns work()'s status, or OK if it returns none. If work() throws, returns status_of_exception().
 template <typename Work>
 roomradar_status guarded(const char* call, HandleError* error, const Work& work) noexcept {
   try {
@@ -43,9 +44,9 @@ roomradar_status guarded(const char* call, HandleError* error, const Work& work)
   }
 }
 
-/// Returns the sentence of this thread's last failed call.
+/// Returns the error message of this thread's last failed call.
 const char* last_error() noexcept;
-/// Returns a copy of a handle's sentence. The copy is valid until the calling thread calls sentence_of()
+/// Returns a copy of a handle's error message. The copy is valid until the calling thread calls sentence_of()
 /// again.
 const char* sentence_of(HandleError& error) noexcept;
 

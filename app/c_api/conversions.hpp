@@ -18,8 +18,8 @@ namespace roomradar::c_api {
 [[noreturn]] void refuse(const std::string& sentence);  ///< throws Refusal with INVALID_ARGUMENT
 /// Throws Refusal for a null pointer.
 void require_given(const void* pointer, const char* name);
-/// Throws Refusal unless the size is that of the struct in this version. Larger sizes come from a newer
-/// header.
+/// Throws Refusal unless the size is that of the struct in this version. Another size means that the caller
+/// was compiled with another version of roomradar.h.
 void require_struct_size(std::size_t given, std::size_t wanted, const char* name);
 
 /// Checks pointer and struct_size of a struct that begins with struct_size.
@@ -37,7 +37,7 @@ Struct options_of(const Struct* given, const char* name) {
   return *given;
 }
 
-/// Returns a text of 1..most bytes. Throws Refusal for null, empty and longer texts.
+/// Returns the text, whose length must be 1..most bytes. Throws Refusal for null, empty and longer texts.
 std::string text_of(const char* text, const char* name, std::size_t most = 4096);
 /// Returns an object's name.
 std::string name_of(const char* name);
@@ -45,7 +45,7 @@ std::string name_of(const char* name);
 /// Return the argument. Throw Refusal if it is not finite.
 double number_of(double value, const char* name);
 Eigen::Vector3d vector_of(const double* xyz, const char* name);
-/// Returns a pose. Its rotation is proper within 1e-6.
+/// Returns the pose. Throws Refusal unless its rotation is proper within 1e-6 and its last row is 0 0 0 1.
 Eigen::Isometry3d pose_of(const roomradar_pose* pose, const char* name);
 roomradar_pose pose_of(const Eigen::Isometry3d& T);
 /// Returns the pose without checking it.
@@ -59,12 +59,12 @@ roomradar_camera camera_of(const Intrinsics& camera);
 
 /// Reads a frame into `to`, whose buffers are reused. Depth that is negative or not finite becomes 0.
 void read_frame(const roomradar_frame* from, Frame& to);
-/// Sets `to` to describe a frame, with pointers to the images of `from`.
+/// Writes a frame's fields to `to`, with pointers to the images of `from`.
 void write_frame(const Frame& from, roomradar_frame& to);
 
-/// Returns a mesh whose vertices are finite and whose indices are in range.
+/// Returns the mesh. Throws Refusal if a vertex is not finite or an index is out of range.
 Mesh mesh_of(const roomradar_mesh* mesh);
-/// Writes a mesh to the caller's buffers, in the axes that they want.
+/// Writes a mesh to the caller's buffers, converted to the axes of to->axes.
 void write_mesh(const Mesh& from, std::uint64_t version, roomradar_mesh_buffers* to);
 
 /// Sets *needed to `count`. Then throws Refusal with BUFFER_TOO_SMALL if the capacity is less than `count`.
@@ -88,7 +88,7 @@ struct EngineAxes {
   double units_per_m;
   bool has_clockwise_fronts;
 };
-/// Returns the axes of a roomradar_axes.
+/// Returns the conversion for a value of roomradar_axes.
 const EngineAxes& engine_axes(std::int32_t axes);
 
 }  // namespace roomradar::c_api

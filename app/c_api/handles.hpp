@@ -1,5 +1,5 @@
-// handles.hpp: the library's objects behind handles. A handle is a number that is never used twice, so that
-// closed handles are recognised.
+// handles.hpp: tables of the library's objects by handle. Handle numbers are never reused, so that closed
+// handles are recognised.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -19,7 +19,7 @@ namespace roomradar::c_api {
 
 /// Base of all objects behind handles.
 struct Handled {
-  std::mutex in_use;  ///< held during a call, so that calls with one handle run one after the other
+  std::mutex in_use;  ///< locked during a call, which serialises calls with the same handle
   HandleError error;
 };
 
@@ -36,7 +36,7 @@ struct MapState : Handled {
   std::shared_ptr<ShapeState> shape;  ///< null until the first request
 };
 
-/// Returns a number that no handle of any kind has had.
+/// Returns a new handle number, unique among handles of all kinds.
 std::uintptr_t next_handle_number();
 
 /// Objects of one kind by their handles. Thread safe.
@@ -61,7 +61,7 @@ class HandleTable {
     const auto found = states_.find(reinterpret_cast<std::uintptr_t>(handle));
     return found == states_.end() ? nullptr : found->second;
   }
-  /// Closes the handle and returns its object; null as find() does.
+  /// Closes the handle and returns its object. Returns null for a closed, null or foreign handle.
   std::shared_ptr<State> take(const void* handle) {
     const std::lock_guard lock(mutex_);
     const auto node = states_.extract(reinterpret_cast<std::uintptr_t>(handle));
@@ -85,7 +85,8 @@ std::shared_ptr<State> object_of(const void* handle) {
   return state;
 }
 
-/// Calls work(State&) with the handle's object, while no other call uses it. Exceptions become a status.
+/// Calls work(State&) with exclusive use of the handle's object. Returns work()'s status, or that of its
+/// exception.
 template <typename State, typename Work>
 roomradar_status with(const char* call, const void* handle, const Work& work) noexcept {
   std::shared_ptr<State> state;
@@ -105,7 +106,7 @@ roomradar_status close(const char* call, const void* handle) noexcept {
   });
 }
 
-/// Returns the sentence of a handle's last failed call.
+/// Returns the error message of a handle's last failed call.
 template <typename State>
 const char* error_of(const void* handle) noexcept {
   const std::shared_ptr<State> state = HandleTable<State>::get().find(handle);

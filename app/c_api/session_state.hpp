@@ -1,4 +1,5 @@
-// session_state.hpp: the objects behind handles of sessions and locators. Each renders on its own thread.
+// session_state.hpp: state of session and locator handles. Each session and each locator renders on its own
+// thread.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -23,14 +24,14 @@ struct SessionState : Handled {
   Frame frame;  ///< buffer
   StageTimes times;
   std::uint64_t located_frames = 0;
-  std::vector<std::string> notices;  ///< not taken so far
+  std::vector<std::string> notices;  ///< messages that the caller has not fetched
   std::uint64_t room_version = 1;
   std::uint64_t room_revision = 0;    ///< revision of the radar's tree when room_version last changed
   std::uint64_t blocks_revision = 0;  ///< room_revision for which `blocks` was made
   RoomBlocks blocks;
-  CyberRadar radar;  ///< exact; for the caller's queries
+  CyberRadar radar;  ///< exact radar for the caller's queries
   std::unique_ptr<Session> session;
-  GlThread thread;  ///< on which the session lives; declared last, so that it ends first
+  GlThread thread;  ///< thread of all calls to the session; declared last, so that it is destroyed first
 
   ~SessionState();
   [[nodiscard]] const SavedMap& map() const { return own_map ? *own_map : shared_map->map; }
@@ -41,7 +42,7 @@ struct SessionState : Handled {
   }
   /// Throws Refusal if there is no object of that name.
   [[nodiscard]] const VirtualObject& object(const char* name) const;
-  /// Keeps sentences for roomradar_session_notices(), at most the newest 1,000.
+  /// Stores messages for roomradar_session_notices(), at most the newest 1,000.
   void keep(const std::vector<ObjectNotice>& sentences);
   /// Increments room_version if the session's room has changed.
   void look_for_new_room();

@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// Returns T_camera_board, the checkerboard's pose in the camera's frame, computed with OpenCV's solvePnP.
+/// Returns T_camera_board, the checkerboard's pose in the camera frame, computed with OpenCV's solvePnP.
 /// @param corners_px  all inner corners of the checkerboard, row by row, in the distorted image
 Eigen::Isometry3d pose_of_board(const std::vector<Eigen::Vector2d>& corners_px, const Board& board,
                                 const Intrinsics& camera, const Lens& lens);

@@ -52,9 +52,8 @@ std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colo
 
 /// Reads the source to its end, or until `most` views are found. A frame becomes a view if the whole
 /// checkerboard is in its colour image and measured by its depth image. The checkerboard must hardly move,
-/// and its pose must differ from all earlier views. Motion is excluded because colour and depth images are
-/// not taken at the same instant. Throws Error as require_valid(Board) does, or if none of the first 60
-/// frames has colour.
+/// since colour and depth images are not taken at the same instant. Its pose must differ from those of all
+/// earlier views. Throws Error as require_valid(Board) does, or if none of the first 60 frames has colour.
 /// @param progress  called after each frame with the views found so far
 BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
                             const std::function<void(const BoardViews&)>& progress);
@@ -63,13 +62,13 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
 /// normal of all views.
 std::size_t count_tilted(const BoardViews& views);
 
-/// Returns true if the depth of several views, and of more than fit, shows that the squares have another size
-/// than Board::square_m.
+/// Returns true if Board::square_m seems to be wrong: at least 4 poses were rejected because of their depth
+/// (BoardViews::off_plane_ratios), and more poses were rejected than accepted.
 bool are_squares_off(const BoardViews& views);
 
 /// Returns a short text on the problem with the views found so far and its remedy. Returns an empty string if
-/// there is none. Problems are no checkerboard of that size, a checkerboard never held still, squares of
-/// another size, or too few tilted views.
+/// there is no problem. Problems are: no checkerboard of that size, a checkerboard never held still, squares
+/// of another size, and too few tilted views.
 std::string advice_on(const BoardViews& views, const Board& board);
 
 /// Returns true if the frame's depth is registered to colour. Both images then have the same camera, so the

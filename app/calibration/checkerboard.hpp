@@ -4,7 +4,8 @@
 
 namespace roomradar {
 
-/// A printed checkerboard. Its size is the number of its inner corners, at which four squares meet.
+/// A printed checkerboard. Its size is counted in inner corners. An inner corner is a common corner of four
+/// squares.
 struct Board {
   int columns = 8, rows = 6;  ///< number of inner corners, 3 to 30 each, not equal
   double square_m = 0.03;

@@ -1,4 +1,4 @@
-// apply_scan_quality.hpp: the configuration of a prescan, from its options.
+// apply_scan_quality.hpp: converts the options of a prescan to its configuration.
 #pragma once
 #include "app/cli/options/prescan_options.hpp"
 #include "app/quality/quality.hpp"
@@ -10,8 +10,8 @@ namespace roomradar {
 /// default-constructed config unchanged.
 void apply(const ScanQuality& quality, PrescanConfig& config);
 
-/// Configures a prescan that extends a map: sets the map's resolution, and the deviation of the map's mesh. A
-/// deviation that the user gave takes precedence and is stored in the map.
+/// Configures a prescan that extends a map. Copies the map's resolution and mesh deviation to `config`. A
+/// deviation that the user has given (is_deviation_asked_for) takes precedence and is stored in the map.
 void keep_settings_of(SavedMap& map, bool is_deviation_asked_for, PrescanConfig& config);
 
 /// Returns the configuration of a prescan with these options.

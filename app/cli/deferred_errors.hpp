@@ -12,7 +12,7 @@ namespace roomradar {
 /// Stores the first error, which callers can throw at the end. Prints later errors to stderr immediately.
 class DeferredErrors {
  public:
-  /// Calls act() and adds the message of an exception that it throws.
+  /// Calls act(). If act() throws, adds the exception's message.
   template <typename Act>
   void attempt(const Act& act) {
     try {

@@ -14,18 +14,19 @@ namespace roomradar {
 struct MapInfo;
 
 /// Returns the calibration file for a source: `chosen` if it is not empty, otherwise calibration.json in the
-/// source's folder, unless it is a recording of another program. Returns an empty path if neither exists.
+/// source's folder. calibration.json is ignored in recordings of other programs. Returns an empty path if
+/// there is no calibration file.
 std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen);
 
-/// Returns true if lens and depth errors are corrected in the frames of open_source(). They are corrected
-/// either with the file of calibration_for(), or before recording. Throws Error if the recording's
-/// camera.json or session.json cannot be read.
+/// Returns true if lens and depth errors are corrected in the frames of open_source(). The correction takes
+/// place in open_source(), with the file of calibration_for(), or took place before recording. Throws Error
+/// if the recording's camera.json or session.json cannot be read.
 bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen);
 
-/// Opens `kinect:N[?depth=raw|mm|registered]`, `openni:N`, `sim:ROOM[?key=value&...]`, or a file or folder
-/// with a recording or a recorded session, recognised by its content. With `frames`, the source delivers only
-/// that range. With a file of calibration_for(), the source corrects lens and depth errors. Recordings and
-/// simulated frames are read one frame ahead, on a second thread.
+/// Opens `kinect:N[?depth=raw|mm|registered]`, `openni:N`, `sim:ROOM[?key=value&...]`, or a file or folder.
+/// Files and folders contain a recording or a recorded session, recognised by content. If `frames` is set,
+/// the source delivers only that range. If calibration_for() finds a file, the source corrects lens and depth
+/// errors. Recordings and simulated frames are read one frame ahead, on a second thread.
 ///
 /// @throws Error with a list of the kinds of source if `source` is none of them. Also throws if the frames
 ///         would be corrected twice, or if source or calibration cannot be opened

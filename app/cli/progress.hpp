@@ -42,8 +42,8 @@ class SmoothRate {
 };
 
 /// Remaining time of an operation, smoothed so that it does not jump with the speed. Counts down between
-/// estimates. An estimate pulls the remaining time exponentially (on a logarithmic scale). The time constant
-/// is the least of 15 s, the estimate and the shown time, but at least 1 s.
+/// estimates. The logarithm of the remaining time follows that of the estimates by exponential smoothing. The
+/// time constant is the least of 15 s, the estimate and the shown time, but at least 1 s.
 class SmoothRemaining {
  public:
   /// @param estimate_s  remaining steps divided by the recent speed, s

@@ -17,7 +17,7 @@ Registration require_registered(const SavedMap& a, const SavedMap& b, const std:
 
 /// Differences between two maps.
 struct MapChanges {
-  /// Maps points from b's to a's world frame.
+  /// Transforms points from b's to a's world frame.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   std::vector<Change> changes;  ///< largest first
 };

@@ -1,5 +1,5 @@
-// calibrate_command.hpp: roomradar calibrate: estimates cameras and depth errors from a recording of a
-// checkerboard.
+// calibrate_command.hpp: roomradar calibrate: estimates intrinsics, lens distortion and depth errors from a
+// recording of a checkerboard.
 #pragma once
 #include "app/cli/options/calibrate_options.hpp"
 

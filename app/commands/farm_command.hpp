@@ -18,18 +18,18 @@ FarmPlan plan_of(const FarmOptions& options);
 
 /// Function that runs the jobs of a plan, and calls the given function after each.
 using RunJobs = std::function<FarmState(const WatchFarm&)>;
-/// Runs a plan with progress on stderr, prints and reports how it ended.
+/// Runs a plan with progress on stderr. Prints the final state of the jobs and writes the report.
 FarmState run_planned(const FarmOptions& options, const FarmPlan& plan, const RunJobs& run_jobs);
 /// Returns 1 if a job failed or was skipped, otherwise 0.
 int exit_status(const FarmState& state);
 
-/// Reasons of the jobs that have no results, by their names.
+/// By name of job: why the job has no results.
 using JobFaults = std::map<std::string, std::string>;
-/// Runs the jobs into which a command splits its work, on this machine. Jobs that are done are not run again.
-/// @param folder     of the results, and of jobs.txt with the manifest; is created
+/// Runs the jobs into which a command splits its work, on this machine. Skips jobs that already have results.
+/// @param folder     folder for the results, and for the manifest (jobs.txt); created if missing
 /// @param manifest   text; see read_manifest()
-/// @param jobs       names of the only jobs to run, with those that they need; empty: all
-/// @param processes  jobs at a time; 0: one per processor
+/// @param jobs       names of the jobs to run, with the jobs that they need; empty: all
+/// @param processes  number of concurrent jobs; 0: one per processor
 /// @throws Error if the folder cannot be written or Ctrl-C is pressed
 JobFaults run_split(const std::string& folder, const std::string& manifest,
                     const std::vector<std::string>& jobs, int processes);

@@ -17,7 +17,7 @@ int play(const RunOptions& options);
 struct PlayResult {
   PlayWindowResult window;
   /// If the user asks to scan more: the place where an object rests on the frontier of unknown space. Unset
-  /// if none does.
+  /// if no object rests there.
   std::optional<PlaceToScan> look_at{};
 };
 /// Does the same in a window.

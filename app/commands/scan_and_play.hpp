@@ -1,4 +1,4 @@
-// scan_and_play.hpp: roomradar prescan and run, from scanning to playing and back in one window.
+// scan_and_play.hpp: roomradar prescan and run, which alternate between scanning and playing in one window.
 #pragma once
 #include "app/cli/options/prescan_options.hpp"
 #include "app/cli/options/run_options.hpp"

@@ -22,8 +22,8 @@ struct StartOptions {
 void add_options(CLI::App& command, StartOptions& options);
 
 /// Shows the start view, performs the chosen action in the same window, and shows the view again, until the
-/// user closes the window. The view shows faults of an action. Returns the exit status: that of the last
-/// action if the window was closed during it, else 0.
+/// user closes the window. The view shows the error messages of failed actions. Returns the exit status: that
+/// of the last action if the window was closed during it, else 0.
 /// @throws Error if there is no window
 int run(const StartOptions& options);
 

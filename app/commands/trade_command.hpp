@@ -5,7 +5,7 @@
 namespace roomradar {
 
 /// Measures the settings, prints the chosen presets and writes the requested files. Ctrl-C ends the
-/// measurements; results then cover those made before. Returns the exit status: 1 if a job failed.
+/// measurements; results then cover the measurements made so far. Returns the exit status: 1 if a job failed.
 /// @throws Error if a scene is not suitable, nothing was measured, or a file cannot be written. Measurements
 ///         made before the error are written
 int run(const TradeOptions& options);

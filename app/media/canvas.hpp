@@ -21,7 +21,7 @@ void draw_text(ColourImage& picture, const std::string& text, int x, int y, doub
 void fill_triangle(MaskImage& mask, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                    const Eigen::Vector2d& c);
 
-/// Blends a colour into the masked pixels with alpha `part` (0..1), and draws the mask's outline.
+/// Blends a colour into the masked pixels with alpha `part` (0..1), and draws the outline of the mask.
 void tint(ColourImage& picture, const MaskImage& mask, Rgb colour, double part);
 
 /// Copies the picture `part` into `picture` with its upper left corner at (x, y), clipped to `picture`.

@@ -8,8 +8,8 @@
 namespace roomradar {
 
 /// Draws the floors side by side, all to one scale, with their heights and a scale bar. +x is to the right,
-/// +y up. Steep surface between 0.3 and 1.8 m above the floor (walls, furniture) is dark, level surface there
-/// (table tops) grey, the floor light, and all that is not known white.
+/// +y up. Between 0.3 and 1.8 m above a floor, steep surfaces (walls, furniture) are dark and level surfaces
+/// (table tops) are grey. The floor itself is light. Pixels without surface are white.
 /// @param floor_heights_m  z of the floors, from the lowest
 /// @param most_px          longest side of the picture, 300 to 16,000; the scale is at most 100 pixels per m
 /// @return an empty image if the mesh or the list of floors is empty

@@ -36,7 +36,7 @@ class VideoWriter {
   /// a call before any write, does nothing.
   void close();
 
-  /// Deletes the temporary file. An earlier video of the final name stays. Does nothing after close().
+  /// Deletes the temporary file. An earlier video with the final name remains. Does nothing after close().
   void discard();
 
   [[nodiscard]] std::int64_t frames_written() const;

@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// Returns a model of the given triangles, in the given order, and the vertices that they use. Vertices keep
-/// the attributes that the model has. The result has neither parts nor textures nor notes.
+/// Returns a model of the given triangles, in the given order, with the vertices that they use and all
+/// attributes of these vertices. The result has neither parts nor textures nor notes.
 /// @param triangles  indices into model.mesh.triangles
 Model triangles_alone(const Model& model, std::span<const std::uint32_t> triangles);
 

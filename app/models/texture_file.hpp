@@ -25,8 +25,8 @@ Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size
 
 /// Returns the path of an image that a model file names. The name is searched relative to the model's folder.
 /// Then its last component is searched in the model's folder, since many files contain paths of their
-/// author's machine. Then both are tried without "file://", with "%20" and the like decoded, and with slashes
-/// for backslashes. Returns an empty path if there is no such file.
+/// author's machine. If neither exists, repeats the search without "file://", with percent encoding (%20)
+/// decoded, and with backslashes replaced by slashes. Returns an empty path if there is no such file.
 std::filesystem::path find_texture(const std::filesystem::path& model, const std::string& name);
 
 /// @throws Error as decode_texture(), also for a file above 64 MiB

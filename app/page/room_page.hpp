@@ -13,9 +13,10 @@
 
 namespace roomradar {
 
-/// A room's surface on a page. The pointers must not be null while the page is written, except `texture`.
+/// A room's surface on a page. The pointers must remain valid while the page is written. Only `texture` may
+/// be null.
 struct PageRoom {
-  std::string name;  ///< shown where the page has several rooms
+  std::string name;  ///< shown if the page has several rooms
   const Mesh* mesh_world = nullptr;
   const SurfaceTexture* texture = nullptr;  ///< must fit the mesh; null: the vertices' colours are shown
 };
@@ -30,8 +31,8 @@ struct RoomPage {
 
 /// Writes room, texture and program as one file that needs WebGL 2, but no network. Positions are rounded to
 /// 1/65535 of the room's extent along each axis. In the page, users can turn the room, walk in it, cut it and
-/// measure distances. The page lists changes, and holes inside the scan. It draws at most some
-/// 4,000 poses of the trajectory. An existing file is replaced once the new one is complete.
+/// measure distances. The page lists changes, and holes inside the scan. The page draws at most about 4,000
+/// poses of the trajectory. An existing file is replaced only by the complete new file.
 /// @throws Error if a room has no triangles, or the file cannot be written
 void write_room_page(const RoomPage& page, const std::filesystem::path& path);
 

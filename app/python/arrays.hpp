@@ -1,5 +1,5 @@
-// arrays.hpp: checks and converts NumPy arrays and texts, and returns images and meshes as arrays that share
-// memory.
+// arrays.hpp: checks and converts NumPy arrays and strings, and returns images and meshes as arrays without
+// copying.
 #pragma once
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -25,11 +25,12 @@ struct ArrayShape {
   const char* text;  ///< for messages, such as "(H, W)"
 };
 
-/// Returns an argument as an array that is C-contiguous and has the element type and shape. Copies nothing.
-/// Throws TypeError or ValueError, with a sentence that names the argument and says how to convert it.
+/// Returns the argument, without copying, if it is a C-contiguous array with the element type and shape.
+/// Otherwise throws TypeError or ValueError with a message that names the argument and says how to convert
+/// it.
 template <typename Element>
 py::array required_array(py::handle value, const char* name, const ArrayShape& shape);
-/// Throws ValueError, as required_array() does, unless the array can be written to.
+/// Does the same, and also throws ValueError if the array is read-only.
 template <typename Element>
 py::array required_output(py::handle value, const char* name, const ArrayShape& shape);
 
@@ -78,7 +79,7 @@ py::str text_of(const std::string& text);
 /// Returns a position as text, "(0.4, -0.1, 0.75) m".
 std::string text_of_point(const Eigen::Vector3d& point_m);
 
-/// Returns the text. Throws ValueError if it contains a zero byte, since messages would end there.
+/// Returns the text. Throws ValueError if the text contains a zero byte, which would truncate it in messages.
 const std::string& required_text(const std::string& text, const char* name);
 
 /// Returns None or a new array.

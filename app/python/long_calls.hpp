@@ -1,4 +1,4 @@
-// long_calls.hpp: long calls without the interpreter's lock: exclusive use, progress, Ctrl-C.
+// long_calls.hpp: long calls without the interpreter's lock (GIL): exclusive use, progress callbacks, Ctrl-C.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -12,10 +12,10 @@ namespace roomradar::python {
 
 namespace py = pybind11;
 
-/// Marks an object as used by one call at a time.
+/// Flag that restricts an object to one call at a time.
 class UseFlag {
  public:
-  /// Holds the flag. Throws Error naming the object if another thread holds the flag.
+  /// Sets the flag until destruction. Throws Error naming the object if another call has set the flag.
   class Lock {
    public:
     Lock(UseFlag& flag, const char* name) : flag_(flag) {

@@ -13,12 +13,13 @@ namespace roomradar::python {
 /// An immutable map in memory.
 struct Map : std::enable_shared_from_this<Map> {
   SavedMap saved;
-  std::string folder;  ///< empty: neither loaded nor saved
+  std::string folder;  ///< empty: the map was neither loaded nor saved
 
   Map(SavedMap map, std::string its_folder) : saved(std::move(map)), folder(std::move(its_folder)) {}
 };
 
-/// Returns the map's octree, which keeps the map alive. Reads it from disk at its first use.
+/// Returns the map's octree, which shares ownership of the map. The octree is read from disk at its first
+/// use.
 std::shared_ptr<Octree> octree_of(Map& map);
 
 /// Call after bind_octree() and bind_meshes().

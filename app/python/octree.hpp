@@ -11,20 +11,22 @@
 
 namespace roomradar::python {
 
-/// An octree for fusion, changed by one call at a time, or the immutable octree of a saved map.
+/// An octree for fusion, or the immutable octree of a saved map. Thread safe: reading calls may run
+/// concurrently, modifying calls are exclusive.
 class Octree {
  public:
   explicit Octree(StaticMap map) : Octree(std::make_shared<StaticMap>(std::move(map))) {}
   explicit Octree(std::shared_ptr<const StaticMap> saved) : map_(std::move(saved)) {}
 
-  /// Calls work(const StaticMap&) without the interpreter's lock, while nothing is fused.
+  /// Calls work(const StaticMap&) without the interpreter's lock. Excludes concurrent change().
   template <typename Work>
   auto read(const Work& work) const {
     const pybind11::gil_scoped_release release;
     const std::shared_lock lock(mutex_);
     return work(*map_);
   }
-  /// Calls work(StaticMap&) without the interpreter's lock. Throws Error for the octree of a saved map.
+  /// Calls work(StaticMap&) without the interpreter's lock. Excludes all concurrent calls. Throws Error for
+  /// the octree of a saved map.
   template <typename Work>
   auto change(const Work& work) {
     StaticMap& map = changeable();

@@ -1,4 +1,5 @@
-// radar.hpp: Python bindings of Cyber Radar: distance to contact of moving objects, by one query or many.
+// radar.hpp: Python bindings of Cyber Radar: distance to contact of moving objects, for single queries and
+// batches.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -11,7 +12,8 @@
 
 namespace roomradar::python {
 
-/// The surfaces of queries. Keeps trees and frames alive. Rejects changes while another call reads it.
+/// The surfaces of queries. Shares ownership of trees and frames. Rejects changes while another call reads
+/// the scene.
 class Scene {
  public:
   std::size_t add_tree(std::shared_ptr<TriangleTree> tree, const Eigen::Isometry3d& T_world_mesh,
@@ -21,7 +23,7 @@ class Scene {
   [[nodiscard]] std::size_t size() const { return trees_.size(); }
   [[nodiscard]] RadarScene radar_scene() const { return {trees_, depths_, nullptr}; }
 
-  /// Marks the scene as read by a call that does not hold the interpreter's lock.
+  /// Guard that marks the scene as being read, for calls without the interpreter's lock.
   class Reading {
    public:
     explicit Reading(Scene& scene) : readers_(scene.readers_) { ++readers_; }

@@ -18,13 +18,13 @@
 
 namespace roomradar::python {
 
-/// Values of quality fields by name, as Python gives them.
+/// Python values of quality fields, by field name.
 using QualityValues = std::map<std::string, std::variant<bool, std::int64_t, double, std::string>>;
 
 /// Returns a quality with the given fields, the others unchanged. Throws Error for an unknown field or value.
 RunQuality quality_with(RunQuality quality, const QualityValues& values);
 
-/// Settings of a session that are fixed when it is made.
+/// Settings of a session that cannot change after construction.
 struct SessionSettings {
   PoseOrigin poses = PoseOrigin::kTracked;
   SurfacePolicy surfaces = SurfacePolicy::kMap;
@@ -34,8 +34,8 @@ struct SessionSettings {
   RunQuality quality{};
 };
 
-/// A session on a thread of its own. Call all members without the interpreter's lock; callers on several
-/// threads wait for each other. Members throw Error once the session is closed.
+/// A session on a thread of its own. Call all members without the interpreter's lock. Calls from several
+/// threads are serialised. Members throw Error once the session is closed.
 class SessionRunner : public std::enable_shared_from_this<SessionRunner> {
  public:
   SessionRunner(std::shared_ptr<Map> map, const SessionSettings& settings);
@@ -69,7 +69,8 @@ class SessionRunner : public std::enable_shared_from_this<SessionRunner> {
   /// Frees the session, unless it is closed or arrays share memory with its images.
   void leave();
 
-  /// Number of arrays that share memory with the session's images. Until it is 0, no image changes its size.
+  /// Number of arrays that share memory with the session's images. While it is > 0, calls that would change
+  /// an image's size throw Error, as does close().
   std::atomic<int> views = 0;
 
  private:
@@ -82,8 +83,8 @@ class SessionRunner : public std::enable_shared_from_this<SessionRunner> {
   RunQuality quality_;
   StageTimes times_;
   CyberRadar radar_;
-  std::optional<ImageSizes> sizes_;   ///< of the last valid frame
-  std::int64_t frames_ = 0;           ///< calls of step()
+  std::optional<ImageSizes> sizes_;   ///< image sizes of the last valid frame
+  std::int64_t frames_ = 0;           ///< number of calls of step()
   std::unique_ptr<Session> session_;  ///< made, used and destroyed on thread_; null: closed
   GlThread thread_;
 

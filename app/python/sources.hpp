@@ -11,17 +11,17 @@
 
 namespace roomradar::python {
 
-/// A frame source and the counts of its frames. Used by one call at a time.
+/// A frame source, and the number of skipped frames. Throws Error if several threads use it concurrently.
 class Source {
  public:
   explicit Source(std::unique_ptr<FrameSource> source);
   virtual ~Source() = default;
 
   /// Returns the next readable frame; null at the end. Call with the interpreter's lock, which is released
-  /// meanwhile. Waits for a live device until Ctrl-C.
+  /// while reading. Waits for a live device until Ctrl-C is pressed.
   std::shared_ptr<Frame> next();
-  /// Rewinds to the first frame if frames were read. Returns false, and changes nothing, if the source cannot
-  /// rewind (a live device).
+  /// Rewinds to the first frame if frames were read. Returns false if the source cannot rewind (a live
+  /// device).
   bool restart();
   bool seek(std::int64_t index);
   /// Closes files and devices. Later calls throw Error.

@@ -39,7 +39,7 @@ struct BudgetState {
   /// Per part: estimated time at the default quality divided by nominal_ms().
   std::array<double, kFrameParts> scales{1.0, 1.0, 1.0, 1.0};
   std::array<std::array<double, 3>, kFrameParts> lately{};  ///< `scales` of the last three frames
-  /// Per part: number of consecutive frames in which it was skipped.
+  /// Per part: number of consecutive frames that skipped the part.
   std::array<int, kFrameParts> not_made_frames{};
   /// Estimated 95th percentile of measured time divided by predicted time.
   double spread = 1.15;
@@ -52,7 +52,7 @@ struct BudgetState {
   std::int64_t frame = 0;
   std::int64_t went_back_at = -1'000'000;  ///< frame of the last upgrade
 
-  // Of the current frame:
+  // State of the current frame:
   std::array<std::size_t, kFrameParts> steps{};   ///< step with which each part began
   std::array<double, kFrameParts> foreseen_ms{};  ///< predicted time per part
   std::size_t begun = 0;                          ///< number of parts begun

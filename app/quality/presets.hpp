@@ -40,7 +40,7 @@ struct Presets {
   std::vector<FrontStep> front;  ///< from accurate to fast
 };
 
-/// Reads a file of the form:
+/// Reads a presets file, such as:
 ///
 ///     {"format": "roomradar presets", "format_version": 1, "made_by": {"machine": "...", ...},
 ///      "presets": {"fast": {"scan": {"resolution_m": 0.02}, "run": {"depth_stride": 2}, "figures":
@@ -56,8 +56,8 @@ Presets presets_of(std::string_view text, const std::string& where);
 /// Writes all presets with all settings, defaults included. Throws Error if the file cannot be written.
 void write_presets(const Presets& presets, const std::filesystem::path& path);
 
-/// Returns `given` if it is not empty. Otherwise returns the path of the program's presets.json, beside the
-/// executable or in its installed location. Throws Error if there is none.
+/// Returns `given` if it is not empty. Otherwise returns the path of the program's presets.json, in the
+/// executable's folder or in the installed location. Throws Error if there is none.
 std::filesystem::path presets_file(const std::string& given);
 
 /// Returns the preset of this name. If no preset has the name, throws Error that lists the existing names.

@@ -67,7 +67,7 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
 /// @param real_depth_m  depth of real surfaces, with the size of `picture`. Pixels with depth 0 occlude
 ///                      nothing
 /// @param[out] occlusion    occlusion of the objects; its buffers are reused
-/// @param[in,out] picture   image that contains the shadows
+/// @param[in,out] picture   image with the objects' shadows, over which the objects are blended
 /// @param feet          where the objects stand; their contacts are never hidden, see find_occlusion()
 /// @param camera_image  the image without shadows, in which occluders' edges are found; null: `picture`
 /// @throws Error if sizes differ, or the layer exceeds the image

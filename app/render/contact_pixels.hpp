@@ -21,32 +21,34 @@ struct Feet {
   };
   Intrinsics camera{};
   std::vector<Plane> planes;
-  /// Points of an object up to this height above its foot belong to its contact.
+  /// Points of an object up to this height above its lowest point (foot) belong to its contact.
   float height_m = 0.012F;
 };
 
-/// Error of real depth: constant term and increase with the square of the distance.
+/// Tolerance for errors of real depth: a constant term, and a term that increases with the square of the
+/// distance, 1/m.
 struct DepthTolerance {
   float constant_m = 0.0F, per_m2 = 0.0F;
 };
 
-/// Values of the mask of contacts: a point just above an object's foot, in front of another surface (kAtFoot)
-/// or of the support itself (kOnSupport).
+/// Values of the contact mask. Both mark a point just above an object's foot. Behind the point is the support
+/// itself (kOnSupport) or another surface (kAtFoot).
 inline constexpr std::uint8_t kAtFoot = 128, kOnSupport = 255;
 
-/// Marks the pixels that show a point just above an object's foot: with kOnSupport where the real surface is
-/// level with the foot within the tolerance and 6 mm, else with kAtFoot. A surface at the foot's level is the
-/// support, which lies below the object.
+/// Marks the pixels that show a point just above an object's foot. The mark is kOnSupport if the height of
+/// the real surface equals that of the foot within the tolerance plus 6 mm, since a surface at this height is
+/// the object's support. Otherwise the mark is kAtFoot.
 /// @param rect          rectangle of the image
 /// @param real_depth_m  depth of real surfaces in the whole image
 /// @param object_m      depth of the objects in `rect`
-/// @param[out] contact  0 elsewhere; with the size of `rect`
+/// @param[out] contact  mask with the size of `rect`; 0 in pixels without contact
 void find_contacts(const Feet& feet, const PixelRect& rect, const DepthImage& real_depth_m,
                    const Image<float>& object_m, const DepthTolerance& tolerance, MaskImage& contact);
 
-/// Averages over 3 x 3 pixels with more weight at the centre. Neighbours that no object covers have a depth
-/// borrowed from elsewhere, so the pixel's own value replaces theirs. Contacts get 0. Pixels at a foot that
-/// are more visible than hidden get 0, too, so that an occluder beside them does not blur over the contact.
+/// Averages `hidden` over 3 x 3 pixels with more weight at the centre. For neighbours that no object covers,
+/// the pixel's own value is used, since their object depth is extrapolated. Sets pixels of kOnSupport to 0.
+/// Also sets pixels of kAtFoot to 0 if they are more visible than hidden, so that a nearby occluder does not
+/// blur over the contact.
 void soften(const Image<float>& hidden, const MaskImage& covered, const MaskImage& contact,
             Image<float>& softened);
 

@@ -32,7 +32,7 @@ struct DrawnObject {
   const SplitLight* light = nullptr;
 };
 
-/// Light of objects without DrawnObject::light, as in a room with white lamps on the ceiling.
+/// Light of objects without DrawnObject::light. The default is that of a room with white ceiling lamps.
 struct Lighting {
   Eigen::Vector3d up_world = Eigen::Vector3d::UnitZ();
   /// Direction towards the main light, such as a ceiling lamp; any length > 0.
@@ -53,7 +53,7 @@ class ObjectDrawer {
 
   /// Starts rendering the objects into `layer`. Sets layer.rect to the smallest rectangle that contains the
   /// objects, empty if none is in view. Sets layer.samples to 2, or to 1 if the rectangle has more than
-  /// 80,000 pixels or its double exceeds the max texture size. The GPU renders in parallel to the CPU.
+  /// 80,000 pixels or twice its size exceeds the max texture size. The GPU renders in parallel to the CPU.
   /// finish() then sets colour and depth. The near plane is at 0.05 m. There is no far plane. The depth
   /// resolution is 6e-8 of the depth. Objects with a null mesh are skipped. Reuses the layer's memory.
   void begin(std::span<const DrawnObject> objects, const Intrinsics& camera,

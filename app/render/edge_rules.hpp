@@ -1,4 +1,4 @@
-// edge_rules.hpp: decides by depth and by colour if adjacent pixels belong to different surfaces.
+// edge_rules.hpp: tests for depth discontinuities and colour differences between adjacent pixels.
 #pragma once
 #include <algorithm>
 #include <cmath>

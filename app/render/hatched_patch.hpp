@@ -16,8 +16,8 @@ struct HatchedPatch {
 
 /// Draws orange stripes, 1 cm wide with gaps of 1 cm, over the pixels in which a patch is visible. Skips
 /// patches that are behind the camera, have a radius <= 0 or are not finite.
-/// @param real_depth_m  depth of real surfaces, with the size of `picture`. Hides what is more than 3 cm
-///                      farther away. Depth 0 hides nothing
+/// @param real_depth_m  depth of real surfaces, with the size of `picture`. Surfaces hide patches that are
+///                      more than 3 cm farther away. Depth 0 hides nothing
 void hatch(std::span<const HatchedPatch> patches, const Intrinsics& camera,
            const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m, ColourImage& picture);
 

@@ -30,8 +30,8 @@ int wanted_samples(bool is_first, double dt_s, const LightConfig& config);
 /// Estimates the light that arrives at a place in the room, from the points of the last seconds.
 ///
 /// The model is ambient light plus one lamp, whose light falls off with the square of its distance. Surfaces
-/// around a point reduce both (LightSample::reach). Candidate lamps are on a grid of 43 directions, 3
-/// distances and 3 strengths around the place. The logarithm of a pixel's colour is log albedo + log
+/// around a point occlude both in part (LightSample::reach). Candidate lamps are on a grid of 43 directions,
+/// 3 distances and 3 strengths around the place. The logarithm of a pixel's colour is log albedo + log
 /// irradiance. Surfaces of one hue are assumed to have one albedo. The score of a candidate is thus the
 /// variance of log colour - log irradiance within the hues, by an estimate robust against outliers such as
 /// patterns. The result is the mean over the candidates, weighted by their likelihood. Hence an uncertain
@@ -58,7 +58,7 @@ class LightEstimator {
     float grey;  ///< mean of log_colour
     int hue;
   };
-  std::vector<Point> points_;  ///< the latest, in a ring
+  std::vector<Point> points_;  ///< the latest points, as a ring buffer
   std::size_t next_point_ = 0;
   std::vector<float> scores_;  ///< mean squared residual per candidate; empty before the first samples
   std::size_t next_candidate_ = 0;

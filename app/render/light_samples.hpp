@@ -1,4 +1,4 @@
-// light_samples.hpp: surface points of the map with the colours that the camera sees there.
+// light_samples.hpp: samples surface points of the map with their colours in the camera image.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -44,7 +44,7 @@ struct SurfaceView {
 /// not one smooth surface. Also leaves out points outside the colour image, and points with a saturated or
 /// almost black colour. Tests at most four pixels per wanted point. Reuses the vector's memory. Returns no
 /// samples without colour or depth, or if sizes do not match.
-/// @param[in,out] position  in the sequence; 0 at first. Source of the sequence: see spread_points()
+/// @param[in,out] position  index in the sequence; 0 at first. Source of the sequence: see spread_points()
 void take_light_samples(const ColourView& colour, const SurfaceView& surface, int wanted,
                         std::uint64_t& position, std::vector<LightSample>& samples);
 

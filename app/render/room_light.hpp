@@ -14,7 +14,7 @@ inline constexpr float kFromAbove = 0.1F;
 inline constexpr std::size_t kLampDirections = 43;
 std::span<const Eigen::Vector3f, kLampDirections> lamp_directions();
 
-/// Fractions, 0 to 1, of the light that reaches a place past the room's surfaces.
+/// Fractions, 0 to 1, of the light that the room's surfaces do not occlude at a place.
 struct LightReach {
   float ambient = 1.0F;
   /// Fraction for a lamp in each of lamp_directions().

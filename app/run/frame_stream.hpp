@@ -17,11 +17,12 @@
 
 namespace roomradar {
 
-/// Version of the lines' form. Increased when a key is removed or changes its meaning, not when one is added.
+/// Version of the lines' format. Incremented if a key is removed or changes its meaning, not if a key is
+/// added.
 inline constexpr int kFrameStreamVersion = 1;
 
-/// Returns the bounding boxes, in the world, of the mesh's connected components (by shared vertices), those
-/// with the most triangles first. Leaves out components with fewer triangles than `min_triangles`.
+/// Returns the bounding boxes, in the world frame, of the mesh's connected components (by shared vertices),
+/// sorted by descending number of triangles. Leaves out components with fewer triangles than `min_triangles`.
 std::vector<Eigen::AlignedBox3d> component_boxes(const Mesh& mesh, std::size_t min_triangles);
 
 /// Returns the runs of non-zero pixels, row by row from the top left, as pairs of first index and length.
@@ -35,9 +36,9 @@ class FrameStream {
   FrameStream(const std::filesystem::path& path, const std::string& source, const std::string& map);
 
   /// Writes a frame.
-  /// @param run_frame  number of the frame in the run, from 0
+  /// @param run_frame  index of the frame in the run, from 0
   /// @param time_s     time since the run's first frame
-  /// @param times      stages that were timed since the last call are written
+  /// @param times      all stage times so far; stages timed since the last call are written
   void write(std::int64_t run_frame, double time_s, const Frame& frame, const FrameResult& result,
              const Session& session, const StageTimes& times);
   /// Writes the last line and closes the file. Throws Error if a regular file could not be written.

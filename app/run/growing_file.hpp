@@ -10,9 +10,9 @@ namespace roomradar {
 class GrowingFile {
  public:
   /// The file is not created or changed before the first line is appended.
-  /// @param head  written before the first line, with its end of line
+  /// @param head  header, written before the first line; must include its end of line
   GrowingFile(std::filesystem::path path, std::string head);
-  /// Appends a line, with its end of line. Throws Error if the file cannot be created.
+  /// Appends a line, which must include its end of line. Throws Error if the file cannot be created.
   void append(std::string_view line);
   /// Closes the file. Throws Error if it could not be written completely.
   void close();

@@ -1,4 +1,4 @@
-// line_stream.hpp: text lines for another program, which may read them slowly or not at all.
+// line_stream.hpp: sends text lines to another program, which may read them slowly or not at all.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -12,33 +12,33 @@
 
 namespace roomradar {
 
-/// Writes lines to a file, a named pipe or standard output, on a thread of its own. A reader that is slow
-/// never delays the caller: at most kMaxWaiting lines wait, and further lines are dropped and counted.
+/// Writes lines to a file, a named pipe or standard output, on a thread of its own. A slow reader never
+/// delays the caller. At most kMaxWaiting lines are queued. Further lines are dropped and counted.
 class LineStream {
  public:
   static constexpr std::size_t kMaxWaiting = 256;
 
   /// Opens the file, and replaces its content if it is a regular file. A named pipe need not have a reader.
-  /// "-" is standard output: everything else that the program prints there goes to standard error from now
-  /// on. Throws Error naming the file if it cannot be opened.
+  /// "-" is standard output. All other output of the program to standard output is then redirected to
+  /// standard error. Throws Error naming the file if it cannot be opened.
   explicit LineStream(std::filesystem::path path);
-  /// Ends the thread; lines that wait are lost.
+  /// Ends the thread and discards queued lines.
   ~LineStream();
   LineStream(const LineStream&) = delete;
   LineStream& operator=(const LineStream&) = delete;
 
   /// Returns a line, without its end of line. Called on the stream's thread.
   using MakeLine = std::function<std::string()>;
-  /// Takes a line. Returns false if it was dropped: too many lines wait, the reader has closed its end, or
-  /// writing has failed.
+  /// Queues a line. Returns false if the line was dropped, because the queue is full, the reader has closed
+  /// its end, or writing has failed.
   bool offer(MakeLine line);
   bool offer(std::string line);
   /// Returns the number of dropped lines.
   [[nodiscard]] std::int64_t dropped() const { return dropped_; }
   /// Returns true if the reader has closed its end.
   [[nodiscard]] bool is_reader_gone() const { return is_reader_gone_; }
-  /// Writes the lines that wait, as long as the reader takes some within a second. Throws Error naming the
-  /// file if a regular file could not be written. Later calls of offer() drop their lines.
+  /// Writes the queued lines. Stops if the reader reads nothing for a second. Throws Error naming the file if
+  /// a regular file could not be written. Later calls of offer() drop their lines.
   void close();
 
  private:
@@ -55,7 +55,7 @@ class LineStream {
 
   void serve();
   bool write(const std::string& text);
-  /// Returns true if the file takes bytes now; false if the stream is to stop first.
+  /// Waits until the file accepts bytes, and returns true. Returns false if the stream must stop before.
   bool wait_until_writable();
   void stop();
 };

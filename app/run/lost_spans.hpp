@@ -1,4 +1,5 @@
-// lost_spans.hpp: records the frames in which the camera was not localised, with messages for the user.
+// lost_spans.hpp: records spans of frames in which the camera was not localised, and returns messages about
+// them.
 #pragma once
 #include <cstdint>
 #include <string>

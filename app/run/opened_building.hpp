@@ -13,9 +13,8 @@ struct OpenedBuilding {
 };
 
 /// Opens the building of options.map. With options.max_memory_mb, keyframes take at most a fifth of it.
-/// Throws Error naming the file and the fault if a file is missing or damaged. Throws Error with a sentence
-/// if the run's options or its script ask for something that is done in the map of a room only: committed
-/// changes, recorded poses.
+/// Throws Error naming the file and the fault if a file is missing or damaged. Also throws Error if the run's
+/// options or its script require the map of a room: for committed changes or recorded poses.
 OpenedBuilding open_building(const RunOptions& options, const Script& script);
 
 }  // namespace roomradar

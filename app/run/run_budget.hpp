@@ -16,7 +16,7 @@ namespace roomradar {
 /// Returns the quality settings that a run may use, each called a step. The first step is `most`. If `most`
 /// is in the presets' Pareto front, the steps after it in the front follow. Otherwise the front's steps that
 /// are faster than the default quality follow. Settings in `fixed` are the same in all steps. Adjacent steps
-/// that are thereby equal are merged. Adjacent steps with equal settings for a part of the frame get equal
+/// that thus become equal are merged. Adjacent steps with equal settings for a part of the frame get equal
 /// time ratios for it.
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed);
 

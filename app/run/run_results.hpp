@@ -16,9 +16,9 @@ namespace roomradar {
 
 /// Sums and maxima over the frames of a run.
 struct RunTotals {
-  /// The first four count frames. `skipped` counts unusable frames. `degenerate` counts localised frames
-  /// whose depth does not constrain all six degrees of freedom. `departures` counts objects that fell out of
-  /// the map.
+  /// Numbers of frames: read, skipped (unusable), located and degenerate. `contacts` counts contacts of
+  /// objects. `degenerate` counts localised frames whose depth does not constrain all six degrees of freedom.
+  /// `departures` counts objects that fell out of the map.
   std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0,
                places_refused = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
@@ -62,7 +62,7 @@ struct RunTotals {
 /// Returns the message about an object that fell out of the map, with a remedy.
 std::string sentence_of(const Departure& departure, const Session& session);
 
-/// Returns the position of the last picture's camera in the world; the origin if there is no such picture.
+/// Returns the camera position of the last picture in the world frame; the origin if there is no picture.
 Eigen::Vector3d camera_position_world(const Session& session);
 
 /// Returns the entries that a run's report has in addition to those of all reports.

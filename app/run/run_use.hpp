@@ -1,5 +1,4 @@
-// run_use.hpp: statistics of a run on the fractions of the room's mesh and of the depth images that frames
-// used.
+// run_use.hpp: run statistics: the fractions of the room's mesh and of the depth images that each frame used.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -71,7 +70,7 @@ std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<Virt
 /// Writes a CSV file with one line per localised frame.
 class FrameUseFile {
  public:
-  /// The file is not created or changed before the first frame is written.
+  /// Does not create or change the file before the first frame is written.
   explicit FrameUseFile(std::filesystem::path path);
   /// Appends a frame. Throws Error if the file cannot be created.
   void write(std::int64_t frame, const FrameUse& use,

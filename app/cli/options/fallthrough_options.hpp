@@ -41,15 +41,15 @@ struct FallthroughOptions {
   int random_rooms = 3;
   /// Number of threads; 0: one per processor.
   int threads = 0;
-  /// Range of the only scenarios to run; unset: the first `scenarios`.
+  /// If set, only the scenarios of this range are run; unset: the first `scenarios`.
   std::optional<FrameRange> part;
   /// JSON file for the results of each scenario; empty: not written.
   std::string rows;
-  /// Folder of the jobs that do the work; empty: this process does it.
+  /// Folder of the jobs that run the scenarios; empty: this process runs them.
   std::string jobs;
   /// Number of scenarios per job.
   int job_size = 100;
-  /// Number of jobs at a time; 0: one per processor.
+  /// Number of concurrent jobs; 0: one per processor.
   int processes = 0;
   /// Number of the single scenario to run; unset: all scenarios are run.
   std::optional<std::int64_t> scenario;

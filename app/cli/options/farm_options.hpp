@@ -17,9 +17,9 @@ struct FarmOptions {
   std::string manifest;
   /// Folder of the results.
   std::string out;
-  /// Number of jobs at a time; 0: one per processor.
+  /// Number of concurrent jobs; 0: one per processor.
   int processes = 0;
-  /// Names of the only jobs to run; empty: all.
+  /// Names of the jobs to run, with the jobs that they need; empty: all.
   std::vector<std::string> jobs;
   /// Script to print instead of running the jobs; unset: the jobs are run.
   std::optional<BatchForm> emit;

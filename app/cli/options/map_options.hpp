@@ -31,7 +31,7 @@ struct MapExportOptions {
 };
 
 struct MapMergeOptions {
-  /// Folder of the map whose world frame is kept.
+  /// Folder of the map whose world frame the merged map has.
   std::string a;
   /// Folder of the map to add.
   std::string b;

@@ -16,7 +16,7 @@ class App;
 
 namespace roomradar {
 
-/// How the scan window draws attention to a lost camera.
+/// Signals of the scan window when tracking is lost.
 struct LostSignal {
   bool flashes = true;  ///< the picture's frame flashes red
   bool rings = false;   ///< the terminal's bell rings once
@@ -57,8 +57,8 @@ struct PrescanOptions {
   bool window = false;
   /// Signal of the window when tracking is lost.
   LostSignal lost_signal;
-  /// Place that the window asks to be scanned first, in the world frame of the map that is extended. No
-  /// option sets it.
+  /// Place that the window asks the user to scan first, in the world frame of the extended map. Set by the
+  /// program, not by an option.
   std::optional<PlaceToScan> look_at;
   /// Scale of the window's text and panes; unset: the monitor's.
   std::optional<double> ui_scale;

@@ -22,7 +22,7 @@ namespace roomradar {
 struct RunOptions {
   /// Source of the frames, in the form that open_source() accepts, or the folder of a recorded session.
   std::string source;
-  /// Folder of the map of a room or a building, to read.
+  /// Folder to read the map of a room or building from.
   std::string map;
   /// Origin of the camera poses: localised in the map (kTracked) or recorded.
   PoseOrigin poses = PoseOrigin::kTracked;
@@ -53,7 +53,7 @@ struct RunOptions {
   /// Time without motion after which a change of the room is committed to the map. Unset: only script events
   /// commit changes.
   std::optional<double> commit_after_s;
-  /// Memory that a run in a building aims to stay below, MB; 0: no limit.
+  /// Memory target of a run in a building, MB: not guaranteed as a limit; 0: no limit.
   double max_memory_mb = 0.0;
   /// Behaviour after the source's last frame.
   AtEnd at_end = AtEnd::kEnd;

@@ -29,7 +29,7 @@ void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames);
 void add_calibration_option(CLI::App& command, std::string& calibration);
 void add_format_option(CLI::App& command, RecordingFormat& format);
 void add_ui_scale_option(CLI::App& command, std::optional<double>& ui_scale);
-/// Adds --processes, the number of jobs at a time.
+/// Adds --processes, the number of concurrent jobs.
 void add_processes_option(CLI::App& command, int& processes);
 void add_report_option(CLI::App& command, std::string& report);
 

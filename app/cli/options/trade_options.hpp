@@ -40,11 +40,11 @@ struct TradeOptions {
   /// JSON file to write; empty: not written.
   std::string report;
 
-  /// Folder of the jobs that measure; empty: this process measures.
+  /// Folder of the jobs that measure the settings; empty: this process measures them.
   std::string jobs;
-  /// Number of jobs at a time; 0: one per processor.
+  /// Number of concurrent jobs; 0: one per processor.
   int processes = 0;
-  /// The only setting to measure, as setting_from() reads it; empty: a sweep. Used with `only` and `rows`.
+  /// Single setting to measure, in the syntax of setting_from(); empty: a sweep. Used with `only` and `rows`.
   std::string setting;
   /// JSON file for the measurements of `setting`.
   std::string rows;

@@ -9,13 +9,13 @@
 
 namespace roomradar {
 
-/// Returns a setting's loss, its mean error relative to the default setting. The loss is the geometric mean
-/// of (error + negligible) / (default's error + negligible) over all metrics of kind kError. `negligible` is
-/// the smallest relevant difference of the metric. The loss of the default is 1. Returns NaN if no error was
-/// measured or the setting is not complete.
+/// Returns a setting's loss, that is, its mean error relative to the default setting. The loss is the
+/// geometric mean of (error + negligible) / (default's error + negligible) over all metrics of kind kError.
+/// `negligible` is the smallest relevant difference of the metric. The loss of the default is 1. Returns NaN
+/// if no error was measured or the setting is not complete.
 double loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
-/// Returns the largest of the ratios that loss_of() averages.
+/// Returns the largest of the error ratios that loss_of() averages.
 double worst_loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
 /// The chosen settings, as indices in the summaries.
@@ -35,7 +35,7 @@ inline constexpr double kMostLossOfAccurate = 0.99;
 
 /// Computes the Pareto front of time ratio and loss over complete settings whose load parameters have their
 /// defaults. Presets come from a second front, over settings with worst_loss_of() <= kMostWorstLossOfPreset.
-/// Worse settings are kept only for time budgets that no better setting meets.
+/// Settings above this limit are only on the first front, for time budgets that no better setting meets.
 ///   fast      least time with a loss of at most kMostLossOfFast
 ///   balanced  least time with a loss of at most kMostLossOfBalanced
 ///   accurate  least loss within kMostTimeOfAccurate times the default's time; the default itself if that

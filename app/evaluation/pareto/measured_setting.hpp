@@ -28,7 +28,7 @@ struct FigureName {
   double negligible = 0.0;  ///< for kError, > 0; smaller differences of errors are neglected
 };
 
-/// One value per entry of MeasuredWork::figures; kNotMeasured if there is none.
+/// One value per entry of MeasuredWork::figures; kNotMeasured if the figure was not measured.
 using Readings = std::vector<double>;
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 

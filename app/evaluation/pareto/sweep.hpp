@@ -1,4 +1,4 @@
-// sweep.hpp: measures settings in random order. Each is measured between two measurements of the default.
+// sweep.hpp: measures settings in random order, each between two measurements of the default setting.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +16,7 @@ struct SweepRow {
   std::size_t scene = 0;    ///< index in MeasuredWork::scenes
   int repeat = 0;           ///< index of the repetition, from 0
   Readings figures = {};
-  /// Figures of the default setting, measured immediately before and after.
+  /// Figures of the default setting, measured immediately before and after this setting.
   Readings default_before = {}, default_after = {};
   /// Per figure: the setting's value divided by the mean of the default's two values.
   Readings ratios = {};

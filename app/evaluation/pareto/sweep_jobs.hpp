@@ -1,4 +1,4 @@
-// sweep_jobs.hpp: splits a sweep into jobs of `roomradar farm`, one per setting and scene, and joins their
+// sweep_jobs.hpp: splits a sweep into jobs of `roomradar farm`, one per setting and scene, and merges their
 // results.
 #pragma once
 #include <filesystem>
@@ -30,8 +30,8 @@ void write_sweep_rows(const MeasuredWork& work, const std::vector<SweepRow>& row
 
 /// Returns the rows of all jobs, by scene, setting and repetition. A job without results has rows with its
 /// fault.
-/// @param folder  of the jobs' results
-/// @param faults  reasons of the jobs that have no results, by their names
+/// @param folder  folder of the jobs' results
+/// @param faults  by name of job: why the job has no results
 /// @throws Error if a file is damaged
 std::vector<SweepRow> joined_sweep_rows(const MeasuredWork& work, const std::vector<Setting>& settings,
                                         int repeats, const std::filesystem::path& folder,

@@ -32,13 +32,13 @@ inline constexpr double kTouchLimit_m = 0.5;  ///< max distance of flight
 std::vector<DynamicTouch> draw_dynamic_touches(
     const std::vector<std::unique_ptr<PreparedScenario>>& scenarios, const Room& room);
 
-/// Errors of the radar's contacts; NaN if there are no balls.
+/// Errors of the radar's distances to contact; NaN if there are no balls.
 struct DynamicTouchFacts {
-  /// Median of |found distance - true distance| over balls whose contact the radar found at most kTooFar_m
-  /// (2 cm) late.
+  /// Median of |found distance - true distance| over balls that the radar stopped at most kTooFar_m (2 cm)
+  /// beyond the true contact.
   double error_median_m = std::numeric_limits<double>::quiet_NaN();
   double error_p95_m = error_median_m;
-  double missed = error_median_m;  ///< fraction of balls without such a contact
+  double missed = error_median_m;  ///< fraction of balls that the radar stopped later or not at all
 };
 /// Measures the contacts of all balls with the radar.
 /// @param touches  balls, sorted by scenario

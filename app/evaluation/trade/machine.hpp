@@ -11,8 +11,8 @@ struct Machine {
   std::string renderer;  ///< name of the OpenGL renderer
 };
 
-/// Returns the description of this machine. A child process queries the renderer, so this process gets no GL
-/// context. Throws Error if there is no renderer.
+/// Returns the description of this machine. A child process queries the renderer, so this process creates no
+/// GL context. Throws Error if there is no renderer.
 Machine this_machine();
 
 }  // namespace roomradar

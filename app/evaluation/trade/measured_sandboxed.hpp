@@ -8,8 +8,8 @@
 namespace roomradar {
 
 /// Runs `work` in a child process and returns its result. The calling process must have no GL context, since
-/// the child creates its own, and no threads that `work` needs. Rethrows Error of `work`. Throws Error if the
-/// child crashes or takes more than an hour of CPU time.
+/// the child creates its own, and no threads that `work` needs. Throws the Error that `work` throws. Throws
+/// Error if the child crashes or takes more than an hour of CPU time.
 /// @param what  name of the work in error messages, such as "run in table"
 Readings measured_sandboxed(const std::string& what, const std::function<Readings()>& work);
 

@@ -18,7 +18,7 @@ struct RunSetting {
   int objects = 1;
 };
 
-/// Measurements of a session. The first 10 frames, in which caches and drivers warm up, are left out.
+/// Measurements of a session. Excludes the first 10 frames, in which caches and drivers warm up.
 struct RunFacts {
   std::string renderer;
   StageTimes times;
@@ -27,7 +27,7 @@ struct RunFacts {
   double cpu_ms = 0.0;     ///< mean CPU time of all threads per frame
   double moved_ms = 0.0;   ///< mean physics time over frames that advance objects; NaN: no such frame
   double memory_mb = 0.0;  ///< peak growth of the process's memory
-  double located = 0.0;    ///< fraction of the frames that were localised
+  double located = 0.0;    ///< fraction of frames that were localised
   /// Means over the localised frames; NaN if there are none.
   double dynamic_triangles = 0.0, static_triangles = 0.0;
   double pose_error_m = 0.0;            ///< RMS error of the camera's position
@@ -39,7 +39,7 @@ struct RunFacts {
 /// positions or above a surface in view. Drops are staggered among the objects.
 RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mesh& object);
 
-/// Results of the scene's scenarios and touches; NaN if it has none.
+/// Results of the scene's scenarios and touches; NaN without scenarios or touches.
 struct ContactFacts {
   /// Median of |travelled distance - true distance| over the objects that stopped.
   double error_median_m = std::numeric_limits<double>::quiet_NaN();

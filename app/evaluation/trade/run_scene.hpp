@@ -28,7 +28,7 @@ struct RunScene {
   std::vector<TrueView> true_views;
   std::unique_ptr<ScenarioRoom> room;  ///< null for recordings
   Mesh mesh_room;                      ///< the map's mesh in the room's frame
-  /// Scenarios with all frames rendered; they refer to `room`.
+  /// Scenarios with all frames rendered. The scenarios contain references to `room`.
   std::vector<std::unique_ptr<PreparedScenario>> scenarios;
   std::vector<DynamicTouch> touches;
   /// Positions at which objects are dropped; empty: objects are dropped above surfaces in view.

@@ -16,11 +16,11 @@ std::vector<Parameter> run_parameters(int objects = 1);
 /// Returns quality and number of objects for a setting of run_parameters().
 RunSetting run_setting_of(const Setting& setting);
 
-/// Returns the work. Its scenes are rooms and recordings, named as for prescan_work(). They are mapped with
-/// the default quality and known poses. In rooms, a hand and a person move in front of a hand-held camera,
-/// and objects are dropped in view. Other objects are then dropped and pushed onto hidden surfaces, as in
-/// `roomradar fallthrough`, and their contacts compared with the exact solids. In recordings, only times and
-/// poses are measured, on the last frames, which are not in the map.
+/// Returns the work. Its scenes are rooms and recordings, named as for prescan_work(). Rooms and recordings
+/// are mapped with the default quality and known poses. In rooms, a hand and a person move in front of a
+/// hand-held camera, and objects are dropped in view. Other objects are then dropped and pushed onto hidden
+/// surfaces, as in `roomradar fallthrough`, and their contacts are compared with the exact solids. In
+/// recordings, only times and poses are measured, on the last frames, which are not in the map.
 MeasuredWork run_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
                       const TradeScale& scale, int objects = 1);
 

@@ -1,4 +1,4 @@
-// trade_csv.hpp: writes each measurement of a sweep to a CSV file when it is made.
+// trade_csv.hpp: appends each measurement of a sweep to a CSV file immediately.
 #pragma once
 #include <filesystem>
 #include <fstream>

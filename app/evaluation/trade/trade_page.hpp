@@ -17,7 +17,7 @@ struct TradeResult {
   std::size_t defaults = 0;  ///< index of the default in `settings`
   PresetChoice choice = {};
   bool was_cut_short = false;  ///< true if not all settings were measured in all scenes
-  bool is_by_jobs = false;     ///< true: measured by jobs beside others, so times are not comparable
+  bool is_by_jobs = false;     ///< true: measured by concurrent jobs, so times are not comparable
   std::string fault = {};      ///< reason of an early end; empty if the user stopped the sweep
 };
 

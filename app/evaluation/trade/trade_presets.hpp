@@ -10,8 +10,8 @@
 namespace roomradar {
 
 /// Returns the presets fast, balanced and accurate with their figures, from the sweeps of prescan and run.
-/// Also returns the run's front, from accurate to fast. Where a sweep is missing or has no such preset, the
-/// default quality is used.
+/// Also returns the run's front, from accurate to fast. If a sweep is missing or did not choose a preset of
+/// this name, the preset has the default quality.
 Presets chosen_presets(const std::vector<TradeResult>& results,
                        const std::map<std::string, std::string>& made_by);
 

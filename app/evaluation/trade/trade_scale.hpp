@@ -8,7 +8,7 @@ struct TradeScale {
   int scan_frames = 75;
   double scan_rate_hz = 15.0;  ///< half a Kinect's rate, for fewer frames on the same camera path
   int map_frames = 240;        ///< number of frames of the prescan from which a run's map is made
-  int run_px = 640;            ///< width of the images of that prescan and of the run
+  int run_px = 640;            ///< width of the images of the run and of its prescan
   int run_frames = 120;
   int scenarios = 24;  ///< number of drops and pushes onto hidden surfaces
 };
