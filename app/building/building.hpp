@@ -1,4 +1,4 @@
-// building.hpp: makes one map of a building from many recordings.
+// building.hpp: builds one map of a building from many recordings.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -30,7 +30,7 @@ struct StageCounts {
 struct JoinedPair {
   SubmapName a, b;
   SubmapJoin join;
-  bool is_used = false;  ///< false: contradicts other joins, or was refused before
+  bool is_used = false;  ///< false: the join contradicts other joins, or was rejected before
   double off_m = 0.0;    ///< see BuildingGraph::off_m
 };
 
@@ -38,9 +38,9 @@ struct BuildingResult {
   BuildingInfo info;
   std::vector<StageCounts> stages;
   std::vector<JoinedPair> joins;
-  std::size_t kept = 0;  ///< submaps whose poses did not change since the last run
-  /// Position error of all placed frames against the recorded poses, after one rigid alignment. Has no poses
-  /// if the recordings state none. The recorded poses must be in one world frame.
+  std::size_t kept = 0;  ///< number of submaps whose poses have not changed since the last run
+  /// Position error of all placed frames against the recorded poses, after one rigid alignment. Empty if the
+  /// recordings contain no poses. All recorded poses must be in one world frame.
   TrajectoryError recorded_error;
 };
 
@@ -50,10 +50,10 @@ struct BuildingResult {
 ///   join      verifies these pairs, and measures their relative poses
 ///   (place)   solves for the poses of all submaps in one world frame; not a job
 ///   fuse      fuses each recording's frames with its final poses, and splits the result into tiles
-///   tile      adds up the parts of each tile, and extracts its surface
+///   tile      merges the parts of each tile, and extracts its surface
 /// Jobs whose inputs have not changed are not run again. Recordings that cannot be tracked, or that no join
-/// connects with the others, are left out and listed. At the end, building.json is replaced, then the files
-/// of earlier tiles and keyframes are deleted.
+/// connects with the others, are omitted from the map and listed in the result. At the end, building.json is
+/// replaced, then the files of earlier tiles and keyframes are deleted.
 /// @param show  called with one sentence after each stage
 /// @throws Error if no recording can be tracked, a job of a later stage fails, a stage is stopped, or a file
 ///         cannot be written

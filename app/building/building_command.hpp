@@ -17,14 +17,14 @@ struct BuildingOptions {
   TileGrid grid;
   double deviation_m = 0.002;
   PoseOrigin poses = PoseOrigin::kTracked;
-  int processes = 0;  ///< max number of jobs at a time; 0: one per processor
+  int processes = 0;  ///< max number of concurrent jobs; 0: one per processor
   std::string report;
 };
 /// Adds the options with their help texts and checks.
 void add_options(CLI::App& command, BuildingOptions& options);
 /// Executes the command on this machine's processors. Returns the exit status.
 int run(const BuildingOptions& options);
-/// Executes the command; `run_stage` runs the jobs.
+/// Executes the command, with `run_stage` for running the jobs.
 int run_building(const BuildingOptions& options, const RunStage& run_stage);
 
 /// Adds the hidden command `building-step`, which the jobs call.

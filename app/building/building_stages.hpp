@@ -52,9 +52,10 @@ inline std::string tile_job(const TileIndex& tile) { return "tile-" + name_of(ti
 /// Returns the submaps of a tracked recording, in order of time.
 std::vector<SubmapName> submaps_of(const BuildingWork& work, const std::string& recording);
 
-/// Per tile name: the files to add up, in order, relative to BuildingWork::jobs().
+/// Per tile name: the files to merge, in order, relative to BuildingWork::jobs().
 using PartsByTile = std::map<std::string, std::vector<std::string>>;
-/// Finds the files that the recordings' fuse jobs wrote, for all tiles in which a recording has surface.
+/// Lists the files that the recordings' fuse jobs wrote, for each tile in which at least one recording has
+/// surface.
 PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::string>& recordings);
 
 // Each function writes a stage's manifest to BuildingWork::jobs() and returns it. Throws Error if the
@@ -64,7 +65,7 @@ PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::strin
 Manifest track_stage(const BuildingWork& work);
 /// One job per pair of groups of submaps, and one per group.
 Manifest retrieve_stage(const BuildingWork& work, const std::vector<SubmapName>& submaps);
-/// Reads what the retrieve jobs wrote, and chooses pairs of submaps.
+/// Reads the similarities that the retrieve jobs wrote, and selects pairs of submaps to verify.
 /// @return indices in `submaps`
 std::vector<CandidatePair> read_pairs(const BuildingWork& work, const std::vector<SubmapName>& submaps);
 /// One job per pair. A CandidatePair holds indices in `submaps`.

@@ -32,8 +32,8 @@ int run(const RetrieveStep& step);
 inline constexpr const char* kFeaturesFile = "features.bin";
 inline constexpr const char* kSimilarityFile = "similarity.bin";
 
-/// Compares two submaps. Writes out/joins.bin; see load_joins(). Depends only on these two submaps, so
-/// changes of other recordings do not require it again.
+/// Compares two submaps. Writes out/joins.bin; see load_joins(). The result depends only on these two
+/// submaps, so changes of other recordings do not require running the step again.
 struct JoinStep {
   std::filesystem::path a, b;  ///< folders of submaps
   std::filesystem::path out;
@@ -59,7 +59,7 @@ inline constexpr const char* kPlacedKeyframesFile = "keyframes.bin";
 /// Max cells of a tile's unknown space: 2.5 MB of bits, cells of 2 cm in a tile of 5 m.
 inline constexpr double kTileUnknownCells = 2e7;
 
-/// Adds up the parts of one tile, and extracts its surface and the frontier of its unknown space. Writes
+/// Merges the parts of one tile, and extracts its surface and the frontier of its unknown space. Writes
 /// out/tile.json. If the tile has surface in its cube, also writes out/tile.octree (the tile's cube),
 /// tile.mesh, tile.glb and tile.unknown (the frontier within the cube, closed on all sides).
 struct TileStep {

@@ -21,8 +21,8 @@ struct BuildingSummary {
   std::vector<BuildingFloor> floors;  ///< from the lowest
 };
 
-/// Reads building.json and the meshes of all tiles, one after the other. Throws Error naming the file and the
-/// fault if one is missing or damaged.
+/// Reads building.json and, sequentially, the meshes of all tiles. Throws Error naming the file and the fault
+/// if a file is missing or damaged.
 BuildingSummary summarise_building(const std::filesystem::path& folder);
 
 /// Returns lines of text, for the user.

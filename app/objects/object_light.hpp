@@ -1,4 +1,4 @@
-// object_light.hpp: fractions of light that reach an object, or a surface point, past the room's surfaces.
+// object_light.hpp: fractions of light that the room's surfaces do not occlude at an object or surface point.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace roomradar {
 /// Casts rays against the room's surfaces. For lamps, casts rays in each of lamp_directions() from four
 /// points half a radius from the middle. For ambient light, casts 16 cosine-weighted rays upwards, up to 1 m.
 /// A surface nearer than 0.8 m blocks a lamp. A surface beyond 1.3 m does not, since ceilings and walls are
-/// behind the lamps. The nearer a surface is, the more ambient light it blocks, up to 60 %. All fractions are
-/// 1 without surfaces, and for values that are not finite.
+/// behind the lamps. Surfaces block up to 60 % of the ambient light; nearer surfaces block more. All
+/// fractions are 1 without surfaces, and for values that are not finite.
 /// @param room          the room's surfaces; may be null or empty
 /// @param middle_world  centre of the object
 /// @param radius_m      radius of its bounding sphere

@@ -14,9 +14,9 @@ struct SurfaceFoot {
   Eigen::Vector3f weights = Eigen::Vector3f::Zero();  ///< barycentric coordinates in the triangle
 };
 
-/// Finds nearest points by walking between triangles that share a vertex. A walk does not cross seams (edges
-/// with duplicated vertices). It does not reach the far side of a thin sheet. A walk may end in a local
-/// minimum of the distance.
+/// Finds nearest points by walking between triangles that share a vertex. The search does not cross seams
+/// (edges with duplicated vertices), and does not reach the far side of a thin sheet. The search may end in a
+/// local minimum of the distance.
 class SurfaceWalk {
  public:
   /// @param mesh  must outlive the walk; all triangles valid

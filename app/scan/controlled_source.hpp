@@ -1,4 +1,4 @@
-// controlled_source.hpp: a frame source that the scan window pauses and ends.
+// controlled_source.hpp: a frame source that the scan window can pause and end.
 #pragma once
 #include <memory>
 

@@ -18,7 +18,7 @@ nlohmann::json results_of(const PrescanResult& scanned);
 nlohmann::json held_out_json(const HeldOutScore& score);
 
 /// Prints a summary of a few lines to stdout.
-/// @param held_out  unset: no frames were held out, or held-out frames were not compared
+/// @param held_out  unset: there is no score, since no frames were held out or the comparison failed
 void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
                    const std::optional<HeldOutScore>& held_out);
 

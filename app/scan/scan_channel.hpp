@@ -28,52 +28,52 @@ struct ShownPart {
 /// The view to move to next, see best_next_view().
 struct ShownNextView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::string way;  ///< way from the camera to the view, in words
+  std::string way;  ///< directions from the camera to the view, in words
 };
 
 struct ScanCounts {
   std::int64_t frames = 0;
   double frames_per_s = 0.0;
-  double read_ms = 0.0, track_ms = 0.0;  ///< per frame, smoothed; reading is the wait for a frame
+  double read_ms = 0.0, track_ms = 0.0;  ///< per frame, smoothed; read_ms includes waiting for the frame
   std::int64_t keyframes = 0;
   std::int64_t loops = 0;
   double seen_m2 = 0.0;
   double well_known = 0.0;                   ///< fraction of the surface seen so far
-  std::optional<double> table_tops_known{};  ///< fraction known well; unset: none seen above a floor
+  std::optional<double> table_tops_known{};  ///< well-known fraction; unset: no table top above a floor seen
   std::size_t memory_bytes = 0;
-  /// Time until memory or disk run out; unset: not known, or not foreseeable.
+  /// Time until memory or disk space is exhausted; unset: unknown.
   std::optional<double> left_s{};
 };
 
-/// State of a scan after a frame. The world's +z is up, as far as the scan can tell so far.
+/// State of a scan after a frame. +z of the world frame is the current estimate of the up direction.
 struct ShownScan {
   std::int64_t frame_index = -1;  ///< -1: no frame so far
   double stamp_s = 0.0;
-  ColourImage picture;        ///< colour; depth as grey if there is no colour
-  Image<std::uint32_t> tint;  ///< tint of the whole picture, coarser than it: RGBA, red in the lowest byte
+  ColourImage picture;        ///< colour image; depth as a grey image if there is no colour
+  Image<std::uint32_t> tint;  ///< overlay for the picture, of lower resolution: RGBA, red in the lowest byte
   TrackStatus status = TrackStatus::kTracked;
   std::optional<ScanFault> fault;
   double relative_speed = 0.0;  ///< see relative_speed()
   Intrinsics camera;            ///< depth camera
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<ShownPart> parts;
-  std::vector<Eigen::Vector3f> path_world;  ///< positions of the keyframes and of the camera
-  std::optional<ShownNextView> next_view;   ///< unset: not known, or nothing unseen is near
-  std::vector<NumberedHole> holes;          ///< the largest above the floor, near the camera
+  std::vector<Eigen::Vector3f> path_world;  ///< trajectory: positions of the keyframes, then of the camera
+  std::optional<ShownNextView> next_view;   ///< unset: unknown, or no unseen surface is near
+  std::vector<NumberedHole> holes;          ///< the largest holes above the floor, near the camera
   ScanCounts counts;
 };
 
 /// Result of a scan, for its window.
 struct ScanOutcome {
-  std::string text;                       ///< empty: the scan goes on
-  std::shared_ptr<const Mesh> surface{};  ///< of the saved map; null: there is no map
-  std::vector<NumberedHole> holes{};      ///< inside the scan, in the map's world frame
+  std::string text;                       ///< empty: the scan is still running
+  std::shared_ptr<const Mesh> surface{};  ///< surface of the saved map; null: there is no map
+  std::vector<NumberedHole> holes{};      ///< holes inside the scan, in the map's world frame
 };
 
 /// Work of a scan after its last frame.
 struct ScanStage {
-  std::string name;                   ///< as in PrescanProgress; empty: frames are still tracked
-  std::int64_t done = 0;              ///< frames
+  std::string name;                   ///< stage name, as in PrescanProgress; empty: tracking is still running
+  std::int64_t done = 0;              ///< number of frames processed in this stage
   std::optional<std::int64_t> total;  ///< unset: unknown
 };
 
@@ -95,7 +95,7 @@ class ScanChannel {
   void set_paused(bool is_paused);
   [[nodiscard]] bool is_paused() const;
   void request(ScanRequest request);
-  /// Asks to undo the last seconds of the scan.
+  /// Requests that the last `seconds` of the scan be undone.
   void undo(double seconds);
   /// Swaps the newest state with `shown`. Returns false if no state was published since the last call.
   bool take(ShownScan& shown);
@@ -107,7 +107,7 @@ class ScanChannel {
   [[nodiscard]] ScanRequest requested() const;
   /// Returns the sum of the durations passed to undo() since the last call, s.
   double take_undo_s();
-  /// Waits while the window is paused. Returns at a request.
+  /// Waits while the window is paused. Returns early if the user makes a request.
   void wait_while_paused();
   /// Publishes `filled`, and swaps it with an old state whose memory can be reused.
   void publish(ShownScan& filled);

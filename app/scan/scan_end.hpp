@@ -1,4 +1,5 @@
-// scan_end.hpp: keeps or deletes a scan's files at its end, and throws errors that say what is kept.
+// scan_end.hpp: keeps or deletes a scan's files at the end of the scan, and throws errors that state which
+// files are kept.
 #pragma once
 #include <exception>
 #include <new>
@@ -19,11 +20,11 @@ struct StoppedByUser : Error {
 /// @param checkpoints  may be null
 [[noreturn]] void stop(const std::string& map, Checkpoints* checkpoints);
 
-/// Throws Error with the fault and, if the scan is not lost, advice on how to continue.
+/// Throws Error with the fault and, if the scan can be resumed, advice on how to continue.
 [[noreturn]] void fail(const std::string& fault, const ScanStart& start);
 
-/// Calls act(), which scans or saves. Errors say whether the scan can be resumed. A discarded scan is
-/// deleted.
+/// Calls act(), which scans or saves. Converts exceptions of act() to errors that state whether the scan can
+/// be resumed. Deletes the checkpoints of a discarded scan.
 template <typename Act>
 auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
   try {
@@ -40,8 +41,8 @@ auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
   }
 }
 
-/// Call once the map is saved, or will not be: deletes the checkpoints and, unless keep_frames, the stored
-/// frames of a live scan.
+/// Deletes the checkpoints and, unless keep_frames, the stored frames of a live scan. Call after the map was
+/// saved, or if it will not be saved.
 void finish(Checkpoints& checkpoints, bool keep_frames);
 
 /// Throws Error: a map that was to be extended is unchanged, because --max-memory stopped the scan.

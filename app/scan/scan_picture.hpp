@@ -1,4 +1,5 @@
-// scan_picture.hpp: the camera's picture in the scan window, tinted by how well each place is known.
+// scan_picture.hpp: the camera's picture in the scan window, tinted by the scan's knowledge of each surface
+// point.
 #pragma once
 #include "app/scan/live/knowledge_grid.hpp"
 #include "mapping/types/frame.hpp"
@@ -9,12 +10,11 @@ namespace roomradar {
 /// 5 m, black without depth.
 void make_picture(const Frame& frame, ColourImage& picture);
 
-/// Returns a tint for the whole picture of make_picture(), one pixel per 8 x 8 of the picture: RGBA, red in
-/// the lowest byte. Well known places are green, thinly known ones amber; new ones and those without depth
-/// have no tint.
+/// Returns a tint for the picture of make_picture(), with one pixel per 8 x 8 pixels of the picture: RGBA,
+/// red in the lowest byte. Knowledge::kWell is green and kThin is amber. kNew and kNone have no tint.
 Image<std::uint32_t> make_tint(const Frame& frame, const Image<Knowledge>& knowledge);
 
-/// Mixes the last picture with a known pose half over the current one.
+/// Replaces the current picture by its mean with the last picture that has a known pose.
 void mix_half(const ColourImage& last_good, ColourImage& picture);
 
 }  // namespace roomradar

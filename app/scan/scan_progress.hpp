@@ -12,7 +12,7 @@
 
 namespace roomradar {
 
-/// Message of Ctrl-C in a scan that then ends without a map.
+/// Message printed on Ctrl-C by a scan that Ctrl-C ends without a map.
 inline constexpr const char* kStopsWithoutMap =
     "\nroomradar: stops after the next frame, without a map; after the last frame the map is still made. "
     "Press Ctrl-C again to end at once\n";
@@ -20,7 +20,8 @@ inline constexpr const char* kStopsWithoutMap =
 /// Returns true for the stages of PrescanProgress in which frames are tracked.
 inline bool is_tracking(const std::string& stage) { return stage == "track" || stage == "track again"; }
 
-/// The window of a scan, and the observer that fills it during the first pass. Both null: there is no window.
+/// Window channel of a scan, and the observer that publishes to it during the first pass. Both null: there is
+/// no window.
 struct ScanWindow {
   ScanChannel* channel = nullptr;
   std::unique_ptr<ScanView> view{};
@@ -33,9 +34,9 @@ class ScanProgress {
   ScanProgress(const std::string& map, const ScanStart& start, ScanWindow& window)
       : map_(map), start_(start), window_(window) {}
 
-  /// Call after each frame of a stage. After Ctrl-C it requests a checkpoint of the frames read so far, and
-  /// the call after the next frame throws StoppedByUser. While a live source is tracked, leaves Ctrl-C to the
-  /// source, which then ends. Throws ScanDiscarded if the window requests it.
+  /// Shows progress. Call after each frame of a stage. The first call after Ctrl-C requests a checkpoint of
+  /// the frames read so far; the next call throws StoppedByUser. While a live source is tracked, ignores
+  /// Ctrl-C, which then ends the source. Throws ScanDiscarded if the user discards the scan in the window.
   void show(const std::string& stage, const std::string& note);
 
  private:

@@ -26,14 +26,14 @@
 
 namespace roomradar {
 
-/// Prepares pictures, tint, advice and the live model on threads of its own, so that the scan does not wait.
-/// A frame that comes while the view is busy is not shown.
+/// Prepares pictures, tint, advice and the live model on separate threads, so that the scan does not wait.
+/// Frames that arrive while the view is busy are not shown.
 class ScanView final : public ScanObserver {
  public:
   /// @param channel  must outlive the view
   /// @param max_memory_bytes, folder  see resources_now()
-  /// @param first_view  view that is shown as the next one until the camera has been there, in the world
-  ///                    frame of the map that is extended; unset: none
+  /// @param first_view  view suggested as the next view until the camera has reached it, in the world frame
+  ///                    of the extended map; unset: none
   explicit ScanView(ScanChannel& channel, std::size_t max_memory_bytes = 0,
                     std::filesystem::path folder = ".", std::optional<NextView> first_view = {});
   ~ScanView() override;
@@ -76,9 +76,9 @@ class ScanView final : public ScanObserver {
   struct Up {
     UpEstimator estimator;
     std::int64_t frames = 0, due = 1;
-    Eigen::Isometry3d T_shown_world = Eigen::Isometry3d::Identity();  ///< rotates up to +z
+    Eigen::Isometry3d T_shown_world = Eigen::Isometry3d::Identity();  ///< rotation; up becomes +z
   };
-  /// Numbers that are computed every 30 frames.
+  /// Values that are computed every 30 frames.
   struct Counted {
     const std::size_t max_memory_bytes;
     const std::filesystem::path folder;
@@ -87,7 +87,8 @@ class ScanView final : public ScanObserver {
     std::optional<double> table_tops_known{};
     ResourceForecast forecast{};
   };
-  /// Result of a search for views and holes, in the shown world of its time.
+  /// Result of a search for views and holes, in the levelled world frame that was current when the search
+  /// began.
   struct Explored {
     Eigen::Isometry3d T_shown_world = Eigen::Isometry3d::Identity();
     std::optional<ExplorationGrid> grid;

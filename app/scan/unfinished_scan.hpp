@@ -13,11 +13,10 @@ namespace roomradar {
 /// Input of a prescan.
 struct ScanStart {
   std::unique_ptr<Checkpoints> checkpoints;  ///< null: no checkpoints are written
-  /// Frame source that can rewind. A live source is cached on disk beside the checkpoints, and ends on
-  /// Ctrl-C.
+  /// Frame source that can rewind. A live source is cached on disk (`spool`), and ends on Ctrl-C.
   std::unique_ptr<FrameSource> source;
   bool is_live = false;  ///< true: the source continues until Ctrl-C, unless limited by --frames
-  /// Cache folder for a live source's frames, beside the checkpoints. Empty: not cached.
+  /// Cache folder for a live source's frames, in the same folder as the checkpoints. Empty: not cached.
   std::filesystem::path spool;
   std::optional<SavedMap> map;  ///< the map to extend; unset: a new map
   bool is_done = false;         ///< true: nothing to do, since the map already contains the whole recording

@@ -19,13 +19,13 @@ bool is_loopback(const ListenAddress& address);
 /// naming the file and the fault, also if other users may read the file.
 std::string read_token(const std::filesystem::path& path);
 
-/// Returns true if the field Authorization is "Bearer TOKEN". The time does not depend on how many of the
-/// token's characters are right.
+/// Returns true if the field Authorization is "Bearer TOKEN". Compares in constant time, so that the duration
+/// does not reveal how many characters match.
 bool has_token(std::string_view authorization, std::string_view token);
 
 /// Returns true if the field Host names this machine: 127.0.0.1, [::1] or localhost, with or without a port.
-/// A server without a token refuses other names. Otherwise a page in a browser could reach it by a name of
-/// its own that resolves to this machine (DNS rebinding).
+/// A server without a token refuses other names. Otherwise, a web page could reach the server by a host name
+/// that resolves to this machine (DNS rebinding).
 bool is_local_name(std::string_view host);
 
 }  // namespace roomradar

@@ -18,9 +18,9 @@ inline constexpr long kMaxLocatePixels = 2'500'000;  ///< per image; 1,920 x 1,0
 ///     depth: grey PNG of 16 bit, 0: no measurement; colour: JPEG or PNG
 ///
 /// `camera` has the fields of camera.json; see read_camera_file(). If it lacks `colour` and `T_colour_depth`,
-/// the colour image has the depth image's size and view. The default of `depth_units_per_m` is 1000 (mm).
-/// The body is not trusted: lengths, the images' sizes and the cameras are checked before pixels are decoded.
-/// @throws Error with a sentence for the client
+/// the colour image is registered to the depth image and has its size. The default of `depth_units_per_m` is
+/// 1000 (mm). The body is untrusted: lengths, image sizes and cameras are checked before pixels are decoded.
+/// @throws Error with a message for the client
 Frame parse_locate_request(std::string_view body);
 
 }  // namespace roomradar

@@ -27,12 +27,12 @@ struct MapCatalogue {
   std::optional<GeoAnchor> anchor;
 };
 
-/// Returns an answer with {"error": sentence}.
+/// Returns an answer with the body {"error": sentence}.
 Answer error_answer(int status, const std::string& sentence);
 
 /// Answers a GET:
 ///   /health                            {"status": "ok"}
-///   /maps                              list of the maps
+///   /maps                              the maps
 ///   /maps/NAME                         facts, as `roomradar map info --json`
 ///   /maps/NAME/tileset.json            only for buildings
 ///   /maps/NAME/tiles/FILE              only for buildings

@@ -12,14 +12,14 @@ struct MapServerConfig {
   ListenAddress address;
   std::string token;  ///< empty: requests need no token
   bool verbose = false;
-  int connections = 24;     ///< max answered at a time; as many again wait, others in the system's queue
-  int locating = 0;         ///< max frames located at a time; 0: one per processor
-  int locating_waits = 16;  ///< max requests that wait to be located; others get status 503
+  int connections = 24;     ///< max concurrent requests; as many are queued here, further ones by the system
+  int locating = 0;         ///< max concurrent locate requests; 0: one per processor
+  int locating_waits = 16;  ///< max queued locate requests; others get status 503
 };
 
-/// Answers requests. A connection is closed after one request, so idle clients hold no thread. Requests have
-/// a max size (kMaxLocateBody_bytes) and a max silence (5 s). The constructor throws Error in builds without
-/// cpp-httplib.
+/// Answers requests. A connection is closed after one request, so idle clients occupy no thread. Requests are
+/// limited in size (kMaxLocateBody_bytes). Reads and writes time out after 5 s without data. The constructor
+/// throws Error in builds without cpp-httplib.
 class MapServer {
  public:
   /// Binds the address. Throws Error if it cannot be used.

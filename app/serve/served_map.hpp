@@ -1,4 +1,4 @@
-// served_map.hpp: a served map, which is read again after it was replaced on disk.
+// served_map.hpp: a served map, reloaded after its replacement on disk.
 #pragma once
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -18,10 +18,10 @@ namespace roomradar {
 struct ServedTile {
   std::string name;
   Eigen::AlignedBox3d box_world;  ///< bounding box of the surface, m
-  std::string glb;                ///< path below the map, such as tiles/0_0_0.1234.glb
+  std::string glb;                ///< path relative to the map's folder, such as tiles/0_0_0.1234.glb
 };
 
-/// A map at one moment. Immutable: a map that was replaced on disk is another object.
+/// A loaded version of a map. Immutable: a map that is replaced on disk is loaded as a new object.
 class MapSnapshot {
  public:
   /// Reads the map's description. Throws Error naming the file and the fault.
@@ -34,12 +34,12 @@ class MapSnapshot {
   /// "building" or "room".
   [[nodiscard]] const std::string& kind() const { return kind_; }
   [[nodiscard]] const std::vector<ServedTile>& tiles() const { return tiles_; }
-  /// The files that may be served, by their path below the map. No other file is served.
+  /// The files that may be served, by path relative to the map's folder. No other file is served.
   [[nodiscard]] const std::map<std::string, ContentFile>& files() const { return files_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// The data of the keyframes that recognise_place() needs, read at the first call. Thread safe. Throws
-  /// Error if the keyframes are missing or damaged.
+  /// The keyframe data for recognise_place(), read at the first call. Thread safe. Throws Error if the
+  /// keyframes are missing or damaged.
   [[nodiscard]] const KeyframeDatabase& keyframes() const;
 
  private:
@@ -59,18 +59,18 @@ class MapSnapshot {
 /// A map and its name. Thread safe.
 class ServedMap {
  public:
-  /// Reads the map. Throws Error naming the file and the fault, also if the folder's name cannot be part of
-  /// an address.
+  /// Reads the map. Throws Error naming the file and the fault, also if the folder's name cannot be part of a
+  /// URL.
   explicit ServedMap(const std::filesystem::path& folder);
 
-  /// Name in addresses, which is the folder's name.
+  /// Name in URLs: the folder's name.
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Returns the current map. Reads it again if building.json or map.json was replaced since the last call.
-  /// Throws Error if the new map cannot be read.
+  /// Returns the current version of the map. Reloads the map if building.json or map.json was replaced since
+  /// the last call. Throws Error if the new version cannot be read.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> current();
 
  private:
-  /// Changes whenever the describing file is replaced.
+  /// Returns a text that changes whenever building.json or map.json is replaced.
   [[nodiscard]] std::string state_on_disk() const;
 
   std::filesystem::path folder_;

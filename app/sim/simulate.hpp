@@ -18,9 +18,9 @@ namespace roomradar {
 ///                           sim.json; a crate that appears has the next number after the moving objects
 ///   truth/revealed/NNNNNN.png  8 bit; 255 if a crate that has disappeared would be the nearest surface
 ///   truth/trajectory.txt    exact poses of the depth camera, TUM format
-///   truth/room.ply          surface of the room, without moving objects; of a building, its rooms, corridors
-///                           and stairs that may be seen from the walk, whole
-///   truth/sim.json          the options, and the spec that reproduces these frames; of a building also the
+///   truth/room.ply          surface of the room, without moving objects. For a building: complete surfaces
+///                           of all rooms, corridors and stairs that are visible from the walk
+///   truth/sim.json          the options, and the spec that reproduces these frames. For a building, also the
 ///                           plan (floor, box and look-alike of each room) and the rooms that the walk visits
 /// moved/, mover/ and revealed/ exist only if something moves, appears or disappears.
 /// @param progress  called after each frame with the number of finished frames and the total; may be empty

@@ -1,4 +1,4 @@
-// background_jobs.hpp: runs work on another thread and delivers the results on the thread of a window.
+// background_jobs.hpp: runs jobs on a worker thread and delivers the results on the caller's thread.
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -11,19 +11,19 @@
 
 namespace roomradar {
 
-/// Runs jobs one after the other, in the order in which they were added. All calls must come from one thread.
-/// deliver() passes the results on that thread.
+/// Runs jobs sequentially on a worker thread, in the order in which they were added. All calls must come from
+/// one thread. deliver() passes the results to their callbacks on that thread.
 class BackgroundJobs {
  public:
-  /// @param on_result  called on the jobs' thread when a result waits for deliver()
+  /// @param on_result  called on the worker thread when a result is ready for deliver()
   explicit BackgroundJobs(std::function<void()> on_result);
-  /// Waits for the running job; drops waiting jobs.
+  /// Waits for the running job; discards queued jobs.
   ~BackgroundJobs();
   BackgroundJobs(const BackgroundJobs&) = delete;
   BackgroundJobs& operator=(const BackgroundJobs&) = delete;
 
-  /// Adds a job. `work` is called on the jobs' thread; then deliver() calls done(result of work), or
-  /// failed(message) if `work` throws.
+  /// Adds a job. The worker thread calls `work`. deliver() then calls done(result of work), or
+  /// failed(message) if `work` has thrown.
   template <typename Work, typename Done>
   void add(Work work, Done done, std::function<void(const std::string&)> failed) {
     push([work = std::move(work), done = std::move(done), failed = std::move(failed)]() -> Result {
@@ -35,7 +35,7 @@ class BackgroundJobs {
     });
   }
 
-  /// Passes the waiting results to their callbacks.
+  /// Passes the finished jobs' results to their callbacks.
   void deliver();
   /// Returns true if no job waits or runs, and all results were delivered.
   [[nodiscard]] bool is_idle() const { return pending_ == 0; }
@@ -45,7 +45,7 @@ class BackgroundJobs {
   using Job = std::function<Result()>;
 
   std::function<void()> on_result_;
-  int pending_ = 0;  ///< jobs whose result was not handed over
+  int pending_ = 0;  ///< number of jobs whose result has not been delivered
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Job> jobs_;

@@ -31,10 +31,10 @@ Finding judge_replay(const std::filesystem::path& recording);
 /// Checks that an OpenGL renderer exists, and its max image size.
 Finding judge_renderer();
 
-/// Checks that the program `fakenect` is in a folder of `path`, a list of folders as in $PATH.
+/// Checks that the program `fakenect` is in a folder of `path`, a list of folders in the syntax of $PATH.
 Finding judge_fakenect(const std::string& path);
 
-/// Makes all checks, those of the Kinects or of their replay first. Takes up to a second.
+/// Makes all checks, beginning with the Kinects or their replay. Takes up to a second.
 std::vector<Finding> check_setup();
 
 }  // namespace roomradar

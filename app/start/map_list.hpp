@@ -14,10 +14,10 @@ namespace roomradar {
 
 struct MapEntry {
   std::filesystem::path folder;
-  std::time_t saved_at = 0;                          ///< when map.json, or FOLDER.unfinished, was written
-  std::uint64_t bytes = 0;                           ///< all files together
-  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  ///< of the box around all occupied space
-  std::string source;                                ///< recordings or devices that it was scanned from
+  std::time_t saved_at = 0;  ///< time at which map.json, or FOLDER.unfinished, was written
+  std::uint64_t bytes = 0;   ///< total size of all files
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  ///< size of the bounding box of all occupied space
+  std::string source;                                ///< recordings or devices from which the map was scanned
   bool has_unfinished_scan = false;                  ///< FOLDER.unfinished exists
   bool is_saved = true;                              ///< false: only FOLDER.unfinished exists
   std::string fault;  ///< sentence on why the map cannot be used; empty if it can
@@ -25,7 +25,7 @@ struct MapEntry {
 
 /// Properties of a map that take time to compute.
 struct MapDetails {
-  ColourImage picture;             ///< the room obliquely from above
+  ColourImage picture;             ///< rendering of the room, obliquely from above
   double surface_m2 = 0.0;         ///< whole surface
   std::optional<double> floor_m2;  ///< floor; unset: none was found
   std::size_t holes = 0;           ///< unobserved regions inside the scan
@@ -34,10 +34,10 @@ struct MapDetails {
   std::string fault;  ///< sentence on why the fields above are incomplete; empty: they are complete
 };
 
-/// Returns the folder of an interrupted scan of this map, which need not exist.
+/// Returns the path of the folder for an interrupted scan of this map. The folder need not exist.
 std::filesystem::path unfinished_scan_of(const std::filesystem::path& map);
 
-/// Returns true if a folder is a saved map, or has an interrupted scan beside it.
+/// Returns true if `folder` is a saved map, or if an interrupted scan of it exists.
 bool is_map(const std::filesystem::path& folder);
 
 /// Reads map.json. Never throws: MapEntry::fault states an error.
@@ -47,13 +47,13 @@ MapEntry describe_map(const std::filesystem::path& folder);
 /// map; newest first. Considers subfolders().
 std::vector<MapEntry> list_maps(const std::filesystem::path& folder);
 
-/// Loads the map, draws it in a picture of this width, and looks for holes. Takes about a second for a room.
+/// Loads the map, renders a picture of this width, and searches for holes. Takes about a second for a room.
 /// Never throws: MapDetails::fault states an error.
 /// @param ground  colour around the room
 MapDetails examine_map(const std::filesystem::path& folder, int width_px, Rgb ground);
 
 /// Returns the properties as lines of text, each a name and a value: date, size, area, holes, source.
-/// @param details  null: they are not known so far
+/// @param details  null: not yet computed
 std::vector<std::pair<std::string, std::string>> facts_of(const MapEntry& map, const MapDetails* details);
 
 }  // namespace roomradar

@@ -19,14 +19,13 @@ std::filesystem::path rename_map(const std::filesystem::path& map, const std::st
 /// folder is not a map, is a link, or contains anything that is not part of a map.
 void delete_map(const std::filesystem::path& map);
 
-/// Exports the map beside itself, to a file such as NAME.glb, or NAME-2.glb if that is taken. Returns the
-/// path.
-/// Throws Error as export_map() and write_map_page() do.
+/// Exports the map to a file in the map's parent folder, such as NAME.glb, or NAME-2.glb if NAME.glb exists.
+/// Returns the path. Throws Error as export_map() and write_map_page() do.
 /// @param extension  .html (a page), .glb or .ply
 std::filesystem::path export_beside(const std::filesystem::path& map, const std::string& extension);
 
 /// Returns sentences on what appeared in map b and what vanished since map a. Takes several seconds. Throws
-/// Error if a map cannot be read, or the maps do not show one room.
+/// Error if a map cannot be read, or the maps cannot be registered as maps of the same room.
 std::vector<std::string> compare_maps(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace roomradar

@@ -12,27 +12,28 @@ struct SourceEntry {
   SourceKind kind = SourceKind::kSimulated;
   std::string name;    ///< text in the list
   std::string detail;  ///< a few words, such as "300 frames"
-  std::string source;  ///< as open_source() takes it
-  /// The source to play with, as open_source() takes it; differs from `source` for simulated rooms, where the
-  /// camera then stays at one place.
+  std::string source;  ///< in the syntax of open_source()
+  /// Source for playing, in the syntax of open_source(). For simulated rooms it differs from `source`: the
+  /// camera stays at one position.
   std::string play_source;
   std::string fault;  ///< sentence on why the source cannot be used; empty if it can
 };
 
-/// Returns the Kinects on the USB bus, or the recording that fakenect replays in place of one. Opens none.
+/// Returns the Kinects on the USB bus, or the recording that fakenect replays in place of one. Does not open
+/// them.
 std::vector<SourceEntry> list_kinects();
 
 /// Returns the recordings among the subfolders and files of `folder` and of `folder`/recordings, by name;
-/// only `folder` itself if it is a recording. Considers subfolders() and files_in_folder(). Folders that are
-/// not readable or no recording are left out.
+/// only `folder` itself if it is a recording. Considers subfolders() and files_in_folder(). Ignores
+/// unreadable folders and folders without a recording.
 std::vector<SourceEntry> list_recordings(const std::filesystem::path& folder);
 
 /// Returns the simulated rooms, without the one with the checkerboard.
 std::vector<SourceEntry> list_simulated_rooms();
 
 /// Returns the entry of a source, with a fault if `source` is not a source or cannot be read.
-/// @param source  kinect:N with or without ?depth=, openni:N (not looked for on the bus), sim:ROOM with keys,
-///                or a recording's path
+/// @param source  kinect:N with or without ?depth=, openni:N (its presence is not checked), sim:ROOM with
+///                keys, or a recording's path
 SourceEntry describe_source(const std::string& source);
 
 }  // namespace roomradar

@@ -36,23 +36,24 @@ struct StartState {
 /// The user's decision.
 struct StartChoice {
   StartAction action = StartAction::kQuit;
-  std::string source;  ///< as open_source() takes it
+  std::string source;  ///< in the syntax of open_source()
   std::string map;     ///< folder
 };
 
-/// Lists sources and maps again. A chosen entry stays chosen if it is still there.
+/// Refresh the lists of sources and maps. A chosen entry that is still listed remains chosen.
 /// @param recordings  result of list_recordings(), which may take a while
 void refresh_sources(StartState& state, const std::vector<SourceEntry>& recordings);
 void refresh_maps(StartState& state);
 
-/// Adds and chooses a map or a source that a user names or drops. Sets a message if `name` is neither.
+/// Adds and chooses a map or source that the user has named or dropped on the window. Sets an error message
+/// if `name` is neither.
 void choose(StartState& state, const std::string& name);
 
 /// Returns the chosen entry; null if the list is empty.
 const SourceEntry* chosen_source(const StartState& state);
 const MapEntry* chosen_map(const StartState& state);
 
-/// Moves the choice in the active list by a number of rows, and stops at its ends.
+/// Moves the selection in the active list by a number of rows, clamped to the list.
 void move_choice(StartState& state, int rows);
 
 /// Returns a sentence on why an action cannot be done with the chosen entry; empty if it can.

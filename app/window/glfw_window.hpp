@@ -36,7 +36,8 @@ class GlfwWindow {
   std::vector<std::string> files_;
 };
 
-/// Returns the open window, with a new title, or opens one. The window closes when its last owner is gone.
+/// Returns the open window, with a new title, or opens one. The window closes when its last shared_ptr is
+/// destroyed.
 /// @throws Error as GlfwWindow() does
 std::shared_ptr<GlfwWindow> open_window(const std::string& title);
 

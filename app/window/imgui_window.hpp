@@ -18,17 +18,17 @@ class WindowContent {
   WindowContent& operator=(const WindowContent&) = delete;
   virtual ~WindowContent() = default;
 
-  /// Takes the news since the last call. Called before each drawing.
+  /// Fetches state changes since the last call. Called before each draw().
   virtual void take_news() = 0;
   virtual void press(const Key& key) = 0;
-  /// Called in place of press() while a text field has the keyboard.
+  /// Called in place of press() while a text field has the keyboard focus.
   virtual void press_in_text(const Key& /*key*/) {}
   /// Called for each file that is dropped onto the window.
   virtual void take_file(const std::string& /*path*/) {}
   /// Draws within a Dear ImGui frame.
   virtual void draw(float width, float height) = 0;
   [[nodiscard]] virtual bool wants_to_quit() const = 0;
-  /// Returns the scale of text and panes that the user has set meanwhile; unset: none.
+  /// Returns the scale of text and panes that the user has set in this content; unset: none.
   [[nodiscard]] virtual std::optional<double> ui_scale() const { return std::nullopt; }
 };
 

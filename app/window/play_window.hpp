@@ -20,9 +20,9 @@ struct PlayWindowResult {
 };
 
 /// Opens a window, or reuses the open one with a new title. Runs `work` on another thread and shows the
-/// snapshots of `work`, also after `work` has returned. Ends when the user closes the window or asks to scan,
-/// when `work` throws, and when `work` returns after Ctrl-C. Waits for `work` to end. Call on the main
-/// thread.
+/// snapshots that `work` publishes. The last snapshot remains visible after `work` has returned. Ends when
+/// the user closes the window or asks to scan, when `work` throws, and when `work` returns after Ctrl-C.
+/// Waits for `work` to end. Call on the main thread.
 ///
 /// @param meshes     objects that can be added, in addition to the built-in teapot
 /// @param budget_ms  the run's time limit per frame; unset: none

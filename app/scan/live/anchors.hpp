@@ -1,4 +1,5 @@
-// anchors.hpp: coordinate frames of the parts of a live model, which move with the keyframes.
+// anchors.hpp: local coordinate frames (anchors) of a live model's parts, corrected with the keyframes'
+// poses.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -10,17 +11,18 @@
 
 namespace roomradar {
 
-/// Coordinate frame of a part of the live model. When the anchor was made, its axes were the world's and its
-/// origin was the camera. The anchor moves with a keyframe when closed loops correct the poses.
+/// Coordinate frame of a part of the live model. At its creation, an anchor's axes are parallel to the world
+/// frame's, and its origin is the camera position. When loop closures correct the poses, the anchor moves
+/// with its keyframe.
 struct Anchor {
-  std::optional<std::size_t> keyframe;  ///< unset: T_keyframe_anchor is the pose in the world, and constant
+  std::optional<std::size_t> keyframe;  ///< unset: T_keyframe_anchor is the constant pose in the world frame
   Eigen::Isometry3d T_keyframe_anchor = Eigen::Isometry3d::Identity();
-  /// View that the anchor was made for; decides which frames belong to it.
+  /// Camera pose at the anchor's creation. Frames with similar camera poses belong to the anchor.
   Eigen::Isometry3d T_anchor_camera = Eigen::Isometry3d::Identity();
   std::int64_t last_frame = 0;  ///< index of the last frame that belongs to the anchor
 };
 
-/// Current poses of anchors; unset: the anchor is gone.
+/// Current poses of anchors; unset: the anchor was removed.
 using AnchorPoses = std::vector<std::optional<Eigen::Isometry3d>>;
 
 /// Anchors, and their current poses.
@@ -33,8 +35,8 @@ struct Anchors {
 /// removed. Returns true if one is removed, or if a point 2 m from an anchor moved by more than 1 cm.
 bool correct(const OdometrySnapshot& odometry, Anchors& anchors);
 
-/// Returns the anchor with the view most similar to the camera's, or makes a new anchor if none was made
-/// within 0.8 m and 40 degrees.
+/// Returns the index of the anchor with the view most similar to the camera's. Adds an anchor if no anchor's
+/// view is within 0.8 m and 40 degrees.
 std::size_t anchor_for(std::int64_t frame_index, const Eigen::Isometry3d& T_world_camera,
                        const OdometrySnapshot& odometry, Anchors& anchors);
 

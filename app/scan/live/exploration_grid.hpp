@@ -14,11 +14,11 @@ enum class CellState : std::uint8_t {
   kUnknown,
   kFree,
   kOccupied,
-  kUnmeasurable,  ///< unknown, although seen from near several times, such as glass or dark surfaces
+  kUnmeasurable,  ///< unknown although repeatedly observed at short range, such as glass or dark surfaces
 };
 
-/// A box of cells of 10 cm, 25.6 m wide and 9.6 m high, centred at the camera. The world's +z is up. Takes 6
-/// MB.
+/// Box of cells of 10 cm, 25.6 x 25.6 m wide and 9.6 m high, centred at the camera position. +z of the world
+/// frame is up. Takes 6 MB.
 class ExplorationGrid {
  public:
   static constexpr double kCell_m = 0.1;
@@ -32,12 +32,12 @@ class ExplorationGrid {
   /// Returns the state of the cell that contains a point; kUnmeasurable outside the grid.
   [[nodiscard]] CellState at(const Eigen::Vector3d& p_world) const;
 
-  /// Returns the part of the grid inside the bounding box of all cells that rays crossed. Unmeasurable cells
-  /// count as occupied, since a scan cannot find anything there.
+  /// Returns the cells inside the bounding box of all cells that rays crossed. Unmeasurable cells count as
+  /// occupied, since further scanning cannot observe them.
   [[nodiscard]] OccupancyCells occupancy() const;
 
  private:
-  Eigen::Vector3i first_;       ///< lowest cell; cell 0 begins at the world's origin
+  Eigen::Vector3i first_;       ///< indices of the lowest cell; cell (0, 0, 0) begins at the world origin
   Eigen::AlignedBox3i marked_;  ///< cells that rays crossed
   /// Bit 0: a ray has crossed the cell. Bit 1: a ray has ended in it. Bits 2 to 7: number of rays without
   /// depth, at most 63.
@@ -49,13 +49,13 @@ class ExplorationGrid {
   [[nodiscard]] CellState state_of(std::int64_t index) const;
 };
 
-/// Returns the fraction of a frame's pixels whose points are surrounded by free space, as those of moving
-/// objects are. Uses every 8th pixel in both directions, up to 4 m.
+/// Returns the fraction of a frame's pixels whose points are surrounded by free space. Such points are on
+/// moving objects. Uses every 8th pixel in both directions, up to 4 m.
 double moved_fraction(const ExplorationGrid& grid, const Frame& frame,
                       const Eigen::Isometry3d& T_world_camera);
 
 /// Returns the grid around a camera, from the nearest 200 keyframes at most.
-/// @param T_grid_world  from the keyframes' world to the grid's
+/// @param T_grid_world  from the keyframes' world frame to the grid's world frame
 ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes,
                                 const Eigen::Isometry3d& T_grid_world = Eigen::Isometry3d::Identity());
 

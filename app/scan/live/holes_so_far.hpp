@@ -1,4 +1,4 @@
-// holes_so_far.hpp: holes that a running scan has left.
+// holes_so_far.hpp: finds the holes in the surface scanned so far.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// A hole, and the number that it is shown with.
+/// A hole, and its number in the display.
 struct NumberedHole {
   int number = 0;  ///< 1-based
   Hole hole;
@@ -17,13 +17,14 @@ struct NumberedHole {
 
 inline constexpr std::size_t kMostHolesShown = 9;
 
-/// Finds space above the floor that no ray has crossed and that is inside the scan, as find_frontier() does
-/// in the finished map, but in the grid's cells. A cell between two known cells counts as a gap between rays,
-/// not as a hole. Leaves out holes below 0.15 m2. Returns the kMostHolesShown largest holes, largest first.
+/// Finds unobserved space inside the scan and above the floor. The method is that of find_frontier() for a
+/// finished map, applied to the grid's cells. An unknown cell between two known cells counts as a gap between
+/// rays, not as a hole. Ignores holes below 0.15 m2. Returns the kMostHolesShown largest holes, largest
+/// first.
 std::vector<Hole> holes_so_far(const ExplorationGrid& grid);
 
-/// Numbers holes. A hole within 0.5 m of a hole that was shown before gets that hole's number; others get
-/// free numbers.
+/// Numbers holes. A hole within 0.5 m of a hole in `shown_before` keeps its number. Other holes are assigned
+/// unused numbers.
 std::vector<NumberedHole> numbered(const std::vector<Hole>& holes,
                                    std::span<const NumberedHole> shown_before = {});
 

@@ -1,4 +1,4 @@
-// knowledge_grid.hpp: coarse grid of how well a running scan has measured each place.
+// knowledge_grid.hpp: coarse grid with the total weight of a running scan's measurements per cell.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace roomradar {
 
-/// Level of knowledge of a place, by the weight of its measurements.
+/// Level of knowledge of a surface point, by the total weight of its measurements.
 enum class Knowledge : std::uint8_t {
-  kNone,  ///< no measurement
-  kNew,   ///< less than SurfaceConfig::min_weight: not in the map's surface
-  kThin,  ///< less than 5 times that
+  kNone,  ///< pixel without depth
+  kNew,   ///< weight below SurfaceConfig::min_weight: not in the map's surface
+  kThin,  ///< weight below 5 times SurfaceConfig::min_weight
   kWell,
 };
 
 /// Sums the weights of measurements in cells of 4 cm. Uses every 8th pixel in both directions, up to 5 m
-/// depth. The weight of a frame is that of the fusion, (sigma at 1 m / sigma)^2, divided among its samples in
-/// a cell. Takes about 1 ms per frame.
+/// depth. The weight of a frame in a cell is that of the fusion, (sigma at 1 m / sigma)^2, averaged over the
+/// frame's samples in the cell. Takes about 1 ms per frame.
 class KnowledgeGrid {
  public:
   static constexpr int kStep_px = 8;
@@ -30,20 +30,20 @@ class KnowledgeGrid {
   static constexpr int kBlockSide = 4;  ///< cells are stored in cubes of this many per side
 
   /// Adds a frame's measurements.
-  /// @param anchor  index of the frame's anchor; the measurements move with it
+  /// @param anchor  index of the frame's anchor, with which the measurements move
   void add(const Frame& frame, std::size_t anchor, const Eigen::Isometry3d& T_anchor_camera,
            const Eigen::Isometry3d& T_world_anchor);
-  /// Moves all measurements to the anchors' current poses. Leaves out measurements of removed anchors.
+  /// Moves all measurements to the anchors' current poses. Discards measurements of removed anchors.
   void move(const AnchorPoses& T_world_anchor);
 
   /// Returns the knowledge at every kStep_px-th pixel of the depth image, from pixel kStep_px / 2 on.
   [[nodiscard]] Image<Knowledge> knowledge_of(const Frame& frame,
                                               const Eigen::Isometry3d& T_world_camera) const;
 
-  /// Returns the knowledge at a point; kNew where nothing was measured.
+  /// Returns the knowledge at a point; kNew if the cell has no measurements.
   [[nodiscard]] Knowledge at(const Eigen::Vector3d& p_world) const;
 
-  /// Returns the fraction of the known cells that are known well; 0 if there are none.
+  /// Returns the fraction of cells of at least kThin that are kWell; 0 if there are no such cells.
   [[nodiscard]] double well_known_fraction() const;
 
  private:

@@ -1,4 +1,4 @@
-// live_model.hpp: coarse mesh of the room that grows while a scan goes on.
+// live_model.hpp: coarse mesh of the room, extended during a running scan.
 #pragma once
 #include <Eigen/Geometry>
 #include <condition_variable>
@@ -18,30 +18,30 @@ namespace roomradar {
 
 /// A part of the live model.
 struct LiveModelPart {
-  std::size_t anchor = 0;                   ///< the part's coordinate frame moves with this anchor
-  std::shared_ptr<const Mesh> mesh_anchor;  ///< in the anchor's frame; replaced when it has grown
+  std::size_t anchor = 0;                   ///< index of the anchor with which the part moves
+  std::shared_ptr<const Mesh> mesh_anchor;  ///< mesh in the anchor's frame; replaced after each update
 };
 
-/// Fuses frames on a thread of its own into one small octree per anchor, and extracts their surfaces twice a
-/// second. Octrees of anchors that the camera has left are dropped; their meshes stay. Frames that come while
-/// the thread is busy are left out. Thread safe.
+/// Fuses frames on a separate thread into one small octree per anchor, and extracts the octrees' surfaces
+/// twice per second. Octrees of anchors that the camera has left are deleted; their meshes remain. Frames
+/// that arrive while the thread is busy are ignored. Thread safe.
 class LiveModel {
  public:
-  /// @param cell_m  edge of the octrees' voxels; the scan's own map has smaller ones
+  /// @param cell_m  voxel size of the octrees; that of the scan's map is smaller
   explicit LiveModel(double cell_m = 0.02);
   ~LiveModel();
   LiveModel(const LiveModel&) = delete;
   LiveModel& operator=(const LiveModel&) = delete;
 
   /// Passes a frame to the thread. Returns false, and ignores the frame, if the thread is busy.
-  /// @param shows_new  the frame shows places that are not known well. Other frames are fused only where the
-  ///                   anchor's octree still exists
+  /// @param shows_new  true: the frame shows surface that is not well known. Other frames are fused only if
+  ///                   the anchor's octree still exists
   bool offer(std::shared_ptr<const Frame> frame, std::size_t anchor, const Eigen::Isometry3d& T_anchor_camera,
              bool shows_new);
 
   /// Returns the current parts.
   [[nodiscard]] std::vector<LiveModelPart> parts() const;
-  /// Waits until the last frame handed over is in the parts.
+  /// Waits until parts() includes the last frame that offer() accepted.
   void finish();
 
  private:

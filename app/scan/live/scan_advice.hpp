@@ -1,4 +1,4 @@
-// scan_advice.hpp: detects faults of a running scan, and states them with a remedy.
+// scan_advice.hpp: detects faults of a running scan, and returns messages with a remedy.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,10 +13,10 @@ namespace roomradar {
 /// Faults of a running scan, the most urgent first.
 enum class ScanFault : std::uint8_t {
   kSilent,    ///< the device delivers no frames
-  kTooNear,   ///< most of the view is too near to be measured
-  kTooFar,    ///< most of the view is too far, or has no depth
+  kTooNear,   ///< most surfaces in view are too near to be measured
+  kTooFar,    ///< most surfaces in view are too far, or have no depth
   kLost,      ///< the camera's pose is unknown
-  kOneWall,   ///< too little shape in view to constrain the pose
+  kOneWall,   ///< the geometry in view does not constrain all degrees of freedom of the pose
   kTooFast,   ///< the camera moves too fast for the tracking
   kMovement,  ///< something moves in view
   kTooDark,   ///< the colour picture is dark
@@ -26,7 +26,7 @@ inline constexpr std::size_t kScanFaults = 8;
 /// Returns a sentence that states the fault and the remedy.
 std::string_view to_sentence(ScanFault fault);
 
-/// Facts on a frame and the camera's motion that decide on faults.
+/// Quantities of a frame and of the camera's motion from which faults are detected.
 struct ScanFacts {
   double depth_fraction = 0.0;  ///< fraction of the pixels that have depth
   double near_fraction = 0.0;   ///< fraction of the pixels with depth below 0.6 m
@@ -34,10 +34,11 @@ struct ScanFacts {
   double brightness = -1.0;     ///< mean of the colour picture, 0..255; < 0: no picture
   double moved_fraction = 0.0;  ///< fraction of the pixels that show an object in space that was free before
   TrackStatus status = TrackStatus::kTracked;
-  double speed_mps = 0.0, speed_rad_s = 0.0;  ///< of the camera, smoothed; 0 if unknown
+  double speed_mps = 0.0, speed_rad_s = 0.0;  ///< speed of the camera, smoothed; 0 if unknown
 };
 
-/// Returns the facts on a frame, without moved_fraction and speeds. Uses every 8th pixel in both directions.
+/// Returns the quantities of a frame, except moved_fraction and the speeds. Uses every 8th pixel in both
+/// directions.
 ScanFacts facts_of(const Frame& frame, const Tracking& tracking);
 
 /// Returns the camera's speed relative to the max speed for tracking: 1 at kMostSpeed_mps or
@@ -45,8 +46,8 @@ ScanFacts facts_of(const Frame& frame, const Tracking& tracking);
 double relative_speed(const ScanFacts& facts);
 inline constexpr double kMostSpeed_mps = 1.0, kMostSpeed_rad_s = 1.2;
 
-/// Decides which fault to state. A fault must last for kLasts_s, so that single frames do not flicker, and is
-/// stated for at least kStated_s.
+/// Selects the fault to display. A fault is displayed after it has lasted for kLasts_s, and for at least
+/// kStated_s, to avoid flicker.
 class ScanAdvice {
  public:
   /// @param stamp_s  the frame's time; must not decrease

@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Resources at one time, bytes.
+/// Memory and disk space, bytes, at a time.
 struct ScanResources {
   double time_s = 0.0;
   double memory_used = 0.0;
@@ -25,8 +25,8 @@ class ResourceForecast {
  public:
   /// Call about every second; times must not decrease.
   void add(const ScanResources& now);
-  /// Returns the time until memory or disk run out at the present rate, s. Returns nullopt within the first
-  /// 20 s, and if neither shrinks noticeably.
+  /// Returns the time until memory or disk space is exhausted at the present rate, s. Returns nullopt within
+  /// the first 20 s, and if neither decreases noticeably.
   [[nodiscard]] std::optional<double> left_s() const;
 
  private:

@@ -11,9 +11,9 @@ namespace roomradar {
 inline constexpr double kCorridorFurniture_m = 0.45;
 
 /// Adds a piece of a corridor: its shell, a lamp, coloured frames around doorways, and pictures, boards,
-/// cupboards, benches, plants and the like along its walls. Colours and furniture are chosen at random by the
+/// cupboards, benches and plants along its walls. Colours and furniture are chosen at random by the
 /// building's seed, floor and piece, the floor covering by seed and floor.
-/// @param look  seed of its materials, different for each piece
+/// @param look  seed of the materials, different for each piece
 void add_corridor_piece(Room& room, const BuildingPlan& plan, int piece, int floor, std::uint32_t look);
 
 }  // namespace roomradar

@@ -37,7 +37,7 @@ inline constexpr double kStairwellWidth_m = 2.0 * kFlightWidth_m + kFlightGap_m;
 
 struct PlannedRoom {
   int floor = 0;
-  Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();  ///< middle of the interior, x and y in the world
+  Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();  ///< middle of the interior, x and y in the world frame
   Eigen::Vector2d half_m = Eigen::Vector2d::Zero();    ///< half the size of the interior
   int corridor = 0;                                    ///< index of the corridor that the door leads to
   bool is_north = false;                               ///< true: north of the corridor
@@ -54,7 +54,7 @@ inline double door_x_m(const PlannedRoom& room) { return room.middle_m.x() + roo
 /// Opening in a side of a corridor's piece.
 struct PieceOpening {
   unsigned side = 0;                ///< 0 to 3: +y, -y, -x or +x
-  double from_m = 0.0, to_m = 0.0;  ///< range along x or y in the world
+  double from_m = 0.0, to_m = 0.0;  ///< range along x or y of the world frame
   LeadsTo leads_to = LeadsTo::kPiece;
   int number = 0;  ///< number of the piece or stairs, or of the room on the lowest floor
 };
@@ -66,8 +66,8 @@ struct CorridorPiece {
   std::vector<PieceOpening> openings;
 };
 
-/// A stairwell beside the end of a corridor. Flights lead from its landing at y < 0, with x, to a half
-/// landing, and back at y > 0.
+/// A stairwell at the end of a corridor, in its own frame (T_world_stairs). At y < 0, a flight leads from the
+/// landing along +x to a half landing. At y > 0, the next flight leads back.
 struct PlannedStairs {
   /// x points away from the corridor into the stairwell, y to the left. The origin is at the middle of the
   /// doorway, on the stairwell's side, on the lowest floor.
@@ -82,11 +82,12 @@ struct BuildingPlan {
   /// Rooms, floor by floor. On each floor, they are in the order of their doors along the corridors: eastward
   /// along corridor 0, westward along corridor 1 and so on.
   std::vector<PlannedRoom> rooms;
-  /// Number of the first room of each floor, and the number of rooms at the end.
+  /// Number of the first room of each floor, followed by the total number of rooms.
   std::vector<int> first_of_floor;
   std::vector<CorridorPiece> pieces;
   std::vector<PlannedStairs> stairs;
-  /// Middle lines of the corridors, from south to north. Two or more are joined at both ends.
+  /// Middle lines of the corridors, from south to north. If there are several, cross corridors connect them
+  /// at both ends.
   std::vector<double> corridor_y_m;
   /// Corridors extend from x = 0 to this length; cross corridors are beyond both ends.
   double length_m = 0.0;
@@ -101,7 +102,7 @@ inline double floor_height_m(int floor) { return floor * kStoreyHeight_m; }
 /// Returns the x coordinate of the middle line of the cross corridor at the west or east end.
 double cross_corridor_x_m(const BuildingPlan& plan, bool is_east);
 
-/// Place of a point in a building.
+/// Floor and room of a point in a building.
 struct BuildingPlace {
   int floor = 0;
   int room = -1;  ///< number of the room: index in BuildingPlan::rooms; -1: a corridor or stairs

@@ -1,4 +1,4 @@
-// building_route.hpp: builds a route through a building from straight lines and rounds.
+// building_route.hpp: builds a camera route through a building from straight lines and rounds through rooms.
 #pragma once
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// A place at the middle line of a corridor.
+/// A position on the middle line of a corridor.
 struct CorridorPlace {
   int floor = 0, corridor = 0;
   double x_m = 0.0;
@@ -21,20 +21,20 @@ struct Route {
 
   /// Walks straight to a point. The view swings to both sides along lines of 3 m or more.
   void line_to(const Eigen::Vector2d& to_m, double floor_m);
-  /// Walks along corridors and stairs to the place. The route must end near a corridor's middle line.
+  /// Walks along corridors and stairs to `to`. The route must end near a corridor's middle line.
   void walk_to(const CorridorPlace& from, const CorridorPlace& to);
   /// Walks round a room, facing its middle. The route must end at the room's door, or be empty. An empty
   /// route begins inside the room.
   /// @param is_left  true: counter-clockwise
   /// @param leaves   true: ends before the door, with a view towards it
   void round(const PlannedRoom& room, bool is_left, bool leaves);
-  /// Climbs or descends stairs between two floors, from and to the corridor before the stairwell.
+  /// Climbs or descends stairs between two floors, from and to the corridor in front of the stairwell.
   void take_stairs(const PlannedStairs& stairs, int from_floor, int to_floor);
 };
 
-/// Returns the place before a room's door.
+/// Returns the corridor position in front of a room's door.
 CorridorPlace before_door(const PlannedRoom& room);
-/// Returns the place before a stairwell's door.
+/// Returns the corridor position in front of a stairwell's door.
 CorridorPlace before_stairs(const BuildingPlan& plan, const PlannedStairs& stairs, int floor);
 
 /// Returns the points of the route at equal time steps. Positions are smoothed over about 0.7 m, view

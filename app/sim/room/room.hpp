@@ -24,9 +24,9 @@ struct Lamp {
 
 /// A point of a walk (camera trajectory) through several rooms.
 struct WalkPoint {
-  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< x and y in the world
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< x and y in the world frame
   double yaw_rad = 0.0;  ///< azimuth of the view, counter-clockwise from +x; not wrapped along the walk
-  double floor_m = 0.0;  ///< height of the floor or step that is walked on
+  double floor_m = 0.0;  ///< height of the floor or step below the camera
 };
 
 /// A vertical rectangle through which one part of a building is seen from another.
@@ -38,9 +38,9 @@ struct PartOpening {
 
 /// A box-shaped part of a building: a room, a piece of a corridor, a stairwell.
 struct RoomPart {
-  /// Its interior and its walls, up to the walls of the parts beside it.
+  /// Bounds of its interior and walls, up to the walls of adjacent parts.
   Eigen::AlignedBox3d bounds_world;
-  /// Its solids: from solids_begin up to before solids_end, in Room::solids.
+  /// Index range of its solids in Room::solids; solids_end is exclusive.
   std::size_t solids_begin = 0, solids_end = 0;
   std::vector<PartOpening> openings;
   /// Indices of the lamps that light it.

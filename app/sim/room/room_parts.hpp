@@ -1,4 +1,4 @@
-// room_parts.hpp: finds the parts of a building that a point lies in or that are seen from it.
+// room_parts.hpp: finds the part of a building that contains a point, and the parts that are visible from it.
 #pragma once
 #include <vector>
 
@@ -12,9 +12,9 @@ int part_at(const Room& room, const Eigen::Vector3d& p_world);
 /// Returns the index of the part that the solid belongs to; -1 in a single room.
 int part_of_solid(const Room& room, std::size_t solid);
 
-/// Returns the indices, ascending, of the parts that may be seen from points within margin_m of eye_world:
-/// sight lines are followed through the openings, which are narrowed to the ranges of azimuth and slope that
-/// the openings before leave. Returns all parts if no part contains the point.
+/// Returns the indices, ascending, of the parts that may be visible from points within margin_m of eye_world.
+/// Follows lines of sight through the openings: each opening restricts the ranges of azimuth and slope for
+/// the openings behind it. Returns all parts if no part contains the point.
 /// Source: Luebke, Georges, Portals and mirrors, Symposium on Interactive 3D Graphics 1995.
 std::vector<int> visible_parts(const Room& room, const Eigen::Vector3d& eye_world, double margin_m = 0.2);
 

@@ -10,8 +10,8 @@ namespace roomradar {
 
 /// Textures with mip levels, and lighting on a coarse grid, for each face that is visible inside the room.
 /// Lighting includes the lamps' shadows (by ray casting) and ambient occlusion (from distances to the room's
-/// surface). The textures of a face and the light of a node are computed when they are first seen, since a
-/// whole room takes more than half a second.
+/// surface). The textures of a face and the lighting of a grid node are computed on first use, since a whole
+/// room takes more than half a second.
 class SurfaceAppearance {
  public:
   /// Shows the room's solids. The room must outlive this.
@@ -54,13 +54,13 @@ class SurfaceAppearance {
   void prepare(std::size_t index, int face_index, Face& face) const;
   /// Returns the brightness factor at a node of a face's grid.
   float light_of(std::size_t index, int face_index, Face& face, int column, int row) const;
-  /// @param part  index of the part of a building whose lamps give light; -1: all lamps of the room do
+  /// @param part  index of the building's part whose lamps are used; -1: all lamps of the room are used
   [[nodiscard]] float light_at(const Eigen::Vector3d& p_world, const Eigen::Vector3d& normal_world,
                                bool shadows, int part) const;
 
   const Room& room_;
   double texel_m_;
-  bool is_lit_;  ///< light is kept at nodes; else computed per pixel
+  bool is_lit_;  ///< true: lighting is cached at grid nodes; false: computed per pixel
   std::vector<Solid> solids_;
   std::vector<Material> materials_;
   /// Faces, kFaces per solid.

@@ -27,8 +27,8 @@ std::optional<Patch> draw_patch(const ScenarioRoom& from, CounterRandom& random)
 /// at a grazing angle.
 bool was_seen(const ScenarioRoom& from, const Patch& patch);
 
-/// Returns true if the object enters no unknown space between its start and the true contact. The swept space
-/// is tested at several hundred sample points. At least three prescan views must have observed each of them.
+/// Returns true if the object enters no unknown space between its start and the true contact. Tests the swept
+/// volume at several hundred sample points, each of which at least three prescan views must have observed.
 bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario);
 
 /// Returns the room's surface points that could stop the object within limit_m. They are found by casting

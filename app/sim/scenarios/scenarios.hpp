@@ -25,8 +25,8 @@ ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed = 1);
 /// - A start 5 mm to the side, in any of four directions, would change the distance to contact by at most 15
 ///   mm. This excludes contacts that depend on detail finer than the map's voxels.
 ///
-/// Four drops and four pushes follow each other in turn. Each group of four contains all four kinds of
-/// occluder. Object shapes also take turns. Unless furniture is the occluder, the room itself hides at most
+/// Scenarios alternate between four drops and four pushes. Each group of four contains all four kinds of
+/// occluder. Object shapes alternate, too. Unless furniture is the occluder, the room itself hides at most
 /// half of the points that could stop the object. If 3,000 random draws find no placement, the next kind of
 /// occluder is tried, then the next shape. Throws Error if all fail.
 Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number);

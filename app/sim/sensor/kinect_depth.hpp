@@ -27,10 +27,10 @@ struct ExactView {
   Image<float> cosine;
 };
 
-/// Rows of an image that are seen at one time.
+/// Rows of an image that are exposed at the same time.
 struct RowBand {
   int begin = 0, end = 0;
-  double t_s = 0.0;  ///< after the middle of the image
+  double t_s = 0.0;  ///< time relative to the middle of the image's readout
 };
 /// Divides an image into bands of four rows, read from top to bottom in readout_s; one band if readout_s is
 /// 0.
@@ -45,7 +45,7 @@ void render_exact(std::span<const Solid> solids, const ViewCaster& view, const I
 /// The same for the whole image.
 void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
                   const PixelRays& rays, ExactView& exact);
-/// Gives the images of `exact` the camera's size, without surfaces.
+/// Resizes the images of `exact` to the camera's size and clears them.
 void clear(const Intrinsics& camera, ExactView& exact);
 
 /// Returns the difference between adjacent measurable depths near depth_m, m. It is z^2 / (8 f b), where z is
@@ -73,7 +73,7 @@ double reported_m(const DepthFaults& faults, int x, int y, double depth_m);
 struct KinectScratch {
   ViewCaster projector;
   std::vector<float> lattice;
-  std::uint64_t lattice_key = 0;  ///< of the frame whose noise `lattice` holds; 0: none
+  std::uint64_t lattice_key = 0;  ///< key of the frame whose noise is in `lattice`; 0: none
 };
 
 /// Simulates the sensor's depth image of frame `frame_index` by the steps below. z is the depth, theta the
@@ -92,14 +92,14 @@ struct KinectScratch {
 /// @param infrared     reflected fraction of the infrared light, per solid
 /// @param exact        exact images, rendered with faults.rays
 /// @param noise_scale  factor on both standard deviations; > 0
-/// @param band         rows to be measured, at which time the camera is at T_world_camera
+/// @param band         rows to be measured; T_world_camera is the camera pose at the time of these rows
 /// @param[in,out] depth_m   image of the camera's size, 0 in these rows
 void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
                    const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                    const DepthFaults& faults, double noise_scale, std::uint64_t seed,
                    std::int64_t frame_index, const RowBand& band, KinectScratch& scratch,
                    DepthImage& depth_m);
-/// The same for the whole image, which gets the camera's size.
+/// The same for the whole image, which is resized to the camera's size.
 void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
                    const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                    const DepthFaults& faults, double noise_scale, std::uint64_t seed,

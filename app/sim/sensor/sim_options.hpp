@@ -17,7 +17,8 @@ inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 24
 /// Returns the Kinect's depth camera scaled to 4:3 images of this width.
 Intrinsics kinect_of_width(int width_px);
 
-/// Timing of the simulated sensor. Frames do not state it: their timing and colour_after_depth_s stay 0.
+/// Timing of the simulated sensor. Frames do not contain this timing: Frame::timing and
+/// Frame::colour_after_depth_s remain 0.
 struct SimTiming {
   /// Readout time of both images, 0 to 0.05 s: each row shows the view at its own time.
   double shutter_s = 0.0;
@@ -56,8 +57,8 @@ struct SimOptions {
   Intrinsics depth_camera = kKinectDepthCamera;
   /// True: the true cameras differ from those that the frames declare; see sensor_faults.hpp.
   bool faults = false;
-  /// True: colour images have the depth camera's view. False: the colour camera is 2.5 cm beside the depth
-  /// camera.
+  /// True: colour images are rendered in the depth camera, so depth and colour are registered. False: the
+  /// colour camera has a baseline of 2.5 cm to the depth camera.
   bool registered_colour = true;
   /// False: frames have depth only, which is several times as fast.
   bool with_colour = true;

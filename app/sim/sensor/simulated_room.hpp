@@ -1,4 +1,4 @@
-// simulated_room.hpp: the room or building of a simulation, and the part of it that a camera may see.
+// simulated_room.hpp: the room or building of a simulation, and the solids that may be visible from a camera.
 #pragma once
 #include <cstdint>
 #include <vector>

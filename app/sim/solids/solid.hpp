@@ -32,7 +32,7 @@ Solid capsule(const Eigen::Vector3d& a_world, const Eigen::Vector3d& b_world, do
 
 /// Returns the exact distance (m) from a point in the solid's frame to the solid's surface, negative inside.
 double signed_distance_local_m(const Solid& solid, const Eigen::Vector3d& p_solid);
-/// Returns the exact distance (m) from a point in the world to the solid's surface, negative inside.
+/// Returns the exact distance (m) from a point in the world frame to the solid's surface, negative inside.
 double signed_distance_m(const Solid& solid, const Eigen::Vector3d& p_world);
 
 /// Returns the unit outward normal, in the solid's frame, of the surface point nearest to p_solid.

@@ -21,12 +21,12 @@ struct Separation {
 /// Gilbert, Johnson, Keerthi, IEEE Journal of Robotics and Automation 1988.
 Separation separation(const Solid& a, const Solid& b);
 
-/// Returns the distance between the nearest of `obstacles` and an object of `parts` at T_world_object.
+/// Returns the distance between an object, made of `parts` at T_world_object, and the nearest of `obstacles`.
 /// Returns enough_m if the distance is larger.
 double clearance_m(std::span<const Solid> obstacles, std::span<const Solid> parts,
                    const Eigen::Isometry3d& T_world_object, double enough_m);
 
-/// Returns the solid's axis-aligned bounding box in the world.
+/// Returns the solid's axis-aligned bounding box in the world frame.
 Eigen::AlignedBox3d bounds_world(const Solid& solid);
 
 }  // namespace roomradar

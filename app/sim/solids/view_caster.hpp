@@ -16,8 +16,8 @@ struct PixelHit {
 };
 
 /// prepare() assigns the solids to image tiles once per frame. A ray then tests only the solids of its tile,
-/// in the order in which its rays can meet them, until no other can be nearer. A ray through a point outside
-/// the tiles, which reach beyond the image, tests all solids in front of the camera.
+/// sorted by their min depth in the tile, until no other solid can be nearer. The tiles extend beyond the
+/// image. A ray through a point outside the tiles tests all solids in front of the camera.
 class ViewCaster {
  public:
   /// Assigns the solids to tiles. Ignores solids behind the camera. Reuses memory of earlier frames.

@@ -75,7 +75,8 @@ class PlayHost {
   std::string given_up_;
   std::string said_to_wait_;  ///< object whose waiting drop was last reported to the user
 
-  /// Moves requests for new objects from `commands` to new_.waiting, and back once the object is ready.
+  /// Moves requests for new objects from `commands` to new_.waiting, and back to `commands` once the object
+  /// is ready.
   void ready_new_objects(std::vector<UserCommand>& commands);
   void say_if_a_drop_waits();
   void publish();

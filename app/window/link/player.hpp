@@ -1,4 +1,4 @@
-// player.hpp: converts user commands on the displayed picture into script events.
+// player.hpp: converts the user's commands in the displayed picture into script events.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>

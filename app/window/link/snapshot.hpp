@@ -16,8 +16,8 @@
 
 namespace roomradar {
 
-/// Returns the map's surface, with its texture if it has one that fits. Throws Error if the texture is
-/// damaged.
+/// Returns the map's surface, with its texture if the map has a texture that matches the surface. Throws
+/// Error if the texture is damaged.
 ShownRoom shown_room(const SavedMap& map);
 
 /// Fills snapshots for the window from a session.
@@ -32,7 +32,7 @@ class SnapshotMaker {
 
  private:
   std::shared_ptr<const ShownRoom> room_;
-  std::int64_t tile_changes_ = 0;    ///< tiles loaded and dropped before room_ was made; of a building
+  std::int64_t tile_changes_ = 0;    ///< buildings: tiles loaded and dropped before room_ was made
   std::uint64_t room_revision_ = 0;  ///< revision of the session's room in room_; 0: none
   std::map<std::shared_ptr<const ObjectModel>, std::shared_ptr<const Mesh>> object_meshes_;
   /// Number of samples per stage before this frame.

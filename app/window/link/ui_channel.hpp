@@ -85,7 +85,7 @@ struct ShownRadar {
   Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();
 };
 
-/// The room's surface in the world.
+/// The room's surface in the world frame.
 struct ShownRoom {
   Mesh mesh;
   std::vector<Eigen::Vector2f> texture_points{};  ///< one per vertex, (0, 0) top left; empty: no texture
@@ -137,15 +137,15 @@ class UiChannel {
   bool take(Snapshot& shown);
   /// Returns the newest message since the last call, or an empty string.
   std::string take_message();
-  /// Asks to scan more of the room once the run has ended.
+  /// Requests scanning more of the room after the run.
   void ask_to_scan();
   [[nodiscard]] bool wants_to_scan() const;
   void close();
   [[nodiscard]] bool is_over() const;
 
   // For the session's thread.
-  /// Waits while the window is paused and, if in_time, until the frame with this stamp is due. While waiting,
-  /// calls `refresh` when the wanted views change. Returns false if the window is closed.
+  /// Waits while the window is paused. If in_time, also waits until the frame with this stamp is due. While
+  /// waiting, calls `refresh` when the wanted views change. Returns false if the window is closed.
   bool wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh);
   [[nodiscard]] bool is_closed() const;
   /// Returns true if the window has been paused since the last call.

@@ -46,13 +46,14 @@ class OrbitCanvas {
   /// changed.
   bool steer(const Area& area);
 
-  /// Reports that what is drawn has changed. It is rendered again when that is due.
+  /// Reports that the drawn content has changed. The view is rendered again when must_render() returns true.
   void content_changed() { is_stale_ = true; }
   /// Reports that `orbit` has changed. The view is rendered again at once. steer() calls it.
   void orbit_changed() { is_moved_ = true; }
-  /// Returns true if the view must be rendered now, by begin(), draw() and end(). After a change of the orbit
-  /// or of the size in pixels, that is at once. After a change of the content, the wait since the last
-  /// rendering is 7 times its duration, at most 0.2 s, since a software renderer shares the processor.
+  /// Returns true if the view must be rendered now, by begin(), draw() and end(). Returns true immediately
+  /// after a change of the orbit or of the size in pixels. After a change of the content, returns true once 7
+  /// times the last rendering's duration, at most 0.2 s, has passed since that rendering. The delay leaves
+  /// processor time to other threads, since a software renderer uses the CPU.
   bool must_render(int width_px, int height_px);
   void begin();
   /// @param is_transparent_behind  true: triangles that face away from the eye are not drawn
@@ -68,7 +69,7 @@ class OrbitCanvas {
 
  private:
   using Clock = std::chrono::steady_clock;
-  Clock::time_point begun_{}, due_{};  ///< of the last rendering; time from which on the next is due
+  Clock::time_point begun_{}, due_{};  ///< begin of the last rendering; earliest time of the next one
   bool is_stale_ = true, is_moved_ = false;
   unsigned program_ = 0, framebuffer_ = 0, colour_ = 0, depth_ = 0;
   int width_px_ = 0, height_px_ = 0;
@@ -80,7 +81,7 @@ class OrbitCanvas {
   void copy_to_window() const;
 };
 
-/// Returns the bounding box of a mesh in the world; empty if the mesh has no vertices.
+/// Returns the bounding box of a mesh in the world frame; empty if the mesh has no vertices.
 Eigen::AlignedBox3d bounds_of(const Mesh& mesh);
 
 }  // namespace roomradar

@@ -8,7 +8,7 @@
 
 namespace roomradar::look {
 
-inline constexpr ImU32 kGround = IM_COL32(16, 19, 24, 255);  ///< to which the window is cleared
+inline constexpr ImU32 kGround = IM_COL32(16, 19, 24, 255);  ///< background colour of the window
 inline constexpr ImU32 kPanel = IM_COL32(24, 28, 35, 255);
 inline constexpr ImU32 kRaised = IM_COL32(38, 44, 54, 255);
 inline constexpr ImU32 kLine = IM_COL32(48, 55, 67, 255);

@@ -10,11 +10,12 @@ struct Area {
   [[nodiscard]] bool empty() const { return width < 8.0F || height < 8.0F; }
 };
 
-/// Least size of the window at scale 1, at which nothing in it is cut.
+/// Min size of the window at scale 1 at which no content is clipped.
 inline constexpr int kLeastWidth_px = 640, kLeastHeight_px = 480;
 
 /// Returns the scale of text and panes in a window of this size: the wanted scale, or the largest multiple of
-/// 1/8 at which the window's content still fits. It is not below 1 unless the wanted scale is.
+/// 1/8 at which the window's content still fits. The result is at least 1, or the wanted scale if that is
+/// less than 1.
 constexpr float scale_in_window(float wanted, float width, float height) {
   constexpr float kSteps = 8.0F;
   const float most =

@@ -15,10 +15,10 @@ class LiveModelView {
   /// Uploads new meshes.
   void upload(const ShownScan& shown);
   void draw(const Area& area, const ShownScan& shown, const look::Fonts& fonts);
-  /// Ends following, and places the eye so that the whole mesh is in view.
+  /// Disables following, and moves the eye so that the whole mesh is in view.
   void look_at(const Mesh& mesh);
 
-  /// While following, the eye stays behind the camera. A drag by the mouse ends following.
+  /// While following, the eye stays behind the camera. A mouse drag disables following.
   void set_following(bool follows) { follows_ = follows; }
   [[nodiscard]] bool follows() const { return follows_; }
 

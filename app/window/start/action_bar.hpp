@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// Draws the buttons, in two rows if one is too narrow, and the names of the keys that move in the lists.
-/// Buttons of impossible actions are dim. Returns the action that was clicked.
+/// Draws the buttons, in two rows if one row is too narrow, and the names of the keys for moving in the
+/// lists. Buttons of unavailable actions are dimmed. Returns the action that was clicked.
 std::optional<StartAction> draw_action_bar(const Area& area, const StartState& state,
                                            const look::Fonts& fonts);
 

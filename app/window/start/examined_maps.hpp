@@ -14,7 +14,7 @@ namespace roomradar {
 
 struct ExaminedMap {
   std::time_t saved_at = 0;  ///< version of the map that is or was examined
-  bool is_done = false;      ///< false: the fields below are not valid so far
+  bool is_done = false;      ///< false: the fields below are not valid yet
   MapDetails details;
   GlTexture picture{/*smooth=*/true};  ///< empty if the map has no surface
 };
@@ -22,9 +22,9 @@ struct ExaminedMap {
 /// The window's OpenGL context must be current for all calls.
 class ExaminedMaps {
  public:
-  /// Adds a job for the next map without details; the chosen map comes first. Call only if no job waits.
+  /// Adds a job for the next map without details; the chosen map comes first. Call only if no job is queued.
   void examine_next(const StartState& state, BackgroundJobs& jobs);
-  /// Returns the result for a map; null: there is none so far.
+  /// Returns the result for a map; null: there is no result yet.
   [[nodiscard]] const ExaminedMap* find(const MapEntry& map) const;
 
  private:

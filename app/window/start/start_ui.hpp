@@ -41,7 +41,7 @@ class StartUi final : public WindowContent {
   double listed_s_ = -1.0;       ///< time at which the lists were last refreshed; < 0: not so far
   bool has_recordings_ = false;  ///< false: recordings_ are not known so far
   bool scrolls_to_choice_ = true, quits_ = false;
-  BackgroundJobs jobs_;  ///< last: its results refer to the members above
+  BackgroundJobs jobs_;  ///< declared last because its results refer to the members above
 
   void list_recordings_again();
   void press_key(int key, int modifiers);

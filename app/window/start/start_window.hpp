@@ -8,7 +8,7 @@ namespace roomradar {
 
 class GlfwWindow;
 
-/// The window of the start view. It stays open while a scan or a run uses it through open_window().
+/// The window of the start view. The window remains open while a scan or run uses it through open_window().
 class StartWindow {
  public:
   /// Opens the window. Call on the main thread.
