@@ -1,4 +1,4 @@
-// building_check.cpp: checks file by file, and collects the faults.
+// building_check.cpp: checks each file, and collects the faults.
 #include "app/building/building_check.hpp"
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// building_stages.cpp: words of the jobs.
+// building_stages.cpp: writes each job's command line, inputs and outputs.
 #include "app/building/building_stages.hpp"
 
 #include <algorithm>

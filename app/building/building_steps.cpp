@@ -1,4 +1,4 @@
-// building_steps.cpp: calls of mapping, from files to files.
+// building_steps.cpp: reads each step's input files, calls the mapping library, and writes the output files.
 #include "app/building/building_steps.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// recording_list.cpp: names and sources, line by line.
+// recording_list.cpp: parses names and sources, line by line.
 #include "app/building/recording_list.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// tileset.cpp: nested boxes over the tiles' cubes.
+// tileset.cpp: writes a bounding volume hierarchy over the tiles' cubes.
 #include "app/building/tileset.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// roomradar_axes.cpp: conversions to engines.
+// roomradar_axes.cpp: exported functions: conversions to the axes of game engines.
 #include "app/c_api/roomradar_axes.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// roomradar_map.cpp: saved rooms.
+// roomradar_map.cpp: exported functions for saved maps.
 #include "app/c_api/roomradar_map.h"
 
 #include <utility>

@@ -1,4 +1,4 @@
-// roomradar_objects.cpp: virtual objects of a session.
+// roomradar_objects.cpp: exported functions for the virtual objects of a session.
 #include "app/c_api/roomradar_objects.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// roomradar_radar.cpp: radar queries.
+// roomradar_radar.cpp: exported functions for radar queries.
 #include "app/c_api/roomradar_radar.h"
 
 #include <span>

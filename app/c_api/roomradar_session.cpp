@@ -1,4 +1,4 @@
-// roomradar_session.cpp: sessions.
+// roomradar_session.cpp: exported functions for sessions.
 #include "app/c_api/roomradar_session.h"
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// roomradar_source.cpp: frames of recordings.
+// roomradar_source.cpp: exported functions for reading the frames of recordings.
 #include "app/c_api/roomradar_source.h"
 
 #include <memory>

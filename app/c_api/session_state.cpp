@@ -1,4 +1,4 @@
-// session_state.cpp: life and small changes of sessions and locators.
+// session_state.cpp: destruction of sessions and locators, and updates of a session's messages and versions.
 #include "app/c_api/session_state.hpp"
 
 #include "app/c_api/conversions.hpp"

@@ -50,8 +50,8 @@ struct CorrectionGrid {
 /// Adds the residuals of one view. Residuals are the reprojection errors of corners (sigma 0.15 px) and the
 /// differences of inverse depth from the checkerboard's plane (sigma: twice the sensor's noise). The loss is
 /// Huber's.
-/// @param T_colour_board  the checkerboard's pose in this view. Must be an element of
-/// unknowns.T_colour_board. `unknowns` must outlive the problem and must not move.
+/// @param T_colour_board  the checkerboard's pose in this view. Must be an element of unknowns.T_colour_board
+/// @param unknowns        must outlive the problem and must not move
 void add_view(const BoardView& view, const Board& board, const CorrectionGrid& grid,
               PoseBlock& T_colour_board, CalibrationUnknowns& unknowns, ceres::Problem& problem);
 

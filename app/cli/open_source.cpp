@@ -1,4 +1,4 @@
-// open_source.cpp: tells the kinds of source apart by name and opens them.
+// open_source.cpp: recognises the kind of a source by its name, and opens it.
 #include "app/cli/open_source.hpp"
 
 #include <charconv>

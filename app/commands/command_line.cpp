@@ -1,4 +1,4 @@
-// command_line.cpp: joins the commands: name, description, options, function.
+// command_line.cpp: defines the commands: name, description, options, function.
 #include "app/commands/command_line.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// video_writer.cpp: writes video through the module for videos, with the checks that OpenCV lacks.
+// video_writer.cpp: writes video through the video codec module, with checks that OpenCV lacks.
 #include "app/media/video_writer.hpp"
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// model_file.cpp: reads a model in a sandbox and turns it; model copies.
+// model_file.cpp: reads a model in a sandbox and rotates it to +z up; reads and writes model copies.
 #include "app/models/model_file.hpp"
 
 #include <assimp/config.h>

@@ -1,4 +1,5 @@
-// scene_materials.cpp: one look per material, then colours and texture points per vertex.
+// scene_materials.cpp: determines each material's colour and texture, then sets colours and texture
+// coordinates per vertex.
 #include "app/models/scene_materials.hpp"
 
 #include <assimp/GltfMaterial.h>

@@ -1,4 +1,4 @@
-// object_file.cpp: scales models, and refuses absurd sizes.
+// object_file.cpp: scales models, and rejects implausible sizes.
 #include "app/objects/object_file.hpp"
 
 #include <Eigen/Geometry>

@@ -1,4 +1,5 @@
-// object_light.cpp: shadows of the room's surfaces on an object and on points of them, by rays.
+// object_light.cpp: casts rays to find the light that the room's surfaces occlude at objects and at surface
+// points.
 #include "app/objects/object_light.hpp"
 
 #include <algorithm>

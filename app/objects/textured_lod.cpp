@@ -1,4 +1,4 @@
-// textured_lod.cpp: carries texture points over to simplified meshes, and measures how far they are shifted.
+// textured_lod.cpp: transfers texture coordinates to simplified meshes, and measures the texture's shift.
 #include "app/objects/textured_lod.hpp"
 
 #include <Eigen/Geometry>

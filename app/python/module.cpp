@@ -1,4 +1,4 @@
-// module.cpp: exceptions, and all subjects in order.
+// module.cpp: binds the exceptions, then all classes and functions in the order of their dependencies.
 #include "app/python/module.hpp"
 
 #include <exception>

@@ -1,4 +1,4 @@
-// octree.cpp: octrees as arrays.
+// octree.cpp: fusion into octrees; their occupancy and leaves as NumPy arrays.
 #include "app/python/octree.hpp"
 
 #include <memory>

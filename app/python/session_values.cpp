@@ -1,4 +1,4 @@
-// session_values.cpp: copies of the session's state, which stay valid while it goes on.
+// session_values.cpp: copies of the session's state, which remain valid during later frames.
 #include "app/python/session_values.hpp"
 
 #include "app/python/arrays.hpp"

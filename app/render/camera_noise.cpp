@@ -1,4 +1,4 @@
-// camera_noise.cpp: noise by second differences; grain by hashing the pixel's number.
+// camera_noise.cpp: measures noise by second differences; generates grain by hashing the pixel's index.
 #include "app/render/camera_noise.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// line_stream.cpp: writes pieces that a pipe takes without waiting.
+// line_stream.cpp: writes as many bytes as the pipe accepts without blocking.
 #include "app/run/line_stream.hpp"
 
 #include <fcntl.h>

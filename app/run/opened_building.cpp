@@ -1,4 +1,4 @@
-// opened_building.cpp: keyframes and the list of tiles; tiles are read during the run.
+// opened_building.cpp: reads the keyframes and the list of tiles; tiles are read during the run.
 #include "app/run/opened_building.hpp"
 
 #include <algorithm>

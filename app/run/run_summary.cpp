@@ -1,4 +1,4 @@
-// run_summary.cpp: the lines of the summary, in the order in which a user asks for them.
+// run_summary.cpp: prints the lines of the summary, the most important first.
 #include "app/run/run_summary.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// run_use.cpp: sums up, prints and explains how much of the room and of the depth was needed.
+// run_use.cpp: sums, prints and explains the fractions of the room's mesh and of the depth images that frames
+// used.
 #include "app/run/run_use.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// controlled_source.cpp: asks the channel before each frame of the first pass.
+// controlled_source.cpp: checks the channel's requests before each frame of the first pass.
 #include "app/scan/controlled_source.hpp"
 
 #include <utility>

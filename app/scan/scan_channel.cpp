@@ -1,4 +1,4 @@
-// scan_channel.cpp: a mutex around the newest state.
+// scan_channel.cpp: guards the newest state with a mutex.
 #include "app/scan/scan_channel.hpp"
 
 namespace roomradar {

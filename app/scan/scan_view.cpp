@@ -1,4 +1,4 @@
-// scan_view.cpp: takes frames from the scan's thread, and prepares the view on a thread of its own.
+// scan_view.cpp: receives frames from the scan's thread, and prepares the view on a separate thread.
 #include "app/scan/scan_view.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// unfinished_scan.cpp: decides how a prescan begins, by the existing map and the interrupted scan beside it.
+// unfinished_scan.cpp: decides how a prescan begins from the existing map and the interrupted scan in
+// MAP.unfinished.
 #include "app/scan/unfinished_scan.hpp"
 
 #include <cmath>

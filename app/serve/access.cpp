@@ -1,4 +1,4 @@
-// access.cpp: checks of texts.
+// access.cpp: parses addresses, and checks tokens and host names.
 #include "app/serve/access.hpp"
 
 #include <arpa/inet.h>

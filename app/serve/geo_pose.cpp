@@ -1,4 +1,4 @@
-// geo_pose.cpp: by way of earth-centred coordinates.
+// geo_pose.cpp: converts poses through earth-centred coordinates.
 #include "app/serve/geo_pose.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// locate_answer.cpp: the best of the maps' outcomes.
+// locate_answer.cpp: locates a frame in each map, and selects the best result.
 #include "app/serve/locate_answer.hpp"
 
 #include <algorithm>

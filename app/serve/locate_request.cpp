@@ -1,4 +1,4 @@
-// locate_request.cpp: checks from the outside in, then decodes.
+// locate_request.cpp: checks lengths, header and cameras, then decodes the images.
 #include "app/serve/locate_request.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// map_requests.cpp: paths to answers.
+// map_requests.cpp: maps request paths to answers.
 #include "app/serve/map_requests.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// map_server.cpp: cpp-httplib with limits; no request is routed by it but those that locate.
+// map_server.cpp: serves with cpp-httplib, with limits; all requests except locate requests share one
+// handler.
 #include "app/serve/map_server.hpp"
 
 #include <sys/socket.h>

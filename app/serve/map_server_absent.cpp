@@ -1,4 +1,4 @@
-// map_server_absent.cpp: stands in where cpp-httplib is not installed.
+// map_server_absent.cpp: replaces map_server.cpp in builds without cpp-httplib.
 #include "app/serve/map_server.hpp"
 #include "mapping/types/system/error.hpp"
 

@@ -1,4 +1,4 @@
-// served_map.cpp: reads descriptions at once, keyframes when they are needed.
+// served_map.cpp: reads descriptions immediately, and keyframes on first use.
 #include "app/serve/served_map.hpp"
 
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// source_list.cpp: recognises sources by bus, files and name.
+// source_list.cpp: lists Kinects on the USB bus, recordings in folders, and simulated rooms.
 #include "app/start/source_list.hpp"
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// start_state.cpp: keeps the choice while the lists change.
+// start_state.cpp: preserves the chosen entries when the lists change.
 #include "app/start/start_state.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// imgui_window.cpp: the window's loop: events, news, drawing.
+// imgui_window.cpp: the window's loop: events, state changes, drawing.
 #include "app/window/imgui_window.hpp"
 
 #define GLFW_INCLUDE_NONE

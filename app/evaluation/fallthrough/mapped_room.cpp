@@ -1,4 +1,4 @@
-// mapped_room.cpp: fuses a walk round each room, several rooms at a time.
+// mapped_room.cpp: fuses a simulated camera trajectory through each room, several rooms concurrently.
 #include "app/evaluation/fallthrough/mapped_room.hpp"
 
 #include <deque>

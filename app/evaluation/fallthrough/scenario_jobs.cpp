@@ -1,4 +1,4 @@
-// scenario_jobs.cpp: names and words of the jobs.
+// scenario_jobs.cpp: writes the jobs' names and command lines, and reads their results.
 #include "app/evaluation/fallthrough/scenario_jobs.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// sweep_jobs.cpp: names and words of the jobs; rows as JSON objects with a number per figure.
+// sweep_jobs.cpp: writes the jobs' names and command lines; stores rows as JSON objects with a number per
+// figure.
 #include "app/evaluation/pareto/sweep_jobs.hpp"
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// measured_sandboxed.cpp: sends the figures' bytes through the pipe.
+// measured_sandboxed.cpp: sends the figures' bytes from the child process through a pipe.
 #include "app/evaluation/trade/measured_sandboxed.hpp"
 
 #include <algorithm>

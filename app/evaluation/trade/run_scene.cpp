@@ -1,4 +1,4 @@
-// run_scene.cpp: slow preparations, done once for all settings.
+// run_scene.cpp: maps rooms and recordings, once for all settings, since mapping is slow.
 #include "app/evaluation/trade/run_scene.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// table1.cpp: the published numbers, and the same measurements here.
+// table1.cpp: the published numbers, and the same measurements with this program.
 #include "app/evaluation/trade/table1.hpp"
 
 #include <array>

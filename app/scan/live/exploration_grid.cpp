@@ -1,4 +1,4 @@
-// exploration_grid.cpp: walks along the rays of keyframes in steps of half a cell.
+// exploration_grid.cpp: samples the rays of keyframes in steps of half a cell.
 #include "app/scan/live/exploration_grid.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// live_model.cpp: the thread that fuses and extracts.
+// live_model.cpp: the worker thread that fuses frames and extracts surfaces.
 #include "app/scan/live/live_model.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// kinect_depth.cpp: shadow, noise, dropouts and quantisation of a structured-light depth camera.
+// kinect_depth.cpp: simulates shadow, noise, dropouts and quantisation of a structured-light depth camera.
 #include "app/sim/sensor/kinect_depth.hpp"
 
 #include <algorithm>

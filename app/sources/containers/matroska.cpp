@@ -1,4 +1,4 @@
-// matroska.cpp: EBML elements: an identifier and a size of variable length, then the data.
+// matroska.cpp: parses EBML elements: an identifier and a size of variable length, then the data.
 #include "app/sources/containers/matroska.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// mcap.cpp: walks the records of a file: a kind, a length, then the content.
+// mcap.cpp: parses the records of a file: type, length, content.
 #include "app/sources/containers/mcap.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// oni_file.cpp: walks the records of a .oni file; decodes its depth.
+// oni_file.cpp: parses the records of a .oni file; decompresses its depth.
 #include "app/sources/containers/oni_file.hpp"
 
 #include "mapping/types/serialize.hpp"

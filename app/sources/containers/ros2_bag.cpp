@@ -1,4 +1,4 @@
-// ros2_bag.cpp: tables of a database, and joining the parts of a bag.
+// ros2_bag.cpp: reads the tables of an SQLite bag, and merges the files of a bag.
 #include "app/sources/containers/ros2_bag.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// ros_bag.cpp: walks the records of a bag: a header of named fields, then data.
+// ros_bag.cpp: parses the records of a bag: a header of named fields, then data.
 #include "app/sources/containers/ros_bag.hpp"
 
 #include <array>

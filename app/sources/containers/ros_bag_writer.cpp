@@ -1,4 +1,4 @@
-// ros_bag_writer.cpp: records of named fields and data.
+// ros_bag_writer.cpp: writes records: a header of named fields, then data.
 #include "app/sources/containers/ros_bag_writer.hpp"
 
 #include <algorithm>

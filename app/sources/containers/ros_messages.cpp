@@ -1,4 +1,5 @@
-// ros_messages.cpp: one cursor for both encodings. ROS 1 packs fields; CDR aligns them to their size.
+// ros_messages.cpp: parses both encodings with one cursor. ROS 1 packs fields; CDR aligns fields to their
+// size.
 #include "app/sources/containers/ros_messages.hpp"
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// klg.cpp: walks the frames by their sizes.
+// klg.cpp: lists the frames by adding up their sizes.
 #include "app/sources/datasets/klg.hpp"
 
 #include <memory>

@@ -1,4 +1,4 @@
-// ros_images.cpp: topics are judged by the encoding of their first image, then by their name.
+// ros_images.cpp: classifies topics by the encoding of their first image, then by their name.
 #include "app/sources/datasets/ros_images.hpp"
 
 #include <algorithm>

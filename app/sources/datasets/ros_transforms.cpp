@@ -1,4 +1,4 @@
-// ros_transforms.cpp: edges from child to parent, interpolated where they move.
+// ros_transforms.cpp: transforms from child to parent frame, interpolated if they move.
 #include "app/sources/datasets/ros_transforms.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// rtabmap.cpp: tables of the database, and RTAB-Map's binary form of a camera.
+// rtabmap.cpp: reads the database's tables, and RTAB-Map's binary format of cameras.
 #include "app/sources/datasets/rtabmap.hpp"
 
 #include <array>

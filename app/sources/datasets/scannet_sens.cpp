@@ -1,4 +1,4 @@
-// scannet_sens.cpp: walks the frames by their sizes.
+// scannet_sens.cpp: lists the frames by adding up their sizes.
 #include "app/sources/datasets/scannet_sens.hpp"
 
 #include <array>

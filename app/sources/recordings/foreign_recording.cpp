@@ -1,4 +1,4 @@
-// foreign_recording.cpp: the list of kinds of recordings.
+// foreign_recording.cpp: the table of recording formats, each with its detection and its reader.
 #include "app/sources/recordings/foreign_recording.hpp"
 
 #include <array>

@@ -15,8 +15,8 @@ namespace roomradar {
 /// for kinds that index_foreign() does not read.
 [[nodiscard]] std::string foreign_kind(const std::filesystem::path& path);
 
-/// Lists the frames of a recording of another program. Returns nullopt if foreign_kind() is empty. A
-/// camera.json in the folder of that one file replaces the cameras and lenses.
+/// Lists the frames of a recording of another program. Returns nullopt if foreign_kind() is empty. If a
+/// folder contains one such file and a camera.json, camera.json replaces the cameras and lenses.
 /// @throws Error naming the file if the recording is damaged or lacks depth images or cameras
 std::optional<IndexedRecording> index_foreign(const std::filesystem::path& path);
 

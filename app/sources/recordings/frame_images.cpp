@@ -1,4 +1,4 @@
-// frame_images.cpp: planes of differences through zstd.
+// frame_images.cpp: compresses planes of pixel differences with zstd.
 #include "app/sources/recordings/frame_images.hpp"
 
 #include <zstd.h>

@@ -1,4 +1,4 @@
-// spool_list.cpp: keeps images in files, and all else in a list.
+// spool_list.cpp: stores images in files, and all other data of frames in a list.
 #include "app/sources/recordings/spool_list.hpp"
 
 #include <algorithm>

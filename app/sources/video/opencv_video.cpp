@@ -1,4 +1,4 @@
-// opencv_video.cpp: the module for videos: FFmpeg through OpenCV.
+// opencv_video.cpp: the video codec module: FFmpeg through OpenCV.
 #include "app/sources/video/opencv_video.hpp"
 
 #include <opencv2/imgproc.hpp>

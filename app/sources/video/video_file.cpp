@@ -1,4 +1,4 @@
-// video_file.cpp: reads forwards, and seeks.
+// video_file.cpp: decodes consecutive frames, and seeks to others.
 #include "app/sources/video/video_file.hpp"
 
 #include <exception>

@@ -1,4 +1,4 @@
-// video_module.cpp: the module's places, dlopen() and the check of its version.
+// video_module.cpp: searches the module, loads it with dlopen(), and checks its version.
 #include "app/sources/video/video_module.hpp"
 
 #include <dlfcn.h>
