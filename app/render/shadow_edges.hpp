@@ -7,9 +7,9 @@ namespace roomradar {
 
 /// Corrects depth where a shadow ends at a depth edge, i.e. where a nearer surface begins. This edge is
 /// ragged in the depth image and displaced by some pixels. Each pixel within reach_px of the edge is compared
-/// with pixels away from depth edges. It is assigned to the surface with the most near pixels of similar
-/// colour, and gets the depth of the plane through them. Pixels without any of similar colour keep their
-/// depth.
+/// with pixels away from depth edges, weighted by similarity of colour and by distance. It is assigned to the
+/// surface with the largest sum of weights, and gets the depth of the plane fitted to that surface's pixels.
+/// Pixels without such a surface keep their depth.
 ///
 /// Source of the weights: Kopf et al., Joint bilateral upsampling, SIGGRAPH 2007.
 ///

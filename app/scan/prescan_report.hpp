@@ -22,8 +22,8 @@ nlohmann::json held_out_json(const HeldOutScore& score);
 void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
                    const std::optional<HeldOutScore>& held_out);
 
-/// Prints to stdout the number of holes, and the first five that are inside the scan (not kOuterBorder) with
-/// their numbers.
+/// Prints to stdout the number of holes, and describes the first five inside the scan (not kOuterBorder).
+/// They are numbered as in the report and coverage.png.
 /// @param holes  sorted as by find_holes()
 void print_holes(const std::vector<Hole>& holes);
 

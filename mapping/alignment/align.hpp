@@ -45,9 +45,10 @@ inline bool has_pose(const Tracking& tracking) {
 
 struct AlignConfig {
   int coarsest_level = 2;  ///< pyramid level at which alignment begins
-  int finest_level = 0;    ///< pyramid level at which alignment ends; 0 is full resolution
+  int finest_level = 0;    ///< pyramid level at which alignment ends; 0: finest level of the pyramid
   int iterations = 6;      ///< max number of iterations per level
-  /// Max point-to-plane distance of a correspondence at the coarsest level, m. The limit is halved at each
+  /// Max point-to-plane distance of an inlier at the coarsest level, m. Pairs of points farther apart have no
+  /// residual, but count as correspondences of min_points and overlap. The limit is halved at each
   /// finer level, but never below 0.03 m.
   float gate_m = 0.10F;
   /// Scale of the robust kernel at the finest level, in standard deviations: a residual of this size has
@@ -57,9 +58,10 @@ struct AlignConfig {
   float intensity_sigma = 8.0F;
   int min_points = 150;  ///< min number of correspondences at the finest level
   float min_inlier_fraction = 0.3F;
-  /// Depth constrains a direction if the mean squared cosine between the normals and this direction is at
-  /// least this. With a smaller threshold, noise of the normals alone would make a direction look
-  /// constrained.
+  /// Depth constrains a direction, a unit twist with rotation scaled by the mean distance, if the mean
+  /// squared derivative of the point-to-plane distances along it is at least this. For a translation, this is
+  /// the mean squared cosine between normals and direction. With a smaller threshold, noise of the normals
+  /// alone would make a direction look constrained.
   float min_constraint = 0.001F;
   /// Max standard deviation of the pose along a constrained direction, m. Above it, the direction counts as
   /// unconstrained.

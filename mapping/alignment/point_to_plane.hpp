@@ -45,7 +45,7 @@ struct PointMatches {
 
 /// Limits and weights of the residuals.
 struct MatchLimits {
-  float gate_m;  ///< max point-to-plane distance of a correspondence, m
+  float gate_m;  ///< max point-to-plane distance of an inlier, m
   /// 1 / scale of the Geman-McClure kernel. The scale is the residual, in standard deviations, with weight
   /// 1/4.
   float inverse_soft;

@@ -19,15 +19,16 @@ struct Submap {
   std::int64_t frames_read = 0;
   SensorTiming timing;
   std::vector<TimedPose> trajectory;  ///< poses of the frames with a trusted pose, in order
-  std::vector<TimedPose> recorded;  ///< poses that the recording states, in its own world frame; empty: none
-  KeyframeDatabase keyframes;       ///< in order of frame_index
+  /// Poses stored in the recording, in the recording's world frame (not the submap's); empty: none.
+  std::vector<TimedPose> recorded;
+  KeyframeDatabase keyframes;  ///< in order of frame_index
 };
 
 /// Writes a submap to `folder`, which must exist: submap.bin and keyframes.bin. Throws Error if a file cannot
 /// be written.
 void save_submap(const Submap& submap, const std::filesystem::path& folder);
-/// Reads a submap. Throws Error naming the file and the fault if a file is missing, damaged or of another
-/// version.
+/// Reads submap.bin and keyframes.bin. Throws Error naming the file and the fault if a file is missing,
+/// damaged or of another version.
 Submap load_submap(const std::filesystem::path& folder);
 /// Reads only submap.bin. Keyframes then have a frame index and a pose, but no features and no depth.
 Submap load_submap_poses(const std::filesystem::path& folder);
@@ -40,8 +41,8 @@ std::vector<Submap> split_at_losses(const Submap& submap, std::int64_t max_gap, 
 /// Returns the pose at the fraction `part` (0 to 1) between a and b: linear in position, slerp in rotation.
 Eigen::Isometry3d pose_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double part);
 
-/// Moves the poses of all frames with the keyframes' poses. A frame between two keyframes gets the mean of
-/// their corrections, interpolated by frame index.
+/// Propagates the corrections of the keyframes' poses to all frames. Between two keyframes, interpolates by
+/// frame index between the poses that result from either correction, see pose_between().
 /// @param T_world_keyframe  one new pose per keyframe of the submap
 /// @return the trajectory in the new world frame; empty if the submap has no keyframe
 std::vector<TimedPose> corrected_trajectory(const Submap& submap,

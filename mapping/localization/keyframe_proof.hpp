@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-/// Makes the pyramid of a keyframe's preview.
+/// Builds the pyramid of a keyframe's preview: its downsampled depth image, without intensity.
 void make_preview_pyramid(const MapKeyframe& keyframe, const ViewConfig& view, ViewPyramid& pyramid);
 
 /// Converts a preview to a target of align(), with the identity as its pose.
@@ -25,8 +25,9 @@ struct KeyframeProof {
   TargetView target;       ///< the keyframe's preview, with the identity as its pose; for joint_pose()
 };
 
-/// Refines the pose of a feature match by alignment with the keyframe's depth. KeyframeProof::holds is true
-/// if the refined pose agrees with the depth and is within 12 cm and 0.12 rad of the feature match's pose.
+/// Refines the pose of a feature match by alignment with the keyframe's depth. KeyframeProof::holds requires
+/// an aligned pose (has_pose()), an overlap above 0.2, agreement of the depths, and a pose within 12 cm and
+/// 0.12 rad of the feature match's pose.
 KeyframeProof prove_with_features(const SourcePoints& live, const MapKeyframe& keyframe,
                                   const KeyframeMatch& match, double min_depth_agreement,
                                   const ViewConfig& view);

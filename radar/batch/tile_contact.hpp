@@ -12,21 +12,22 @@
 
 namespace roomradar {
 
-/// A contiguous range of a scene mesh's triangles whose boxes intersect a query's volume. Every triangle in a
+/// A contiguous range of a scene mesh's triangles, in chunks whose bounding boxes intersect a query's volume.
+/// Every triangle in a
 /// range has a key that is unique within the query. Triangle first_triangle + k of the mesh has the key
 /// first_key + k.
 struct SceneRun {
-  /// Index of the mesh in the scene.
+  /// Index into the scene of contact_of().
   std::size_t scene_index = 0;
   std::uint32_t first_triangle = 0;
   std::uint32_t first_key = 0;
 };
 
 /// Returns the contact (status, bounds, point, normal and kind) of a query that was drawn.
-/// @param outline  the object's outline along the motion
+/// @param outline  bounding rectangle and pixel grid of the object, seen along its direction of motion
 /// @param result   least gap over the query's pixels, its pixel, and the key of the triangle touched
 /// @param runs     triangle ranges that intersect the query's volume, by ascending first_key
-/// @param scene    the scene of the call, which SceneRun::scene_index refers to
+/// @param scene    meshes for which the query was drawn; SceneRun::scene_index is an index into it
 Contact contact_of(const GlQuery& query, const RadarOutline& outline, const TileResult& result,
                    std::span<const SceneRun> runs, std::span<const GpuSceneMesh> scene);
 

@@ -30,7 +30,7 @@ struct ObjectOptions {
   std::optional<std::string> up;   ///< value of --object-up
 };
 
-/// Adds the options with their help texts.
+/// Adds --object, --object-size and --object-up to the command.
 /// @param options  receives the values; must outlive the parsing
 void add_object_options(CLI::App& command, ObjectOptions& options);
 

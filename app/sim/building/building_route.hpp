@@ -1,4 +1,5 @@
-// building_route.hpp: builds a camera route through a building from straight lines and rounds through rooms.
+// building_route.hpp: builds a camera route through a building from straight segments, loops through rooms,
+// and stairs.
 #pragma once
 #include <vector>
 
@@ -7,7 +8,7 @@
 
 namespace roomradar {
 
-/// A position on the middle line of a corridor.
+/// A position on the centreline of a corridor.
 struct CorridorPlace {
   int floor = 0, corridor = 0;
   double x_m = 0.0;
@@ -21,12 +22,13 @@ struct Route {
 
   /// Walks straight to a point. The view swings to both sides along lines of 3 m or more.
   void line_to(const Eigen::Vector2d& to_m, double floor_m);
-  /// Walks along corridors and stairs to `to`. The route must end near a corridor's middle line.
+  /// Walks along corridors and stairs to `to`. Precondition: the route's last point is near a corridor's
+  /// centreline, at `from`.
   void walk_to(const CorridorPlace& from, const CorridorPlace& to);
-  /// Walks round a room, facing its middle. The route must end at the room's door, or be empty. An empty
-  /// route begins inside the room.
+  /// Walks a loop through a room, facing its middle. Precondition: the route's last point is in the corridor
+  /// in front of the room's door, or the route is empty. An empty route begins inside the room.
   /// @param is_left  true: counter-clockwise
-  /// @param leaves   true: ends before the door, with a view towards it
+  /// @param leaves   true: ends inside the room in front of the door, facing the door
   void round(const PlannedRoom& room, bool is_left, bool leaves);
   /// Climbs or descends stairs between two floors, from and to the corridor in front of the stairwell.
   void take_stairs(const PlannedStairs& stairs, int from_floor, int to_floor);

@@ -1,4 +1,4 @@
-// room.hpp: a simulated furnished room, with solids, materials, lamps, and endpoints for the paths of camera
+// room.hpp: a simulated furnished room: solids, materials, lamps, and endpoints of the paths of the camera
 // and moving objects.
 #pragma once
 #include <Eigen/Geometry>
@@ -38,7 +38,7 @@ struct PartOpening {
 
 /// A box-shaped part of a building: a room, a piece of a corridor, a stairwell.
 struct RoomPart {
-  /// Bounds of its interior and walls, up to the walls of adjacent parts.
+  /// Bounds of the interior and of the part's own walls. They end where an adjacent part begins.
   Eigen::AlignedBox3d bounds_world;
   /// Index range of its solids in Room::solids; solids_end is exclusive.
   std::size_t solids_begin = 0, solids_end = 0;
@@ -70,11 +70,11 @@ struct Room {
   Eigen::Vector3d walk_centre_world = Eigen::Vector3d::Zero();
   /// Semi-axes of the ellipse along x and y, m.
   Eigen::Vector2d walk_half_m = Eigen::Vector2d::Ones();
-  /// Control points, about 0.7 m apart, of a closed walk through several rooms, which replaces the ellipse.
-  /// Empty: the ellipse.
+  /// Control points of a walk through several rooms, which replaces the ellipse. About 0.7 m apart in a flat,
+  /// at most 0.42 m apart in a building. Empty: the ellipse.
   std::vector<WalkPoint> walk;
-  /// Time from one point of the walk to the next, if the walk is open: it begins at the first point and ends
-  /// at the last one. 0: the walk is closed.
+  /// Time between control points of an open walk, which runs from the first point to the last. 0: the walk is
+  /// closed.
   double walk_step_s = 0.0;
   /// Number of full turns of the view on the closed walk.
   int walk_turns = 0;
@@ -101,23 +101,22 @@ inline constexpr std::string_view kBoardRoom = "board";
 inline constexpr std::string_view kFlatRoom = "flat";
 /// Name of a building with many rooms, which make_building() makes; make_room() does not.
 inline constexpr std::string_view kBuildingRoom = "building";
-/// Throws Error listing the known names, with kBuildingRoom, if `name` is none of them.
+/// Throws Error listing the known names if `name` is none of them. kBuildingRoom is a known name.
 void require_room(std::string_view name);
-/// Makes the room of this name.
+/// Builds the solids, materials and lamps of a named room.
 /// @param crate  true: adds a crate on the ball's path
 /// @param seed   selects the furniture of kRandomRoom and kFlatRoom; other rooms do not depend on it
-/// @throws Error listing the known names if `name` is none of them or kBuildingRoom
+/// @throws Error if `name` is unknown (listing the known names), or if it is kBuildingRoom
 Room make_room(std::string_view name, bool crate = false, std::uint64_t seed = 1);
 
 /// Size of the crate that make_room() can add.
 inline const Eigen::Vector3d kCrateSize_m{0.24, 0.18, 0.22};
 /// Returns the crate that make_room() can add to this room.
 Solid crate_in(const Room& room);
-/// Returns the crate's material.
 Material crate_material();
 
 /// Returns the signed distance (m) from a point to the nearest surface, negative inside a solid. The distance
-/// is exact outside. Inside, its magnitude is the max of the depths in the single solids. This is a lower
+/// is exact outside. Inside, its magnitude is the max of the depths in the individual solids. This is a lower
 /// bound of the depth in the union of touching solids.
 double signed_distance_m(const Room& room, const Eigen::Vector3d& p_world);
 

@@ -21,18 +21,19 @@ struct OniFrame {
 
 struct OniNode {
   OniNodeKind kind = OniNodeKind::kDevice;
-  std::string codec;                                ///< four characters: "16zT", "16zP", "JPEG" or "NONE"
+  std::string codec;  ///< four characters, such as "16zT", "16zP", "JPEG" or "NONE"
   std::map<std::string, std::uint64_t> integers{};  ///< properties by name
   std::map<std::string, std::string> values{};      ///< properties of other types; at most 64 kB each
   std::vector<OniFrame> frames{};                   ///< in the file's order
 };
 
-/// Returns true if the file begins as a .oni file does.
+/// Returns true if the file starts with the signature of .oni files.
 [[nodiscard]] bool is_oni(const std::filesystem::path& path);
 
-/// Reads the properties of all nodes and lists their frames; skips the data. A file without an end, because
-/// its recorder was killed, is read up to its last complete record.
-/// @throws Error naming the file if it is not a .oni file of version 1.0, or a record is damaged
+/// Reads the properties of all nodes and lists their frames; skips the data. A truncated file,
+/// whose recorder was killed for example, and a file with a damaged record header are read up to the last
+/// complete record before.
+/// @throws Error naming the file if it is not a .oni file of version 1.0, or a record's fields are damaged
 std::map<std::uint32_t, OniNode> index_oni(const RandomAccessFile& file);
 
 /// Decompresses 16 bit depth of the codecs 16zT (pixels are indices into a table of values) and 16zP (pixels
