@@ -1,7 +1,7 @@
 // map_bench.cpp: accuracy of a prescan's map, on simulated rooms whose surface is known exactly.
 //
 // usage: map_bench [--resolution M] [--json FILE] [poses SOURCE]...
-//        map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] whole SOURCE
+//        map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] [--submap-frames N] whole SOURCE
 //        map_bench [--json FILE] scan SOURCE
 //        poses: recorded (the true ones) or tracked; SOURCE: sim:ROOM?...
 // Default: recorded and tracked on sim:table, 700 frames, once around the room and back.
@@ -117,6 +117,8 @@ int main(int argc, char** argv) {
         json = value;
       } else if (word == "--sigmas") {
         whole.max_cell_sigmas = std::atof(value.c_str());
+      } else if (word == "--submap-frames") {
+        whole.submap_frames = std::max(std::atoi(value.c_str()), 0);
       } else if (word == "--truth") {
         whole.truth = value;
       } else if ((word == "whole" || word == "scan") && !value.empty()) {
@@ -125,11 +127,11 @@ int main(int argc, char** argv) {
       } else if ((word == "recorded" || word == "tracked") && value.starts_with("sim:")) {
         cells.push_back({word, value});
       } else {
-        std::fprintf(
-            stderr,
-            "usage: map_bench [--resolution M] [--json FILE] [recorded|tracked sim:ROOM?...]...\n"
-            "       map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] whole SOURCE\n"
-            "       map_bench [--json FILE] scan SOURCE\n");
+        std::fprintf(stderr,
+                     "usage: map_bench [--resolution M] [--json FILE] [recorded|tracked sim:ROOM?...]...\n"
+                     "       map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] "
+                     "[--submap-frames N] whole SOURCE\n"
+                     "       map_bench [--json FILE] scan SOURCE\n");
         return 2;
       }
     }

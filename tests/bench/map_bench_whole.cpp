@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/cli/open_source.hpp"
+#include "mapping/map/map_merge.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/bench/bench_times.hpp"
@@ -101,6 +102,36 @@ void judge(const StaticMap& map, const Frame& frame, Bins& bins) {
     }
 }
 
+/// A map merged from submaps of some frames.
+class MergedMap {
+ public:
+  MergedMap(double resolution_m, const FusionConfig& config, int submap_frames)
+      : merged{StaticMap(resolution_m, config), {}}, submap_(resolution_m, config), left_(submap_frames) {
+    submap_frames_ = submap_frames;
+  }
+  Fused merged;
+
+  void fuse(const Frame& frame) {
+    if (submap_frames_ == 0) return;
+    if (left_ == submap_frames_) T_world_submap_ = *frame.T_world_camera;
+    (void)submap_.fuse(frame, T_world_submap_.inverse() * *frame.T_world_camera);
+    if (--left_ == 0) merge();
+  }
+  void merge() {
+    if (left_ == submap_frames_) return;
+    const double start_ms = test::thread_ms();
+    add_map(submap_, T_world_submap_, merged.map);
+    merged.times.samples_ms.push_back(test::thread_ms() - start_ms);
+    submap_ = StaticMap(merged.map.resolution_m(), merged.map.config());
+    left_ = submap_frames_;
+  }
+
+ private:
+  StaticMap submap_;
+  Eigen::Isometry3d T_world_submap_ = Eigen::Isometry3d::Identity();
+  int submap_frames_ = 0, left_;
+};
+
 nlohmann::json row_of(const WholeCell& cell, const Fused& fused, const Bins& bins) {
   nlohmann::json row = {{"source", cell.source},
                         {"resolution_m", cell.resolution_m},
@@ -133,6 +164,7 @@ nlohmann::json whole_rows(const WholeCell& cell) {
   coarse.max_cell_sigmas = static_cast<float>(cell.max_cell_sigmas);
   std::array<Fused, 2> maps{Fused{StaticMap(cell.resolution_m, voxels), {}},
                             Fused{StaticMap(cell.resolution_m, coarse), {}}};
+  MergedMap submaps(cell.resolution_m, coarse, cell.submap_frames);
   for_frames(cell.source, [&](const Frame& frame, int number) {
     if (is_held_out(number)) return;
     for (Fused& fused : maps) {
@@ -140,14 +172,21 @@ nlohmann::json whole_rows(const WholeCell& cell) {
       (void)fused.map.fuse(frame, *frame.T_world_camera);
       fused.times.samples_ms.push_back(test::thread_ms() - start_ms);
     }
+    submaps.fuse(frame);
   });
-  std::array<Bins, 2> bins;
+  submaps.merge();
+  std::array<Bins, 3> bins;
   for_frames(cell.truth.empty() ? cell.source : cell.truth, [&](const Frame& frame, int number) {
     if (!is_held_out(number)) return;
     for (std::size_t i = 0; i < maps.size(); ++i) judge(maps[i].map, frame, bins[i]);
+    if (cell.submap_frames > 0) judge(submaps.merged.map, frame, bins[2]);
   });
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t i = 0; i < maps.size(); ++i) rows.push_back(row_of(cell, maps[i], bins[i]));
+  if (cell.submap_frames > 0) {
+    rows.push_back(row_of(cell, submaps.merged, bins[2]));
+    rows.back()["submap_frames"] = cell.submap_frames;
+  }
   return rows;
 }
 
@@ -176,6 +215,8 @@ nlohmann::json scan_row(const std::string& source) {
 
 void print_whole(const nlohmann::json& rows) {
   for (const nlohmann::json& row : rows) {
+    if (row.contains("submap_frames"))
+      std::printf("merged from submaps of %d frames, time per submap:\n", row["submap_frames"].get<int>());
     std::printf("%s  max_cell_sigmas %.1f: fuse %.1f ms median, %.1f p95, octree %.1f MB, pools %.1f MB\n",
                 row["source"].get<std::string>().c_str(), row["max_cell_sigmas"].get<double>(),
                 row["fuse_median_ms"].get<double>(), row["fuse_p95_ms"].get<double>(),
