@@ -1,7 +1,8 @@
 // map_bench.cpp: accuracy of a prescan's map, on simulated rooms whose surface is known exactly.
 //
 // usage: map_bench [--resolution M] [--json FILE] [poses SOURCE]...
-//        map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] [--submap-frames N] whole SOURCE
+//        map_bench [--resolution M] [--json FILE] [--sigmas S] [--truth SOURCE] [--submap-frames N]
+//                  whole SOURCE
 //        map_bench [--json FILE] scan SOURCE
 //        poses: recorded (the true ones) or tracked; SOURCE: sim:ROOM?...
 // Default: recorded and tracked on sim:table, 700 frames, once around the room and back.
