@@ -20,7 +20,7 @@ struct PrescanCounts {
   std::int64_t loops_found = 0;
   std::int64_t restarts = 0;      ///< number of times that tracking restarted with corrected sensor times
   std::int64_t ghost_voxels = 0;  ///< surface voxels removed by ghost removal
-  /// Frames of the interrupted pass (tracking or fusion) that were finished at the checkpoint. They are not
+  /// Frames of the interrupted pass (tracking or fusion) that were finished at the checkpoint and are not
   /// processed again.
   std::int64_t frames_resumed = 0;
   bool stopped_for_memory = false;  ///< memory cap reached: part of the source is not in the map

@@ -1,4 +1,4 @@
-// read_ahead.hpp: reads the next frame of a source while the caller works on the last one.
+// read_ahead.hpp: reads the next frame of a source while the caller processes the previous one.
 #pragma once
 #include <cstdint>
 #include <future>

@@ -15,8 +15,8 @@ enum class TrackStatus {
   /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. Unconstrained ones
   /// keep the initial guess's values; the others are aligned.
   kDegenerate,
-  /// The image disagrees with the references at the aligned pose, or the correction is too large
-  /// (AlignConfig). The returned pose is the guess.
+  /// The image disagrees with the references at the aligned pose, or the correction exceeds
+  /// AlignConfig::max_correction_m. The returned pose is the guess.
   kDiverged,
 };
 std::string_view to_string(TrackStatus status);
@@ -47,9 +47,9 @@ struct AlignConfig {
   int coarsest_level = 2;  ///< pyramid level at which alignment begins
   int finest_level = 0;    ///< pyramid level at which alignment ends; 0: finest level of the pyramid
   int iterations = 6;      ///< max number of iterations per level
-  /// Max point-to-plane distance of an inlier at the coarsest level, m. Pairs of points farther apart have no
-  /// residual, but count as correspondences of min_points and overlap. The limit is halved at each
-  /// finer level, but never below 0.03 m.
+  /// Max point-to-plane distance of an inlier at the coarsest level, m. Pairs above the limit have no
+  /// residual, but count as correspondences for min_points and overlap. The limit is halved at each finer
+  /// level, but never below 0.03 m.
   float gate_m = 0.10F;
   /// Scale of the robust kernel at the finest level, in standard deviations: a residual of this size has
   /// weight 1/4.
@@ -58,16 +58,16 @@ struct AlignConfig {
   float intensity_sigma = 8.0F;
   int min_points = 150;  ///< min number of correspondences at the finest level
   float min_inlier_fraction = 0.3F;
-  /// Depth constrains a direction, a unit twist with rotation scaled by the mean distance, if the mean
-  /// squared derivative of the point-to-plane distances along it is at least this. For a translation, this is
-  /// the mean squared cosine between normals and direction. With a smaller threshold, noise of the normals
-  /// alone would make a direction look constrained.
+  /// Min mean squared derivative of the point-to-plane distances along a direction that depth constrains. A
+  /// direction is a unit twist; its rotation is scaled by the points' mean distance from the camera. For a
+  /// translation, the value is the mean squared cosine between normals and direction. With a smaller
+  /// threshold, noise of the normals alone would make a direction look constrained.
   float min_constraint = 0.001F;
   /// Max standard deviation of the pose along a constrained direction, m. Above it, the direction counts as
   /// unconstrained.
   float max_uncertainty_m = 0.01F;
   /// Max correction of the guess: of the translation in m, and of the rotation in rad (the same number). A
-  /// larger correction is kDiverged.
+  /// larger correction gives kDiverged.
   float max_correction_m = 0.5F;
 };
 
@@ -107,8 +107,9 @@ Eigen::Isometry3d retract(const Eigen::Matrix<double, 6, 1>& twist);
 /// Returns the twist of a motion: the inverse of retract().
 Eigen::Matrix<double, 6, 1> local(const Eigen::Isometry3d& T);
 
-/// Predicts the motion from this frame to the next. Returns T_last_now if `tracking` is kTracked. Otherwise
-/// returns half of T_last_now, so that the velocity of unobserved degrees of freedom decays.
+/// Predicts the motion from this frame to the next. Returns T_last_now (the motion from the last frame to
+/// this one) if `tracking` is kTracked. Otherwise returns half of T_last_now, so that the velocity of
+/// unobserved degrees of freedom decays.
 Eigen::Isometry3d expected_motion(const Tracking& tracking, const Eigen::Isometry3d& T_last_now);
 
 }  // namespace roomradar

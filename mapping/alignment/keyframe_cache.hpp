@@ -8,8 +8,9 @@
 
 namespace roomradar {
 
-/// Keyframe prepared for alignment, as a reference and as a source of points. Keyframe holds the pose;
-/// reference.T_world_view is the identity. Takes 4 MB at 320 x 240 pixels, including 0.7 MB for `live`.
+/// Keyframe prepared for alignment, as a reference and as a source of points. The pose is in
+/// Keyframe::T_world_camera; reference.T_world_view is the identity. Takes 4 MB at 320 x 240 pixels,
+/// including 0.7 MB for `live`.
 struct CachedKeyframe {
   TargetView reference;
   SourcePoints live;

@@ -61,7 +61,7 @@ Real robust_weight(const Real& x) {
 }
 
 /// Projects the points into the reference to find correspondences, and sums their residuals. Residuals are
-/// the distance to the reference's plane and, if exposure.known, the difference of intensity. They are
+/// the distance to the reference's plane and, if exposure.known, the difference of intensity. Residuals are
 /// linearised with respect to the camera's twist in the camera frame.
 /// @param motion  motion of the points during their image's readout
 /// @param[in,out] pass  sums to which the residuals are added. Only the upper triangle of H is filled

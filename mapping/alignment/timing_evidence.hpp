@@ -36,9 +36,9 @@ struct MovingView {
 
 /// Linearises the residuals of an aligned image in the camera's pose and in the parameters, and eliminates
 /// the pose. The parameters are corrections of camera.timing. If the reference's intensity was registered
-/// with other sensor times, the displacement due to the difference is subtracted. Two images taken at equal
-/// velocities do not constrain the times. Uses every fourth point of the second finest level, or of the only
-/// level.
+/// with sensor times other than camera.timing, the displacement due to the difference is subtracted. Two
+/// images taken at equal velocities do not constrain the times. Uses every fourth point of the second finest
+/// level, or of the only level.
 /// @param live  points of the image before any rolling-shutter correction
 TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camera,
                                const TargetView& reference, const MovingView& view);

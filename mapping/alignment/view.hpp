@@ -47,7 +47,7 @@ struct SourcePoint {
 /// may be subsampled.
 struct SourcePoints {
   std::vector<std::vector<SourcePoint>> levels;
-  std::vector<Intrinsics> cameras;  ///< of each level
+  std::vector<Intrinsics> cameras;  ///< camera of each level
 };
 
 /// Extracts the points of all levels. The finest level uses every `finest_step_px`-th pixel of every

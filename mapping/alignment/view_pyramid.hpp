@@ -50,13 +50,14 @@ struct FrameMotion {
 /// level is at most finest_width_px wide. Leaves out depths outside min_depth_m..max_depth_m, and intensity
 /// outside the colour camera's view. The frame's images must have their cameras' sizes. Reuses memory
 /// allocated in `pyramid`.
-/// @param motion  compensates for the time between a point's depth and colour when its intensity is looked
-///                up. Depth is not moved
+/// @param motion  used to compensate the time between depth and colour when a point's intensity is looked up.
+///                Depth is not moved
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
                   const FrameMotion& motion = {});
 
 /// Builds a pyramid without intensity.
-/// @param noise  of the sensor; for rendered depth, that of the sensor whose images are compared with it
+/// @param noise  noise model of the sensor; for rendered depth, of the sensor whose images are compared with
+///               the rendered depth
 void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
                   ViewPyramid& pyramid, const DepthNoise& noise = {});
 
@@ -68,7 +69,7 @@ void halve_depth(ViewPyramid& pyramid);
 void deskew(ViewPyramid& pyramid, const CameraVelocity& velocity, double readout_s);
 
 /// Recomputes the intensity of all coarser levels from the finest level, if the finest level has intensity.
-/// Requires the depth of all levels.
+/// Precondition: all levels have their depth.
 void halve_intensity(ViewPyramid& pyramid);
 
 }  // namespace roomradar

@@ -9,12 +9,12 @@ namespace roomradar {
 
 struct BuildingFloor {
   double height_m = 0.0;  ///< z in the building's world frame
-  double area_m2 = 0.0;   ///< of the level surfaces within 10 cm of the height
+  double area_m2 = 0.0;   ///< area of the level surfaces within 10 cm of the height
 };
 
 /// Returns the floors, the lowest first. A floor is a height at which the area of level surfaces within 10 cm
-/// has a maximum. The area must be at least a tenth of the largest floor's, and floors with more area must be
-/// at least 2 m away. These limits exclude table tops, and steps within a storey.
+/// has a maximum. Its area must be at least a tenth of the largest floor's. Its distance to each floor with
+/// more area must be at least 2 m. These limits exclude table tops, and steps within a storey.
 std::vector<BuildingFloor> floors_among(std::span<const LevelSurface> surfaces);
 
 }  // namespace roomradar

@@ -12,7 +12,7 @@
 
 namespace roomradar {
 
-/// The keyframes of one submap, as the graph needs them.
+/// The keyframes of one submap (the trajectory and keyframes of one recording, see submap.hpp).
 struct GraphSubmap {
   std::vector<Eigen::Isometry3d> T_submap_keyframe;  ///< in order of time
   /// Poses in the building from an earlier result, one per keyframe. The submap keeps them unless they
@@ -20,21 +20,22 @@ struct GraphSubmap {
   std::vector<Eigen::Isometry3d> T_building_keyframe;
 };
 
-/// A join between two submaps of the graph.
+/// A join (measured relative pose, with the keyframe pairs that support it) between two submaps of the graph.
 struct GraphJoin {
-  std::size_t a = 0, b = 0;  ///< submaps
+  std::size_t a = 0, b = 0;  ///< indices of the two submaps
   SubmapJoin join;
 };
 
-/// Compares two submaps where a placement says that their keyframes have nearly the same view.
+/// Callback that compares two submaps at the pairs of keyframes which have nearly the same view according to
+/// the joins.
 using TestOverlap =
     std::function<PlacementTest(std::size_t a, std::size_t b, std::span<const PredictedPair> pairs)>;
 
 struct GraphConfig {
   /// Standard deviation of the relative pose of two successive keyframes of a submap.
   double step_sigma_m = 0.004, step_sigma_rad = 0.001;
-  /// Max median error of a join's links after the solution, m. A rotation error of 1 rad counts as 1 m. Joins
-  /// above the limit are refused.
+  /// Max median error, m, of a join's links (keyframe pairs with a measured relative pose) after the
+  /// solution. A rotation error of 1 rad counts as 1 m. Joins above the limit are refused.
   double max_off_m = 0.15;
   double keep_m = 0.01;
 };
@@ -48,7 +49,7 @@ struct PlacedSubmap {
 struct BuildingGraph {
   std::vector<PlacedSubmap> submaps;
   std::vector<bool> is_used;  ///< per join: false if it contradicts the others
-  std::vector<double> off_m;  ///< per join: median distance of its links from the solution, m
+  std::vector<double> off_m;  ///< per join: median error of its links after the solution, m
   std::size_t parts = 0;      ///< number of connected components
 };
 

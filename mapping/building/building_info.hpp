@@ -23,11 +23,12 @@ struct BuildingTile {
   TileIndex index = TileIndex::Zero();
   std::int64_t triangles = 0;
   Eigen::AlignedBox3d surface_world;  ///< bounding box of the tile's surface, m
-  ContentFile octree;                 ///< StaticMap::write(); only the tile's cube
-  ContentFile mesh;                   ///< write_tile_mesh()
+  ContentFile octree;                 ///< file of StaticMap::write() with the voxels in the tile's cube only
+  ContentFile mesh;                   ///< file of write_tile_mesh()
   ContentFile glb;                    ///< the same mesh relative to mesh_origin, y up
-  /// write_unknown_surface(): border of unknown space within the cube, closed towards other tiles. The name
-  /// is empty if the building was made by an earlier version.
+  /// File of write_unknown_surface(): border of unknown space within the cube. Space beyond the cube counts
+  /// as unknown, so the border is closed at the cube's faces. The name is empty if the building was made by
+  /// an earlier version.
   ContentFile unknown;
   Eigen::Vector3d mesh_origin = Eigen::Vector3d::Zero();
 };
@@ -56,7 +57,7 @@ struct BuildingInfo {
 
 inline constexpr const char* kBuildingFile = "building.json";
 inline constexpr const char* kTilesFolder = "tiles";
-/// Holds each recording's trajectory and keyframes in the building.
+/// Name of the folder with each recording's trajectory and keyframes in the building's world frame.
 inline constexpr const char* kRecordingsFolder = "recordings";
 
 /// Returns the tile's files that have a name.

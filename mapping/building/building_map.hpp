@@ -15,7 +15,7 @@ namespace roomradar {
 // The load functions throw Error naming the file and the fault if a file is missing or damaged.
 
 /// Returns the meshes of all tiles as one. Vertices of different tiles at the same position, bit for bit,
-/// become one vertex. The origin is that of the first tile.
+/// become one vertex. The mesh's origin is that of the first tile's mesh.
 Mesh load_building_mesh(const BuildingInfo& info, const std::filesystem::path& folder);
 
 /// Returns the octrees of all tiles as one.

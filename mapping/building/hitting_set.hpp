@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Elements that cannot all be right.
+/// Indices of elements that cannot all be right.
 using Conflict = std::vector<std::size_t>;
 
 /// Returns the set of elements with the least sum of costs that contains an element of each conflict. The

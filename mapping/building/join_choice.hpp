@@ -16,8 +16,8 @@ namespace roomradar {
 ///     example, a join mistakes a room for its twin on another floor, and the corridors outside differ.
 /// Refuses the joins that break all conflicts at the least cost. The cost of a join grows with the length of
 /// the path along which the recordings agree, and with the fraction of the surface that agrees. A conflict of
-/// the second kind may also remain, since a room can change between two recordings. The cost then grows with
-/// the number of consecutive keyframes that are not recognised.
+/// the second kind may also remain unresolved, since a room can change between two recordings. The cost of
+/// leaving it grows with the number of consecutive keyframes that are not recognised.
 /// @param test_overlap  compares two recordings that the joins place at the same place. Called only for pairs
 ///                      that no used join has compared there. Empty: recordings are not compared
 /// Source: Sünderhauf and Protzel, Switchable constraints for robust pose graph SLAM, IROS 2012 (the

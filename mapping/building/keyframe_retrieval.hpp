@@ -1,7 +1,8 @@
 // keyframe_retrieval.hpp: finds recordings of a building, and their keyframes, that may show the same place.
 //
 // Submaps are compared group by group, so that groups are compared by separate jobs, and a submap that
-// changes requires only the comparisons of its group again. The pairs do not depend on the groups.
+// changes requires only the comparisons of its group again. The pairs do not depend on the groups. A
+// collision is a feature hash that two keyframes share (feature_index.hpp).
 #pragma once
 #include <array>
 #include <cstddef>
@@ -16,11 +17,12 @@
 namespace roomradar {
 
 struct RetrievalConfig {
-  double min_step = 0.25;         ///< min view_distance() of the keyframes of a submap that are compared
-  std::size_t candidates = 12;    ///< max similar submaps per keyframe; those with the most collisions
-  std::uint32_t min_excess = 15;  ///< min collisions of similar keyframes beyond those of unrelated ones
-  std::size_t min_similar = 2;    ///< min number of similar keyframes in one of the submaps of a pair
-  std::size_t partners = 16;      ///< best pairs kept per submap, by excess collisions
+  double min_step = 0.25;       ///< min view_distance() of the keyframes of a submap that are compared
+  std::size_t candidates = 12;  ///< max similar submaps per keyframe; those with the most collisions
+  /// Min collisions of similar keyframes above the number expected of unrelated ones.
+  std::uint32_t min_excess = 15;
+  std::size_t min_similar = 2;  ///< min number of similar keyframes in one of the submaps of a pair
+  std::size_t partners = 16;    ///< best pairs kept per submap, by excess collisions
 };
 
 /// The strongest features of a keyframe. Features of a repeated texture have equal hashes, which count once:
@@ -70,7 +72,7 @@ bool add_similar(SubmapSimilarity& all, const SubmapSimilarity& found, std::span
 /// Two submaps that may show the same place.
 struct CandidatePair {
   std::size_t a = 0, b = 0;      ///< submaps, a < b
-  std::size_t similar = 0;       ///< keyframes of either submap that are similar to one of the other
+  std::size_t similar = 0;       ///< keyframes, in both submaps, that are similar to a keyframe of the other
   std::uint64_t collisions = 0;  ///< sum of the excess collisions of these keyframes
 };
 /// Returns the pairs of submaps that look alike, sorted by a, then b. A pair is among the `partners` best

@@ -12,11 +12,11 @@ void save_features(const SubmapFeatures& features, const std::filesystem::path& 
 /// version.
 SubmapFeatures load_features(const std::filesystem::path& path);
 
-/// Writes the similarities of two groups. Throws Error if the file cannot be written.
+/// Writes the similarities of two groups of submaps. Throws Error if the file cannot be written.
 void save_similarity(const GroupSimilarity& similarity, const std::filesystem::path& path);
 /// Reads the similarities. Throws Error naming the file and the fault if it is missing, damaged or of another
-/// version, or if it is of groups with another number of submaps.
-/// @param submaps_b  0: of one group, compared with itself
+/// version, or if the groups have other numbers of submaps.
+/// @param submaps_b  number of submaps of the second group; 0: one group, compared with itself
 GroupSimilarity load_similarity(const std::filesystem::path& path, std::size_t submaps_a,
                                 std::size_t submaps_b);
 

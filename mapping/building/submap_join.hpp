@@ -16,7 +16,7 @@ namespace roomradar {
 /// Measured relative pose of a keyframe of submap a and a keyframe of submap b.
 struct KeyframeLink {
   std::size_t a = 0, b = 0;                                 ///< keyframes
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< of the two cameras
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< relative pose of the two cameras
   /// Inverse covariance of T_a_b, as a twist (translation m, rotation rad) in the frame of camera b.
   Matrix6d information = Matrix6d::Identity();
 };
@@ -37,11 +37,11 @@ struct SubmapJoin {
   /// With kJoined: refined by depth. With another status: as estimated from features where the submaps look
   /// alike, with `information` not set.
   std::vector<KeyframeLink> links;
-  /// Relative pose of the submaps' world frames near the links. Its error grows with the distance from the
-  /// links, by the drift of both submaps.
+  /// Relative pose of the submaps' world frames, measured at the links. Farther from the links, its error
+  /// grows by the drift of both submaps.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   int agreeing = 0;        ///< number of keyframes of b whose features agree on T_a_b
-  int expected = 0;        ///< keyframes of b that overlap enough with one of a to be recognised in it
+  int expected = 0;        ///< number of keyframes of b that overlap a keyframe of a enough to be recognised
   int recognised = 0;      ///< number of expected keyframes that were recognised
   double agreement = 0.0;  ///< fraction of the common surface that is at the same place in both
 };
@@ -53,8 +53,9 @@ struct JoinConfig {
   int min_agreeing = 3;         ///< min keyframes of b that agree on T_a_b
   double min_agreement = 0.75;  ///< see SubmapJoin::agreement
   double max_different = 0.25;  ///< max fraction of expected keyframes not recognised; one is always allowed
-  double near_m = 6.0;          ///< max distance from the links to compare at; beyond, drift is too large
-  std::size_t max_links = 60;   ///< max links of a join, spread evenly along b
+  /// Max distance of compared keyframes from the links; beyond, drift is too large.
+  double near_m = 6.0;
+  std::size_t max_links = 60;  ///< max links of a join, spread evenly along b
 };
 
 /// Returns up to `count` of the values, evenly spread over them, in their order.
@@ -72,7 +73,7 @@ std::vector<Value> spread_evenly(const std::vector<Value>& values, std::size_t c
 ///   2. The depth of nearby keyframes agrees, and none sees through the other submap's surface.
 ///   3. Keyframes that would show the same place are recognised in each other.
 /// Links are refined by aligning the keyframes' depth in both directions. Links whose two results differ are
-/// dropped. Source: as registration.hpp; Chen and Medioni 1992 (alignment).
+/// dropped. Source: Chen and Medioni 1992 (alignment).
 std::vector<SubmapJoin> join_submaps(const Submap& a, const Submap& b,
                                      std::span<const std::pair<std::size_t, std::size_t>> keyframes,
                                      const JoinConfig& config = {});

@@ -1,4 +1,5 @@
-// submap_overlap.hpp: compares two submaps where a placement lets them overlap.
+// submap_overlap.hpp: compares two submaps where they overlap according to a placement (estimated relative
+// pose).
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -10,14 +11,14 @@
 
 namespace roomradar {
 
-/// Two keyframes of two submaps that have nearly the same view according to a placement.
+/// A keyframe of submap a and a keyframe of submap b that have nearly the same view according to a placement.
 struct PredictedPair {
   std::size_t a = 0, b = 0;                                 ///< keyframes
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< predicted relative pose of the two cameras
   double drift_m = 0.0;                                     ///< max assumed error of T_a_b
 };
 
-/// Adds the pairs of one keyframe of b with all keyframes of a that have nearly its view.
+/// Adds the pairs of one keyframe of b with all keyframes of a that have nearly the same view.
 /// @param T_a_keyframe  poses of a's keyframes in a's world frame
 /// @param T_a_b         predicted pose of the keyframe of b in a's world frame
 void predict_pairs(std::span<const Eigen::Isometry3d> T_a_keyframe, const Eigen::Isometry3d& T_a_b,
@@ -25,7 +26,7 @@ void predict_pairs(std::span<const Eigen::Isometry3d> T_a_keyframe, const Eigen:
 
 /// Result of comparing keyframes of b with those of a at their predicted relative poses.
 struct PlacementTest {
-  int expected = 0;    ///< keyframes of b that overlap enough with one of a to be recognised in it
+  int expected = 0;    ///< number of keyframes of b that overlap a keyframe of a enough to be recognised
   int recognised = 0;  ///< number of expected keyframes that were recognised at the predicted pose
   /// Max number of consecutive expected keyframes, in order of time, of which none was recognised.
   int longest_miss = 0;

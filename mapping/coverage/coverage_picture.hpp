@@ -12,8 +12,9 @@
 
 namespace roomradar {
 
-/// Max standard deviation, m, of the signed distances of surface that counts as well observed. It is computed
-/// from the samples' weights. About 4 frames from a distance of 2 m suffice, or 22 frames from 3 m.
+/// Max standard deviation, m, of the signed distances of surface that counts as well observed. The standard
+/// deviation is computed from the samples' weights. About 4 frames from a distance of 2 m suffice, or 22
+/// frames from 3 m.
 inline constexpr double kSeenWell_m = 0.003;
 
 /// Draws orthographic projections of the surface from above and from two sides. Back faces are left out, so

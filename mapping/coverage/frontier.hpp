@@ -1,4 +1,5 @@
-// frontier.hpp: finds the frontier between free and unknown space, and groups it into holes.
+// frontier.hpp: finds the frontier between free and unknown space, and groups its border cells (unknown cells
+// that share a face with a free cell) into holes.
 #pragma once
 #include <vector>
 
@@ -34,11 +35,10 @@ struct Frontier {
   std::vector<FrontierCell> cells;
 };
 
-/// Finds the border cells: unknown cells that share a face with a free cell. Connected border cells of one
-/// kind (inside the scan, or at its end) form one hole, limited by max_size_m. A hole's area sums its faces
-/// projected along the border's normal, since the faces of a slanted border form a staircase with a larger
-/// area. Returns no holes if no cell is occupied. Throws Error if the config is invalid.
-/// FrontierConfig::cell_m is not used.
+/// Finds the border cells. Connected border cells of one kind (inside the scan, or at its end) form one hole,
+/// limited by max_size_m. A hole's area sums its faces projected along the border's normal, since the faces
+/// of a slanted border form a staircase with a larger area. Returns no holes if no cell is occupied. Throws
+/// Error if the config is invalid. Uses grid.cell_m instead of FrontierConfig::cell_m.
 Frontier find_frontier(const OccupancyCells& grid, const FrontierConfig& config = {});
 /// As above, in the octree's occupancy_cells().
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config = {});

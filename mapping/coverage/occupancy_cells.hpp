@@ -17,7 +17,7 @@ struct OccupancyCells {
   std::vector<Occupancy> cells;                     ///< by index(); x runs fastest
   Eigen::AlignedBox3d occupied_world;               ///< bounds of all occupied space; may be empty
 
-  // Cells are counted from `first`.
+  // In the functions below, `cell` is relative to `first`.
   [[nodiscard]] bool contains(const Eigen::Vector3i& cell) const {
     return (cell.array() >= 0).all() && (cell.array() < size.array()).all();
   }

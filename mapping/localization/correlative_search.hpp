@@ -15,8 +15,8 @@ struct ShapeGrid {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();  ///< lower corner of the first cube, in the world frame, m
   double cell_m = 0.0;
   std::array<int, 3> size{};  ///< number of cubes along x, y and z
-  /// Nearness by cube, x fastest, then y, then z. It is kOnSurface in a cube with a surface, and decreases
-  /// linearly to 0 with the distance from it.
+  /// Nearness by cube, x fastest, then y, then z. Nearness is kOnSurface in a cube with a surface, and
+  /// decreases linearly to 0 with the distance from the surface.
   std::vector<std::uint8_t> nearness;
   static constexpr int kOnSurface = 255;
   static constexpr int kReach_cells = 3;  ///< distance from a surface, in cubes, at which nearness is 0

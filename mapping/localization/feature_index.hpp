@@ -26,8 +26,8 @@ class FeatureIndex {
   /// Adds the next keyframe under the number size(). Indexes its first kIndexedFeatures descriptors. Uses 8
   /// bytes per descriptor and table, at most 38 kB per keyframe; 19 kB once its entries are sorted.
   void add(std::span<const Descriptor> descriptors);
-  /// Sorts the entries of keyframes that add() has not sorted yet. candidates() is several times as fast
-  /// afterwards, with the same result.
+  /// Sorts the entries that are still unsorted; add() sorts only once enough of them have accumulated.
+  /// candidates() is several times as fast afterwards, with the same result.
   void sort();
   /// Returns the number of keyframes in the index.
   [[nodiscard]] std::size_t size() const { return keyframes_; }

@@ -37,7 +37,7 @@ struct LocatorBuffers {
 struct Locator {
   /// Resolution of the live view. Twice the resolution costs 3 ms more and does not improve accuracy.
   ViewConfig live_view{.finest_width_px = 160};
-  /// Resolution of the expected view. Rendered depth needs no smoothing.
+  /// Resolution of the expected view (rendered by ExpectedDepth). Rendered depth needs no smoothing.
   ViewConfig expected_view{.finest_width_px = 160, .noisy = false};
   AlignConfig align;
   /// Alignment settings with a higher min_constraint. Bumps of the mesh then do not count as constraining a

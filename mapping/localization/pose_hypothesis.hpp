@@ -23,8 +23,8 @@ struct PoseHypothesis {
 bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
              double reach_rad);
 
-/// Returns the depth agreement, at most 1, over the pixels where the model has a surface. It is the fraction
-/// that agrees minus twice the fraction that sees through the model's surface.
+/// Returns the depth agreement, at most 1. It is computed over the pixels where the model has a surface: the
+/// fraction that agrees minus twice the fraction that sees through the model's surface.
 inline double fit_of(const DepthAgreement& agreement) {
   return agreement.alike_part() - 2.0 * agreement.farther_part();
 }
@@ -49,9 +49,9 @@ bool is_supported_by_patches(const PatchAgreement& appearance);
 /// Returns true if the pose is certain, without regard to other hypotheses. Its uncertainty must be at most
 /// 15 mm, and the model must cover 20 % of the valid depth. In addition, patches or depth must verify the
 /// pose. Patches verify the pose if is_verified_by_patches() and the depth does not contradict the pose.
-/// Depth verifies the pose if it constrains all directions, the patches do not contradict the pose, and three
-/// limits hold: the model covers half of the valid depth, at most 3 % of the common pixels see through the
-/// model, and more than 90 % agree (70 % if more than 12 patches match).
+/// Depth verifies the pose if depth constrains all directions, the patches do not contradict the pose, and
+/// three limits hold. The model must cover half of the valid depth. At most 3 % of the common pixels may see
+/// through the model. More than 90 % must agree (70 % if more than 12 patches match).
 bool is_certain(const PoseHypothesis& hypothesis);
 
 /// Returns true if another hypothesis, at a different pose, explains the frame about as well as `best`. With

@@ -6,7 +6,8 @@
 
 namespace roomradar {
 
-/// Pixel counts of one preview compared with another, over every fourth pixel of every fourth row.
+/// Pixel counts of one preview (a keyframe's downsampled depth image) compared with another, over every
+/// fourth pixel of every fourth row.
 struct PreviewOverlap {
   int valid = 0;    ///< number of pixels with depth of at most 4 m
   int same = 0;     ///< number of valid pixels on the other preview's surface

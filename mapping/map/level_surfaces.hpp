@@ -18,8 +18,8 @@ struct LevelSurface {
 };
 
 /// Returns the level surfaces of a mesh, largest first. Triangles count as level if their normal is within 10
-/// degrees of +z. Level triangles that share vertices form one surface. Only its triangles within 3 cm of its
-/// most frequent height count. Surfaces under min_area_m2 are left out.
+/// degrees of +z. Level triangles that share vertices form one surface. Of a surface, only the triangles
+/// within 3 cm of its most frequent height count. Surfaces under min_area_m2 are left out.
 std::vector<LevelSurface> level_surfaces(const Mesh& mesh_world, double min_area_m2 = 0.05);
 
 /// Returns, per surface, true if it is a part of the floor. The floor is the lowest surface with at least a

@@ -26,9 +26,10 @@ struct Change {
 
 struct DiffConfig {
   /// A surface voxel is clear if the other map is free within a radius around it. The radius is the larger of
-  /// clearance_m and clearance_voxels, and twice as large for the voxels of coarse cells. Surface that too
-  /// few frames measured for the mesh is never clear. An object needs min_area_m2 of clear surface. The rest
-  /// of its surface, down to its support, only has to be in the other map's free space.
+  /// clearance_m and clearance_voxels, and twice as large for the voxels of coarse cells. Surface that is
+  /// missing from the mesh, since too few frames measured it, is never clear. An object needs min_area_m2 of
+  /// clear surface. The rest of its surface, down to its support, only has to be in the other map's free
+  /// space.
   double clearance_m = 0.045;
   double clearance_voxels = 3.0;
   double min_area_m2 = 4.9e-3;  ///< min clear surface of an object: 7 x 7 cm

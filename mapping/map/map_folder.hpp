@@ -30,7 +30,7 @@ struct SavedMap {
   /// Border of unknown space, set by load_map(). Null if the map was not saved before, or was saved by an
   /// earlier version.
   LazyPart<std::shared_ptr<const UnknownSurface>> unknown{std::shared_ptr<const UnknownSurface>()};
-  /// Texture of the mesh; null: none. It may belong to an earlier mesh, see fits().
+  /// Texture of the mesh, or of an earlier mesh (see fits()); null: none.
   LazyPart<std::shared_ptr<const SurfaceTexture>> texture{std::shared_ptr<const SurfaceTexture>()};
 };
 

@@ -13,7 +13,8 @@ using EarlierTextures = std::vector<std::unique_ptr<const EarlierTexture>>;
 
 /// Appends the map's texture and mesh to `earlier` if the texture fits the mesh. Throws Error if the texture
 /// is damaged.
-/// @param T_world_map  maps points from the map's world frame to the world frame of the lookups
+/// @param T_world_map  maps points from the map's world frame to the world frame in which `earlier` is looked
+///                     up
 void add_texture_of(const SavedMap& map, const Eigen::Isometry3d& T_world_map, EarlierTextures& earlier);
 
 /// Bakes the texture of the map's present surface from earlier textures whose surface is within 2 cm.

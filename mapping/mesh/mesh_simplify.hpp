@@ -11,8 +11,8 @@ namespace roomradar {
 /// A simplified mesh and its measured distance from the original.
 struct SimplifiedMesh {
   Mesh mesh;
-  /// Two-sided (Hausdorff) distance between the surfaces, m. It is measured at all vertices and at points
-  /// spacing_m apart, and is at most max_deviation_m. Between the points, the distance may be slightly
+  /// Two-sided (Hausdorff) distance between the surfaces, m, at most max_deviation_m. The distance is
+  /// measured at all vertices and at points spacing_m apart. Between the points, the distance may be slightly
   /// larger.
   float deviation_m = 0.0F;
   /// Per vertex: index of a vertex of the original that was merged into it.
@@ -27,7 +27,8 @@ inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size 
 /// Bound: during collapses, every original vertex stays within 0.6 max_deviation_m (> 0) of the triangles
 /// that replace those around it. Afterwards the distance between both surfaces is measured at points
 /// spacing_m apart. Where the distance exceeds max_deviation_m, the tolerances of nearby vertices are lowered
-/// and the block is simplified again. A block that fails in all rounds is left unchanged.
+/// and the block is simplified again. A block that still exceeds the bound after the last attempt is left
+/// unchanged.
 ///
 /// A mesh of more than block_triangles (>= 1) triangles is split into blocks of at most block_triangles,
 /// which two threads process. Vertices on seams between blocks are constrained, so no cracks appear. Small

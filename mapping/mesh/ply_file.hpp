@@ -23,7 +23,7 @@ std::optional<Mesh> mesh_of_ply(std::string_view bytes, const std::filesystem::p
 
 /// Erases degenerate triangles: the sine of the angle at the first vertex is at most 1e-12, or a side at this
 /// vertex has length 0. Positions are rounded to float with the origin added, as ply_bytes() writes them.
-/// These include all triangles that mesh_of_ply() drops.
+/// The erased triangles include all triangles that mesh_of_ply() drops.
 void erase_flat_triangles(Mesh& mesh);
 
 }  // namespace roomradar

@@ -22,7 +22,7 @@ using Sides = std::array<Slot, 6>;
 Sides sides_of_child(const BlockOctree& tree, const InnerBlock& block, const Sides& of_parent, unsigned i);
 
 /// Returns the signed distances of the eight voxels in cell i of a coarse leaf block, in units of
-/// BlockUnits::distance_m. They are interpolated linearly between the cell and its neighbours along each
+/// BlockUnits::distance_m. Distances are interpolated linearly between the cell and its neighbours along each
 /// axis, and extrapolated where a neighbour has no signed distance.
 std::array<std::int16_t, 8> voxel_distances(const BlockOctree& tree, const LeafBlock& coarse,
                                             const Sides& sides, unsigned i);
@@ -71,8 +71,8 @@ Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const Nod
 }
 
 /// Calls visit(place, block, sides, i) in Morton order for each cell that has a signed distance and a voxel
-/// in the range: cell i of the leaf block `block` at `place`. The arguments `sides` and `place` are those of
-/// `node`.
+/// in the range: cell i of the leaf block `block` at `place`. The parameters `sides` and `place` describe
+/// `node`; visit() receives those of the leaf block.
 template <typename Visit>
 void for_each_cell(const BlockOctree& tree, Slot node, const Sides& sides, const NodePlace& place,
                    const KeyRange& range, const Visit& visit) {

@@ -1,5 +1,5 @@
-// depth_pyramid.hpp: min/max pyramid of a depth image. It bounds free and occluded space in the frustum of a
-// pixel rectangle.
+// depth_pyramid.hpp: min/max pyramid of a depth image, which bounds free and occluded space in the frustum of
+// a pixel rectangle.
 #pragma once
 #include <algorithm>
 #include <bit>

@@ -8,8 +8,9 @@ struct FusionConfig {
   /// Max depth that is fused as a surface, m. At larger depths the noise is too high (standard deviation 4 cm
   /// or more). Rays to larger depths only mark the space up to max_range_m as free.
   float max_range_m = 5.0F;
-  /// Half-width of the truncation band, in voxels. The larger of truncation_voxels and truncation_sigmas
-  /// applies. A wider band blurs the surface if poses disagree. A narrower band leaves gaps in it.
+  /// Half-width of the truncation band, in edges of the updated cell (a voxel or a coarse cell). The larger
+  /// of truncation_voxels and truncation_sigmas applies. A wider band blurs the surface if poses disagree. A
+  /// narrower band leaves gaps in it.
   float truncation_voxels = 2.0F;
   float truncation_sigmas = 2.5F;  ///< half-width of the truncation band, in standard deviations of depth
   /// Max edge of a coarse cell, in standard deviations of depth. Finer cells would store the same surface in

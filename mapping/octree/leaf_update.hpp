@@ -143,9 +143,9 @@ class LeafUpdate {
   // Min distance, in cells, at which a sample counts as behind a surface. Frames see past samples nearer to
   // the surface too often, because of noise and pose errors.
   static constexpr float kBehind_cells = 0.5F;
-  // A frame that sees through a sample subtracts this many times its own weight from the sample's weight. It
-  // is above 1, since the first such frames only make the voxel free. Also, an object that was present in
-  // half of the frames should disappear.
+  // A frame that sees through a sample subtracts this many times its own weight from the sample's weight. The
+  // factor is above 1, since the first such frames only make the voxel free. Also, an object that was present
+  // in half of the frames should disappear.
   static constexpr float kCancelled = 2.0F;
 
   [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }

@@ -80,8 +80,8 @@ class ChildOffsets {
 struct NodeVisibility {
   unsigned nothing = 0;  ///< occluded, out of view, or beyond 2 max_range_m
   unsigned free = 0;     ///< wholly in front of the measured depth
-  /// In front of the measured depth in pixels with depth. Its other parts are out of view or in pixels
-  /// without depth.
+  /// In front of the measured depth in pixels with depth. The sibling's other parts are out of view or in
+  /// pixels without depth.
   unsigned part_free = 0;
 };
 

@@ -1,5 +1,5 @@
-// static_map.hpp: octree of the static room. It stores occupancy (occupied, free, unknown) and, near
-// surfaces, signed distance.
+// static_map.hpp: octree of the static room, with occupancy (occupied, free, unknown) and, near surfaces,
+// signed distance.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>

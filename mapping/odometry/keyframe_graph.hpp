@@ -82,14 +82,15 @@ void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeC
 void solve(KeyframeGraph& graph);
 
 /// Computes the final poses of all keyframes in two steps, to reduce the effect of the sensor's depth
-/// distortion. Distortion is constant in the camera frame. Unlike noise, it does not average out over many
-/// points. It cancels between similar views. Between different views, it biases the relative pose, mostly by
-/// a rotation about the observed surface. Alignment wrongly reports this rotation as well constrained.
+/// distortion. Distortion is constant in the camera frame. Unlike noise, distortion does not average out over
+/// many points. Distortion cancels between similar views. Between different views, distortion biases the
+/// relative pose, mostly by a rotation about the observed surface. Alignment wrongly reports this rotation as
+/// well constrained.
 ///
-/// The first step therefore computes the positions. It weights constraints by the similarity of their views
-/// (view_distance()), and uses their information matrices only to exclude unconstrained directions. The
-/// second step keeps the positions and computes the rotations, with constraints weighted by their
-/// information.
+/// The first step therefore computes the positions. That step weights constraints by the similarity of their
+/// views (view_distance()), and uses the constraints' information matrices only to exclude unconstrained
+/// directions. The second step keeps the positions and computes the rotations, with constraints weighted by
+/// their information.
 void solve_positions_then_turns(KeyframeGraph& graph);
 
 /// Optimises only the keyframes whose view_distance() to the newest is less than `furthest`; all other poses

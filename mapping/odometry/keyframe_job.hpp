@@ -15,8 +15,8 @@ struct KeyframeJobConfig {
   RelocaliseConfig relocalise;
 };
 
-/// Input of run(). Owns its data, except for the two keyframe databases. These must not change while run()
-/// executes.
+/// Input of run(). Owns its data, except for the two keyframe databases. Precondition: the databases do not
+/// change while run() executes.
 struct KeyframeJob {
   Frame frame;          ///< frame of the newest keyframe
   KeyframeGraph graph;  ///< includes the newest keyframe, which has no edges yet

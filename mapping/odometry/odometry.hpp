@@ -35,8 +35,8 @@ class Odometry {
   /// cameras.
   Tracking track(const Frame& frame);
 
-  /// Adds a frame with a given pose. Adds a keyframe to the database if the view is new. Does not align or
-  /// optimise.
+  /// Adds a frame with a given pose. Adds a keyframe to the database if the pose differs enough from those of
+  /// all keyframes (OdometryConfig::keyframe_distance_m, keyframe_angle_deg). Does not align or optimise.
   void add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   /// Rebuilds all constraints from the keyframes' final depth, optimises the keyframes' poses, and returns

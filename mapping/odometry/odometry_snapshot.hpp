@@ -85,7 +85,7 @@ Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySna
 /// first anchor also moves all poses into the prior map's world frame.
 Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);
 
-/// Adds a frame with a given pose, and a keyframe to the database if the view is new.
+/// Adds a frame with a given pose; see Odometry::add_posed().
 void add_posed(OdometrySnapshot& kept, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                const OdometryConfig& config);
 

@@ -9,7 +9,7 @@ namespace roomradar {
 
 /// Estimate of a sensor's times, and the evidence gathered since it last changed.
 struct TimingEstimate {
-  SensorTiming stated;  ///< as the first frame states; the estimate's prior
+  SensorTiming stated;  ///< times given by the first frame (Frame::timing); prior of the estimate
   SensorTiming current;
   TimingEvidence sum;  ///< evidence of frames tracked with `current`
   int frames = 0;      ///< number of frames in `sum`
@@ -31,8 +31,8 @@ bool are_times_wrong(const TimingEstimate& estimate);
 inline constexpr std::int64_t kProbeFrames = 100;
 inline constexpr int kMostRestarts = 3;
 
-/// Returns the standard deviations of the current times, s, from the evidence since the last change. They are
-/// at most those of the prior: 10 ms for the readouts, 30 ms for the delay.
+/// Returns the standard deviations of the current times, s, from the evidence since the last change. Each is
+/// at most the prior's standard deviation: 10 ms for the readouts, 30 ms for the delay.
 SensorTiming standard_deviation(const TimingEstimate& estimate);
 
 }  // namespace roomradar

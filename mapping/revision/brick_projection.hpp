@@ -40,7 +40,7 @@ struct CellInBrick {
 
 class BrickProjection {
  public:
-  /// Requires a frame for which depth_fault_of() returns an empty text.
+  /// Precondition: depth_fault_of() returns an empty text for the frame.
   BrickProjection(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double resolution_m)
       : camera_(frame.depth_camera),
         T_camera_world_(T_world_camera.inverse()),
@@ -99,7 +99,7 @@ class BrickProjection {
   /// Offsets from the centre of a brick's first voxel to the centres of the voxels along each axis, in the
   /// camera frame, m.
   std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps_;
-  /// From the centre of a coarse cell's lowest voxel to the cell's centre, m.
+  /// Offset from the centre of a coarse cell's lowest voxel to the cell's centre, in the camera frame, m.
   Eigen::Vector3f to_coarse_centre_;
 };
 

@@ -19,8 +19,9 @@ struct FusedFrame {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Delivers the chosen frames in order. Seeks past the frames between if the source can. While the caller
-/// uses one frame, a second thread reads the next one. The caller must not use the source meanwhile.
+/// Delivers the chosen frames in order. Seeks past frames that are not chosen if the source can seek. While
+/// the caller uses one frame, a second thread reads the next one. The caller must not use the source
+/// meanwhile.
 class ChosenFrames {
  public:
   /// @param fused   all fused frames; must outlive this object

@@ -11,8 +11,8 @@ namespace roomradar {
 inline constexpr int kMaxWindowRadius_px = 31;
 
 /// Sparse table. At each pixel, nearest_m[k] stores the minimum depth of the 2^k x 2^k square whose upper
-/// left corner is this pixel. It is infinity if the square has no depth. Four such squares cover any window
-/// whose side is at least 2^k and less than 2^(k+1).
+/// left corner is this pixel. The minimum is infinity if the square has no depth. Four such squares cover any
+/// window whose side is at least 2^k and less than 2^(k+1).
 struct DepthWindows {
   std::vector<DepthImage> nearest_m;
   Image<std::int32_t> measured;  ///< integral image: number of pixels with depth above and to the left

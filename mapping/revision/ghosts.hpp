@@ -19,8 +19,8 @@ namespace roomradar {
 /// get the same verdict.
 class GhostVotes {
  public:
-  /// Copies the map's surface cells. These have a sample and are occupied or have a signed distance of at
-  /// most one voxel. Throws Error if the config is invalid.
+  /// Copies the map's surface cells. A surface cell has a sample, and is occupied or has a signed distance of
+  /// at most one voxel. Throws Error if the config is invalid.
   explicit GhostVotes(const StaticMap& map, const GhostConfig& config = {});
 
   /// Adds one frame's votes. The frame must have been fused at this pose.

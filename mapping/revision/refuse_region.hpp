@@ -38,10 +38,10 @@ struct RegionView {
 /// Updates a region of the map from the frames. Uses pixels whose measured point is in the region. Also uses
 /// pixels whose expected point is in the region and whose measured depth is larger than the expected depth.
 ///
-/// A sample becomes free if more frames see through it than measure it. This includes samples up to 1 m
-/// behind the region, e.g. on the far side of a removed object. A sample in the region is erased if at least
-/// one frame measures a surface within the truncation distance of it. Then the selected pixels are fused as
-/// in StaticMap::fuse(). This measures the erased samples again.
+/// A sample is erased and its voxel becomes free if more frames see through the sample than measure it. The
+/// same rule applies to samples up to 1 m behind the region, e.g. on the far side of a removed object. A
+/// sample in the region is erased if at least one frame measures a surface within the truncation distance of
+/// it. Then the selected pixels are fused as in StaticMap::fuse(). This measures the erased samples again.
 ///
 /// @param views  frames of one static scene. Pass several, since the noise of a single frame would become
 ///               surface

@@ -64,8 +64,8 @@ struct VotedVoxel {
   std::uint32_t position = 0;
 };
 
-/// Returns true if a voxel may be in the core of a departed object. It must be gone in at least 3 frames, and
-/// in at least twice as many frames as measured it (`seen`).
+/// Returns true if a voxel may be a core voxel of a departed object, i.e. has enough evidence by itself. The
+/// voxel must be gone in at least 3 frames, and in at least twice as many frames as measured it (`seen`).
 bool may_be_absent(const AbsenceVotes& votes, int seen);
 /// Returns true if the voxel's evidence suffices to remove it together with a connected core voxel.
 bool may_go_along(const AbsenceVotes& votes, int seen);

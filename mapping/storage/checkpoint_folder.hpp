@@ -21,7 +21,7 @@ struct Checkpoint {
 
 /// Callback that writes a state's files into the empty folder `into`. `previous` is the preceding
 /// checkpoint's folder, or an empty path. carry_over() can link unchanged files from there. The callback runs
-/// in a child process. Its changes to memory are lost.
+/// in a child process, so its changes to memory are lost.
 using WriteCheckpointFiles =
     std::function<void(const std::filesystem::path& into, const std::filesystem::path& previous)>;
 

@@ -16,10 +16,10 @@
 
 namespace roomradar {
 
-/// Folder of one unfinished piece of work. It contains `work.json` (identity of the work), `lock`, and the
-/// last two checkpoints. Each checkpoint is a folder that is created atomically. At that time, all files
-/// written earlier to the work's folder (such as a live scan's frames) are synced to disk. A forked child
-/// writes the checkpoint from a snapshot of the state while the work continues. The child dies with its
+/// Folder of one unfinished piece of work. The folder contains `work.json` (identity of the work), `lock`,
+/// and the last two checkpoints. Each checkpoint is a folder that is created atomically. At that time, all
+/// files written earlier to the work's folder (such as a live scan's frames) are synced to disk. A forked
+/// child writes the checkpoint from a snapshot of the state while the work continues. The child dies with its
 /// parent. The work's folder is created with the first checkpoint. Only one process at a time can own it.
 class Checkpoints {
  public:

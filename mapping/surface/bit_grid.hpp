@@ -54,8 +54,8 @@ class BitGrid {
   /// Repeats spread() until nothing changes.
   void flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
 
-  /// Calls visit(p) for each set voxel, z slowest, x fastest. `visit` may clear voxels. Those in the current
-  /// word of 64 voxels are still visited.
+  /// Calls visit(p) for each set voxel, z slowest, x fastest. `visit` may clear voxels; cleared voxels in the
+  /// current word of 64 voxels are still visited.
   template <typename Visit>
   void for_each_set(const Visit& visit) const {
     for (int z = 0; z < size_.z(); ++z)

@@ -1,4 +1,5 @@
-// cell_sheets.hpp: groups the zero crossings on the edges of a cell into surface sheets. Private to
+// cell_sheets.hpp: groups the zero crossings on the edges of a cell into surface sheets (connected pieces of
+// surface). A face is ambiguous if its corners have equal signs on each diagonal. Private to
 // dual_marching_cubes.
 #pragma once
 #include <array>

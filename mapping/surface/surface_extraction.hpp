@@ -10,7 +10,7 @@ namespace roomradar {
 
 struct SurfaceConfig {
   /// Min weight of a sample; samples with less weight count as unknown. The default is the weight of one
-  /// frame at 2.9 m or about ten frames at 5 m. It corresponds to a standard deviation of 13 mm.
+  /// frame at 2.9 m or about ten frames at 5 m, which corresponds to a standard deviation of 13 mm.
   float min_weight = 0.02F;
   /// Strength of smoothing, as a sample weight (1: one measurement from 1 m); 0: no smoothing. Samples with a
   /// higher weight keep their detail. Samples with a lower weight are averaged over more voxels.
@@ -38,8 +38,8 @@ struct SurfaceStats {
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceStats* facts = nullptr);
 
 /// Extracts all triangles with a vertex in the box grown by one voxel. The result can therefore extend two
-/// voxels beyond the box. Samples farther than 12 voxels from the box are ignored. They would move the result
-/// by less than 0.1 mm. The area of a component is measured without them, too.
+/// voxels beyond the box. Samples farther than 12 voxels from the box are ignored, also for the area of a
+/// component. These samples would move the result by less than 0.1 mm.
 Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
                      const SurfaceConfig& config = {});
 

@@ -15,12 +15,12 @@ inline constexpr int kCoarseEdge = 2;
 inline constexpr std::size_t kBricksAtOnce = 64;
 
 /// Samples of a map, at the size at which the octree stores them: a grid of voxels and a grid of coarse
-/// cells. Coarse cell c covers the voxels 2 c and 2 c + 1 along each axis. Each place belongs to one grid. It
-/// belongs to the voxels if its node (a cube with an edge of 4 voxels) has a sample of a voxel, or is next to
-/// such a node and has no coarse sample. All other places belong to the coarse cells. Where the grids meet,
-/// each has mirrored samples of the other, one node deep, so that algorithms on one grid find neighbours. A
-/// mirrored voxel is interpolated between coarse cells; a mirrored coarse cell is the mean of its eight
-/// voxels, if all are known.
+/// cells. Coarse cell c covers the voxels 2 c and 2 c + 1 along each axis. Each node (a cube with an edge of
+/// 4 voxels) belongs to one grid. A node belongs to the grid of voxels if it has a sample of a voxel. A node
+/// without any sample also belongs to the grid of voxels if it is next to a node with a sample of a voxel.
+/// All other nodes belong to the grid of coarse cells. Where the grids meet, each has mirrored samples of the
+/// other, one node deep, so that algorithms on one grid find neighbours. A mirrored voxel is interpolated
+/// between coarse cells; a mirrored coarse cell is the mean of its eight voxels, if all are known.
 class TsdfLevels {
  public:
   /// Uses samples of weight min_weight or more, of cells that have a voxel in the box.

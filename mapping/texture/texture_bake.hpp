@@ -19,8 +19,8 @@ struct TextureConfig {
 
 /// Divides the mesh into charts and gives each texel the colour of the views that show it best, i.e. from
 /// near, from the front, sharp, and away from the picture's border. A chart's texel size is 80 % of the best
-/// view's pixel size on the surface, or that of an earlier texture if smaller. It is at least min_texel_m,
-/// and larger if the atlas would exceed max_side_px.
+/// view's pixel size on the surface, or that of an earlier texture if smaller. The texel size is at least
+/// min_texel_m, and is enlarged if the atlas would exceed max_side_px.
 ///
 /// Blends in two frequency bands: high frequencies come from the best views, low frequencies are a mean over
 /// all good views. No seam thus shows where the best view changes. If three or more views show a texel, views

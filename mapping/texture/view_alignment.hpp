@@ -28,9 +28,9 @@ std::vector<MeshPoint> sample_mesh(const Mesh& mesh, std::size_t count);
 /// Refines the pose of each view so that its colours agree with the colours of the other views of the same
 /// surface. Tracked poses have errors of some millimetres, which correspond to some pixels. Also, colour may
 /// come from another camera and another time than depth. Alternates two steps, at an eighth, a quarter and
-/// then half of the pictures' size. Each point's brightness becomes the mean over the views that show it.
-/// Each view is then aligned to these means by a Gauss-Newton step. Visibility is computed only at the
-/// initial poses, since corrections are some centimetres at most.
+/// then half of the pictures' size. The first step sets each point's brightness to the mean over the views
+/// that show the point. The second step aligns each view to these means by a Gauss-Newton step. Visibility is
+/// computed only at the initial poses, since corrections are some centimetres at most.
 /// @param mesh   with normals
 /// @param views  with gains from even_exposure()
 /// Source: Zhou, Koltun, Color map optimization for 3D reconstruction with consumer depth cameras, ACM TOG

@@ -66,8 +66,8 @@ inline float depth_sigma_m(const DepthNoise& noise, float depth_m, float inciden
          noise.grazing / std::sqrt(std::max(depth_m, 0.1F)) * theta * theta / (from_grazing * from_grazing);
 }
 
-/// Returns a lower bound of the relative standard deviation depth_sigma_m(z) / z over all depths z > 0. It is
-/// at most about 1 % below the minimum.
+/// Returns a lower bound of the relative standard deviation depth_sigma_m(z) / z over all depths z > 0. The
+/// bound is at most about 1 % below the minimum.
 inline float least_relative_sigma(const DepthNoise& noise) {
   // Without a quadratic part, the relative deviation falls towards `linear`. Otherwise its minimum is where
   // the derivative of base / z + quadratic (z - from)^2 / z is 0.

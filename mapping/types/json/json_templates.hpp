@@ -1,8 +1,9 @@
 // json_templates.hpp: explicit instantiation declarations of nlohmann's templates that read and write JSON
 // text, so that the templates are compiled only once.
 //
-// They take 3 s to compile in every source file that instantiates them. The precompiled header includes this
-// header. Source files built without the precompiled header instantiate the templates themselves.
+// The templates take 3 s to compile in every source file that instantiates them. The precompiled header
+// includes this header. Source files built without the precompiled header instantiate the templates
+// themselves.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>

@@ -6,8 +6,8 @@
 namespace roomradar {
 
 /// Runs `work` in a forked child process and returns its result. Crashes, endless loops and excessive memory
-/// use of `work` do not affect this process. The child works on a copy of this process's memory. Its changes
-/// to memory are lost. An Error that `work` throws is rethrown in this process.
+/// use of `work` do not affect this process. The child works on a copy of this process's memory, so its
+/// changes to memory are lost. An Error that `work` throws is rethrown in this process.
 /// @param complaint  start of the error message if the child does not finish, such as "a.obj: cannot be read;
 ///                   is it damaged?"
 /// @param most_s     max processor time, s; the max elapsed time is ten times this
