@@ -11,7 +11,7 @@ namespace roomradar {
 struct ChangeTrackerConfig {
   DepthNoise noise = {};            ///< of the sensor
   float spacing_m = 0.02F;          ///< distance between the points that represent a surface
-  float agree_sigmas = 2.5F;        ///< max displacement of a surface that counts as unmoved
+  float agree_sigmas = 2.5F;        ///< max displacement, in sigmas, of a surface that counts as unmoved
   float pose_sigma_m = 0.003F;      ///< apparent displacement of static surfaces by pose error
   float pose_sigma_per_m = 0.001F;  ///< growth of pose_sigma_m per metre of depth
   /// Max distance at which a surface in front of a point counts as the point's own surface after a motion.
@@ -20,7 +20,7 @@ struct ChangeTrackerConfig {
   float link_m = 0.03F;  ///< edge of the grid cells; cells that touch form one object
   int min_cells = 8;     ///< objects with fewer cells are ignored
   /// Min fraction of an object's cells with a point that was confirmed for long enough. Rejects objects with
-  /// a still middle and a moving outline, such as a swaying hand.
+  /// a still middle and a moving contour, such as a swaying hand.
   float min_steady_fraction = 0.75F;
   /// Min fraction of a removed object's cells that have at least 7 neighbours. A pose error also makes
   /// surface at an edge of the map look removed, but only in a strip one or two cells wide.

@@ -22,13 +22,14 @@ struct ConnectedComponent {
   std::uint32_t pixels = 0;
   std::uint32_t strong = 0;     ///< number of pixels with the strong bit
   std::uint32_t ambiguous = 0;  ///< number of pixels with the ambiguous but not the strong bit
-  std::uint32_t before = 0;     ///< number of pixels with the before bit
-  std::uint32_t core = 0;       ///< number of pixels with the core bit
-  float depth2_m2 = 0.0F;       ///< sum of squared depths; sum / (fx fy): area if it faces the camera
+  /// Number of pixels with the before bit: the previous frame had a region there.
+  std::uint32_t before = 0;
+  std::uint32_t core = 0;  ///< number of pixels with the core bit
+  float depth2_m2 = 0.0F;  ///< sum of squared depths; sum / (fx fy): area if it faces the camera
 };
 
-/// Masks of the evidence bits that find_components() reads. A pixel with the weak or the strong bit is part
-/// of a region. The other bits are only counted.
+/// Masks of the evidence bits (pixel_evidence.hpp) that find_components() reads. A pixel with the weak or the
+/// strong bit is part of a region. The other bits are only counted.
 struct RegionBits {
   std::uint8_t weak = 0, strong = 0, ambiguous = 0, before = 0, core = 0;
 };

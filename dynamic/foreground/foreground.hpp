@@ -46,11 +46,11 @@ struct ForegroundCounts {
 /// @param dynamic_mask        255 where the label is kMoved, else 0; resized and set
 /// The two images and the camera must agree in size (asserted).
 ///
-/// A pixel seeds a dynamic region only if it is clearly nearer than the model at that pixel. It must also be
-/// nearer than every model surface within reach, or at a depth at which no surface within reach is expected.
-/// The reach is the max shift of an edge by pose and map errors. Hence edges shifted by a pose error stay
-/// static, and objects between two near edges are found. A region grows from its seeds along the measured
-/// surface, over pixels nearer than the model.
+/// A pixel seeds a dynamic region only if it is clearly nearer than the model at that pixel. In addition, the
+/// pixel must be nearer than every model surface within reach, or at a depth at which no surface within reach
+/// is expected. The reach is the max shift of an edge by pose and map errors. Hence edges shifted by a pose
+/// error stay static, and objects between two near edges are found. A region grows from its seeds along the
+/// measured surface, over pixels nearer than the model.
 ///
 /// A hole of the model is an area without expected depth. No region starts in a hole. A region can grow into
 /// a hole over pixels nearer than all expected depths within hole_reach_px. All other pixels in holes are

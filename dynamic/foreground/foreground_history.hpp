@@ -17,7 +17,7 @@ inline constexpr std::uint8_t kBlockMoved = 1, kBlockRevealed = 2;
 /// Bits for regions so small that they are accepted only if they persist for a second frame.
 inline constexpr std::uint8_t kBlockMaybeMoved = 4, kBlockMaybeRevealed = 8;
 
-/// History of one camera. It is ignored if the intrinsics change.
+/// History of one camera, ignored if the intrinsics change.
 struct ForegroundHistory {
   BlockGrid grid;
   Intrinsics camera;  ///< size 0 x 0: no history

@@ -23,11 +23,12 @@ struct BackLattice {
   std::vector<float> tolerance;      ///< 1/m: max deviation of the back's mesh
 
   std::vector<std::uint8_t> joined;  // bit k: one surface with the neighbour in direction k
-  std::vector<float> rim_px;         // distance to the object's outline in the image; very large: none
-  std::vector<std::size_t> rim_at;   // lattice point from which rim_px is measured
-  std::vector<float> width_px;       // half width: max rim_px on paths of ascending rim_px
-  std::vector<std::uint32_t> part;   // connected component, an index into parts; 0: none
-  std::vector<std::size_t> stack;    // scratch
+  // Distance to the object's outline (contour in the image); very large: none.
+  std::vector<float> rim_px;
+  std::vector<std::size_t> rim_at;  // lattice point from which rim_px is measured
+  std::vector<float> width_px;      // half width: max rim_px on paths of ascending rim_px
+  std::vector<std::uint32_t> part;  // connected component, an index into parts; 0: none
+  std::vector<std::size_t> stack;   // scratch
   /// Sums over a component's points for the least-squares fit of its roundness, m2. bulge_by_round sums the
   /// products of the front's bulge and a round object's bulge. round2 sums the squares of a round object's
   /// bulge.
@@ -39,11 +40,11 @@ struct BackLattice {
 
 /// Computes an assumed back. The back mirrors the bulge of the visible front, as for a ball or a finger. A
 /// round object of half width r bulges by sqrt(d (2 r - d)) at a distance d inside its outline. Roundness is
-/// the ratio of the front's bulge to that of a round object (1: round, 0: flat). It is fitted per connected
-/// component and limited to least_roundness..1. The thickness is least_thickness_m plus twice the round
-/// object's bulge times the roundness, at most most_thickness_m. The back stays clearance_m in front of the
-/// static model, but always behind the front. A boundary where a nearer surface or the image's edge cuts the
-/// object off is not an outline. The thickness does not decrease towards such a boundary.
+/// the ratio of the front's bulge to that of a round object (1: round, 0: flat). The roundness is fitted per
+/// connected component and limited to least_roundness..1. The thickness is least_thickness_m plus twice the
+/// round object's bulge times the roundness, at most most_thickness_m. The back stays clearance_m in front of
+/// the static model, but always behind the front. A boundary where a nearer surface or the image's edge cuts
+/// the object off is not an outline. The thickness does not decrease towards such a boundary.
 ///
 /// @param depth_m           measured depth of all pixels, dynamic or not
 /// @param expected_depth_m  depth of the static model; 0 is unknown and does not limit the back

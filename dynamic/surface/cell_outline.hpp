@@ -15,8 +15,8 @@ constexpr CellBits kWholeCell = (CellBits{1} << 25) - 1;
 struct CellPixel {
   std::int8_t x, y;
 };
-/// The ring of the 16 pixels on a cell's sides, counter-clockwise as seen by the camera (x right, y down). It
-/// begins at the top left and runs down the left side (indices 0 to 4). Then it runs along the bottom, up the
+/// The ring of the 16 pixels on a cell's sides, counter-clockwise as seen by the camera (x right, y down).
+/// The ring begins at the top left and runs down the left side (indices 0 to 4), along the bottom, up the
 /// right side and back along the top.
 constexpr std::array<CellPixel, 16> kRing{{{0, 0},
                                            {0, 1},

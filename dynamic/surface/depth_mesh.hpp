@@ -14,10 +14,13 @@ namespace roomradar {
 
 struct DepthMeshConfig {
   DepthNoise noise = {};  ///< of the sensor
-  int stride_px = 2;      ///< every stride-th pixel becomes a vertex; outlines lose up to stride - 1 pixels
+  /// Every stride-th pixel becomes a vertex; the mask's contours lose up to stride - 1 pixels.
+  int stride_px = 2;
   float jump_sigmas = 4.0F;          ///< max noise, in sigmas, between the depths of one surface
   float jump_incidence_deg = 80.0F;  ///< max angle between view ray and normal of one surface
-  int skirt_gap_px = 64;             ///< max width of unmeasured gaps (projector shadow) that a skirt closes
+  /// Max width of unmeasured gaps (projector shadow) that a skirt closes. A skirt is a strip of polygons
+  /// across a depth discontinuity.
+  int skirt_gap_px = 64;
   /// Distance by which SurfacePolicy::kBorder moves vertices on the image's border outwards, and also nearer.
   float border_push_m = 0.5F;
 };
@@ -47,9 +50,10 @@ void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const
 
 /// Meshes the whole frame, as a system without a map would. kHoles and kMap leave depth discontinuities open.
 /// kSkirt connects the two sides of each discontinuity, and of each unmeasured gap within a row, by polygons.
-/// kBorder adds two steps to kSkirt. It extends each row's first and last depth over the unmeasured pixels at
-/// the row's ends. It moves vertices on the image's border by border_push_m outwards in the image plane and
-/// by border_push_m nearer, so objects that leave the view do not fall. Parameters as for mesh_masked().
+/// kBorder adds two steps to kSkirt. The first step extends each row's first and last depth over the
+/// unmeasured pixels at the row's ends. The second step moves vertices on the image's border by border_push_m
+/// outwards in the image plane and by border_push_m nearer, so objects that leave the view do not fall.
+/// Parameters as for mesh_masked().
 /// Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
 void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);

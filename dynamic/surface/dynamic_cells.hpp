@@ -1,4 +1,5 @@
-// dynamic_cells.hpp: classifies cells of 4 x 4 pixels as flat, cut by an outline, or full.
+// dynamic_cells.hpp: classifies cells of 4 x 4 pixels as flat, cut by an outline (contour of the mask or of a
+// surface), or full.
 #pragma once
 #include <Eigen/Core>
 #include <array>

@@ -51,9 +51,9 @@ struct DynamicLattice {
   }
 };
 
-/// Returns a dynamic pixel's smoothed inverse depth, 1/m. It is averaged with pairs of opposite pixels among
-/// the surrounding 5 x 5 pixels. A pair is used if its mean is within 3 sigmas of the pixel. Outlines do not
-/// move, and bends change by less than 3 sigmas.
+/// Returns a dynamic pixel's smoothed inverse depth, 1/m: the mean of the pixel and pairs of opposite pixels
+/// among the surrounding 5 x 5 pixels. A pair is used if its mean is within 3 sigmas of the pixel. Outlines
+/// (contours of the mask) do not move, and bends change by less than 3 sigmas.
 float smoothed_inverse_depth(const DynamicPixels& pixels, const InverseDepthNoise& noise, int x, int y);
 
 /// Computes the lattice of a frame.

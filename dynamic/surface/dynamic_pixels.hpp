@@ -1,4 +1,5 @@
-// dynamic_pixels.hpp: dynamic pixels as bits and inverse depths, with a smoothed outline.
+// dynamic_pixels.hpp: dynamic pixels as bits and inverse depths, with a smoothed outline (contour of the
+// mask).
 #pragma once
 #include <vector>
 

@@ -48,8 +48,8 @@ struct DynamicSurfaceScratch {
 
 /// Meshes the dynamic pixels and adds an assumed back.
 ///
-///   1. Selects the mask's pixels with depth, and smooths their outline by a 3 x 3 majority filter. Lines and
-///      specks that the filter removes become slabs one pixel wide.
+///   1. Selects the mask's pixels with depth, and smooths their outline (contour) by a 3 x 3 majority filter.
+///      Lines and specks that the filter removes become slabs one pixel wide.
 ///   2. Makes a lattice of every fourth pixel. At flat points, inverse depth is averaged over 5 x 5 pixels,
 ///      then with flat neighbours. At bends, outlines and vertices off the lattice, inverse depth is averaged
 ///      with pairs of opposite pixels whose mean agrees with the point within noise.

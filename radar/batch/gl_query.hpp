@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Where the minimum over each query's pixels is computed.
+/// Processor that computes the minimum over each query's pixels.
 enum class GlMinimum {
   /// The GPU if there is one, else the CPU.
   kAuto,
@@ -18,7 +18,8 @@ enum class GlMinimum {
 };
 
 struct GlRadarConfig {
-  /// Number of samples along the longer side of the object's outline, 1 to 4096.
+  /// Number of samples along the longer side of the object's bounding rectangle perpendicular to the motion,
+  /// 1 to 4096.
   int resolution_px = 128;
   /// In each pixel, surfaces more than this distance behind the object's front surface are ignored.
   double overlap_tolerance_m = 0.03;

@@ -32,10 +32,10 @@ namespace roomradar {
 ///        |                               |<--------------- M -------->|      L = R + M - d
 ///
 /// u is the direction of motion. M is the object's depth image (its mask) seen from the far plane. R is the
-/// scene's depth image seen from the rear plane, limited to the object's outline. L is the gap between object
-/// and scene in each pixel; the least L is the distance to contact. L is defined only in pixels that both the
-/// object and the scene cover. In each pixel, R shows the first scene surface that is ahead of the object's
-/// front or overlaps the object. A surface behind the front counts as an overlap, unless it
+/// scene's depth image seen from the rear plane, limited to the object's silhouette. L is the gap between
+/// object and scene in each pixel; the least L is the distance to contact. L is defined only in pixels that
+/// both the object and the scene cover. In each pixel, R shows the first scene surface that is ahead of the
+/// object's front or overlaps the object. A surface behind the front counts as an overlap, unless it
 ///   - is back-facing, since the object moves away from it (for example the table below a lifted plate), or
 ///   - is farther behind the front than overlap_tolerance_m or the object's length along u, or
 ///   - is not certainly inside the front slab (the solid between the object's front and its next surface

@@ -1,4 +1,5 @@
-// radar_volume.hpp: outline of an object seen along its motion, the outline's pixels, and the swept volume.
+// radar_volume.hpp: outline (bounding rectangle) of an object seen along its motion, with its pixel grid, and
+// the swept volume.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -43,7 +44,7 @@ RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, d
 /// pixels. The formula is that of kTileVertexShader.
 double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline);
 
-/// Returns the max |L| of a gap L that counts as touching, m. It is 10 um + 1e-6 (length_m + distance_m).
+/// Returns the max |L| of a gap L that counts as touching, m: 10 um + 1e-6 (length_m + distance_m).
 double touching_m(const RadarOutline& outline, double distance_m);
 
 }  // namespace roomradar

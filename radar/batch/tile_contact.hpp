@@ -13,9 +13,8 @@
 namespace roomradar {
 
 /// A contiguous range of a scene mesh's triangles, in chunks whose bounding boxes intersect a query's volume.
-/// Every triangle in a
-/// range has a key that is unique within the query. Triangle first_triangle + k of the mesh has the key
-/// first_key + k.
+/// Every triangle in a range has a key that is unique within the query. Triangle first_triangle + k of the
+/// mesh has the key first_key + k.
 struct SceneRun {
   /// Index into the scene of contact_of().
   std::size_t scene_index = 0;

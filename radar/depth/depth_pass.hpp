@@ -58,8 +58,7 @@ class DepthPass {
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 
-  /// Hands over the pieces of a mesh that is new, see DepthRaster::set_pieces(). Not needed, and without
-  /// effect if OpenGL renders.
+  /// Sets the pieces of a new mesh; see DepthRaster::set_pieces(). Optional. Has no effect if OpenGL renders.
   void set_pieces(const GpuMesh& mesh, RasterMesh pieces) {
     if (raster_) raster_->set_pieces(mesh, std::move(pieces));
   }

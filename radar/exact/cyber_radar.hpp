@@ -47,10 +47,10 @@ struct RadarSearch;
 /// (TriangleTree::is_closed()). Back-facing scene triangles do not count. Each pair of triangles intersects
 /// over an interval of the distance moved. A scene surface is inside a closed object over such intervals,
 /// too. Overlapping intervals are joined. The lower end of the joined interval that contains 0 is
-/// contact_distance_m = lower_m = upper_m. If moved back this far, the object is clear. An object sunk in the
-/// ground that moves along the ground is clear only where the ground ends. The search therefore stops at a
-/// work limit (kMostOverlapWork). Then contact_distance_m = upper_m is the lower end of the joined interval
-/// found so far, and lower_m is -infinity.
+/// contact_distance_m = lower_m = upper_m. Moved back this far, the object no longer overlaps the scene. An
+/// object sunk in the ground that moves along the ground overlaps it up to the ground's end. The search
+/// therefore stops at a work limit (kMostOverlapWork). Then contact_distance_m = upper_m is the lower end of
+/// the joined interval found so far, and lower_m is -infinity.
 ///
 /// Sliding: a scene triangle parallel to the motion (|n . u| <= 1e-9) is no contact for an object triangle
 /// wholly on one side of the scene triangle's plane. Hence an object whose triangles have edges exactly in an
@@ -84,8 +84,8 @@ class CyberRadar {
   Contact query(const RadarQuery& query, const RadarScene& scene);
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }
-  /// Returns how many bounds all queries so far have computed from planes of SurfaceKind::kStatic triangles.
-  /// Triangles smaller than a pixel of M are not counted.
+  /// Returns the number of bounds that all queries so far have computed from the planes of
+  /// SurfaceKind::kStatic triangles. Triangles smaller than a pixel of M are not counted.
   [[nodiscard]] std::uint64_t static_triangles_tested() const { return static_triangles_asked_; }
 
   /// Minimum number of exact tests before sampled mode stops.

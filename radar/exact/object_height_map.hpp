@@ -20,7 +20,8 @@ class ObjectHeightMap {
   /// call of build() must follow. Has no effect if tree, rotation and margin are unchanged.
   void turn(const TurnedTree& object);
   /// Builds the map. Has no effect if neither the object's orientation nor the resolution changed.
-  /// @param resolution_px  number of pixels along the longer side of the object's outline
+  /// @param resolution_px  number of pixels along the longer side of the object's bounding rectangle
+  ///                       perpendicular to the motion
   void build(const TurnedTree& object, int resolution_px);
 
   /// Returns true if the map was built from this tree, rotation and margin, at any resolution.
@@ -31,8 +32,8 @@ class ObjectHeightMap {
   [[nodiscard]] float max_under(float x0_m, float x1_m, float y0_m, float y1_m) const;
 
   /// Returns a lower bound of the gap to a scene triangle. The bound is the minimum of the plane's height
-  /// minus M over all pixels that the triangle touches. It is infinite if the triangle touches no pixel. It
-  /// is tighter than a bound from the triangle's box.
+  /// minus M over all pixels that the triangle touches. The bound is infinite if the triangle touches no
+  /// pixel, and tighter than a bound from the triangle's box.
   [[nodiscard]] float least_gap_under(const FrameTriangle& scene) const;
 
   /// Returns the bounds of the whole object in the frame of the motion, margin included, m.

@@ -45,9 +45,9 @@ inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 
 /// Computes how far the object has to move back until it no longer overlaps the scene. A pair of triangles
 /// intersects while the distance moved is between the pair's min and max gap. Between such intervals, a scene
-/// triangle can be inside a closed object. It is inside if the line through it along the motion has more
-/// exits from the solid than entries ahead of the triangle. Overlapping intervals are joined. The depth is
-/// the distance from 0 back to the lower end of the joined interval that contains 0. Back-facing scene
+/// triangle can be inside a closed object. The triangle is inside if the line through it along the motion has
+/// more exits from the solid than entries ahead of the triangle. Overlapping intervals are joined. The depth
+/// is the distance from 0 back to the lower end of the joined interval that contains 0. Back-facing scene
 /// triangles are ignored.
 /// @param known  a triangle known to overlap the object. Reported if the search is cut short before it finds
 ///               one

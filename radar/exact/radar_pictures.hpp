@@ -43,12 +43,12 @@ struct RadarPictures {
 };
 
 /// Computes the images of a CyberRadar query. Samples each pixel slightly off its centre, as GlRadar does.
-/// Depths differ from GlRadar's by its renderer's rounding. They also differ in overlaps (L is never below
+/// Depths differ from GlRadar's by its renderer's rounding. Depths also differ in overlaps (L is never below
 /// -touching_m() in these images) and at one-sided surfaces (GlRadar treats them as two-sided). R shows the
 /// first surface that is not behind the object's leading surface. All depths are computed in double.
 /// CyberRadar itself does not use the images.
 ///
-/// @param resolution_px  pixels along the longer side of the object's outline; clamped to 1..4096
+/// @param resolution_px  pixels along the longer side of the object's bounding rectangle; clamped to 1..4096
 /// @return the images; all empty if CyberRadar rejects the query with kInvalidInput
 RadarPictures radar_pictures(const RadarQuery& query, const RadarScene& scene, int resolution_px);
 

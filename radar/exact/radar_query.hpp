@@ -22,10 +22,10 @@ struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
   /// Number of pixels along the longer side of the object's height map M, 1 to 4096. Determines
   /// Contact::pixel_m and, in sampled mode, the difference of lower_m and upper_m. Sampled mode first uses at
-  /// most 40 pixels per side, or 64 for an object of fewer than 500 triangles. It changes to finer maps, up
-  /// to this resolution, once repeated queries with one direction in the object's frame have cost more than
-  /// half as much as building them. Exact mode chooses M's resolution by speed. Its result does not depend on
-  /// M's resolution.
+  /// most 40 pixels per side, or 64 for an object of fewer than 500 triangles. Sampled mode changes to a
+  /// finer map, up to this resolution, once repeated queries with one direction in the object's frame have
+  /// cost more than half as much as building that map. Exact mode chooses M's resolution for speed, without
+  /// effect on the result.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };

@@ -62,7 +62,7 @@ inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other
   return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
 }
 
-/// Cache of some leaves' triangles: pairs of leaves near each other are visited in turn.
+/// Direct-mapped cache of the triangles of recently visited leaves. Successive pairs often share a leaf.
 class LeafTriangles {
  public:
   /// Returns the leaf's triangles; valid until the next call.

@@ -20,9 +20,9 @@ void set_normal(FrameTriangle& triangle);
 inline constexpr double kEdgeOn = 1e-9;
 
 /// Gap between two triangles: height of the scene's triangle above the object's, along z, m. The gap is
-/// linear over the intersection of the two projected triangles. Its minimum low_m and maximum high_m are
-/// therefore at vertices of the intersection. These are vertices of one triangle inside the other, and
-/// crossings of the triangles' edges.
+/// linear over the intersection of the two projected triangles. The gap's minimum low_m and maximum high_m
+/// are therefore at vertices of the intersection: vertices of one triangle inside the other, and crossings of
+/// the triangles' edges.
 struct TriangleGap {
   struct Vertex {
     double x, y, scene_z, gap;
@@ -34,14 +34,14 @@ struct TriangleGap {
 };
 
 /// Computes the gap of two triangles.
-/// @return false if their projections have no point in common. A vertex within rounding error of the other
-///         triangle's outline counts as on the outline. Hence no contact is missed at a shared edge of two
-///         triangles.
+/// @return false if their projections have no point in common. A projected vertex within rounding error of
+///         the other triangle's boundary counts as on the boundary. Hence no contact is missed at a shared
+///         edge of two triangles.
 bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleGap& gap);
 
-/// Returns a cheap lower bound of the gap. It is computed from the triangles' z ranges, and from the heights
-/// of the scene triangle's plane above the object's vertices. Infinite if the object slides along the scene
-/// (see classify_pair()).
+/// Returns a cheap lower bound of the gap, from the triangles' z ranges and from the heights of the scene
+/// triangle's plane above the object's vertices. Infinite if the object slides along the scene (see
+/// classify_pair()).
 double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, double touching_m);
 
 enum class PairContact {
@@ -54,10 +54,10 @@ enum class PairContact {
 /// Classifies the contact of an object that moves along +z.
 ///
 /// If low_m > touching_m, contact is ahead. If high_m < -touching_m, the scene triangle is behind the object
-/// triangle. Otherwise the triangles touch or intersect now. They touch if they overlap by less than
-/// touching_m along the normal of one of them. That triangle's plane then lies between them. Touching is a
-/// contact if the object triangle is behind this plane and the scene triangle is ahead. It is no contact in
-/// the opposite order, or if the plane is parallel to the motion.
+/// triangle. Otherwise the triangles touch or intersect now. The triangles touch if they overlap by less than
+/// touching_m along the normal of one triangle. That triangle's plane then lies between the two. Touching is
+/// a contact if the object triangle is behind this plane and the scene triangle is ahead. Touching is no
+/// contact in the opposite order, or if the plane is parallel to the motion.
 ///
 /// If the scene triangle is edge-on and the object triangle reaches through its plane by less than
 /// touching_m, the object slides along the plane. Sliding is no contact at any distance. The object leaves a

@@ -62,9 +62,9 @@ class GpuMesh {
   /// @return number of triangles passed to the renderer
   std::size_t draw(const Eigen::Matrix4d& clip_from_local) const;
 
-  /// Calls work(first_triangle, triangle_count) for each contiguous range of triangles() whose boxes satisfy
-  /// `reaches(box)`. Boxes are Eigen::AlignedBox3d in local coordinates. If `reaches` is true for a box, it
-  /// must also be true for every box that contains that box.
+  /// Calls work(first_triangle, triangle_count) for each contiguous range of triangles() in chunks whose
+  /// bounding boxes satisfy `reaches(box)`. Boxes are Eigen::AlignedBox3d in local coordinates. If `reaches`
+  /// is true for a box, it must also be true for every box that contains that box.
   template <typename Reaches, typename Work>
   void visit_runs(const Reaches& reaches, const Work& work) const {
     std::uint32_t first = 0;

@@ -24,8 +24,8 @@ Face face_of(const FrameTriangle& triangle);
 bool cross(const Face& a, const Face& b);
 
 /// Returns true if a unit direction is at most 60 degrees from the triangle's normal. At an edge whose two
-/// faces have normals up to 120 degrees apart, every direction between the normals is outside at least one
-/// face. With a limit of 90 degrees, rounding would admit directions parallel to the face.
+/// faces have normals up to 120 degrees apart, every direction between the normals is within the limit for at
+/// least one face. With a limit of 90 degrees, rounding would admit directions parallel to the face.
 inline bool is_outside(const Eigen::Vector3d& direction, const FrameTriangle& t) {
   return direction.dot(t.normal) > 0.5 - 1e-9;
 }

@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// Closest features of scene and object. They are a vertex and its projection onto a face, or the nearest
-/// points of two edges.
+/// Closest features of scene and object: a vertex and its projection onto a face, or the nearest points of
+/// two edges.
 struct ClosestPoint {
   /// Point on the scene, m.
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();

@@ -31,12 +31,12 @@ struct TreeStates {
 
 /// Returns a lower bound of the duration for which rigid motions of the object and of the scene's trees stay
 /// free of contact between the object and the trees. Ignores pairs of triangles that intersect or touch now.
-/// A plane separates each pair of triangles. It is the plane of one triangle, or perpendicular to the segment
-/// between their nearest points. The latter plane may turn, as when an edge rocks on another. A vertex
-/// approaches the plane at most at its present speed plus a bound of the change by rotation. A pair farther
-/// apart than 2 * keep_m keeps a distance of keep_m. A nearer pair keeps the mean of its present distance and
-/// keep_m / 100, or its present distance if that is less. Sources: Mirtich, PhD thesis, Berkeley 1996,
-/// section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
+/// A plane separates each pair of triangles: either the plane of one triangle, or a plane perpendicular to
+/// the segment between their nearest points. The latter plane may rotate, as when an edge rocks on another. A
+/// vertex approaches the plane at most at its present speed plus a bound of the change by rotation. A pair
+/// farther apart than 2 * keep_m keeps a distance of keep_m. A nearer pair keeps the mean of its present
+/// distance and keep_m / 100, or its present distance if that is less. Sources: Mirtich, PhD thesis, Berkeley
+/// 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled conservative advancement, ICRA 2009.
 ///
 /// @param keep_m    minimum distance to keep, m
 /// @param left_out  kinds of surfaces to ignore

@@ -49,10 +49,11 @@ struct JointMover {
 
 /// Moves all bodies simultaneously, each until its first contact or the end of its duration. Bodies that
 /// touch each other stop at the time of impact. The other bodies continue, with the stopped bodies as
-/// obstacles at rest. A body's free time is a lower bound. When that time ends, only this body is queried
-/// again, at the bodies' poses at that time. The body's motion ends when a query gains less than 2 % of the
-/// duration (the first query: nothing), or after 13 queries.
-/// @param sets    the paths of bodies of different sets do not intersect; see sets_that_meet()
+/// obstacles at rest. A body's free time is a lower bound. When the free time of a body ends, only that body
+/// is queried again, at the present poses of all bodies. The body's motion ends when a query gains less than
+/// 2 % of the duration, or after 13 queries. The first query ends it only if it gains nothing.
+/// @param sets    sets of bodies. Precondition: the paths of bodies in different sets do not intersect; see
+///                sets_that_meet()
 /// @param worker  runs some of the bodies' first queries, then some of the sets, on a second thread; results
 ///                are the same without it; may be null
 void move_to_contact(std::span<const std::span<JointMover>> sets, WorkerThread* worker);

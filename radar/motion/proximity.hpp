@@ -11,9 +11,9 @@ namespace roomradar {
 
 /// Finds the vertex-face and edge-edge pairs of the object and the scene within reach_m. CyberRadar searches
 /// along one direction. This function searches in all directions, since the points of an object that tips
-/// over an edge move in many. Traverses both trees together and tests pairs of triangles exactly, in double.
-/// Ignores the scene's depth images. Uses no OpenGL. Allocates nothing once queries of this size have been
-/// run on the thread.
+/// over an edge move in many directions. Traverses both trees together and tests pairs of triangles exactly,
+/// in double. Ignores the scene's depth images. Uses no OpenGL. Allocates nothing once queries of this size
+/// have been run on the thread.
 ///
 /// Groups the pairs of each tree by normal into up to four clusters, nearest cluster first. From each
 /// cluster, returns the nearest pair and the outermost pairs in eight directions perpendicular to the normal.

@@ -76,9 +76,9 @@ struct [[nodiscard]] TimeOfImpact {
 /// is the step's rotation and R the max distance of a point from the axis. Rotation moves no point farther
 /// than the chord from the half-way orientation. If the inflated object's path is free, the step is free at
 /// every moment, so objects do not tunnel at any speed. If the chord is longer than R, the query inflates a
-/// segment of the axis by R instead. This capsule contains the object in every orientation. Steps double on
-/// success and halve on failure. An object that rotates in place and is free for a full rotation is free for
-/// the whole duration. Without rotation, a single query gives the result.
+/// segment of the axis by R instead, to a capsule that contains the object in every orientation. Steps double
+/// on success and halve on failure. An object that rotates in place and is free for a full rotation is free
+/// for the whole duration. Without rotation, a single query gives the result.
 ///
 /// An object that touches the scene at the start stops at once if its rotation moves a point by more than a
 /// nanometre, even if the object moves away from the scene. Callers should therefore keep a gap. A stopped
