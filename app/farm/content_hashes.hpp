@@ -11,8 +11,8 @@ namespace roomradar {
 /// modification time are the same.
 class ContentHashes {
  public:
-  /// @param memory  file with the hashes of earlier runs; need not exist. Its format is checked, but not its
-  ///                hashes
+  /// @param memory  file with the hashes of earlier runs; need not exist. The file's format is checked, but
+  ///                its hashes are trusted
   explicit ContentHashes(std::filesystem::path memory);
 
   /// Returns the SHA-256 of a file's content, or of the names and contents of all files of a folder, in

@@ -39,8 +39,8 @@ FarmPlan plan_farm(Manifest manifest, const std::filesystem::path& out,
 /// Returns the index of a job. Throws Error if the manifest has no such job.
 std::size_t index_of(const Manifest& manifest, const std::string& name);
 
-/// Returns a job's words as passed to the program, which runs in the job's folder: {} is replaced by ".",
-/// {NAME} by that job's folder, and the path of an input by its absolute path.
+/// Returns a job's words as passed to the program, which runs in the job's folder. {} is replaced by ".",
+/// {NAME} by the folder of the job NAME, and the path of an input by its absolute path.
 std::vector<std::string> arguments_of(const FarmPlan& plan, std::size_t job);
 
 }  // namespace roomradar

@@ -19,9 +19,9 @@ struct JobResult {
 /// Returns true once the farm should end. Called on several threads.
 using IsCancelled = std::function<bool()>;
 
-/// Runs a job in its folder, and waits for its end. Its output goes to NAME.log. The process is killed when
-/// the calling thread ends or `is_cancelled` returns true. Does not throw: a job that cannot be run counts as
-/// failed.
+/// Runs a job in its folder, and waits for its end. The job's output goes to NAME.log. The process is killed
+/// when the calling thread ends or `is_cancelled` returns true. Does not throw: a job that cannot be run
+/// counts as failed.
 /// @param program  path of the program, such as /proc/self/exe
 JobResult run_job(const FarmPlan& plan, std::size_t job, const std::filesystem::path& program,
                   const IsCancelled& is_cancelled);

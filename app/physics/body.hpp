@@ -50,8 +50,8 @@ struct [[nodiscard]] StepReport {
   int contacts = 0;
   std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< `contacts` per surface kind
   int queries = 0;                                    ///< number of CollisionQueries::travel calls
-  /// Penetration depth of the body into the scene before depenetration, >= 0. It is the least depth along the
-  /// tested directions.
+  /// Penetration depth of the body into the scene before depenetration: the least depth along the tested
+  /// directions, >= 0.
   double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< deepest_overlap_m if the prescanned room causes it, else 0
   bool woke = false;                      ///< this step woke the body

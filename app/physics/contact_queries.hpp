@@ -17,7 +17,7 @@ inline std::size_t member_of(const MovingBody& moving, const ClosestPoint& p) {
 /// others, to the features within 1.5 contact margins. A pair of active bodies is queried once, from the
 /// lower one. In a substep's later queries, a body that has moved by at most a quarter of the margin keeps
 /// the features of surfaces and of bodies that have not moved either. Sets `crosses` of active bodies that a
-/// surface intersects. Returns which sleeping bodies are touched.
+/// surface intersects. Returns, per body, true for the sleeping bodies that are touched.
 /// @param system  bodies are queried in the order of ContactSystem::upwards; ContactSystem::sleepers caches
 ///                contacts
 std::vector<bool> query_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config,

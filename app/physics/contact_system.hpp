@@ -121,7 +121,7 @@ enum class Movable {
 /// Sets the inverse masses of the solver bodies. kAllButSleeping needs their velocities.
 void set_masses(std::span<const MovingBody> bodies, Movable movable, ContactSystem& system);
 
-/// Returns the longer left_s of a contact's bodies; dt_s if neither has time left. s, > 0.
+/// Returns the longer left_s (s) of a contact's two bodies; dt_s if neither has time left. Always > 0.
 double left_s(std::span<const MovingBody> bodies, const SolverContact& contact);
 /// Sets leaves_mps so that each contact may close its gap, down to the margin, in the time left. A Push keeps
 /// its own speed.

@@ -15,10 +15,10 @@
 
 namespace roomradar {
 
-/// Returns true if the inferred backs of dynamic surfaces engulf the body: they overlap it along gravity or a
-/// depenetration direction, and each such penetration depth exceeds max_depenetration_mps * dt_s +
-/// wake_overlap_m. Callers then omit the backs from the scene, since resolving such deep overlaps would throw
-/// the body.
+/// Returns true if the inferred backs of dynamic surfaces engulf the body: the backs overlap the body along
+/// gravity or a depenetration direction. In addition, each such penetration depth must exceed
+/// max_depenetration_mps * dt_s + wake_overlap_m. Callers then omit the backs from the scene, since resolving
+/// such deep overlaps would throw the body.
 bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
                  std::span<const Eigen::Vector3d> depenetration_directions_world);
 
@@ -29,10 +29,10 @@ struct DirectedOverlap {
   Contact contact;
 };
 
-/// Returns the contacts at which dynamic surfaces push a body out of an overlap. These are the closest
-/// features of the body when it is translated out of the overlap, each with the normal speed that this
-/// translation needs there. Hence the pushed body may rotate, but not into another part of the surfaces. If
-/// the translated body still intersects a surface, the only contact is that of the overlap.
+/// Returns the contacts at which dynamic surfaces push a body out of an overlap. The contacts are the closest
+/// features of the body after a translation out of the overlap. Each contact's speed is the normal speed that
+/// this translation needs there. Hence the pushed body may rotate, but not into another part of the surfaces.
+/// If the translated body still intersects a surface, the only contact is that of the overlap.
 /// @param push_m  displacement by the push during dt_s, at most overlap.depth_m plus the contact margin
 std::vector<Push> push_contacts(const Body& body, const DirectedOverlap& overlap, double push_m, double dt_s,
                                 const CollisionQueries& queries, const PhysicsConfig& config);

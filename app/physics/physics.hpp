@@ -24,13 +24,13 @@ struct AdvancedBody {
   bool is_carried = false;
   double dt_s = 0.0;  ///< time since the body was last advanced, >= 0; 0 changes nothing
   /// No surface has moved near the body since it was last advanced, except bodies that were advanced with it.
-  /// Then nothing can overlap it, overlaps are not queried, and a sleeping body takes no time.
+  /// Then nothing can overlap it, overlaps are not queried, and a sleeping body costs no computing time.
   bool is_undisturbed = false;
-  /// Dynamic surfaces grip the body from two sides. They may overlap it, and do not push it. The caller also
-  /// sets is_carried, and the body's velocity to theirs.
+  /// Dynamic surfaces grip the body from two sides. The gripping surfaces may overlap the body, and do not
+  /// push it. The caller also sets is_carried, and the body's velocity to theirs.
   bool is_gripped = false;
-  /// Speed of the dynamic surfaces near the body. They push it at up to 1.5 times this speed, or up to
-  /// PhysicsConfig::max_depenetration_mps if that is more.
+  /// Speed of the dynamic surfaces near the body. The max speed at which they push the body is the larger of
+  /// 1.5 times this speed and PhysicsConfig::max_depenetration_mps.
   double surface_speed_mps = 0.0;
   /// Directions towards dynamic surfaces, see depenetration_directions(); may be empty.
   std::span<const Eigen::Vector3d> depenetration_directions_world{};
@@ -61,7 +61,7 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 /// contacts, the path is a parabola and angular momentum is conserved.
 ///
 /// Bodies in the scene of AdvancedBody::probe that are not advanced in this call receive the opposite
-/// impulses. Their velocities change at once, their poses when they are advanced.
+/// impulses. The velocities of these bodies change at once, their poses only when they are advanced.
 ///
 /// A sleeping body wakes if another body hits it faster than 5 cm/s. It also wakes if the weight on it would
 /// set it in motion, unless it sleeps on a dynamic surface.
@@ -69,7 +69,7 @@ double max_push_mps(const AdvancedBody& advanced, const PhysicsConfig& config);
 /// If a surface overlaps a body before the step, the body is first translated out of the overlap. If a
 /// dynamic surface overlaps the body from the side, the surface instead pushes the body at their contacts, at
 /// the speeds that remove the overlap in dt_s; see push_contacts(). The body then slides, rotates or tips.
-/// While a surface other than the pushing one intersects a body, the body does not rotate. It then moves by
+/// While a surface other than the pushing one intersects a body, the body is translated without rotation, by
 /// radar queries along its path.
 ///
 /// Apart from contacts with moving bodies, a sleeping body is tested only along gravity and

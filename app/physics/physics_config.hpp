@@ -14,8 +14,8 @@ struct PhysicsConfig {
   /// mass from the contact's tangent plane (a ball's radius). With 0.02, a ball that rolls at 0.5 m/s stops
   /// after 0.9 m.
   double rolling = 0.02;
-  /// Gap between resting bodies and surfaces. It is measured by Contact::lower_m, the radar's lower bound of
-  /// the distance. Without a gap, rounding errors would turn contacts into overlaps.
+  /// Gap between resting bodies and surfaces, measured by Contact::lower_m (the radar's lower bound of the
+  /// distance). Without a gap, rounding errors would turn contacts into overlaps.
   double contact_margin_m = 0.001;
   double max_step_s = 1.0 / 60.0;  ///< max substep, exceeded by 5 % at most
   /// Max time simulated per call of advance(). Time beyond it is discarded, so that objects do not jump after
@@ -32,8 +32,8 @@ struct PhysicsConfig {
   double wake_gap_m = 0.012;
   /// A sleeping body wakes if a body that it touches moves farther than this.
   double wake_moved_m = 0.001;
-  /// A sleeping body wakes and is moved out if it overlaps a surface by more than this; sooner if the surface
-  /// moves (see advance_together()).
+  /// A sleeping body wakes and is moved out if it overlaps a surface by more than this. The threshold is
+  /// lower for a moving surface (see advance_together()).
   double wake_overlap_m = 0.008;
   double overlap_allowed_m = 0.001;  ///< overlaps of an awake body up to this depth are not corrected
   /// Max speed at which surfaces push a body or move it out of an overlap. Faster dynamic surfaces raise it,

@@ -17,7 +17,8 @@
 
 namespace roomradar {
 
-/// Reduced height of a drop in view, used if the object would topple or roll away from the requested height.
+/// Reduced height of a drop onto a surface in view, used if the object would topple or roll away when dropped
+/// from the requested height.
 inline constexpr double kGentleDrop_m = 0.05;
 
 /// Request to drop an object from above a given position or from above a level surface in view.
@@ -41,8 +42,8 @@ struct WaitingDrop {
   std::string why{};
 };
 
-/// Throws Error if the object's footprint radius is above kMostFootprint_m (1 m), the largest that the search
-/// for a surface supports.
+/// Throws Error if the object's footprint (circle that it covers seen from above) has a radius above
+/// kMostFootprint_m (1 m), the largest that the search for a surface supports.
 void require_small_enough(const VirtualObject& object, const DropRequest& drop);
 
 /// Surfaces of a frame, and the queries and physics that simulate an object's fall.

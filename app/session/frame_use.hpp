@@ -23,7 +23,8 @@ struct FrameUse {
   /// reused because the camera was stationary.
   std::size_t views_drawn = 0;
   std::size_t room_drawn = 0;  ///< mean number of static triangles drawn per view; the others were culled
-  /// Exact triangle tests of CyberRadar with static triangles, summed over all queries.
+  /// Number of static triangles for which CyberRadar computed a bound from the triangle's plane, summed over
+  /// all queries; see CyberRadar::static_triangles_tested().
   std::size_t room_asked = 0;
   std::size_t valid_px = 0;  ///< pixels with live depth
   /// Pixels meshed. SurfacePolicy::kMap: the dynamic pixels. Other policies: all valid pixels.
@@ -37,7 +38,7 @@ struct FrameUse {
 /// Returns the counts of the frame that `scene` processed last.
 /// @param has_map           true with SurfacePolicy::kMap
 /// @param drawn_before      scene.room_drawn() before the frame
-/// @param triangles_tested  static triangles that the radar tested in this frame
+/// @param triangles_tested  increase of CyberRadar::static_triangles_tested() in this frame
 FrameUse use_of(const SessionRoom& room, const FrameScene& scene, bool has_map,
                 const ForegroundCounts& foreground, const RoomDrawn& drawn_before,
                 std::uint64_t triangles_tested);

@@ -39,10 +39,10 @@ struct ChangedRoom {
 };
 
 /// Watches the dynamic foreground of a session's frames for lasting changes. A change that has not moved for
-/// after_s is measured from the depth of `views` further frames. A worker thread then fuses these frames into
-/// the octree and re-extracts the surface near the change. Until the worker is done, frames use the old room.
-/// Changes that become due in the same frame are committed together. Later changes wait until that commit is
-/// done. Not thread safe: make all calls from one thread.
+/// after_s is measured from the depth of `views` further frames. A worker thread then commits the change: it
+/// fuses these frames into the octree and re-extracts the surface near the change. Until the worker is done,
+/// frames use the old room. Changes that become due in the same frame are committed together. Later changes
+/// wait until that commit is done. Not thread safe: make all calls from one thread.
 class MapUpdater {
  public:
   /// @param octree  the room's octree; the worker thread modifies it in place during a commit

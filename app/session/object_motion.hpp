@@ -60,12 +60,13 @@ std::vector<SceneBody> bodies_in(const std::vector<SceneTree>& scene,
 bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scene);
 
 /// Advances the objects together; see advance_together(). A carried object moves at the velocity that reaches
-/// its target after waited_s. Gravity, friction and restitution do not act on it. It stops at obstacles.
+/// its target after waited_s. Gravity, friction and restitution do not act on a carried object. Obstacles
+/// stop it.
 ///
-/// The dynamic surfaces near an object move from their position in the last frame to that in this frame, in
-/// steps of at most 15 mm, and push the object on the way. Hence a hand that moves by up to 15 cm per frame
-/// does not pass the object between two frames. An inferred back that engulfs the object (is_engulfed()) is
-/// left out of the object's scene.
+/// Within the call, the dynamic surfaces near an object move from their position in the last frame to their
+/// position in this frame. They move in steps of at most 15 mm, and push the object on the way. Hence a hand
+/// that moves by up to 15 cm per frame does not pass the object between two frames. An inferred back that
+/// engulfs the object (is_engulfed()) is left out of the object's scene.
 /// @param moving    this frame's surfaces; null: no surface is known to be dynamic
 /// @param contacts  buffers; keeps impulses as initial guesses for a next call with the same objects
 /// @param counts    incremented by the contacts of this call

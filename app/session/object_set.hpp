@@ -91,11 +91,11 @@ class ObjectSet {
   void count_fine_cells();
 
   void set_radar(const RadarConfig& config);
-  /// Number of static triangles that the radar has tested since construction.
+  /// Sum of CyberRadar::static_triangles_tested() since construction.
   [[nodiscard]] std::uint64_t static_triangles_tested() const {
     return tested_before_ + radar_.static_triangles_tested();
   }
-  /// Wakes all objects, so that those whose support was carved fall. Call after the room has changed.
+  /// Wakes all objects, so that objects whose support was removed fall. Call after the room has changed.
   void room_changed();
   /// Updates which objects are in solid unknown space. Call after unknown space became solid or free.
   void unknown_changed();

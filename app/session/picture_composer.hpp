@@ -40,8 +40,8 @@ class PictureComposer {
   /// the estimate of the room's light. Call it after the scene has found the frame's dynamic pixels.
   /// @param dt_s  time since the previous frame
   void keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
-  /// Composes the picture of a localised frame. Recomputes the shadow of at most one object, with 8 cells
-  /// across, or with 16 if the object is asleep and may_refine_shadow is true.
+  /// Composes the picture of a localised frame. Recomputes the shadow of at most one object, on a grid of 8
+  /// cells across, or of 16 if the object is asleep and may_refine_shadow is true.
   void compose(const Frame& frame, const Eigen::Isometry3d& T_world_camera, bool may_refine_shadow);
   /// Call instead of compose() for a frame that is not localised. The picture is the camera's own image,
   /// without objects.
@@ -107,7 +107,7 @@ class PictureComposer {
   void estimate_light(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
   /// Returns an object's shadow, in the light that arrives at it.
   [[nodiscard]] static ShadowCaster caster_of(const VirtualObject& object, const SplitLight* light);
-  /// Sets buffers_.feet from the objects in the room.
+  /// Sets buffers_.feet (level planes through the lowest points of objects) from the objects in the room.
   void find_feet(const ShownView& view);
   /// Recomputes the contact shadow of one object that has rotated by more than 0.05 rad or has fallen asleep.
   void renew_a_shadow(bool may_refine);

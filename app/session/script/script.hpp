@@ -47,9 +47,9 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 300  quit
 ///
 /// place, throw and drop put an object that would overlap another object on top of it, if no surface of the
-/// room is in the way. They may end with `turned YAW PITCH ROLL`: degrees about z, then about the rotated y
-/// axis, then about the rotated x axis. Without `turned`, an object keeps its last orientation, initially
-/// upright.
+/// room is in the way. These three actions may end with `turned YAW PITCH ROLL`: degrees about z, then about
+/// the rotated y axis, then about the rotated x axis. Without `turned`, an object keeps its last orientation,
+/// initially upright.
 ///
 /// Throws Error "FILE:LINE: ..." with the text found and the text expected. Errors in words are unknown,
 /// missing and surplus words, and names that are not added or added twice. Errors in numbers are malformed,

@@ -68,8 +68,9 @@ struct ScriptEvent {
   /// kAdd: origin of the model. kAsInFile is only for replaying sessions recorded before kNear was
   /// introduced.
   ModelOrigin origin = ModelOrigin::kNear;
-  /// kPlace, kThrow, kCarry: position of the object's origin. kDrop: x and y of the object's origin, and
-  /// height z above which it is dropped; unset: the drop is above a level surface in view.
+  /// kPlace, kThrow, kCarry: position of the object's origin. kDrop: x and y of the object's origin, and the
+  /// height z above which the object is dropped. Unset (kDrop only): the object is dropped above a level
+  /// surface in view.
   std::optional<Eigen::Vector3d> position_world;
   /// kDrop without a position. Set: the drop is above the free level place nearest to near_world, at most 25
   /// cm away; without such a place, it is cancelled with a notice. Unset: it is above the free level place

@@ -14,8 +14,8 @@ namespace roomradar {
 
 /// Tracks the camera as locate() does. Relocalises it in the building by recognise_place(), since the cost of
 /// patches and correlative search grows with the building. A recognised place is refused if it looks like
-/// another place. It becomes the pose once its tiles are loaded, and aligning the frame with their surface
-/// does not move it away from that place.
+/// another place. The pose of a recognised place is adopted once two conditions hold. The tiles at the place
+/// must be loaded. Aligning the frame with the tiles' surface must not move the pose away from the place.
 ///
 /// A tracked pose is supported if depth constrains it and at least 30 % of the measured pixels show loaded
 /// surface, or if recognise_place() returns the same place. A doubtful pose is one that is not supported, or
@@ -54,7 +54,8 @@ class BuildingTracker {
   std::int64_t recognised_ = 0, ambiguous_ = 0;
   int doubtful_frames_ = 0;
   bool is_contradicted_ = false;  ///< the depth contradicts the last tracked pose
-  bool is_refuted_ = false;       ///< so clearly that only recognise_place() at the same place keeps the pose
+  /// The contradiction is so clear that only recognise_place() at the same place keeps the pose.
+  bool is_refuted_ = false;
   std::optional<double> supported_s_;  ///< stamp of the last frame whose pose was supported
   std::optional<Eigen::Isometry3d>
       T_world_place_;  ///< place recognised in the last frame, if it was untracked

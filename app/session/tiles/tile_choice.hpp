@@ -1,4 +1,5 @@
-// tile_choice.hpp: chooses the tiles of a building to load around the camera.
+// tile_choice.hpp: chooses the tiles of a building (cubes of its map, see tile_grid.hpp) to load around the
+// camera.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -25,7 +26,7 @@ struct TileWindowConfig {
   std::filesystem::path folder;  ///< the building's folder
   BuildingInfo building;
   TileChoiceConfig choice;
-  /// Limit of the process's memory that the choice of tiles tries to keep, bytes; 0: no limit.
+  /// Max memory of the process, bytes; 0: no limit. The choice of tiles keeps to it where possible.
   std::size_t max_process_bytes = 0;
   /// Time from the request for a tile to the first frame that uses it, s. A tile in view is used as soon as
   /// it is loaded.
