@@ -17,13 +17,13 @@ struct PackedBlock {
   Compression compression = Compression::kNone;
 };
 
-/// Caches the four blocks decompressed last, and more while all cached blocks fit in 64 MiB. Messages and
-/// transforms of one frame are in neighbouring blocks. Reading in order therefore decompresses each block
-/// once. Not thread safe.
+/// Keeps the last four decompressed blocks, and further ones while the cached blocks take at most 64 MiB. The
+/// messages of a frame are in neighbouring blocks, so reading frames in order decompresses each block once.
+/// Not thread safe.
 class BlockCache {
  public:
-  /// Returns the block `number`, decompressed unless it is cached. The reference is valid until the next
-  /// call. Throws Error naming the file if the block is damaged.
+  /// Returns the decompressed block with index `number`. Decompresses the block unless it is cached. The
+  /// reference is valid until the next call. Throws Error naming the file if the block is damaged.
   const std::string& get(std::uint32_t number, const RandomAccessFile& file, const PackedBlock& block) {
     constexpr std::size_t kMaxBlocks = 4, kMax_bytes = std::size_t{64} << 20U;
     const auto found = std::find_if(blocks_.begin(), blocks_.end(),
@@ -42,7 +42,7 @@ class BlockCache {
 
  private:
   std::deque<std::pair<std::uint32_t, std::string>> blocks_;
-  std::size_t bytes_ = 0;  // of all blocks
+  std::size_t bytes_ = 0;  // total size of the cached blocks
 };
 
 }  // namespace roomradar

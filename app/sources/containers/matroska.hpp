@@ -36,8 +36,8 @@ struct MatroskaIndex {
 /// Returns true if the file begins with an EBML header.
 [[nodiscard]] bool is_matroska(const std::filesystem::path& path);
 
-/// Reads the headers of the file's elements; skips the data of blocks. A file that ends within a cluster,
-/// because its recorder was killed, is read up to its end.
+/// Reads the headers of the file's elements; skips the data of blocks. A file truncated within a cluster, as
+/// after a killed recorder, is read up to its last complete block.
 /// @throws Error if the file is not Matroska, or an element before the first cluster is damaged
 /// Source: IETF RFC 8794 (EBML), RFC 9559 (Matroska).
 MatroskaIndex index_matroska(const RandomAccessFile& file);

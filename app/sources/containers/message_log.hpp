@@ -13,10 +13,10 @@ struct MessageTopic {
   std::string type;  ///< such as "sensor_msgs/Image", without the "/msg" of ROS 2
 };
 
-/// A message that has not been read. `block` and `offset` are its location; each container defines their
-/// meaning.
+/// Location of a message that has not been read. Each container format defines the meaning of `block` and
+/// `offset`.
 struct MessageEntry {
-  double stamp_s = 0.0;  ///< time of reception
+  double stamp_s = 0.0;  ///< time at which the recorder received the message
   std::uint32_t topic = 0;
   std::uint32_t block = 0;
   std::uint64_t offset = 0;
@@ -25,7 +25,7 @@ struct MessageEntry {
 /// Encoding of the messages.
 enum class MessageEncoding { kRos1, kCdr };
 
-/// Topics, the list of messages, and the function that reads one. Only the list is in memory.
+/// A recording's topics, the locations of its messages, and the function that reads a message from disk.
 struct MessageLog {
   std::string name{};
   MessageEncoding encoding = MessageEncoding::kRos1;

@@ -13,7 +13,7 @@ namespace roomradar {
 /// A ROS message type.
 struct RosType {
   std::string_view name;        ///< such as "sensor_msgs/Image"
-  std::string_view md5;         ///< of the definition, 32 hexadecimal digits
+  std::string_view md5;         ///< MD5 sum of the message definition, 32 hexadecimal digits
   std::string_view definition;  ///< message definition, including the definitions of nested types
 };
 

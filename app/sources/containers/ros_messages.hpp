@@ -71,7 +71,7 @@ RosCameraInfo read_camera_info(const MessageBytes& message);
 RosAcceleration read_acceleration(const MessageBytes& message);
 /// tf2_msgs/TFMessage and tf/tfMessage.
 std::vector<RosTransform> read_transforms(const MessageBytes& message);
-/// geometry_msgs/Transform; its header and child are empty.
+/// geometry_msgs/Transform. In the result, `header` and `child` are empty.
 RosTransform read_transform(const MessageBytes& message);
 /// std_msgs/Float32.
 float read_float(const MessageBytes& message);

@@ -36,11 +36,12 @@ class SqliteFile {
   [[nodiscard]] bool has_tables(const std::vector<std::string>& names) const;
   /// Returns true if the table has the column.
   [[nodiscard]] bool has_column(const std::string& table, const std::string& column) const;
-  /// Calls use(row) for each row of the query's result. `values` replace the parameters (?) of the query.
-  /// Throws Error naming the file if the database is damaged or lacks a column.
+  /// Calls use(row) for each row of the query's result. Binds `values` to the query's parameters (?). Throws
+  /// Error naming the file if the database is damaged or lacks a column.
   void query(const std::string& sql, const std::vector<std::int64_t>& values,
              const std::function<void(const SqliteRow&)>& use) const;
-  /// Returns the first max_bytes bytes of a row's column, or all if it has fewer, without reading the rest.
+  /// Returns the first max_bytes bytes of the value in a row and column, or the whole value if it is shorter.
+  /// Does not read the rest of the value.
   [[nodiscard]] std::string read_up_to(const char* table, const char* column, std::int64_t row,
                                        std::uint64_t max_bytes) const;
 
@@ -53,7 +54,7 @@ class SqliteFile {
   std::unique_ptr<sqlite3, Close> database_;
 };
 
-/// Returns true if the file begins as an SQLite database does.
+/// Returns true if the file begins with SQLite's header string.
 [[nodiscard]] bool is_sqlite(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -37,7 +37,7 @@ struct IndexedFrame {
 struct IndexedRecording {
   std::string name{};
   std::vector<IndexedFrame> frames{};
-  /// Cameras as recorded, with their lenses. All images must have the cameras' sizes.
+  /// Cameras as recorded, with their lenses. Each image must have the size of its camera.
   CameraRig rig{};
   RationalLens depth_lens{}, colour_lens{};
   std::function<void(std::size_t frame, DepthImage&)> read_depth{};
@@ -49,9 +49,9 @@ struct IndexedRecording {
   std::function<std::optional<Eigen::Vector3d>(std::size_t frame)> read_down{};
 };
 
-/// Returns a source of the recording's frames that can rewind and seek. A frame whose stamp is not later than
-/// that of the last usable frame is a faulty frame. Lens distortion is removed. Faulty and unreadable frames
-/// are skipped. next() throws Error after ten skipped frames in a row.
+/// Returns a source that delivers the recording's frames, and can rewind and seek. A frame whose stamp is not
+/// later than that of the last usable frame is a faulty frame. Lens distortion is removed. Faulty and
+/// unreadable frames are skipped. next() throws Error after ten skipped frames in a row.
 /// @throws Error if the recording has no frames, or a camera or `options.depth_camera` is invalid
 std::unique_ptr<FrameSource> indexed_source(IndexedRecording recording, const SourceOptions& options = {});
 

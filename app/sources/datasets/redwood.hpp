@@ -12,7 +12,7 @@ namespace roomradar {
 
 /// Lists the frames of a recording of Redwood or Open3D:
 ///   depth/N.png  mm
-///   color/N.jpg  or .png; depth is registered to it
+///   color/N.jpg  or .png; depth is registered to colour
 ///   *.log        per frame a line of three integers, then the 4 x 4 pose, camera to world (m)
 ///
 /// Without a JSON file, the intrinsics are a PrimeSense's, with a focal length of 525 px at a width of 640

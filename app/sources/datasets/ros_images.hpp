@@ -29,8 +29,8 @@ struct RosStreams {
   std::optional<RosStream> colour;  ///< unset: no colour topic has a camera_info
 };
 
-/// Returns the topics of depth images (16UC1, mono16, 32FC1 or compressedDepth) and of colour images. Of
-/// several depth topics, prefers one that is not registered to colour.
+/// Returns a topic of depth images (16UC1, mono16, 32FC1 or compressedDepth) and, if there is one, a topic of
+/// colour images. Of several depth topics, prefers one that is not registered to colour.
 /// @throws Error naming the topics that were found if there is no depth topic, or the depth topic has no
 ///         camera_info
 RosStreams find_streams(const MessageLog& log);

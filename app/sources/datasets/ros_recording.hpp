@@ -14,9 +14,9 @@ inline constexpr const char* kPoseTopic = "/roomradar/T_world_camera";
 /// Lists the frames of a recording of ROS: depth and colour images with their camera_info, each with its own
 /// intrinsics. Poses come from kPoseTopic, else from tf if the depth camera's frame moves in tf. Gravity
 /// comes from an IMU with known extrinsics to the depth camera (from tf or a RealSense's topics). Stamps are
-/// those of the message headers. In compressed files, reading all headers takes too long. There, stamps are
-/// the times of reception, plus the median offset from reception to header stamp over the first five
-/// messages.
+/// those of the message headers, except in compressed files, where reading all headers takes too long. There,
+/// a stamp is the message's time of reception plus the median of (header stamp - time of reception) over the
+/// first five messages.
 /// @throws Error naming the file and its topics if it contains no depth images or no camera_info
 IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& log);
 

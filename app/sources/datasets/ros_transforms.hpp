@@ -11,8 +11,8 @@
 
 namespace roomradar {
 
-/// Stores the tree and its static transforms. Messages with moving transforms are read again per query,
-/// around its time.
+/// Stores the tree and its static transforms. Transforms that vary with time are not stored: each query reads
+/// the messages around its time again.
 class RosTransforms {
  public:
   /// Reads all messages of tf_static and the first 500 of tf, fewer in a compressed file. Ignores damaged
@@ -21,15 +21,16 @@ class RosTransforms {
   explicit RosTransforms(const MessageLog& log);
 
   /// Returns the constant transform from frame `b` to frame `a`. Returns nullopt if the tree does not connect
-  /// them, or if a transform between them moves.
+  /// the frames, or if a transform on the path between them varies with time.
   [[nodiscard]] std::optional<Eigen::Isometry3d> T_a_b(const std::string& a, const std::string& b) const;
 
   /// Returns true if `frame` moves relative to the root of its tree.
   [[nodiscard]] bool moves(const std::string& frame) const;
 
   /// Returns the pose of `frame` in the root frame of its tree. `stamp_s` is a time on the clock of the
-  /// message headers. Returns nullopt if `frame` does not move, or a moving transform has no message within
-  /// 0.15 s before or none within 0.15 s after.
+  /// message headers. Returns nullopt if `frame` does not move relative to the root. Also returns nullopt
+  /// unless each varying transform up to the root has a message within 0.15 s before stamp_s and one within
+  /// 0.15 s after.
   [[nodiscard]] std::optional<Eigen::Isometry3d> T_root_frame(const std::string& frame, double stamp_s) const;
 
  private:

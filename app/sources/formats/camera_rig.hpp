@@ -44,8 +44,8 @@ void write_camera_file(const CameraRig& rig, const std::filesystem::path& path);
 Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_px, int height_px);
 
 /// Returns the rotation nearest to `almost` in the Frobenius norm, computed by SVD. Returns nullopt if
-/// `almost` contains a reflection. Also returns nullopt if an entry is not finite or more than 0.01 from the
-/// rotation's.
+/// `almost` contains a reflection. Also returns nullopt if an entry is not finite, or differs by more than
+/// 0.01 from the same entry of the rotation.
 std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& almost);
 
 }  // namespace roomradar

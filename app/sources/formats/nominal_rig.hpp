@@ -25,8 +25,8 @@ enum class NominalRig {
 /// Noise of an iPhone's or iPad's LiDAR in ARKit's depth maps of 256 x 192 pixels. ARKit smooths the depth,
 /// so errors of neighbouring pixels are correlated. In a Record3D recording of a door at 0.5 to 1.5 m, depths
 /// of two frames that are aligned by ARKit's poses differ by 1.7 mm (median, 10 frames apart) to 4.1 mm (50
-/// frames apart). This noise is about twice that, since tracking assumes independent errors of pixels: with
-/// half of it, 27 of the 60 frames are not tracked.
+/// frames apart). kPhoneLidarNoise is about twice as large, since tracking assumes that the errors of pixels
+/// are independent. With half of kPhoneLidarNoise, 27 of the recording's 60 frames are not tracked.
 inline constexpr DepthNoise kPhoneLidarNoise{0.002F, 0.004F, 0.0F, 0.0F, 0.0001F};
 
 /// Depth noise of the time-of-flight sensors Azure Kinect and Femto: 1.1 mm at 1 m and 4.6 mm at 3.5 m.
@@ -59,11 +59,11 @@ Intrinsics openni_camera(ImageSize size, double stated_fov_rad);
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour);
 
 /// Returns the cameras of the recording in `folder`. Depth intrinsics are the first of these that exists:
-/// `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt, nominal_rig(). Colour is that of
-/// camera.json, or else of nominal_rig(). It equals the depth camera if depth is registered to colour: for
-/// kTum and kBonn, for kNumbered with depth intrinsics from the caller or a file, and for a camera.json
-/// without colour. Throws Error if intrinsics are invalid, or if their size differs from the images'. The
-/// message then contains both sizes and a remedy.
+/// `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt, nominal_rig(). The colour camera is
+/// that of camera.json, or else of nominal_rig(). The colour camera equals the depth camera if depth is
+/// registered to colour: for kTum and kBonn, for kNumbered with depth intrinsics from the caller or a file,
+/// and for a camera.json without colour. Throws Error if intrinsics are invalid, or if their size differs
+/// from the images'. The message then contains both sizes and a remedy.
 CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
                            const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
                            std::optional<ImageSize> colour);

@@ -36,7 +36,7 @@ struct SourceOptions {
   bool keep_all = false;
   /// True: simulated frames are cached on disk, for callers that read each frame several times.
   bool cache_simulated = false;
-  /// True: a calibration.json beside a recording is ignored. Frames are then delivered as recorded.
+  /// True: calibration.json in the recording's folder is ignored. Frames are then delivered as recorded.
   bool as_recorded = false;
   /// Max time without depth images from a live device, despite restarts, before next() throws Error, s.
   double device_timeout_s = 60.0;

@@ -16,7 +16,7 @@ struct StampedAcceleration {
   Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Sorts by stamp, for the functions below.
+/// Sort by stamp, as pose_at() and down_at() require.
 void sort_by_stamp(std::vector<StampedPose>& poses);
 void sort_by_stamp(std::vector<StampedAcceleration>& accelerations);
 
@@ -27,8 +27,8 @@ void sort_by_stamp(std::vector<StampedAcceleration>& accelerations);
                                                        double max_gap_s);
 
 /// Returns the unit direction of gravity in the accelerometer's frame: opposite to the mean of the readings
-/// within `within_s` of the stamp. A wider window averages the motion of a hand. Returns nullopt without
-/// readings, and if the mean's magnitude is outside 0.8 to 1.2 g.
+/// within `within_s` of the stamp. A wider window averages out more of a hand-held camera's own acceleration.
+/// Returns nullopt without readings, and if the mean's magnitude is outside 0.8 to 1.2 g.
 [[nodiscard]] std::optional<Eigen::Vector3d> down_at(const std::vector<StampedAcceleration>& accelerations,
                                                      double stamp_s, double within_s);
 

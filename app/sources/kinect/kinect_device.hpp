@@ -40,8 +40,8 @@ class KinectDevice {
   virtual void ask_acceleration() = 0;
   /// Returns the last accelerometer reading, g, or nullopt if there is none.
   [[nodiscard]] virtual std::optional<Eigen::Vector3d> acceleration_g() const = 0;
-  /// Returns the camera's serial number, or an empty string if unknown. The number identifies the device
-  /// after it was unplugged.
+  /// Returns the camera's serial number, or an empty string if unknown. The number identifies the device when
+  /// it is reconnected.
   [[nodiscard]] virtual std::string serial() const = 0;
   /// Returns the device's factory calibration, or nullopt if unknown.
   [[nodiscard]] virtual std::optional<KinectConstants> constants() const = 0;

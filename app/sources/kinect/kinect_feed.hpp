@@ -29,7 +29,7 @@ class KinectFeed {
   /// Moves the next frame into `frame` and reuses the memory of `frame`. Waits up to `wait_s` for a frame.
   Take take(KinectFrame& frame, double wait_s);
 
-  /// Returns the factory calibration of the device that was opened first.
+  /// Returns the factory calibration that was read when the device was first opened.
   [[nodiscard]] const std::optional<KinectConstants>& constants() const { return constants_; }
 
  private:

@@ -31,7 +31,7 @@ class KinectPairing {
   /// Adds a depth image. Returns false if its size is wrong.
   /// @param pixels          640 x 480 values
   /// @param ticks           stamp of the device's clock
-  /// @param memory          returns a frame with memory to reuse
+  /// @param memory          returns a frame whose buffers can be reused
   /// @param acceleration_g  latest accelerometer reading, g, in the accelerometer's axes
   bool add_depth(std::span<const std::uint16_t> pixels, std::uint32_t ticks,
                  const std::function<KinectFrame()>& memory,

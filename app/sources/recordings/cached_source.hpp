@@ -14,8 +14,8 @@ inline constexpr std::uintmax_t kMaxFrameCache_bytes = 3'000'000'000;
 /// Returns a source that delivers the frames of `source`, identical in all bits, and reads each frame from
 /// `source` only once. Keeps the frames in a temporary folder until the returned source is destroyed. Caching
 /// ends at max_bytes or at the first frame that cannot be written. Frames that are not cached, or no longer
-/// readable in the folder, are read from `source` again. Useful if `source` takes longer for a frame than the
-/// disk, as the simulated source does.
+/// readable in the folder, are read from `source`. Useful if reading a frame from `source` takes longer than
+/// reading it from disk. An example is SimulatedSource.
 /// @param source  returned as it is if it cannot seek, or if no temporary folder can be created
 std::unique_ptr<FrameSource> cache_frames(std::unique_ptr<FrameSource> source,
                                           std::uintmax_t max_bytes = kMaxFrameCache_bytes);

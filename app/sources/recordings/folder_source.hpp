@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// Opens a recording (folder or file) and recognises its format by its content. Formats of other programs are
-/// listed in app/sources/README.md (index_foreign()). The other formats are folders:
+/// Opens a recording (folder or file) and recognises its format by its content. The formats that
+/// index_foreign() opens are listed in app/sources/README.md. All other formats are folders:
 ///   fakenect      INDEX.txt with d-*.pgm (raw 11 bit), r-*.ppm, a-*.dump (accelerometer)
 ///   TUM RGB-D     depth.txt, rgb.txt; optional groundtruth.txt, accelerometer.txt
 ///   7-Scenes      frame-XXXXXX.depth.png, .color.jpg, .color.png or .color.none (empty: no colour),

@@ -16,7 +16,7 @@ namespace roomradar {
 [[nodiscard]] std::string foreign_kind(const std::filesystem::path& path);
 
 /// Lists the frames of a recording of another program. Returns nullopt if foreign_kind() is empty. If a
-/// folder contains one such file and a camera.json, camera.json replaces the cameras and lenses.
+/// folder contains one such file and a camera.json, camera.json replaces the recording's cameras and lenses.
 /// @throws Error naming the file if the recording is damaged or lacks depth images or cameras
 std::optional<IndexedRecording> index_foreign(const std::filesystem::path& path);
 

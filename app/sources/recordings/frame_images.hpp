@@ -1,10 +1,10 @@
 // frame_images.hpp: lossless file with the depth and the colour image of a frame.
 //
 // The file begins with "RRIMAGES", width and height of the depth image, and width and height of the colour
-// image (i32, little-endian; 0 x 0: none). Two zstd frames with checksums follow, each after its size in
-// bytes (u64). The first contains the depth (float32, m). The second contains three colour planes (u8):
-// green, red - green and blue - green. Each value is stored as its difference to the pixel before, modulo
-// 256.
+// image (i32, little-endian; 0 x 0: none). Two zstd frames with checksums follow, each preceded by its size
+// in bytes (u64). The first contains the depth (float32, m). The second contains three colour planes (u8):
+// green, red - green and blue - green. Each value is stored as its difference from the previous pixel's
+// value, modulo 256.
 #pragma once
 #include <filesystem>
 

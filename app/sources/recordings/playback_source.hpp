@@ -45,8 +45,8 @@ class PlaybackSource final : public FrameSource {
   void hold(bool is_held) { is_held_ = is_held; }
   /// Sets the behaviour after the last frame.
   void set_at_end(AtEnd at_end) { at_end_ = at_end; }
-  /// Call after a pause in reading. The next stamp is then 1/30 s after the previous one, although a device's
-  /// clock continued during the pause.
+  /// Call after a pause, that is, a time in which next() was not called. The next stamp is then 1/30 s after
+  /// the previous one, although a device's clock continued during the pause.
   void resume() {
     // One frame may have been read ahead before the pause.
     frames_to_rebase_ = 2;

@@ -58,8 +58,8 @@ struct ListedImage {
   std::string fault{};
 };
 
-/// Assigns colour images to `frames` by the decided pairs of `pairing`. A frame becomes unusable if its
-/// colour image's line cannot be used, or if its stamp is not later than the previous frame's.
+/// Assigns colour images to `frames` by the decided pairs of `pairing`. A frame becomes unusable if the line
+/// of its colour image cannot be used, or if the frame's depth stamp is not later than the previous frame's.
 void pair_up(StampPairing& pairing, const std::vector<ListedImage>& colours,
              std::vector<RecordedFrame>& frames);
 

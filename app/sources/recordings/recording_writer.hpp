@@ -28,7 +28,7 @@ std::string_view to_string(RecordingFormat format);
 ///                 size.
 ///   kRosBag       recording.bag: depth and poses bit for bit, stamps to 1 ns, colour, gravity. All values
 ///                 that other programs need are in the bag.
-/// Colour is stored without loss. All frames must have the cameras of the first frame. They are written to
+/// Colour is stored without loss. All frames must have the cameras of the first frame, which are written to
 /// camera.json.
 class RecordingWriter {
  public:
