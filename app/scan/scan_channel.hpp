@@ -95,7 +95,7 @@ class ScanChannel {
   void set_paused(bool is_paused);
   [[nodiscard]] bool is_paused() const;
   void request(ScanRequest request);
-  /// Requests that the last `seconds` of the scan be undone.
+  /// Requests that the frames of the scan's last `seconds` be discarded.
   void undo(double seconds);
   /// Swaps the newest state with `shown`. Returns false if no state was published since the last call.
   bool take(ShownScan& shown);

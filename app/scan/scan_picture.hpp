@@ -14,7 +14,7 @@ void make_picture(const Frame& frame, ColourImage& picture);
 /// red in the lowest byte. Knowledge::kWell is green and kThin is amber. kNew and kNone have no tint.
 Image<std::uint32_t> make_tint(const Frame& frame, const Image<Knowledge>& knowledge);
 
-/// Replaces the current picture by its mean with the last picture that has a known pose.
+/// Replaces `picture` by the mean of `picture` and `last_good`, the last picture with a known camera pose.
 void mix_half(const ColourImage& last_good, ColourImage& picture);
 
 }  // namespace roomradar

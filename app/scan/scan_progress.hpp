@@ -12,7 +12,7 @@
 
 namespace roomradar {
 
-/// Message printed on Ctrl-C by a scan that Ctrl-C ends without a map.
+/// Message printed when Ctrl-C ends a scan without a map.
 inline constexpr const char* kStopsWithoutMap =
     "\nroomradar: stops after the next frame, without a map; after the last frame the map is still made. "
     "Press Ctrl-C again to end at once\n";

@@ -25,8 +25,8 @@ class ExplorationGrid {
 
   explicit ExplorationGrid(const Eigen::Vector3d& centre_world);
 
-  /// Marks the cells along the rays of a keyframe as free, and their ends as occupied. Uses every 8th pixel
-  /// in both directions of an image of 320 x 240, up to 5 m.
+  /// Marks the cells along each ray of a keyframe as free, and the cell at the ray's end as occupied. Rays
+  /// are those of every 8th pixel in both directions of an image of 320 x 240, up to 5 m.
   void add(const StoredView& view, const Eigen::Isometry3d& T_world_camera);
 
   /// Returns the state of the cell that contains a point; kUnmeasurable outside the grid.
@@ -49,13 +49,14 @@ class ExplorationGrid {
   [[nodiscard]] CellState state_of(std::int64_t index) const;
 };
 
-/// Returns the fraction of a frame's pixels whose points are surrounded by free space. Such points are on
-/// moving objects. Uses every 8th pixel in both directions, up to 4 m.
+/// Returns the fraction of a frame's tested pixels whose points are in cells surrounded by free cells. Such
+/// points are on moving objects. Tests every 8th pixel in both directions, up to 4 m.
 double moved_fraction(const ExplorationGrid& grid, const Frame& frame,
                       const Eigen::Isometry3d& T_world_camera);
 
-/// Returns the grid around a camera, from the nearest 200 keyframes at most.
-/// @param T_grid_world  from the keyframes' world frame to the grid's world frame
+/// Returns a grid centred at a camera, filled from at most 200 keyframes, those nearest to the camera.
+/// @param T_grid_world  transforms points from the keyframes' world frame, which is that of camera_world, to
+///                      the grid's
 ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::vector<Keyframe>& keyframes,
                                 const Eigen::Isometry3d& T_grid_world = Eigen::Isometry3d::Identity());
 

@@ -21,8 +21,9 @@ enum class Knowledge : std::uint8_t {
 };
 
 /// Sums the weights of measurements in cells of 4 cm. Uses every 8th pixel in both directions, up to 5 m
-/// depth. The weight of a frame in a cell is that of the fusion, (sigma at 1 m / sigma)^2, averaged over the
-/// frame's samples in the cell. Takes about 1 ms per frame.
+/// depth. A frame adds to a cell about the weight that the map's fusion would add, (sigma at 1 m / sigma)^2:
+/// each sample's weight is divided by the number of the frame's samples expected in its cell. Takes about 1
+/// ms per frame.
 class KnowledgeGrid {
  public:
   static constexpr int kStep_px = 8;
@@ -30,7 +31,7 @@ class KnowledgeGrid {
   static constexpr int kBlockSide = 4;  ///< cells are stored in cubes of this many per side
 
   /// Adds a frame's measurements.
-  /// @param anchor  index of the frame's anchor, with which the measurements move
+  /// @param anchor  index of the frame's anchor (anchors.hpp), in whose frame the measurements are stored
   void add(const Frame& frame, std::size_t anchor, const Eigen::Isometry3d& T_anchor_camera,
            const Eigen::Isometry3d& T_world_anchor);
   /// Moves all measurements to the anchors' current poses. Discards measurements of removed anchors.
@@ -43,7 +44,7 @@ class KnowledgeGrid {
   /// Returns the knowledge at a point; kNew if the cell has no measurements.
   [[nodiscard]] Knowledge at(const Eigen::Vector3d& p_world) const;
 
-  /// Returns the fraction of cells of at least kThin that are kWell; 0 if there are no such cells.
+  /// Returns the fraction of kWell cells among the cells that are kThin or kWell; 0 if there are none.
   [[nodiscard]] double well_known_fraction() const;
 
  private:

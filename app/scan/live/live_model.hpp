@@ -22,20 +22,20 @@ struct LiveModelPart {
   std::shared_ptr<const Mesh> mesh_anchor;  ///< mesh in the anchor's frame; replaced after each update
 };
 
-/// Fuses frames on a separate thread into one small octree per anchor, and extracts the octrees' surfaces
-/// twice per second. Octrees of anchors that the camera has left are deleted; their meshes remain. Frames
-/// that arrive while the thread is busy are ignored. Thread safe.
+/// Fuses frames on a separate thread into one small octree per anchor (anchors.hpp), and extracts the
+/// octrees' surfaces twice per second. Octrees of anchors that the camera has left are deleted; their meshes
+/// remain. Frames that arrive while the thread is busy are ignored. Thread safe.
 class LiveModel {
  public:
-  /// @param cell_m  voxel size of the octrees; that of the scan's map is smaller
+  /// @param cell_m  voxel size of the octrees; the default is coarser than the default of the scan's map
   explicit LiveModel(double cell_m = 0.02);
   ~LiveModel();
   LiveModel(const LiveModel&) = delete;
   LiveModel& operator=(const LiveModel&) = delete;
 
   /// Passes a frame to the thread. Returns false, and ignores the frame, if the thread is busy.
-  /// @param shows_new  true: the frame shows surface that is not well known. Other frames are fused only if
-  ///                   the anchor's octree still exists
+  /// @param shows_new  true: the frame shows surface that is not well known (Knowledge::kWell). Other frames
+  ///                   are fused only if the anchor's octree still exists
   bool offer(std::shared_ptr<const Frame> frame, std::size_t anchor, const Eigen::Isometry3d& T_anchor_camera,
              bool shows_new);
 
@@ -59,7 +59,7 @@ class LiveModel {
   };
 
   const double cell_m_;
-  std::list<Part> open_;  ///< the part used last first; only the thread uses it
+  std::list<Part> open_;  ///< most recently used part first; accessed by the thread only
 
   mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable changed_;

@@ -15,11 +15,12 @@ struct NextView {
   double takes_s = 0.0;  ///< time to move a hand-held camera to the view
 };
 
-/// Tests views from the camera's position and from free positions up to 1.5 m away, at all azimuths. The gain
-/// of a view is the area of the frontier between free and unknown space that rays of up to 3.5 m hit, from
-/// the view and from the path to it. Behind a frontier nearer than 1.3 m, surface is expected at 1.3 m.
-/// Returns the view with the highest gain per time; nullopt if no view has a gain of at least 0.15 m2. Takes
-/// about 150 ms.
+/// Tests views at all azimuths, from the camera's position and from positions up to 1.5 m away to which a
+/// straight path through free space leads. The gain of a view is the area of the frontier between free and
+/// unknown space that rays of up to 3.5 m hit, from the view and from the path to it. The area that a ray
+/// contributes is computed at a distance of at least 1.3 m, where surface is expected behind nearer
+/// frontiers. Returns the view with the highest gain per time; nullopt if no view has a gain of at least 0.15
+/// m2. Takes about 150 ms.
 /// @param up_world  unit vector
 std::optional<NextView> best_next_view(const ExplorationGrid& grid, const Eigen::Isometry3d& T_world_camera,
                                        const Eigen::Vector3d& up_world);

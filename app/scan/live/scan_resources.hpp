@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Memory and disk space, bytes, at a time.
+/// Memory and disk space in bytes, at time time_s.
 struct ScanResources {
   double time_s = 0.0;
   double memory_used = 0.0;

@@ -10,7 +10,7 @@ namespace roomradar {
 WallPaint wall_paint(std::uint64_t seed, std::uint32_t look);
 /// Returns a floor covering: tiles, planks, stone or fabric.
 Material floor_covering(std::uint64_t seed, std::uint32_t look);
-/// Returns a strong colour, as of door frames.
+/// Returns a saturated colour, as used for door frames.
 Material lacquer(std::uint64_t seed, std::uint32_t look);
 /// Returns a poster or landscape.
 Material picture_of(std::uint32_t look);

@@ -5,8 +5,8 @@
 namespace roomradar {
 
 /// Adds the pieces of the corridors, and the stairwells if there is more than one floor, to a plan that has
-/// its rooms, BuildingPlan::corridor_y_m and BuildingPlan::length_m. Pieces are 4 to 8 m long and cut between
-/// doors.
+/// its rooms, BuildingPlan::corridor_y_m and BuildingPlan::length_m. Pieces are 4 to 8 m long, with their
+/// boundaries between doors.
 void add_corridors(BuildingPlan& plan);
 
 }  // namespace roomradar

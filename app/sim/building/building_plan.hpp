@@ -20,8 +20,8 @@ struct BuildingSize {
 };
 /// Throws Error naming the value and its range if one is out of range.
 void require_valid(const BuildingSize& size);
-/// Returns the max number of rooms that can have a twin on the next floor, or on the same floor if there is
-/// only one.
+/// Returns the max number of rooms that can have a twin (a room that looks the same). Twins are on adjacent
+/// floors, or on the same floor if the building has only one.
 int most_alike(const BuildingSize& size);
 
 /// Height from floor to floor: 18 steps.
@@ -86,8 +86,8 @@ struct BuildingPlan {
   std::vector<int> first_of_floor;
   std::vector<CorridorPiece> pieces;
   std::vector<PlannedStairs> stairs;
-  /// Middle lines of the corridors, from south to north. If there are several, cross corridors connect them
-  /// at both ends.
+  /// y coordinates of the corridors' centrelines, from south to north. If there are several corridors, cross
+  /// corridors connect them at both ends.
   std::vector<double> corridor_y_m;
   /// Corridors extend from x = 0 to this length; cross corridors are beyond both ends.
   double length_m = 0.0;
@@ -99,7 +99,7 @@ BuildingPlan plan_building(std::uint64_t seed, const BuildingSize& size);
 
 /// Height of a floor above the world's origin.
 inline double floor_height_m(int floor) { return floor * kStoreyHeight_m; }
-/// Returns the x coordinate of the middle line of the cross corridor at the west or east end.
+/// Returns the x coordinate of the centreline of the cross corridor at the west or east end.
 double cross_corridor_x_m(const BuildingPlan& plan, bool is_east);
 
 /// Floor and room of a point in a building.

@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// An opening in a wall, from its foot up.
+/// An opening in a wall, which begins at the wall's bottom.
 struct WallOpening {
   double from_m = 0.0, to_m = 0.0;  ///< range along the wall's x axis
   double high_m = 0.0;
@@ -20,7 +20,7 @@ struct WallPaint {
 inline constexpr double kDado_m = 1.1;
 
 /// Adds a wall of thickness kShellThickness_m. In the wall's frame, x is along the inner edge of the wall's
-/// foot, to the right as seen from inside. -y points into the room.
+/// foot (lower face), to the right as seen from inside. -y points into the room.
 /// @param openings  without overlap, at least kDado_m high
 void add_wall(Room& room, const Eigen::Isometry3d& T_world_wall, double from_m, double to_m, double height_m,
               std::vector<WallOpening> openings, const WallPaint& paint);

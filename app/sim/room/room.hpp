@@ -43,7 +43,7 @@ struct RoomPart {
   /// Index range of its solids in Room::solids; solids_end is exclusive.
   std::size_t solids_begin = 0, solids_end = 0;
   std::vector<PartOpening> openings;
-  /// Indices of the lamps that light it.
+  /// Indices in Room::lamps of the lamps that light this part.
   std::vector<int> lamps;
 };
 
@@ -64,7 +64,7 @@ struct Room {
   Eigen::Vector3d interior_max_world = Eigen::Vector3d::Zero();
   /// Surface point at which the camera of CameraPathKind::kView looks.
   Eigen::Vector3d focus_world = Eigen::Vector3d::Zero();
-  /// Azimuth of that camera as seen from focus_world.
+  /// Azimuth of the kView camera's position as seen from focus_world.
   double view_azimuth_rad = 0.0;
   /// Centre, at eye height, of the ellipse along which the camera moves during a scan.
   Eigen::Vector3d walk_centre_world = Eigen::Vector3d::Zero();

@@ -27,10 +27,11 @@ enum class Occluder {
 };
 std::string_view to_string(Occluder occluder);
 
-/// Number of prescan frames of a room: one round of the camera.
+/// Number of prescan frames of a room: one loop of the camera path.
 inline constexpr std::int64_t kScenarioPrescanFrames = 720;
 
-/// A room with its prescan path. All scenarios of a room share the path. One map per room thus suffices.
+/// A room with the camera path of its prescan, the scan from which its map is made. All scenarios of a room
+/// share the path. One map per room thus suffices.
 struct ScenarioRoom {
   Room room;
   /// Options of the SimulatedSource that produces the prescan frames, without moving objects.

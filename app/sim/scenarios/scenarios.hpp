@@ -16,8 +16,8 @@ namespace roomradar {
 ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed = 1);
 
 /// Makes scenario `number` of a seed. The result depends on room, seed and number only. Guarantees:
-/// - In the contact frame, all room points that could stop the object up to 5 cm beyond the true contact are
-///   hidden from the camera. The contact point projects into the image.
+/// - In frame contact_frame(), all room points that could stop the object up to 5 cm beyond the true contact
+///   are hidden from the camera. The contact point projects into the image.
 /// - At least three cameras of T_world_prescan observed each of these points, at 0.6 to 3.5 m and not at a
 ///   grazing angle.
 /// - The prescan observed the space that the object sweeps. The object thus never enters unknown space.
@@ -26,9 +26,9 @@ ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed = 1);
 ///   mm. This excludes contacts that depend on detail finer than the map's voxels.
 ///
 /// Scenarios alternate between four drops and four pushes. Each group of four contains all four kinds of
-/// occluder. Object shapes alternate, too. Unless furniture is the occluder, the room itself hides at most
-/// half of the points that could stop the object. If 3,000 random draws find no placement, the next kind of
-/// occluder is tried, then the next shape. Throws Error if all fail.
+/// occluder. Successive scenarios also differ in the object's shape. Unless furniture is the occluder, the
+/// room itself hides at most half of the points that could stop the object. If 3,000 random draws find no
+/// placement, the next kind of occluder is tried, then the next shape. Throws Error if all fail.
 Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number);
 
 enum class Outcome {

@@ -17,7 +17,7 @@ struct Sway {
   double phase_rad = 0.0;
 };
 
-/// A smooth camera path. A scan (kScan) follows an ellipse at constant angular speed. A viewer (kView) stands
+/// A smooth camera path. A scan (kScan) follows an ellipse at nearly constant speed. A viewer (kView) stands
 /// still. Sway, a sum of sines of time, is added to both. All derivatives are thus continuous.
 struct CameraPath {
   CameraPathKind kind = CameraPathKind::kScan;
@@ -27,7 +27,7 @@ struct CameraPath {
   Eigen::Vector2d half_m = Eigen::Vector2d::Zero();
   /// Angle on the ellipse at the start.
   double start_rad = 0.0;
-  /// Time per round of the ellipse; negative for clockwise motion.
+  /// Time per revolution on the ellipse; negative for clockwise motion.
   double loop_s = 1.0;
   /// Walk through several rooms, which replaces the ellipse; see Room::walk. A uniform cubic B-spline with
   /// these control points. `start_rad` and `loop_s` apply to a closed walk as to an ellipse.
@@ -36,8 +36,9 @@ struct CameraPath {
   double walk_step_s = 0.0;
   /// Number of full turns of the view on the closed walk.
   int walk_turns = 0;
-  /// Point at which the camera looks. On a walk, that point is 1.5 m ahead of the camera. The z coordinates
-  /// of target_world and centre_world are then heights above the floor.
+  /// Point at which the camera looks. On a walk, the camera looks at a point 1.5 m away in the direction
+  /// WalkPoint::yaw_rad. Only the z coordinates of target_world and centre_world are then used, as heights of
+  /// that point and of the camera above the floor.
   Eigen::Vector3d target_world = Eigen::Vector3d::Zero();
   /// Sway of the position, m. First index: world axis x, y or z. Second index: terms of the sum.
   std::array<std::array<Sway, 3>, 3> position_sway{};
@@ -50,7 +51,7 @@ struct CameraPath {
 
 /// Draws up to 64 paths at random. Returns the first path with a clearance of 0.5 m from all solids. If there
 /// is none, returns the path with the max clearance. During a scan, the camera moves at about 0.3 to 0.6 m/s
-/// and rotates by less than 40 degrees/s. The path ends at its start if a whole number of rounds fits
+/// and rotates by less than 40 degrees/s. The path ends at its start if a whole number of revolutions fits
 /// duration_s at 0.5 m/s or less. On an open walk, which passes narrow doorways, the clearance is 0.4 m, and
 /// the camera is 1.3 to 1.6 m above the floor or step.
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s);

@@ -19,7 +19,8 @@ std::int64_t frames_of(const SimOptions& options, const Room& room);
 /// building.
 std::uint64_t path_seed(const SimOptions& options);
 
-/// Selects the solids of a single room, or those of the parts of a building that may be seen from the eye.
+/// Selects all solids of a single room. In a building, selects the solids of the parts that may be visible
+/// from eye_world.
 /// @param solids    out: these solids
 /// @param infrared  out: Material::infrared of each
 /// @return their indices in Room::solids, ascending
