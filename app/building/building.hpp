@@ -30,17 +30,19 @@ struct StageCounts {
 struct JoinedPair {
   SubmapName a, b;
   SubmapJoin join;
-  bool is_used = false;  ///< false: the join contradicts other joins, or was rejected before
-  double off_m = 0.0;    ///< see BuildingGraph::off_m
+  /// False: the join failed its verification (SubmapJoin::status), or contradicts other joins.
+  bool is_used = false;
+  double off_m = 0.0;  ///< see BuildingGraph::off_m
 };
 
 struct BuildingResult {
   BuildingInfo info;
   std::vector<StageCounts> stages;
   std::vector<JoinedPair> joins;
-  std::size_t kept = 0;  ///< number of submaps whose poses have not changed since the last run
-  /// Position error of all placed frames against the recorded poses, after one rigid alignment. Empty if the
-  /// recordings contain no poses. All recorded poses must be in one world frame.
+  std::size_t kept = 0;  ///< number of submaps whose poses in the building are those of the last run
+  /// Position error of all placed frames (frames of submaps in the map) against the recorded poses, after one
+  /// rigid alignment. Empty if the recordings contain no poses. Precondition: all recorded poses are in one
+  /// world frame.
   TrajectoryError recorded_error;
 };
 

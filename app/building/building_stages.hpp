@@ -15,7 +15,7 @@
 
 namespace roomradar {
 
-/// Name of a submap; see TrackStep.
+/// Name of a submap, a map of consecutive frames that were tracked without loss; see TrackStep.
 struct SubmapName {
   std::string recording;
   int part = 0;
@@ -36,7 +36,7 @@ struct BuildingWork {
   /// Folder that contains one folder per job.
   [[nodiscard]] std::filesystem::path jobs() const { return folder / "work"; }
   [[nodiscard]] std::filesystem::path job(const std::string& name) const { return jobs() / name; }
-  /// File with the keyframes' poses of a submap in the building.
+  /// File with the poses of a submap's keyframes in the building's world frame.
   [[nodiscard]] std::filesystem::path placed(const SubmapName& submap) const {
     return jobs() / ("placed-" + submap.name() + ".bin");
   }

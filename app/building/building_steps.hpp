@@ -12,9 +12,9 @@
 
 namespace roomradar {
 
-/// Tracks the camera of one recording. Writes a submap to out/0, and its features to out/0/features.bin; see
-/// load_features(). After each loss of tracking, begins another submap, out/1 and so on; see
-/// split_at_losses().
+/// Tracks the camera of one recording. Writes a submap (a map of consecutive frames that were tracked without
+/// loss) to out/0, and the submap's features to out/0/features.bin; see load_features(). After each loss of
+/// tracking, begins another submap, out/1 and so on; see split_at_losses().
 struct TrackStep {
   std::string source;
   PoseOrigin poses = PoseOrigin::kTracked;

@@ -51,9 +51,10 @@ struct BoardViews {
 std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colour, const Board& board);
 
 /// Reads the source to its end, or until `most` views are found. A frame becomes a view if the whole
-/// checkerboard is in its colour image and measured by its depth image. The checkerboard must hardly move,
-/// since colour and depth images are not taken at the same instant. Its pose must differ from those of all
-/// earlier views. Throws Error as require_valid(Board) does, or if none of the first 60 frames has colour.
+/// checkerboard is in its colour image and measured by its depth image. The frame is rejected if the
+/// checkerboard has moved noticeably since the previous frame, since colour and depth images are not taken at
+/// the same instant. It is also rejected if the checkerboard's pose is similar to that in an earlier view.
+/// Throws Error as require_valid(Board) does, or if none of the first 60 frames has colour.
 /// @param progress  called after each frame with the views found so far
 BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
                             const std::function<void(const BoardViews&)>& progress);

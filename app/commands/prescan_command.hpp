@@ -10,7 +10,7 @@ namespace roomradar {
 /// @throws Error if the scan fails or is stopped. The message says how to continue the scan, if possible
 int scan(const PrescanOptions& options);
 
-/// Does the same in a window. The result may contain the user's request to play in the map.
+/// Does the same as scan(), in a window. The result may contain the user's request to play in the map.
 ScanWindowResult scan_in_window(const PrescanOptions& options);
 
 }  // namespace roomradar

@@ -20,7 +20,7 @@ struct PlayResult {
   /// if no object rests there.
   std::optional<PlaceToScan> look_at{};
 };
-/// Does the same in a window.
+/// Does the same as play(), in a window.
 PlayResult play_in_window(const RunOptions& options);
 
 }  // namespace roomradar

@@ -26,9 +26,9 @@ class VideoWriter {
   /// one's size. Throws Error if the file cannot be created or the disk is full.
   void write(const ColourImage& picture);
 
-  /// Writes a picture as zero, one or more frames, so that the video runs at the speed of the stamps. Each
-  /// picture is written twice if the source has half the video's rate. If the stamp jumps backwards, or
-  /// forwards by more than a second, the picture is written as the next frame.
+  /// Writes a picture as zero, one or more frames, so that the video runs at the speed of the stamps. For
+  /// example, each picture is written twice if the source has half the video's frame rate. If the stamp jumps
+  /// backwards, or forwards by more than a second, the picture is written as the next frame.
   void write_at(const ColourImage& picture, double stamp_s);
 
   /// Completes the file, checks it by reading it, and moves it to its final name. Throws Error with the

@@ -15,16 +15,18 @@ namespace roomradar {
 
 /// Casts rays against the room's surfaces. For lamps, casts rays in each of lamp_directions() from four
 /// points half a radius from the middle. For ambient light, casts 16 cosine-weighted rays upwards, up to 1 m.
-/// A surface nearer than 0.8 m blocks a lamp. A surface beyond 1.3 m does not, since ceilings and walls are
-/// behind the lamps. Surfaces block up to 60 % of the ambient light; nearer surfaces block more. All
-/// fractions are 1 without surfaces, and for values that are not finite.
+/// A surface nearer than 0.8 m blocks a lamp's ray. A surface beyond 1.3 m does not, since ceilings and walls
+/// are behind the lamps. Between these distances, the fraction that passes increases linearly. Surfaces block
+/// up to 60 % of the ambient light; nearer surfaces block more. All fractions are 1 without surfaces, and for
+/// values that are not finite.
 /// @param room          the room's surfaces; may be null or empty
 /// @param middle_world  centre of the object
 /// @param radius_m      radius of its bounding sphere
 LightReach light_reach(const TreeInstance& room, const Eigen::Vector3d& middle_world, double radius_m);
 
 /// Returns the fractions for a point on a surface of the room. Ambient light arrives from the side of the
-/// normal, and surfaces within 0.5 m block it. Lamps are 3 m from `place_world`.
+/// normal, and surfaces within 0.5 m block it. The lamp of each direction is assumed 3 m from `place_world`,
+/// the place for which light is estimated.
 LightReach surface_reach(const TreeInstance& room, const Eigen::Vector3d& p_world,
                          const Eigen::Vector3d& normal_world, const Eigen::Vector3d& place_world);
 

@@ -44,7 +44,8 @@ struct VirtualObject {
   double still_s = 0.0;  ///< time for which the object has been awake and within 2 mm of T_world_still
   /// Pose from which its motion is measured for still_s.
   Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
-  /// Contacts before its last motion, within 1.5 contact margins. They stay while it sleeps.
+  /// Contacts with a gap of at most 1.5 contact margins, found before the object's last motion. They are kept
+  /// while the object sleeps.
   std::vector<ObjectContact> contacts;
   double waited_s = 0.0;  ///< time since physics last advanced it
   /// Pose to which physics last moved the object, if no surface of the room and no other object overlaps it

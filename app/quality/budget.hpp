@@ -77,8 +77,8 @@ std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config
                                   const FrameLoad& load, double elapsed_ms);
 
 /// Updates the estimates from the measured times of a frame's parts. A part that takes at most 2 % of its
-/// prediction counts as skipped and is ignored. If a part is skipped in more than 17 consecutive frames, its
-/// entry of `scales` decays to 1 from above.
+/// prediction counts as skipped and is ignored. If a part is skipped in more than 17 consecutive frames and
+/// its entry of `scales` exceeds 1, that entry decays to 1.
 void learn(BudgetState& state, const BudgetConfig& config, const std::array<double, kFrameParts>& parts_ms);
 
 /// Returns the predicted 95th percentile of the time of a whole frame with this load at a step, ms.

@@ -68,7 +68,8 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
 ///                      nothing
 /// @param[out] occlusion    occlusion of the objects; its buffers are reused
 /// @param[in,out] picture   image with the objects' shadows, over which the objects are blended
-/// @param feet          where the objects stand; their contacts are never hidden, see find_occlusion()
+/// @param feet          planes through the objects' lowest points, see contact_pixels.hpp. Objects are never
+///                      hidden by their support at these planes
 /// @param camera_image  the image without shadows, in which occluders' edges are found; null: `picture`
 /// @throws Error if sizes differ, or the layer exceeds the image
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,

@@ -31,13 +31,13 @@ struct DepthTolerance {
   float constant_m = 0.0F, per_m2 = 0.0F;
 };
 
-/// Values of the contact mask. Both mark a point just above an object's foot. Behind the point is the support
-/// itself (kOnSupport) or another surface (kAtFoot).
+/// Values of the contact mask. Both mark a point of an object within Feet::height_m of its lowest point
+/// (foot). The real surface in this pixel is the object's support (kOnSupport) or another surface (kAtFoot).
 inline constexpr std::uint8_t kAtFoot = 128, kOnSupport = 255;
 
-/// Marks the pixels that show a point just above an object's foot. The mark is kOnSupport if the height of
-/// the real surface equals that of the foot within the tolerance plus 6 mm, since a surface at this height is
-/// the object's support. Otherwise the mark is kAtFoot.
+/// Marks the pixels that show a point of an object within feet.height_m of its foot. The mark is kOnSupport
+/// if the height of the real surface equals that of the foot within the tolerance plus 6 mm, since a surface
+/// at this height is the object's support. Otherwise the mark is kAtFoot.
 /// @param rect          rectangle of the image
 /// @param real_depth_m  depth of real surfaces in the whole image
 /// @param object_m      depth of the objects in `rect`

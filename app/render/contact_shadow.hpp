@@ -67,9 +67,9 @@ Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3
 /// @param p_object_m  surface point relative to the table's origin (origin_world()), world axes, m
 float ambient_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m);
 
-/// Returns the occluded fraction of a light at a real surface point, 0 to 1. The object counts as a column
-/// with the outline of its underside. Returns 0 for light from below 15 degrees, and for points more than
-/// 4 cm above the object's lowest point.
+/// Returns the occluded fraction of a light at a real surface point, 0 to 1. The object is approximated by a
+/// vertical column with the shape of its underside. Returns 0 for light from below 15 degrees, and for points
+/// more than 4 cm above the object's lowest point.
 /// @param p_object_m  as for ambient_occlusion()
 /// @param to_light    unit, world axes
 float light_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m,

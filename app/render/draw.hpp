@@ -25,8 +25,8 @@ struct DrawnObject {
   Rgb colour{198, 120, 72};
   /// True if the mesh is closed: its inside is never visible, so back faces are culled.
   bool is_closed = false;
-  /// Parts that are drawn at the instance's pose instead of the instance's mesh. All must have the mesh
-  /// origin. Empty: the instance's mesh is drawn.
+  /// Parts that are drawn at the instance's pose instead of the instance's mesh. Their meshes must have the
+  /// Mesh::origin of the instance's mesh. Empty: the instance's mesh is drawn.
   std::span<const DrawnPart> parts{};
   /// Light at the object; null: that of Lighting.
   const SplitLight* light = nullptr;

@@ -11,7 +11,7 @@
 namespace roomradar {
 
 struct LightConfig {
-  /// Number of new surface points per second; 0: the light is not estimated.
+  /// Number of surface points that are sampled per second; 0: the light is not estimated.
   int samples_per_s = 180;
   /// Time constant with which older frames are forgotten.
   double memory_s = 1.0;
@@ -47,9 +47,11 @@ class LightEstimator {
   /// @param place_world_m  position for which light is estimated; should change slowly
   void add(std::span<const LightSample> samples, const Eigen::Vector3f& place_world_m, double dt_s,
            const LightConfig& config);
-  /// Returns the light at the place without shade; unset before the first estimate.
+  /// Returns the light at place_world_m without occlusion by nearby surfaces; unset before the first
+  /// estimate.
   [[nodiscard]] const std::optional<RoomLight>& light() const { return light_; }
-  /// Returns the light at a position with this reach. All zero before the first estimate.
+  /// Returns the light at a position that surfaces occlude as `reach` states. All zero before the first
+  /// estimate.
   [[nodiscard]] RoomLight light_at(const LightReach& reach) const;
 
  private:

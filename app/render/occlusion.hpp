@@ -78,7 +78,7 @@ int occlusion_margin_px(const OcclusionConfig& config);
 ///                      depth 0 occlude nothing
 /// @param layer         the rendered objects, within the image
 /// @param[out] occlusion  the result
-/// @param feet          where the objects stand
+/// @param feet          planes through the objects' lowest points, see contact_pixels.hpp
 ///
 /// Source of the colour models and the band: Chuang et al., A Bayesian approach to digital matting, CVPR
 /// 2001. Here each side has one Gaussian, and pixels are opaque.

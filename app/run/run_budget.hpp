@@ -17,7 +17,7 @@ namespace roomradar {
 /// is in the presets' Pareto front, the steps after it in the front follow. Otherwise the front's steps that
 /// are faster than the default quality follow. Settings in `fixed` are the same in all steps. Adjacent steps
 /// that thus become equal are merged. Adjacent steps with equal settings for a part of the frame get equal
-/// time ratios for it.
+/// time ratios for that part.
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed);
 
 /// Returns the time of a monotonic clock, ms.
@@ -33,8 +33,8 @@ class RunBudget {
   RunBudget(std::vector<FrontStep> front, double budget_ms, bool has_picture,
             std::function<double()> now_ms = steady_ms);
 
-  /// Callback for SessionConfig::watch. Returns the quality for the part of the frame that begins, if the
-  /// quality changes.
+  /// Callback for SessionConfig::watch. Returns the quality for `part`, which begins now; nullopt if the
+  /// quality does not change.
   std::optional<RunQuality> before(FramePart part, const FrameLoad& load);
   /// Call after each frame. Returns the frame's quality changes, in order, as script events without a frame
   /// number.

@@ -18,7 +18,8 @@ namespace roomradar {
 struct RunTotals {
   /// Numbers of frames: read, skipped (unusable), located and degenerate. `contacts` counts contacts of
   /// objects. `degenerate` counts localised frames whose depth does not constrain all six degrees of freedom.
-  /// `departures` counts objects that fell out of the map.
+  /// `departures` counts objects that fell out of the map. `places_refused` counts events that were refused
+  /// because there was no free pose (PlaceRefused).
   std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0,
                places_refused = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};

@@ -49,7 +49,8 @@ struct RunUse {
   /// Sums over the frames. room_asked counts room triangles tested by the radar. mesh_triangles counts
   /// triangles of the dynamic mesh.
   double room_drawn = 0.0, room_asked = 0.0, meshed_px = 0.0, mesh_triangles = 0.0;
-  /// Sums over the frames of the dynamic mesh's cells by kind: flat, cut by outlines, and full resolution.
+  /// Sums over the frames of the dynamic mesh's cells by kind: flat, cut by a surface's boundary, and full
+  /// resolution.
   double flat = 0.0, cut = 0.0, full = 0.0;
   /// Per object, number of frames in which the dynamic mesh had full-resolution cells near the object.
   std::map<std::string, std::size_t> frames_fine;

@@ -1,4 +1,5 @@
-// policies.hpp: the surface policies that the fall-through test compares.
+// policies.hpp: the surface policies that the fall-through test compares. The test drops and pushes objects
+// onto surfaces that are hidden from the camera, and counts those that pass through.
 #pragma once
 #include <array>
 #include <string_view>

@@ -18,8 +18,8 @@ class SideView {
 
   /// Draws the sections of room and occluder at a frame's time.
   [[nodiscard]] ColourImage room_at(int frame) const;
-  /// Draws the lines in which surfaces intersect the plane. Static surfaces are black, dynamic ones blue,
-  /// inferred backs violet, and the frontier of unknown space red.
+  /// Draws the lines in which surfaces intersect the plane. Static surfaces are black, dynamic ones blue, the
+  /// inferred back sides of dynamic objects violet, and the frontier of unknown space red.
   void add_surfaces(std::span<const SceneTree> surfaces, ColourImage& picture) const;
   /// Draws the section of the object after travelling travelled_m, with the alpha value `part`.
   void add_object(double travelled_m, Rgb colour, double part, ColourImage& picture) const;

@@ -13,7 +13,7 @@ struct Parameter {
   std::vector<std::string> words;  ///< fastest first
   std::size_t defaults = 0;        ///< index of the default in `words`
   /// True: the parameter sets the amount of work (load), not its quality. It is never changed together with
-  /// other parameters. Settings with changed values are never on a front.
+  /// other parameters. Settings that change a load parameter are never on a Pareto front.
   bool is_load = false;
 };
 

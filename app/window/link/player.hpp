@@ -38,7 +38,7 @@ class Player {
 
   [[nodiscard]] const std::string& chosen() const { return chosen_; }
   [[nodiscard]] bool is_grabbed() const { return grabbed_.has_value(); }
-  /// Returns the reason why the last commands had no effect; empty if they had an effect.
+  /// Returns the reason why a command of the last events_of() had no effect; empty if there was none.
   [[nodiscard]] const std::string& complaint() const { return complaint_; }
 
  private:

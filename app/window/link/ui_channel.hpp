@@ -112,7 +112,8 @@ struct Snapshot {
   bool is_repeating = false;  ///< true: the frame is a repetition, since the source is held or has ended
   AtEnd at_end = AtEnd::kEnd;
   std::shared_ptr<const ShownRoom> room;  ///< the pointer changes only if the room changes
-  Mesh seen_world, inferred_world;        ///< dynamic foreground
+  /// Dynamic foreground: visible surface, and its inferred back sides.
+  Mesh seen_world, inferred_world;
   ShownRadar shown_radar;
   /// Point of the visible surface at ViewsWanted::point_px; unset: none.
   std::optional<Eigen::Vector3d> pointed_world;

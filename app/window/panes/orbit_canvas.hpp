@@ -25,7 +25,7 @@ struct Orbit {
 Eigen::Isometry3d eye_of(const Orbit& orbit);
 
 /// Colour of a mesh without colours; it is mixed into the colours of other meshes with weight `fraction`.
-/// Shading is lighter for a textured mesh, which has the room's light.
+/// Shading is weaker for a textured mesh, since the texture already contains the room's light.
 struct Tint {
   std::array<float, 3> rgb{};
   float fraction = 1.0F;

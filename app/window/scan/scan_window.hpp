@@ -20,8 +20,8 @@ struct ScanWindowResult {
 
 /// Opens a window, or reuses the open one with a new title. Runs `work` on another thread and shows the state
 /// that `work` publishes, then its outcome. Ends when the user closes the window, discards the scan or asks
-/// to play. If the user closes the window earlier, `work` continues without it, as after Ctrl-C. Waits for
-/// `work` to end. Call on the main thread.
+/// to play. If the user closes the window before `work` has ended, `work` continues without the window, as
+/// after Ctrl-C. Waits for `work` to end. Call on the main thread.
 ///
 /// @param ui_scale  scale of text and panes; unset: the monitor's scale, clamped to 1..3
 /// @param lost_signal  signal when tracking is lost
