@@ -33,7 +33,7 @@ class LineStream {
   /// its end, or writing has failed.
   bool offer(MakeLine line);
   bool offer(std::string line);
-  /// Returns the number of dropped lines.
+  /// Returns how many times offer() dropped a line.
   [[nodiscard]] std::int64_t dropped() const { return dropped_; }
   /// Returns true if the reader has closed its end.
   [[nodiscard]] bool is_reader_gone() const { return is_reader_gone_; }
@@ -55,7 +55,7 @@ class LineStream {
 
   void serve();
   bool write(const std::string& text);
-  /// Waits until the file accepts bytes, and returns true. Returns false if the stream must stop before.
+  /// Waits until the file accepts bytes, and returns true. Returns false if the stream must stop first.
   bool wait_until_writable();
   void stop();
 };

@@ -25,7 +25,7 @@ struct ShownPart {
   Eigen::Isometry3d T_world_mesh = Eigen::Isometry3d::Identity();
 };
 
-/// The view to move to next, see best_next_view().
+/// Next-best view, see best_next_view().
 struct ShownNextView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::string way;  ///< directions from the camera to the view, in words
@@ -38,8 +38,8 @@ struct ScanCounts {
   std::int64_t keyframes = 0;
   std::int64_t loops = 0;
   double seen_m2 = 0.0;
-  double well_known = 0.0;                   ///< fraction of the surface seen so far
-  std::optional<double> table_tops_known{};  ///< well-known fraction; unset: no table top above a floor seen
+  double well_known = 0.0;                   ///< well-measured fraction of the seen surface
+  std::optional<double> table_tops_known{};  ///< the same of table tops; unset: none was seen above a floor
   std::size_t memory_bytes = 0;
   /// Time until memory or disk space is exhausted; unset: unknown.
   std::optional<double> left_s{};
@@ -70,19 +70,19 @@ struct ScanOutcome {
   std::vector<NumberedHole> holes{};      ///< holes inside the scan, in the map's world frame
 };
 
-/// Work of a scan after its last frame.
+/// Progress of a scan's work after its last frame.
 struct ScanStage {
   std::string name;                   ///< stage name, as in PrescanProgress; empty: tracking is still running
   std::int64_t done = 0;              ///< number of frames processed in this stage
   std::optional<std::int64_t> total;  ///< unset: unknown
 };
 
-/// Requests of the user to a scan.
+/// The user's requests to a scan.
 enum class ScanRequest {
   kGoOn,
   kFinish,   ///< make the map of the frames so far
   kDiscard,  ///< end without a map
-  kPlay,     ///< the scan is over; play in its map
+  kPlay,     ///< play in the map of the scan, which is over
 };
 
 /// Connects one window and one scan. Thread safe.
@@ -100,7 +100,7 @@ class ScanChannel {
   /// Swaps the newest state with `shown`. Returns false if no state was published since the last call.
   bool take(ShownScan& shown);
   [[nodiscard]] ScanStage stage() const;
-  /// Returns the result once the scan is over; ScanOutcome::text is empty before.
+  /// Returns the result once the scan is over. Until then, ScanOutcome::text is empty.
   [[nodiscard]] ScanOutcome outcome() const;
 
   // For the scan's thread.

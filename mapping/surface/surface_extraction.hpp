@@ -29,17 +29,17 @@ struct SurfaceStats {
 };
 
 /// Extracts the zero level set of the map's signed distances. Poorly measured distances are smoothed, and
-/// small components are dropped. The mesh is simplified within max_deviation_m. The mesh is crack-free. Every
-/// edge has two triangles, or one along a border of the observed surface. Holes stay open. Vertices are in
-/// the world (mesh.origin + vertex). Normals point to the free side. Colours come from the samples. An empty
-/// map gives an empty mesh. Throws Error if a setting is not finite and >= 0. Methods: see
+/// small components are dropped. The mesh is simplified within max_deviation_m, and crack-free: every edge
+/// has two triangles, or one along a border of the observed surface. Holes stay open. Vertices are in the
+/// world frame (mesh.origin + vertex). Normals point towards free space. Colours come from the samples. An
+/// empty map gives an empty mesh. Throws Error if a setting is negative or not finite. Methods: see
 /// dual_marching_cubes.hpp, tsdf_smoothing.hpp and mesh_simplify.hpp.
 /// @param facts  receives the statistics; may be null
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceStats* facts = nullptr);
 
 /// Extracts all triangles with a vertex in the box grown by one voxel. The result can therefore extend two
-/// voxels beyond the box. Samples farther than 12 voxels from the box are ignored, also for the area of a
-/// component. These samples would move the result by less than 0.1 mm.
+/// voxels beyond the box. Samples farther than 12 voxels from the box are ignored, and do not count towards
+/// the areas of components. These samples would move the result by less than 0.1 mm.
 Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
                      const SurfaceConfig& config = {});
 
@@ -48,8 +48,8 @@ Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
 Mesh extract_full_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
                           const SurfaceConfig& config = {});
 
-/// Number of voxels beyond which a sample has no influence on a vertex. Covers all smoothing sweeps, mirrored
-/// samples where fine and coarse cells meet, and extrapolation.
+/// Number of voxels beyond which a sample has no influence on a vertex. Covers all smoothing sweeps,
+/// extrapolation, and samples mirrored across borders between fine and coarse cells.
 inline constexpr int kSurfaceReach_voxels = 64;
 
 }  // namespace roomradar

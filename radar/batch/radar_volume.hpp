@@ -1,5 +1,5 @@
-// radar_volume.hpp: outline (bounding rectangle) of an object seen along its motion, with its pixel grid, and
-// the swept volume.
+// radar_volume.hpp: bounding rectangle (RadarOutline) of an object seen along its motion, with its pixel
+// grid, and the swept volume.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -8,10 +8,10 @@
 
 namespace roomradar {
 
-/// Bounding rectangle of an object seen along a direction u, given in the frame of the object's mesh. Valid
-/// while the object's orientation relative to u is unchanged. Defines the outline coordinates. x and y are
-/// perpendicular to u, in pixels from the rectangle's corner. z is along u, in metres from the object's
-/// foremost point. The object extends from z = -length_m to z = 0.
+/// Bounding rectangle of an object seen along a direction u. u is given in the frame of the object's mesh.
+/// The rectangle is valid while the object's orientation relative to u is unchanged. Defines the outline
+/// coordinates. x and y are perpendicular to u, in pixels from the rectangle's corner. z is along u, in
+/// metres from the object's foremost point. The object extends from z = -length_m to z = 0.
 struct RadarOutline {
   /// Rotation from the mesh's frame to the outline's. Its rows are the right-handed axes x, y and u.
   Eigen::Matrix3d R_outline_mesh = Eigen::Matrix3d::Identity();
@@ -37,14 +37,16 @@ Eigen::Matrix<double, 3, 4> outline_from_object(const RadarOutline& outline);
 Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, const MeshInstance& object,
                                                const MeshInstance& instance);
 
-/// Returns the box that contains the object and the volume it sweeps, in the world.
+/// Returns the box, with axes along x, y and u in the world frame, that contains the object and the volume it
+/// sweeps over distance_m.
 RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m);
 
-/// Returns the max displacement of the object's vertices by rounding on the renderer, perpendicular to u, in
+/// Returns the max rounding error of the object's vertex positions in the renderer, perpendicular to u, in
 /// pixels. The formula is that of kTileVertexShader.
 double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline);
 
-/// Returns the max |L| of a gap L that counts as touching, m: 10 um + 1e-6 (length_m + distance_m).
+/// Returns the contact tolerance, m: a gap L counts as touching if |L| is at most 10 um + 1e-6 (length_m +
+/// distance_m).
 double touching_m(const RadarOutline& outline, double distance_m);
 
 }  // namespace roomradar

@@ -9,7 +9,7 @@
 namespace roomradar {
 
 /// Owns a thread that makes all calls of one OpenGL context. The callers' own contexts are never touched.
-/// Callers on several threads wait for each other.
+/// Calls from several threads are serialised.
 class GlThread {
  public:
   GlThread();

@@ -34,7 +34,7 @@ struct PolicyTotals {
   double contact_error_median_m = 0.0;
   double contact_error_p95_m = 0.0;
   double frame_median_ms = 0.0;
-  /// Median over scenarios of the ratio of frame_ms to frame_ms of the first policy.
+  /// Median over scenarios of the ratio of frame_ms to that of the first policy.
   double cost_ratio = 0.0;
 };
 std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>& rows);
@@ -45,9 +45,9 @@ double percentile(std::vector<double> values, double part);
 std::string millimetres(double metres);
 
 std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int scenarios);
-/// Return the values of the report's keys `policies` and `failures`. Failures are all trials with an outcome
-/// other than kStoppedRight.
+/// Returns the value of the report's key `policies`.
 nlohmann::json to_json(const std::array<PolicyTotals, kPolicyCount>& totals);
+/// Returns the value of the report's key `failures`: all trials with an outcome other than kStoppedRight.
 nlohmann::json failures_of(const std::vector<ScenarioRow>& rows);
 /// Writes a CSV file with one line per scenario and policy. Does nothing if `path` is empty. Throws Error if
 /// the file cannot be written.

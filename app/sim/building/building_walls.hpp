@@ -1,4 +1,5 @@
-// building_walls.hpp: walls with openings, and the floor, ceiling and walls of a corridor's piece.
+// building_walls.hpp: walls with openings, and the floor, ceiling and walls of a corridor segment
+// (CorridorPiece).
 #pragma once
 #include <vector>
 
@@ -20,21 +21,22 @@ struct WallPaint {
 inline constexpr double kDado_m = 1.1;
 
 /// Adds a wall of thickness kShellThickness_m. In the wall's frame, x is along the inner edge of the wall's
-/// foot (lower face), to the right as seen from inside. -y points into the room.
+/// bottom face, to the right as seen from inside. -y points into the room.
 /// @param openings  without overlap, at least kDado_m high
 void add_wall(Room& room, const Eigen::Isometry3d& T_world_wall, double from_m, double to_m, double height_m,
               std::vector<WallOpening> openings, const WallPaint& paint);
 
-/// Returns true if there is an opening on this floor: upper floors may lack the last room.
+/// Returns true if `opening` exists on this floor. An upper floor without the last room has no opening to it.
 bool is_open_on(const BuildingPlan& plan, const PieceOpening& opening, int floor);
 
-/// Frame of a wall of a corridor's piece, as in add_wall(), with the origin at the side's middle.
+/// Frame of one wall of a corridor segment. The axes are those of add_wall(). The origin is the midpoint of
+/// the wall's inner bottom edge.
 Eigen::Isometry3d T_world_side(const CorridorPiece& piece, unsigned side, int floor);
 
 /// Returns an opening in the frame of its side's wall.
 WallOpening opening_in_side(const CorridorPiece& piece, const PieceOpening& opening);
 
-/// Adds floor, ceiling and walls of a corridor's piece.
+/// Adds floor, ceiling and walls of a corridor segment.
 void add_piece_shell(Room& room, const BuildingPlan& plan, const CorridorPiece& piece, int floor,
                      const Material& ground, const Material& ceiling, const WallPaint& paint);
 

@@ -16,10 +16,10 @@ namespace roomradar {
 /// Callbacks of KinectDevice::serve(). Images are in the device's buffers, valid during the call. `ticks` is
 /// the 32 bit stamp of the device's clock.
 struct KinectListener {
-  /// Called per depth image, with 640 x 480 values in the requested KinectDepth mode. Another number of
-  /// values means a broken image.
+  /// Called per depth image, with 640 x 480 values in the requested KinectDepth mode. Any other number
+  /// of values means a broken image.
   std::function<void(std::span<const std::uint16_t> pixels, std::uint32_t ticks)> on_depth;
-  /// Called per colour image, with 640 x 480 pixels of red, green and blue.
+  /// Called per colour image, with 640 x 480 RGB pixels of 3 bytes.
   std::function<void(std::span<const std::uint8_t> bytes, std::uint32_t ticks)> on_colour;
 };
 

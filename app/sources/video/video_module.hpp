@@ -9,7 +9,8 @@ namespace roomradar {
 /// of the program. The module is first searched for in the folder of the binary that contains this function.
 /// The next candidates are lib/roomradar in the parent and grandparent of that folder, in the configured
 /// prefix, and in /usr. Thread safe.
-/// @throws Error if the module is not installed, cannot be loaded, or has another version than the program
+/// @throws Error if the module is not installed, cannot be loaded, or has a different version from the
+/// program's
 const VideoCodecs& video_codecs();
 
 }  // namespace roomradar
