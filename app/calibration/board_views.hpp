@@ -14,7 +14,7 @@
 
 namespace roomradar {
 
-/// Throws Error naming the field, its value and the rule.
+/// Throws Error if a field is out of range, naming the field, its value and the valid range.
 void require_valid(const Board& board);
 
 struct DepthSample {

@@ -22,7 +22,7 @@
 
 namespace roomradar {
 
-/// Throws Error if the folder exists and is not empty, so that no session can be recorded in it.
+/// Throws Error if no session can be recorded in the folder, because it exists and is not empty.
 void require_can_become_session(const std::filesystem::path& folder);
 
 /// Records a session during the run. The session of a killed run can be replayed up to its last recorded
@@ -64,7 +64,7 @@ bool is_session_calibrated(const std::filesystem::path& folder);
 bool is_session_events(const std::filesystem::path& file);
 
 /// Reads the events file of a recorded session. Ignores an incomplete last line. Completes events of sessions
-/// recorded by older versions, so that objects get the same pose as in that run. Throws Error as
+/// recorded by older versions, so that objects get the same poses as in the recorded run. Throws Error as
 /// read_script() does.
 Script read_session_events(const std::filesystem::path& file);
 

@@ -15,7 +15,7 @@ std::optional<FarmPlan> share_plan(const FarmPlan* plan);
 /// Runs the jobs of a plan, one at a time on each rank. Rank 0 assigns the jobs, and runs jobs, too. A rank
 /// that waits for a job sleeps. Call on all ranks, on the thread that initialised MPI.
 /// @param plan     from share_plan()
-/// @param program  file of the program that the jobs run
+/// @param program  path of the executable that the jobs run
 /// @param watch    called on rank 0 only
 /// @return rank 0: the final state; undefined on other ranks
 FarmState run_farm_on_ranks(const FarmPlan& plan, const std::filesystem::path& program,

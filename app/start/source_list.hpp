@@ -23,9 +23,9 @@ struct SourceEntry {
 /// them.
 std::vector<SourceEntry> list_kinects();
 
-/// Returns the recordings among the subfolders and files of `folder` and of `folder`/recordings, by name;
-/// only `folder` itself if it is a recording. Considers subfolders() and files_in_folder(). Ignores
-/// unreadable folders and folders without a recording.
+/// Returns the recordings among the subfolders and files of `folder` and of `folder`/recordings,
+/// sorted by name. If `folder` is a recording, returns only `folder`. Searches what subfolders() and
+/// files_in_folder() return. Ignores unreadable folders and folders without a recording.
 std::vector<SourceEntry> list_recordings(const std::filesystem::path& folder);
 
 /// Returns the simulated rooms, without the one with the checkerboard.

@@ -7,10 +7,11 @@
 namespace roomradar {
 
 /// Writes the state of an Odometry object into the empty folder `into`. Call odometry.finish_jobs() first.
-/// Writes state.bin, and per keyframe its view (keyframe-NUMBER-REVISION.bin) and its database entry
-/// (place-NUMBER.bin). Does not write the database of a prior map. Throws Error if a file cannot be written.
-/// @param previous  folder of an earlier checkpoint of the same object, or empty. Files of the same name
-///                  there are linked, or copied if linking fails
+/// Writes state.bin, and per keyframe its images (StoredView, keyframe-NUMBER-REVISION.bin) and its entry for
+/// place recognition (place-NUMBER.bin). Does not write the database of a prior map. Throws Error if a file
+/// cannot be written.
+/// @param previous  folder of an earlier checkpoint of the same object, or empty. A file that exists
+///                  there by the same name is hard-linked into `into`, or copied if linking fails
 void save_odometry(const Odometry& odometry, const std::filesystem::path& into,
                    const std::filesystem::path& previous);
 

@@ -15,8 +15,8 @@ namespace roomradar {
 struct SensorTiming {
   double depth_readout_s = 0.0;
   double colour_readout_s = 0.0;
-  /// Error of the stamps' difference: the true time of colour minus depth (middles of their readouts) is the
-  /// difference of their stamps plus colour_delay_s.
+  /// Offset between the clocks of colour and depth: the true time of colour minus that of depth, both in the
+  /// middle of their readouts, is the difference of their time stamps plus colour_delay_s.
   double colour_delay_s = 0.0;
   friend bool operator==(const SensorTiming&, const SensorTiming&) = default;
 };
@@ -28,7 +28,7 @@ struct Frame {
 
   DepthImage depth_m;  ///< same size as depth_camera
   Intrinsics depth_camera;
-  DepthNoise depth_noise;  ///< of the sensor
+  DepthNoise depth_noise;
 
   ColourImage colour;  ///< same size as colour_camera; empty if the source has none
   Intrinsics colour_camera;
@@ -42,7 +42,7 @@ struct Frame {
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame
 };
 
-/// Copies index, times, cameras, pose and gravity. The images of `to` are unchanged.
+/// Copies everything but the images, which stay unchanged in `to`.
 inline void copy_all_but_images(const Frame& from, Frame& to) {
   to.index = from.index;
   to.stamp_s = from.stamp_s;

@@ -18,7 +18,7 @@ namespace roomradar {
 
 /// Signals of the scan window when tracking is lost.
 struct LostSignal {
-  bool flashes = true;  ///< the picture's frame flashes red
+  bool flashes = true;  ///< a red border flashes round the image
   bool rings = false;   ///< the terminal's bell rings once
 };
 
@@ -55,7 +55,6 @@ struct PrescanOptions {
   double max_memory_mb = 0.0;
   /// True: opens a window that shows the scan.
   bool window = false;
-  /// Signal of the window when tracking is lost.
   LostSignal lost_signal;
   /// Place that the window asks the user to scan first, in the world frame of the extended map. Set by the
   /// program, not by an option.

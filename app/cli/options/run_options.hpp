@@ -53,7 +53,7 @@ struct RunOptions {
   /// Time without motion after which a change of the room is committed to the map. Unset: only script events
   /// commit changes.
   std::optional<double> commit_after_s;
-  /// Memory target of a run in a building, MB: not guaranteed as a limit; 0: no limit.
+  /// Memory target of a run in a building, MB, which may be exceeded; 0: none.
   double max_memory_mb = 0.0;
   /// Behaviour after the source's last frame.
   AtEnd at_end = AtEnd::kEnd;

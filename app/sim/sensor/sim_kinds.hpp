@@ -1,5 +1,5 @@
-// sim_kinds.hpp: kinds of camera paths, moving objects and crates of a simulation, with their names in a
-// spec.
+// sim_kinds.hpp: kinds of camera paths, moving objects and crates of a simulation, with their names in
+// sources such as sim:table?path=view, see parse_sim_spec().
 #pragma once
 #include <string_view>
 
@@ -10,7 +10,7 @@ enum class CameraPathKind {
   kScan,
   /// The hand-held camera stays at one position and looks at Room::focus_world.
   kView,
-  /// The camera swings in front of Room::focus_world, near, far and tilted, for calibration.
+  /// For calibration: the camera views Room::focus_world from varying distances and tilts.
   kSwing,
 };
 enum class MoverKind {
@@ -45,7 +45,7 @@ enum class CrateKind {
 std::string_view to_string(CameraPathKind kind);
 std::string_view to_string(MoverKind kind);
 std::string_view to_string(Pace pace);
-/// Returns the value's name in a spec: 0, 1, comes or goes.
+/// Returns the value's name in a source, see parse_sim_spec(): 0, 1, comes or goes.
 std::string_view to_string(CrateKind kind);
 
 }  // namespace roomradar

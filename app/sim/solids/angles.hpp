@@ -1,4 +1,4 @@
-// angles.hpp: the angle of a full rotation.
+// angles.hpp: angle constants.
 #pragma once
 #include <numbers>
 

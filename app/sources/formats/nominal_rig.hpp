@@ -15,8 +15,8 @@ enum class NominalRig {
   kTum,
   /// The Xtion of the BONN RGB-D Dynamic Dataset, with depth registered to colour.
   kBonn,
-  /// The unknown sensor of a folder of numbered images, fitted to one such recording. Depth is not registered
-  /// to colour.
+  /// A folder of numbered images from an unknown sensor, with intrinsics fitted to one such recording. Depth
+  /// is not registered to colour.
   kNumbered,
   /// A Kinect v1 through libfreenect. Depth is not registered to colour.
   kKinect,
@@ -60,10 +60,10 @@ CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize>
 
 /// Returns the cameras of the recording in `folder`. Depth intrinsics are the first of these that exists:
 /// `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt, nominal_rig(). The colour camera is
-/// that of camera.json, or else of nominal_rig(). The colour camera equals the depth camera if depth is
-/// registered to colour: for kTum and kBonn, for kNumbered with depth intrinsics from the caller or a file,
-/// and for a camera.json without colour. Throws Error if intrinsics are invalid, or if their size differs
-/// from the images'. The message then contains both sizes and a remedy.
+/// that of camera.json, or else of nominal_rig(). The colour camera equals the depth camera for kTum and
+/// kBonn, and for a camera.json without colour. It also does for kNumbered if the depth intrinsics are from
+/// the caller or a file: depth is then assumed to be registered to colour. Throws Error if intrinsics are
+/// invalid, or if their size differs from the images'. The message then contains both sizes and a remedy.
 CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
                            const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
                            std::optional<ImageSize> colour);

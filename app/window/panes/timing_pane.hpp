@@ -24,9 +24,9 @@ class TimingPane {
   void draw(const Area& area, const look::Fonts& fonts) const;
 
   [[nodiscard]] double budget_ms() const { return budget_ms_; }
-  /// Returns the smaller of kGoal_ms and the budget.
+  /// Time limit that the chart marks, ms.
   [[nodiscard]] double goal_ms() const { return std::min(kGoal_ms, budget_ms_); }
-  /// Returns the time of the last frame, without reading.
+  /// Returns the processing time of the last frame, excluding the time to read it from the source.
   [[nodiscard]] float frame_ms() const { return frames_.empty() ? 0.0F : frames_.back().whole_ms; }
 
   /// Stages from bottom to top of the chart. "rest" is the time outside all other stages.

@@ -34,7 +34,7 @@ screen() {
   pixels=$folder/Xvfb_screen0
 }
 pixel_sum() { cksum < "$pixels"; }
-# until_changed SUM SECONDS: waits until the screen is another one than that of SUM, for at most so many seconds.
+# until_changed SUM SECONDS: waits until the screen is another one than that of SUM, for at most SECONDS.
 until_changed() {
   local end=$((${EPOCHREALTIME/[.,]/} + $2 * 1000000))
   while [[ $(pixel_sum) == "$1" && ${EPOCHREALTIME/[.,]/} -lt $end ]]; do sleep 0.02; done
@@ -50,7 +50,7 @@ still() {
     before=$now
   done
 }
-# shot NAME [COLOURS]: waits until the screen shows more than so many colours. Keeps it if the test was given a folder.
+# shot NAME [COLOURS]: waits until the screen shows more than COLOURS colours. Keeps it if the test was given a folder.
 shot() {
   for _ in $(seq 300); do
     if [[ $(convert "xwd:$pixels" -format %k info:) -gt ${2:-500} ]]; then

@@ -159,7 +159,7 @@ TEST(Odometry, GivenPosesAreKeptAndBecomePlaces) {
   }
 }
 
-TEST(Stillness, SeesAShiftOfHalfAPixelAndNotAHand) {
+TEST(StationaryCamera, SeesAShiftOfHalfAPixelAndNotAHand) {
   Image<float> before(160, 120), shifted(160, 120);
   for (int y = 0; y < 120; ++y) {
     for (int x = 0; x < 160; ++x) {

@@ -410,7 +410,7 @@ TEST(Presets, WhatIsBetterByChanceAloneIsNotCalledAccurate) {
   EXPECT_EQ(choose_presets(work, summaries, 0).accurate, std::nullopt);
 }
 
-TEST(Ladder, TurnsFirstWhatGivesMostForLeastAndKeepsItTurned) {
+TEST(GreedySearch, TurnsFirstWhatGivesMostForLeastAndKeepsItTurned) {
   Machine machine;
   const MeasuredWork work = machine.work();
   const std::vector<SettingSummary> summaries{
@@ -427,7 +427,7 @@ TEST(Ladder, TurnsFirstWhatGivesMostForLeastAndKeepsItTurned) {
   EXPECT_TRUE(greedy_settings(work, {summary_of({2, 1, 0}, 1.0, kNone)}, 0, 9).empty());
 }
 
-TEST(Ladder, GoesTheOtherWayToWhatIsBetter) {
+TEST(GreedySearch, GoesTheOtherWayToWhatIsBetter) {
   Machine machine;
   MeasuredWork work = machine.work();
   work.parameters[0].defaults = 0;
