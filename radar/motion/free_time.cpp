@@ -93,12 +93,20 @@ struct RelativeMotion {
     return is_enough(enough_s, allowed_m(apart_m, keep_m), closing_m_s,
                      0.5 * turning.norm() * turn_rad_s * reach_m + tree_quadratic_m_s2);
   }
+  /// Bounds of the approach of the object's points to a plane perpendicular to the direction: beyond the
+  /// present velocity at most quadratic_m_s2 t^2, and at most fastest_m_s t.
+  struct Approach {
+    double quadratic_m_s2, fastest_m_s;
+  };
+  [[nodiscard]] Approach approach_along(const Vec3& direction) const {
+    const double turning = direction.cross(angular).norm();
+    return {0.5 * turning * turn_rad_s * reach_m + tree_quadratic_m_s2,
+            -direction.dot(linear) + turning * reach_m};
+  }
   /// Returns true if the object's triangle stays farther along the direction than face_at for enough_s.
   [[nodiscard]] bool separates_for(double enough_s, const Vec3& direction, const FrameTriangle& o,
                                    double face_at) const {
-    const double turning = direction.cross(angular).norm();
-    const double quadratic = 0.5 * turning * turn_rad_s * reach_m + tree_quadratic_m_s2;
-    const double fastest = -direction.dot(linear) + turning * reach_m;
+    const auto [quadratic, fastest] = approach_along(direction);
     for (const Vec3& corner : o.corners) {
       const double apart_m = direction.dot(corner) - face_at;
       if (!(apart_m > 0.0)) return false;
@@ -112,9 +120,7 @@ struct RelativeMotion {
   /// corners. Negative if the direction does not separate them.
   [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, const FrameTriangle& s) const {
     const double face_at = range_along(direction, s.corners).high;
-    const double turning = direction.cross(angular).norm();
-    const double quadratic = 0.5 * turning * turn_rad_s * reach_m + tree_quadratic_m_s2;
-    const double fastest = -direction.dot(linear) + turning * reach_m;
+    const auto [quadratic, fastest] = approach_along(direction);
     double free_s = kInfinity<double>;
     for (const Vec3& corner : o.corners) {
       const double apart_m = direction.dot(corner) - face_at;

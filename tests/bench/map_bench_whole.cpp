@@ -106,30 +106,30 @@ void judge(const StaticMap& map, const Frame& frame, Bins& bins) {
 class MergedMap {
  public:
   MergedMap(double resolution_m, const FusionConfig& config, int submap_frames)
-      : merged{StaticMap(resolution_m, config), {}}, submap_(resolution_m, config), left_(submap_frames) {
-    submap_frames_ = submap_frames;
-  }
+      : merged{StaticMap(resolution_m, config), {}},
+        submap_(resolution_m, config),
+        submap_frames_(submap_frames) {}
   Fused merged;
 
   void fuse(const Frame& frame) {
     if (submap_frames_ == 0) return;
-    if (left_ == submap_frames_) T_world_submap_ = *frame.T_world_camera;
+    if (fused_ == 0) T_world_submap_ = *frame.T_world_camera;
     (void)submap_.fuse(frame, T_world_submap_.inverse() * *frame.T_world_camera);
-    if (--left_ == 0) merge();
+    if (++fused_ == submap_frames_) merge();
   }
   void merge() {
-    if (left_ == submap_frames_) return;
+    if (fused_ == 0) return;
     const double start_ms = test::thread_ms();
     add_map(submap_, T_world_submap_, merged.map);
     merged.times.samples_ms.push_back(test::thread_ms() - start_ms);
     submap_ = StaticMap(merged.map.resolution_m(), merged.map.config());
-    left_ = submap_frames_;
+    fused_ = 0;
   }
 
  private:
   StaticMap submap_;
   Eigen::Isometry3d T_world_submap_ = Eigen::Isometry3d::Identity();
-  int submap_frames_ = 0, left_;
+  int submap_frames_, fused_ = 0;
 };
 
 nlohmann::json row_of(const WholeCell& cell, const Fused& fused, const Bins& bins) {
