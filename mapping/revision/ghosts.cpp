@@ -237,7 +237,7 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
   const auto seen_through = those([this](const Votes& votes, const AbsenceVotes&) {
     return votes.through >= config_.min_through && is_share(votes.through, votes.seen);
   });
-  std::vector<VotedVoxel> absent = find_absent(may_be_gone, absence_, min_voxels);
+  const std::vector<VotedVoxel> absent = find_absent(may_be_gone, absence_, min_voxels);
   std::vector<VotedVoxel> ghosts, sure;
   const std::vector<std::size_t> together = voxels_together(seen_through);
   for (std::size_t i = 0; i < seen_through.size(); ++i) {
@@ -257,8 +257,11 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
   const auto goes_along = [](const Votes& votes, const AbsenceVotes& absence) {
     return may_go_along(absence, votes.seen);
   };
-  if (!absent.empty()) add(spread(std::move(absent), those(goes_along)));
-  if (!ghosts.empty()) add(spread(std::move(ghosts), those(is_once_through)));
+  if (!absent.empty()) add(mostly_core(spread(absent, those(goes_along)), absent.size()));
+  if (!ghosts.empty()) {
+    add(ghosts);
+    add(mostly_core(spread(ghosts, those(is_once_through)), ghosts.size()));
+  }
   if (!sure.empty()) {
     const int reach = static_cast<int>(std::lround(kReach_m / resolution_m_));
     const auto is_glimpsed = [this](const Votes& votes, const AbsenceVotes&) {
@@ -267,7 +270,8 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
     const auto is_hardly_seen = [](const Votes& votes, const AbsenceVotes&) {
       return votes.seen <= kHardlySeen;
     };
-    sure = spread(std::move(sure), those(is_once_through));
+    const std::size_t cores = sure.size();
+    sure = mostly_core(spread(std::move(sure), those(is_once_through)), cores);
     sure = spread(std::move(sure), those(is_glimpsed), reach);
     add(spread(std::move(sure), those(is_hardly_seen), reach));
   }

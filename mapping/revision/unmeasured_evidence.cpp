@@ -171,4 +171,23 @@ std::vector<VotedVoxel> spread(std::vector<VotedVoxel> cores, std::span<const Vo
   return cores;
 }
 
+std::vector<VotedVoxel> mostly_core(std::span<const VotedVoxel> voxels, std::size_t cores) {
+  std::vector<VotedVoxel> kept;
+  std::vector<std::size_t> group;
+  Unreached unreached(voxels);
+  for (std::size_t seed = 0; seed < cores; ++seed) {
+    group.clear();
+    const auto take = [&](const VotedVoxel& one) {
+      group.push_back(static_cast<std::size_t>(&one - voxels.data()));
+    };
+    unreached.take_round(voxels[seed].voxel, take);
+    for (std::size_t done = 0; done < group.size(); ++done)
+      unreached.take_round(VoxelIndex(voxels[group[done]].voxel), take);
+    const auto own = std::count_if(group.begin(), group.end(), [&](std::size_t i) { return i < cores; });
+    if (2 * static_cast<std::size_t>(own) < group.size()) continue;
+    for (const std::size_t i : group) kept.push_back(voxels[i]);
+  }
+  return kept;
+}
+
 }  // namespace roomradar

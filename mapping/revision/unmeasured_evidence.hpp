@@ -80,4 +80,11 @@ std::vector<VotedVoxel> find_absent(std::span<const VotedVoxel> candidates,
 std::vector<VotedVoxel> spread(std::vector<VotedVoxel> cores, std::span<const VotedVoxel> going_along,
                                int max_steps = std::numeric_limits<int>::max());
 
+/// Returns the voxels of those connected components in which at least half of the voxels are core voxels.
+/// Most voxels of a departed object have enough evidence by themselves. Where few have, an error of the pose
+/// or missing depth of the surface explains them: a glossy surface far away, of which every frame measures
+/// another part.
+/// @param voxels  the core voxels first, as spread() returns them
+std::vector<VotedVoxel> mostly_core(std::span<const VotedVoxel> voxels, std::size_t cores);
+
 }  // namespace roomradar

@@ -406,6 +406,36 @@ TEST(Ghosts, ADarkPanelThatIsMeasuredFromSomeSidesOnlyStays) {
   EXPECT_EQ(scanned.map.occupancy_at(kInSlabsFace), Occupancy::kOccupied);
 }
 
+TEST(Ghosts, AGlossyWallOfWhichEachFrameMeasuresOtherPartsStaysAsAWhole) {
+  // A wall of 1.8 m that has no depth in a third of the image's columns, other ones in each frame. In the
+  // middle, 40 cm of it are measured, and have their colour, in a third of the frames only, like an object
+  // that was there for that time.
+  const Scene glossy = test::box({Eigen::Vector3d(-0.9, 1.6, -0.2), Eigen::Vector3d(0.9, 1.8, 0.2)});
+  std::vector<Frame> frames;
+  for (int i = 0; i < 45; ++i) {
+    const Eigen::Vector3d eye(0.15 * std::sin(0.3 * i), 0.0, 0.05 * std::cos(0.3 * i));
+    Frame frame = exact_frame(glossy, kCamera, looking_at(eye, {0.0, 2.0, 0.0}), Rgb{180, 60, 50});
+    for (int y = 0; y < kCamera.height_px; ++y)
+      for (int x = 0; x < kCamera.width_px; ++x) {
+        float& depth_m = frame.depth_m.at(x, y);
+        const Eigen::Vector3d p_world =
+            *frame.T_world_camera * back_project(kCamera, x, y, static_cast<double>(depth_m));
+        const bool changes = depth_m > 0.0F && std::abs(p_world.x()) < 0.2;
+        if (changes && (i < 15 || i >= 30)) {
+          frame.colour.at(x, y) = Rgb{90, 90, 100};
+          depth_m = 0.0F;
+        }
+        if (!changes && (x / 20 + i) % 3 == 0) depth_m = 0.0F;
+      }
+    frame.index = i;
+    test::add_depth_noise(frame, 1 + static_cast<unsigned>(i));
+    frames.push_back(std::move(frame));
+  }
+  const Scan scanned = scan(FrameList(frames));
+  EXPECT_EQ(scanned.ghosts, 0);
+  EXPECT_EQ(scanned.map.occupancy_at({0.5, 1.61, 0.01}), Occupancy::kOccupied);
+}
+
 TEST(Ghosts, WhatIsHiddenBySomethingTooNearToBeMeasuredStays) {
   // A slab, and in front of its left half a post that has depth only from a distance. Later the camera sways
   // close behind the post. The slab's left half is then sometimes measured, sometimes hidden by colour
