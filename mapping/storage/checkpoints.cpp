@@ -119,14 +119,14 @@ std::optional<Checkpoint> Checkpoints::resume() {
   return std::nullopt;
 }
 
-bool Checkpoints::is_due() {
+bool Checkpoints::is_due(double intervals) {
   reap(/*wait=*/writes_soon_);
-  return writes_soon_ || (writer_ < 0 && since_last_s() >= every_s_.count());
+  return writes_soon_ || (writer_ < 0 && since_last_s() >= intervals * every_s_.count());
 }
 
-bool Checkpoints::is_due_at_end() {
+bool Checkpoints::is_due_at_end(double intervals) {
   reap(/*wait=*/true);
-  return writes_soon_ || since_last_s() >= every_s_.count() / 3.0;
+  return writes_soon_ || since_last_s() >= intervals * every_s_.count() / 3.0;
 }
 
 double Checkpoints::since_last_s() const {
