@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mapping/coverage/observed_area.hpp"
+#include "mapping/fusion_selection.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/registration.hpp"
 #include "mapping/map/surface_points.hpp"
@@ -192,6 +193,31 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
   return found;
 }
 
+/// Returns the poses of the frames that are to be fused.
+std::vector<TimedPose> poses_to_fuse(const PrescanConfig& config, std::vector<TimedPose> trajectory) {
+  std::erase_if(trajectory, [&](const TimedPose& pose) {
+    return is_held_out(pose.frame_index, config.hold_out) || pose.frame_index % config.fuse_every != 0;
+  });
+  std::vector<TimedPose> chosen;
+  for (const std::size_t i :
+       choose_frames_to_fuse(trajectory, static_cast<std::size_t>(config.max_fused_frames)))
+    chosen.push_back(trajectory[i]);
+  return chosen;
+}
+
+/// Returns the positions in the source of the frames still to be fused. Returns all positions if frames
+/// without an entry in pass.found, such as unreadable ones, leave them unknown.
+std::vector<std::int64_t> positions_of(const std::map<std::int64_t, Eigen::Isometry3d>& T_world_camera,
+                                       const FusionPass& pass) {
+  const std::vector<TrackedFrame>& frames = pass.found.frames;
+  const bool are_known = static_cast<std::int64_t>(frames.size()) == pass.counts.frames_read;
+  std::vector<std::int64_t> positions;
+  for (std::int64_t i = pass.frames_read; i < pass.counts.frames_read; ++i)
+    if (!are_known || T_world_camera.contains(frames[static_cast<std::size_t>(i)].frame_index))
+      positions.push_back(i);
+  return positions;
+}
+
 /// Computes the world of a new map: +z up. Tracked poses get their origin on the floor below the first
 /// camera; recorded poses keep the recording's.
 Eigen::Isometry3d transform_to_new_map(const TrajectoryEstimate& found, PoseOrigin poses) {
@@ -259,21 +285,20 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
 
 void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory, FusionPass& pass) {
   if (pass.revision || pass.ghost_voxels) return;
+  const std::vector<TimedPose> to_fuse = poses_to_fuse(work.config, trajectory);
   std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
-  for (const TimedPose& pose : trajectory) T_world_camera[pose.frame_index] = pose.T_world_camera;
+  for (const TimedPose& pose : to_fuse) T_world_camera[pose.frame_index] = pose.T_world_camera;
   if (!work.source->rewind()) throw Error(work.source->name() + ": cannot be read a second time");
   PrescanCounts second_pass;
-  second_pass.frames_read = pass.frames_read;
   if (pass.frames_read > 0) skip_frames(*work.source, pass.frames_read, kFusingStage, work.progress);
   release_unused_memory();
   bool has_room = !pass.stopped_for_memory;  // set if the pass had ended before it was resumed
-  ReadAhead frames(*work.source, pass.counts.frames_read - pass.frames_read);
+  ReadAhead frames(*work.source, pass.frames_read, positions_of(T_world_camera, pass));
   Frame frame;
   while (has_room && read(frames, work.times, frame, second_pass)) {
-    pass.frames_read = second_pass.frames_read;
+    pass.frames_read = frames.position() + 1;
     const auto pose = T_world_camera.find(frame.index);
-    if (pose == T_world_camera.end() || is_held_out(frame.index, work.config.hold_out)) continue;
-    if (frame.index % work.config.fuse_every != 0) continue;
+    if (pose == T_world_camera.end()) continue;
     const Clock::time_point start = Clock::now();
     const FuseStatus fused = pass.octree.fuse(frame, pose->second);
     const double fuse_ms = ms_since(start);

@@ -27,6 +27,7 @@ PrescanConfig prescan_config_of(const PrescanOptions& options) {
   config.poses = options.poses;
   config.up = options.up;
   config.hold_out = options.hold_out;
+  config.max_fused_frames = options.max_fused;
   config.bake_texture = options.texture;
   config.max_memory_bytes = static_cast<std::size_t>(kMB * options.max_memory_mb);
   // Recorded poses may disagree with the depth by more than the threshold that tells a ghost from a wall;

@@ -60,6 +60,7 @@ nlohmann::json settings_of(const PrescanOptions& options) {
   if (options.up)
     settings["up"] = options.up->up_world ? to_json(*options.up->up_world) : nlohmann::json("camera");
   if (options.hold_out > 0) settings["hold_out"] = options.hold_out;
+  if (options.max_fused != PrescanOptions{}.max_fused) settings["max_fused"] = options.max_fused;
   if (!options.texture) settings["texture"] = "off";
   if (options.max_memory_mb > 0.0) settings["max_memory_mb"] = options.max_memory_mb;
   if (!options.calibration.empty()) settings["calibration"] = options.calibration;

@@ -133,6 +133,7 @@ std::map<std::string, std::string> identity_for(const PrescanOptions& options, c
                      ? std::to_string(options.frames->first) + ":" + std::to_string(options.frames->last)
                      : "all"},
       {"hold-out", std::to_string(options.hold_out)},
+      {"max-fused", std::to_string(options.max_fused)},
       {"calibration", calibration.empty() ? "none" : sha256_of_file(calibration)},
       {"into", into}};
   if (recording) identity["length"] = std::to_string(recording->frame_count().value_or(-1));

@@ -56,6 +56,24 @@ TEST(Prescan, ARecordedPoseThatNoMapReachesIsNone) {
   }
 }
 
+TEST(Prescan, OfALongScanAsManyFramesAreFusedAsTheConfigAllows) {
+  for (const std::int64_t max_frames : {0, 3, kFrames}) {
+    test::KeptSource source(posed_frames());
+    PrescanConfig config;
+    config.poses = PoseOrigin::kRecorded;
+    config.resolution_m = 0.03;
+    config.max_fused_frames = max_frames;
+    StageTimes times;
+    const PrescanResult result = prescan(source, config, times);
+    EXPECT_EQ(result.counts.frames_tracked, kFrames);
+    if (max_frames == 3)
+      EXPECT_LE(result.counts.frames_fused, 3);
+    else
+      EXPECT_EQ(result.counts.frames_fused, kFrames);
+    EXPECT_GT(result.counts.frames_fused, 0);
+  }
+}
+
 TEST(Prescan, PosesThatAreAllOutOfReachAreNamed) {
   std::vector<Frame> frames = posed_frames();
   for (Frame& frame : frames) frame.T_world_camera->translation().x() += 1e5;

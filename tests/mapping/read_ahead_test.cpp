@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -29,21 +30,33 @@ class Endless final : public FrameSource {
     return {ReadStatus::kFrame, {}};
   }
   bool rewind() override { return false; }
+  bool seek(std::int64_t index) override {
+    if (can_seek) next_ = index;
+    return can_seek;
+  }
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
   [[nodiscard]] std::string name() const override { return "endless"; }
 
   int reads = 0;
   std::int64_t faulty = -1;
   std::int64_t last = 1000;
+  bool can_seek = false;
 
  private:
   std::int64_t next_ = 0;
   bool has_waited_ = false;
 };
 
+/// Positions of the first frames of a source.
+std::vector<std::int64_t> first(std::int64_t count) {
+  std::vector<std::int64_t> positions(static_cast<std::size_t>(count));
+  std::iota(positions.begin(), positions.end(), std::int64_t{0});
+  return positions;
+}
+
 /// Indices of the delivered frames; -1: unreadable, -2: waiting.
 std::vector<std::int64_t> delivered(FrameSource& source, std::int64_t count) {
-  ReadAhead frames(source, count);
+  ReadAhead frames(source, 0, first(count));
   std::vector<std::int64_t> indices;
   Frame frame;
   for (;;) {
@@ -74,18 +87,35 @@ TEST(ReadAhead, EndsWithTheSource) {
 TEST(ReadAhead, ErrorsComeAtTheirFrame) {
   Endless source;
   source.faulty = 1;
-  ReadAhead frames(source, 6);
+  ReadAhead frames(source, 0, first(6));
   Frame frame;
   EXPECT_EQ(frames.next(frame).status, ReadStatus::kFrame);
   EXPECT_EQ(frame.index, 0);
   EXPECT_THROW((void)frames.next(frame), Error);
 }
 
+TEST(ReadAhead, DeliversTheWantedFramesOnlyWhetherTheSourceCanSeekOrNot) {
+  for (const bool can_seek : {true, false}) {
+    Endless source;
+    source.can_seek = can_seek;
+    ReadAhead frames(source, 0, {1, 2, 5, 9});
+    std::vector<std::int64_t> indices;
+    Frame frame;
+    for (ReadResult result; (result = frames.next(frame)).status != ReadStatus::kEnd;) {
+      if (result.waiting) continue;
+      indices.push_back(result.status == ReadStatus::kFrame ? frame.index : -1);
+      EXPECT_TRUE(indices.back() == -1 || frames.position() == indices.back());
+    }
+    EXPECT_EQ(indices, (std::vector<std::int64_t>{1, -1, 5, 9})) << can_seek;
+    EXPECT_EQ(source.reads, can_seek ? 4 : 11) << "of the source, with the wait before frame 4";
+  }
+}
+
 TEST(ReadAhead, MayBeLeftWhileAFrameIsRead) {
   Endless source;
   Frame frame;
   {
-    ReadAhead frames(source, 6);
+    ReadAhead frames(source, 0, first(6));
     EXPECT_EQ(frames.next(frame).status, ReadStatus::kFrame);
   }
   EXPECT_EQ(source.reads, 2);

@@ -35,8 +35,8 @@ std::vector<CommandHelp> command_helps() {
         {"Source and window", {"--frames", "--calibration", "--poses", "--ui-scale", "--lost-signal"}},
         {"World", {"--up"}},
         {"Accuracy, time and memory",
-         {"--resolution", "--deviation", "--tracking-px", "--fuse-every", "--texture", "--max-memory",
-          "--presets"}},
+         {"--resolution", "--deviation", "--tracking-px", "--fuse-every", "--max-fused", "--texture",
+          "--max-memory", "--presets"}},
         {"Interruption and measurement", {"--checkpoint-every", "--hold-out"}}},
        "  roomradar prescan kinect:0 --map maps/kitchen\n"
        "  roomradar prescan 'sim:table?frames=200' --map maps/table --report prescan.json\n"},

@@ -56,6 +56,13 @@ void add_options(CLI::App& command, PrescanOptions& options) {
           "mean upright (default: gravity, otherwise level surfaces)")
       ->type_name("X,Y,Z|camera");
   command
+      .add_option(
+          "--max-fused", options.max_fused,
+          "fuse at most N frames, so that the map is ready sooner; of a longer scan, frames whose view\n"
+          "hardly differs from the last fused one's are left out; 0: no limit (default: 2000)")
+      ->check(whole_within(0, 1'000'000'000))
+      ->type_name("N");
+  command
       .add_option("--hold-out", options.hold_out,
                   "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them\n"
                   "(default: none)")
@@ -70,8 +77,10 @@ void add_options(CLI::App& command, PrescanOptions& options) {
       "continue the interrupted scan of this map (DIR.unfinished); if there is none, extend the\n"
       "map in DIR with the frames of SOURCE (default: off)");
   command
-      .add_option("--checkpoint-every", options.checkpoint_every_s,
-                  "seconds between checkpoints; 0: none, so the scan cannot be resumed (default: 2.5)")
+      .add_option(
+          "--checkpoint-every", options.checkpoint_every_s,
+          "seconds between checkpoints, four times as long while frames are fused; 0: none, so the scan "
+          "cannot be resumed (default: 2.5)")
       ->check(within(0.0, 86400.0, "seconds"))
       ->type_name("S");
   command

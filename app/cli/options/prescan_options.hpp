@@ -45,6 +45,8 @@ struct PrescanOptions {
   std::optional<GivenUp> up;
   /// N > 0: every Nth frame is not fused into the map, but used to evaluate it.
   std::int64_t hold_out = 0;
+  /// Max number of fused frames; 0: no limit.
+  std::int64_t max_fused = 2000;
   /// True: bakes a texture of the surface.
   bool texture = true;
   /// True: continues an interrupted scan, or extends an existing map.
