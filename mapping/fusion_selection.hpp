@@ -1,12 +1,16 @@
 // fusion_selection.hpp: chooses the frames of a long scan that are fused.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "mapping/types/trajectory.hpp"
 
 namespace roomradar {
+
+/// Default of PrescanConfig::max_fused_frames. At 30 Hz, all frames of the first minute.
+inline constexpr std::int64_t kMaxFusedFrames = 2000;
 
 /// Returns the indices of the poses whose frames are to be fused, increasing: all of them if there are at
 /// most max_frames. Otherwise a frame is left out if it is one of the n - 1 frames after a chosen one, and

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mapping/coverage/holes.hpp"
+#include "mapping/fusion_selection.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/odometry/up_direction.hpp"
@@ -30,7 +31,7 @@ struct PrescanConfig {
   int fuse_every = 1;         ///< only tracked frames whose index is a multiple of this are fused
   std::int64_t hold_out = 0;  ///< N > 0: frames selected by is_held_out() are tracked, but not fused
   /// Max number of frames that are fused; see choose_frames_to_fuse(). 0: no limit.
-  std::int64_t max_fused_frames = 2000;
+  std::int64_t max_fused_frames = kMaxFusedFrames;
   bool remove_ghosts = true;  ///< remove surfaces of objects that moved during the scan
   GhostConfig ghosts;
   SurfaceConfig surface;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "mapping/coverage/observed_area.hpp"
-#include "mapping/fusion_selection.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/registration.hpp"
 #include "mapping/map/surface_points.hpp"

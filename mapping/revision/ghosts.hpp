@@ -27,8 +27,9 @@ class GhostVotes {
   void look(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   /// Classification of the surface voxels. A departed object is a large enough connected component of voxels
-  /// with enough evidence, plus connected voxels with weaker evidence. Components of at least 0.5 x 0.5 m are
-  /// too large to be tracking errors. Up to 20 cm around them, even weaker evidence suffices.
+  /// with enough evidence, plus connected voxels with weaker evidence. If the latter are more than half, only
+  /// the voxels that enough frames see through are removed. Components of at least 0.5 x 0.5 m are too large
+  /// to be tracking errors. Up to 20 cm around them, even weaker evidence suffices.
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects through which frames see
     std::vector<VoxelIndex> absent;  ///< voxels of departed objects without measured depth behind

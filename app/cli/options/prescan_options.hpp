@@ -7,6 +7,7 @@
 #include "app/objects/unknown_support.hpp"
 #include "app/quality/quality.hpp"
 #include "app/sources/formats/frame_range.hpp"
+#include "mapping/fusion_selection.hpp"
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/types/pose_origin.hpp"
 
@@ -46,7 +47,7 @@ struct PrescanOptions {
   /// N > 0: every Nth frame is not fused into the map, but used to evaluate it.
   std::int64_t hold_out = 0;
   /// Max number of fused frames; 0: no limit.
-  std::int64_t max_fused = 2000;
+  std::int64_t max_fused = kMaxFusedFrames;
   /// True: bakes a texture of the surface.
   bool texture = true;
   /// True: continues an interrupted scan, or extends an existing map.
