@@ -39,16 +39,25 @@ class Unreached {
   }
 
   void take(const VoxelIndex& voxel) { index_of_.erase(voxel_key(voxel)); }
-  // Takes a voxel and its 26 neighbours, as far as they are in the set.
+  // Takes a voxel and its 26 neighbours, as far as they are in the set. Calls take(index in the set).
   template <typename Take>
   void take_round(const VoxelIndex& voxel, const Take& take) {
     for (int i = 0; i < kCellsRound; ++i) {
       const auto found = index_of_.find(voxel_key(voxel + neighbour_offset(i)));
       if (found == index_of_.end()) continue;
-      const VotedVoxel& taken = voxels_[found->second];
+      const std::size_t taken = found->second;
       index_of_.erase(found);
       take(taken);
     }
+  }
+  // Takes the connected component of a voxel, as far as it is in the set, and returns its indices.
+  std::vector<std::size_t> take_component(const VoxelIndex& voxel) {
+    std::vector<std::size_t> component;
+    const auto take = [&](std::size_t i) { component.push_back(i); };
+    take_round(voxel, take);
+    for (std::size_t done = 0; done < component.size(); ++done)
+      take_round(VoxelIndex(voxels_[component[done]].voxel), take);
+    return component;
   }
 
  private:
@@ -149,10 +158,7 @@ std::vector<VotedVoxel> find_absent(std::span<const VotedVoxel> candidates,
   Unreached unreached(candidates);
   for (const VotedVoxel& seed : candidates) {
     group.clear();
-    const auto take = [&](const VotedVoxel& one) { group.push_back(one); };
-    unreached.take_round(seed.voxel, take);
-    for (std::size_t done = 0; done < group.size(); ++done)
-      unreached.take_round(VoxelIndex(group[done].voxel), take);
+    for (const std::size_t i : unreached.take_component(seed.voxel)) group.push_back(candidates[i]);
     if (static_cast<double>(group.size()) >= min_group_voxels && turn_change(group, votes) >= kTurnChange)
       absent.insert(absent.end(), group.begin(), group.end());
   }
@@ -167,25 +173,19 @@ std::vector<VotedVoxel> spread(std::vector<VotedVoxel> cores, std::span<const Vo
   for (int step = 0; step < max_steps && done < cores.size(); ++step)
     for (const std::size_t end = cores.size(); done < end; ++done)
       unreached.take_round(VoxelIndex(cores[done].voxel),
-                           [&](const VotedVoxel& one) { cores.push_back(one); });
+                           [&](std::size_t i) { cores.push_back(going_along[i]); });
   return cores;
 }
 
 std::vector<VotedVoxel> mostly_core(std::span<const VotedVoxel> voxels, std::size_t cores) {
   std::vector<VotedVoxel> kept;
-  std::vector<std::size_t> group;
   Unreached unreached(voxels);
   for (std::size_t seed = 0; seed < cores; ++seed) {
-    group.clear();
-    const auto take = [&](const VotedVoxel& one) {
-      group.push_back(static_cast<std::size_t>(&one - voxels.data()));
-    };
-    unreached.take_round(voxels[seed].voxel, take);
-    for (std::size_t done = 0; done < group.size(); ++done)
-      unreached.take_round(VoxelIndex(voxels[group[done]].voxel), take);
-    const auto own = std::count_if(group.begin(), group.end(), [&](std::size_t i) { return i < cores; });
-    if (2 * static_cast<std::size_t>(own) < group.size()) continue;
-    for (const std::size_t i : group) kept.push_back(voxels[i]);
+    const std::vector<std::size_t> component = unreached.take_component(voxels[seed].voxel);
+    const auto own =
+        std::count_if(component.begin(), component.end(), [&](std::size_t i) { return i < cores; });
+    if (2 * static_cast<std::size_t>(own) < component.size()) continue;
+    for (const std::size_t i : component) kept.push_back(voxels[i]);
   }
   return kept;
 }
