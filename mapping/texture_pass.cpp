@@ -16,8 +16,8 @@
 namespace roomradar {
 namespace {
 
-constexpr double kMostBytes = 160e6;    // of all views
-constexpr double kBytesPerPixel = 4.2;  // of a view: colour, depth of half the size
+constexpr double kMostBytes = 80e6;     // of all views
+constexpr double kBytesPerPixel = 2.1;  // of a view: colour, depth of half the size
 constexpr double kColourPixels = 640.0 * 480.0;
 constexpr double kBakeBytes = 150e6;  // of an atlas and its JPEG
 constexpr std::size_t kMostViews = 160;

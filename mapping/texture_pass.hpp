@@ -9,7 +9,7 @@
 namespace roomradar {
 
 /// Reads at most 160 frames of pass.fused again, chosen by choose_views(), and bakes a texture of the mesh
-/// from their colours. Their pictures take at most 160 MB, unless a single one is larger.
+/// from their colours. Their pictures take at most 80 MB, unless a single one is larger.
 /// Returns null, and reads nothing, if the memory would exceed config.max_memory_bytes. Returns null if
 /// pass.fused is empty, or if no frame has colour and `earlier` is empty.
 ///

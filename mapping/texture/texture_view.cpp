@@ -62,23 +62,27 @@ float measured_at(const Frame& frame, const Eigen::Isometry3f& T_depth_colour,
   return frame.depth_m.at(static_cast<int>(x), static_cast<int>(y));
 }
 
-/// Returns the smallest depth among each pixel and its eight neighbours.
-DepthImage nearest_of_neighbours(const DepthImage& depth_m) {
-  DepthImage nearest_m(depth_m.width, depth_m.height);
+std::uint16_t in_mm(float depth_m) {
+  return static_cast<std::uint16_t>(std::min(1000.0F * depth_m + 0.5F, 65535.0F));
+}
+
+/// Returns the smallest depth among each pixel and its eight neighbours, mm.
+Image<std::uint16_t> nearest_of_neighbours(const DepthImage& depth_m) {
+  Image<std::uint16_t> nearest_mm(depth_m.width, depth_m.height);
   for (int y = 0; y < depth_m.height; ++y)
     for (int x = 0; x < depth_m.width; ++x) {
       float least = depth_m.at(x, y);
       for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth_m.height - 1); ++v)
         for (int u = std::max(x - 1, 0); u <= std::min(x + 1, depth_m.width - 1); ++u)
           least = std::min(least, depth_m.at(u, v));
-      nearest_m.at(x, y) = least;
+      nearest_mm.at(x, y) = in_mm(least);
     }
-  return nearest_m;
+  return nearest_mm;
 }
 
-/// Returns the depth up to which each pixel of `camera` (a smaller colour camera) shows the mesh.
-DepthImage shown_depth(const Frame& frame, const Eigen::Isometry3d& T_colour_world, const Mesh& mesh,
-                       const Intrinsics& camera) {
+/// Returns the depth, mm, up to which each pixel of `camera` (a smaller colour camera) shows the mesh.
+Image<std::uint16_t> shown_depth(const Frame& frame, const Eigen::Isometry3d& T_colour_world,
+                                 const Mesh& mesh, const Intrinsics& camera) {
   DepthImage shown_m = rasterise(mesh, camera, T_colour_world).depth_m;
   const Eigen::Isometry3f T_depth_colour = frame.T_colour_depth.inverse().cast<float>();
   for (int y = 0; y < shown_m.height; ++y)
@@ -124,11 +128,11 @@ TextureView make_texture_view(const Frame& frame, const Eigen::Isometry3d& T_wor
                               double image_speed_pxps) {
   TextureView view;
   view.camera = frame.colour_camera;
-  view.colour = frame.colour;
+  view.colour = subsampled(frame.colour);
   view.low = without_detail(frame.colour, kLowFactor);
   const Eigen::Isometry3d T_colour_world = frame.T_colour_depth * T_world_camera.inverse();
   view.T_camera_local = (T_colour_world * Eigen::Translation3d(mesh.origin)).cast<float>();
-  view.shown_m = shown_depth(frame, T_colour_world, mesh, scaled(frame.colour_camera, 0.5));
+  view.shown_mm = shown_depth(frame, T_colour_world, mesh, scaled(frame.colour_camera, 0.5));
   const double blur_px = kExposure_s * image_speed_pxps;
   view.sharpness = static_cast<float>(1.0 / std::sqrt(1.0 + blur_px * blur_px));
   return view;
@@ -147,22 +151,19 @@ ShownPoint shown(const TextureView& view, const Eigen::Vector3f& p_local, const 
       kBorder_px;
   if (!(to_border_px > 0.0F)) return {};
   const Eigen::Vector2f half = in_smaller(pixel, 0.5F);
-  const int x = std::min(static_cast<int>(half.x() + 0.5F), view.shown_m.width - 1);
-  const int y = std::min(static_cast<int>(half.y() + 0.5F), view.shown_m.height - 1);
-  if (p.z() > view.shown_m.at(x, y) + tolerance_m(p.z())) return {};
+  const int x = std::min(static_cast<int>(half.x() + 0.5F), view.shown_mm.width - 1);
+  const int y = std::min(static_cast<int>(half.y() + 0.5F), view.shown_mm.height - 1);
+  if (p.z() > 0.001F * static_cast<float>(view.shown_mm.at(x, y)) + tolerance_m(p.z())) return {};
   const float px_per_m = static_cast<float>(std::min(camera.fx_px, camera.fy_px)) / p.z() * cosine;
   return {pixel, px_per_m, px_per_m * view.sharpness * std::min(1.0F, 0.1F + to_border_px / kFade_px)};
 }
 
 Eigen::Array3f colour_at(const TextureView& view, const Eigen::Vector2f& pixel) {
-  return evened(view, interpolated(view.colour, pixel));
+  return evened(view, colour_at(view.colour, pixel));
 }
 
 bool is_overexposed(const TextureView& view, const Eigen::Vector2f& pixel) {
-  const Rgb& nearest =
-      view.colour.at(std::clamp(static_cast<int>(pixel.x() + 0.5F), 0, view.colour.width - 1),
-                     std::clamp(static_cast<int>(pixel.y() + 0.5F), 0, view.colour.height - 1));
-  return std::max({nearest.r, nearest.g, nearest.b}) >= 250;
+  return colour_at(view.colour, (pixel.array() + 0.5F).floor()).maxCoeff() >= 250.0F;
 }
 
 Eigen::Array3f low_colour_at(const TextureView& view, const Eigen::Vector2f& pixel) {

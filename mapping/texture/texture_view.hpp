@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
+#include "mapping/texture/subsampled_picture.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
@@ -11,14 +13,14 @@
 
 namespace roomradar {
 
-/// Colour image of a frame, prepared for baking. Takes about 4 bytes per pixel.
+/// Colour image of a frame, prepared for baking. Takes about 2 bytes per pixel.
 struct TextureView {
   Intrinsics camera;  ///< colour camera
-  ColourImage colour;
+  SubsampledPicture colour;
   ColourImage low;  ///< low-pass filtered picture, an eighth of its width and height
-  /// Max depth, m, at which the picture shows the mesh, in an image of half the picture's size. 0: the
+  /// Max depth, mm, at which the picture shows the mesh, in an image of half the picture's size. 0: the
   /// picture does not show the mesh, since no triangle projects there or the frame measured another depth.
-  DepthImage shown_m;
+  Image<std::uint16_t> shown_mm;
   Eigen::Isometry3f T_camera_local =
       Eigen::Isometry3f::Identity();               ///< maps points relative to the mesh's origin
   float sharpness = 1.0F;                          ///< 0..1

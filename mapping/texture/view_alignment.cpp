@@ -29,19 +29,11 @@ struct GreyPicture {
 GreyPicture grey_of(const TextureView& view, int factor) {
   GreyPicture picture;
   picture.scale = 1.0F / static_cast<float>(factor);
-  picture.grey.resize(view.colour.width / factor, view.colour.height / factor);
-  const float area = static_cast<float>(3 * factor * factor);
+  picture.grey.resize(view.colour.luma.width / factor, view.colour.luma.height / factor);
+  const Eigen::Array3f gain(view.gain[0], view.gain[1], view.gain[2]);
   for (int y = 0; y < picture.grey.height; ++y)
-    for (int x = 0; x < picture.grey.width; ++x) {
-      float sum = 0.0F;
-      for (int v = y * factor; v < (y + 1) * factor; ++v)
-        for (int u = x * factor; u < (x + 1) * factor; ++u) {
-          const Rgb& pixel = view.colour.at(u, v);
-          sum += view.gain[0] * static_cast<float>(pixel.r) + view.gain[1] * static_cast<float>(pixel.g) +
-                 view.gain[2] * static_cast<float>(pixel.b);
-        }
-      picture.grey.at(x, y) = sum / area;
-    }
+    for (int x = 0; x < picture.grey.width; ++x)
+      picture.grey.at(x, y) = (gain * mean_colour(view.colour, x * factor, y * factor, factor)).mean();
   return picture;
 }
 

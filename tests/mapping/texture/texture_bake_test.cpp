@@ -104,11 +104,13 @@ TEST(TextureBake, AViewThatSeesSomethingElseIsLeftOutThere) {
 TEST(TextureBake, AnOutlierAmongThreeViewsIsLeftOutWithoutDepth) {
   const Mesh mesh = wall_mesh();
   std::vector<TextureView> views = wall_views(mesh);
-  for (Rgb& pixel : views[0].colour.pixels) pixel = {255, 0, 255};  // a reflection: no depth tells
-  for (Rgb& pixel : views[0].low.pixels) pixel = {255, 0, 255};
-  for (std::size_t v = 1; v < views.size(); ++v)  // greys far from the reflection's brightness
-    for (ColourImage* picture : {&views[v].colour, &views[v].low})
-      for (Rgb& pixel : picture->pixels) pixel = {60, 60, 60};
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    // A reflection, which no depth tells, and greys far from its brightness.
+    const Rgb colour = v == 0 ? Rgb{255, 0, 255} : Rgb{60, 60, 60};
+    TextureView& view = views[v];
+    view.colour = subsampled(ColourImage(view.camera.width_px, view.camera.height_px, colour));
+    view.low = ColourImage(view.low.width, view.low.height, colour);
+  }
   const SurfaceTexture texture = bake_texture(mesh, views);
   const ColourImage atlas = picture_of_jpeg(texture.atlas_jpeg, texture.width_px, texture.height_px, "atlas");
   const Rgb middle = atlas.at(atlas.width / 2, atlas.height / 3);
