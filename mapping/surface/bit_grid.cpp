@@ -57,9 +57,9 @@ BitGrid& BitGrid::operator|=(const BitGrid& other) {
   return *this;
 }
 
-BitGrid& BitGrid::subtract(const BitGrid& other) {
-  assert(size_ == other.size_);
-  for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= ~other.words_[i];
+BitGrid& BitGrid::subtract(const SparseBitGrid& other) {
+  assert(size_ == other.size());
+  other.for_each_word([&](std::size_t i, std::uint64_t word) { words_[i] &= ~word; });
   return *this;
 }
 
@@ -160,10 +160,34 @@ struct BitGrid::Bars {
   const std::uint64_t *x, *y_before, *y, *z_before, *z;
 };
 
-BitGrid::Bars BitGrid::bars_around(const std::array<BitGrid, 3>& blocked, int y, int z) {
-  return {blocked[0].row(y, z), y > 0 ? blocked[1].row(y - 1, z) : nullptr, blocked[1].row(y, z),
-          z > 0 ? blocked[2].row(y, z - 1) : nullptr, blocked[2].row(y, z)};
-}
+/// The planes of the blocking grids around one plane of a grid.
+class BitGrid::BarPlanes {
+ public:
+  BarPlanes(const std::array<SparseBitGrid, 3>& blocked, std::size_t words_a_row)
+      : blocked_(blocked), words_a_row_(words_a_row) {}
+
+  /// The returned rows are valid until the next call.
+  Bars around(int y, int z) {
+    if (z != z_) read(z);
+    const std::size_t row = words_a_row_ * static_cast<std::size_t>(y);
+    return {x_.data() + row, y > 0 ? y_.data() + row - words_a_row_ : nullptr, y_.data() + row,
+            z > 0 ? z_before_.data() + row : nullptr, z_after_.data() + row};
+  }
+
+ private:
+  void read(int z) {
+    z_ = z;
+    blocked_[0].read_plane(z, x_);
+    blocked_[1].read_plane(z, y_);
+    blocked_[2].read_plane(z - 1, z_before_);
+    blocked_[2].read_plane(z, z_after_);
+  }
+
+  const std::array<SparseBitGrid, 3>& blocked_;
+  std::size_t words_a_row_;
+  int z_ = -1;  // of the planes
+  std::vector<std::uint64_t> x_, y_, z_before_, z_after_;
+};
 
 /// Sets the voxels of `row` that dilating `source` sets in it. Returns true if a voxel was added.
 /// @param where  null: everywhere, also past the row's end
@@ -192,7 +216,8 @@ bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::u
 }
 
 // Only the previous rows of two planes must be kept.
-void BitGrid::spread(const BitGrid* where, const std::array<BitGrid, 3>& blocked) {
+void BitGrid::spread(const BitGrid* where, const std::array<SparseBitGrid, 3>& blocked) {
+  BarPlanes bars(blocked, words_a_row_);
   const std::size_t plane_words = words_a_row_ * static_cast<std::size_t>(size_.y());
   std::vector<std::uint64_t> below, plane;  // z - 1 and z before the operation
   for (int z = 0; z < size_.z(); ++z) {
@@ -206,20 +231,23 @@ void BitGrid::spread(const BitGrid* where, const std::array<BitGrid, 3>& blocked
           row(y, z),
           {of(plane, y), y > 0 ? of(plane, y - 1) : nullptr, y + 1 < size_.y() ? of(plane, y + 1) : nullptr,
            z > 0 ? of(below, y) : nullptr, z + 1 < size_.z() ? row(y, z + 1) : nullptr},
-          where ? where->row(y, z) : nullptr, bars_around(blocked, y, z), words_a_row_);
+          where ? where->row(y, z) : nullptr, bars.around(y, z), words_a_row_);
   }
 }
 
-void BitGrid::spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked) { spread(&where, blocked); }
+void BitGrid::spread(const BitGrid& where, const std::array<SparseBitGrid, 3>& blocked) {
+  spread(&where, blocked);
+}
 
-void BitGrid::spread(const std::array<BitGrid, 3>& blocked) {
+void BitGrid::spread(const std::array<SparseBitGrid, 3>& blocked) {
   spread(nullptr, blocked);
   clear_row_ends();
 }
 
 // In place, alternately upwards and downwards, so a straight path of any length takes one pass. A row is
 // visited again only after one beside it has changed.
-void BitGrid::flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
+void BitGrid::flood(const BitGrid& where, const std::array<SparseBitGrid, 3>& blocked) {
+  BarPlanes planes(blocked, words_a_row_);
   struct Times {
     std::uint32_t visited = 0, changed = 1;
   };
@@ -240,7 +268,7 @@ void BitGrid::flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked)
     rows.z_after = beside(y, z + 1);
     if (newest <= own.visited) return false;
     own.visited = ++now;
-    const Bars bars = bars_around(blocked, y, z);
+    const Bars bars = planes.around(y, z);
     bool any = false;
     while (spread_to_row(row(y, z), rows, where.row(y, z), bars, words_a_row_)) any = true;
     if (any) own.changed = now;

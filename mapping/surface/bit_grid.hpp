@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "mapping/surface/sparse_bit_grid.hpp"
+
 namespace roomradar {
 
 /// 3D grid with one bit per voxel. Rows run along x, with 64 voxels per word. All functions treat voxels
@@ -29,7 +31,7 @@ class BitGrid {
   /// Both grids must have the same size.
   BitGrid& operator&=(const BitGrid& other);
   BitGrid& operator|=(const BitGrid& other);
-  BitGrid& subtract(const BitGrid& other);
+  BitGrid& subtract(const SparseBitGrid& other);
   /// Sets all clear voxels and clears all set ones.
   BitGrid& flip();
   friend bool operator==(const BitGrid&, const BitGrid&) = default;
@@ -48,11 +50,11 @@ class BitGrid {
   /// Dilates by one step along the axes, restricted to the voxels set in `where`. A voxel set in
   /// blocked[axis] blocks the steps between it and the next voxel along the axis in both directions. All
   /// grids must have the same size.
-  void spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
+  void spread(const BitGrid& where, const std::array<SparseBitGrid, 3>& blocked);
   /// Dilates by one step everywhere.
-  void spread(const std::array<BitGrid, 3>& blocked);
+  void spread(const std::array<SparseBitGrid, 3>& blocked);
   /// Repeats spread() until nothing changes.
-  void flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
+  void flood(const BitGrid& where, const std::array<SparseBitGrid, 3>& blocked);
 
   /// Calls visit(p) for each set voxel, z slowest, x fastest. `visit` may clear voxels; cleared voxels in the
   /// current word of 64 voxels are still visited.
@@ -100,10 +102,10 @@ class BitGrid {
   void clear_row_ends();
   void shift_rows(int step);
   void move_rows(int axis, int step);
-  void spread(const BitGrid* where, const std::array<BitGrid, 3>& blocked);
+  void spread(const BitGrid* where, const std::array<SparseBitGrid, 3>& blocked);
   struct Rows;
   struct Bars;
-  [[nodiscard]] static Bars bars_around(const std::array<BitGrid, 3>& blocked, int y, int z);
+  class BarPlanes;
   static bool spread_to_row(std::uint64_t* row, const Rows& source, const std::uint64_t* where,
                             const Bars& bars, std::size_t words);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace roomradar {
 namespace {
@@ -26,14 +27,14 @@ struct Span {
 };
 
 // @param corners  in cells; cell centres at integer coordinates
-void bar_along(int axis, const std::array<Vector3d, 3>& corners, BitGrid& blocked) {
+void bar_along(int axis, const std::array<Vector3d, 3>& corners, const Vector3i& size,
+               std::vector<Vector3i>& blocked) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   std::array<Vector2d, 3> p;
   for (std::size_t i = 0; i < 3; ++i) p[i] = {corners[i][u], corners[i][v]};
   const double area = cross(p[1] - p[0], p[2] - p[0]);
   if (area == 0.0) return;  // the lines are parallel to the triangle
   const Vector2d low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
-  const Vector3i& size = blocked.size();
   const Span in_u(low.x(), high.x(), size[u]), in_v(low.y(), high.y(), size[v]);
   std::array<Vector2d, 3> side;
   std::array<double, 3> slack;
@@ -58,23 +59,27 @@ void bar_along(int axis, const std::array<Vector3d, 3>& corners, BitGrid& blocke
       cell[axis] = static_cast<int>(at);
       cell[u] = at_u;
       cell[v] = at_v;
-      blocked.set(cell, true);
+      blocked.push_back(cell);
     }
 }
 
 }  // namespace
 
-std::array<BitGrid, 3> blocked_neighbours(const Mesh& surface_world, const CellGrid& grid) {
-  std::array<BitGrid, 3> blocked;
-  for (BitGrid& bits : blocked) bits = BitGrid(grid.size, false);
+std::array<SparseBitGrid, 3> blocked_neighbours(const Mesh& surface_world, const CellGrid& grid) {
   const Vector3d origin_cells =
       surface_world.origin / grid.cell_m - grid.first_cell.cast<double>() - Vector3d::Constant(0.5);
-  for (const Triangle& triangle : surface_world.triangles) {
-    std::array<Vector3d, 3> corners;
-    for (std::size_t i = 0; i < 3; ++i)
-      corners[i] = surface_world.vertices[triangle[i]].cast<double>() / grid.cell_m + origin_cells;
-    if (!corners[0].allFinite() || !corners[1].allFinite() || !corners[2].allFinite()) continue;
-    for (int axis = 0; axis < 3; ++axis) bar_along(axis, corners, blocked[static_cast<std::size_t>(axis)]);
+  std::array<SparseBitGrid, 3> blocked;
+  std::vector<Vector3i> cells;
+  for (int axis = 0; axis < 3; ++axis) {
+    cells.clear();
+    for (const Triangle& triangle : surface_world.triangles) {
+      std::array<Vector3d, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i)
+        corners[i] = surface_world.vertices[triangle[i]].cast<double>() / grid.cell_m + origin_cells;
+      if (corners[0].allFinite() && corners[1].allFinite() && corners[2].allFinite())
+        bar_along(axis, corners, grid.size, cells);
+    }
+    blocked[static_cast<std::size_t>(axis)] = SparseBitGrid(grid.size, cells);
   }
   return blocked;
 }

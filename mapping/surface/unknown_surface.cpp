@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3i;
 
-constexpr int kGridsAtOnce = 6;  // bit grids alive at the same time
+constexpr int kGridsAtOnce = 3;  // bit grids alive at the same time
 
 // State of the map in cells of one voxel, or of several if the map is very large.
 struct Known {
@@ -64,7 +64,7 @@ Known known_cells(const StaticMap& map, const CellGrid& grid, int edge) {
 
 // Removes from `unknown` the components of less than pocket_voxels that are surrounded by free space. Uses up
 // `known.unknown`.
-void leave_out_pockets(Known& known, const std::array<BitGrid, 3>& blocked,
+void leave_out_pockets(Known& known, const std::array<SparseBitGrid, 3>& blocked,
                        const UnknownSurfaceConfig& config, BitGrid& unknown) {
   BitGrid held = std::move(known.unknown);
   (held |= known.free).flip();
@@ -95,7 +95,7 @@ void leave_out_pockets(Known& known, const std::array<BitGrid, 3>& blocked,
 
 // Cells that an object coming from free space can reach: any distance through free voxels, then rim_voxels
 // further through anything that does not count as unknown.
-BitGrid reachable(BitGrid free, const BitGrid& unknown, const std::array<BitGrid, 3>& blocked,
+BitGrid reachable(BitGrid free, const BitGrid& unknown, const std::array<SparseBitGrid, 3>& blocked,
                   const UnknownSurfaceConfig& config) {
   BitGrid reached = opened(free, config.least_voxels);
   reached.flood(free, blocked);
@@ -105,9 +105,8 @@ BitGrid reachable(BitGrid free, const BitGrid& unknown, const std::array<BitGrid
   return reached;
 }
 
-// Meshes the faces of unknown cells towards reached ones, unless a surface separates the two. Uses up
-// `blocked`.
-Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, std::array<BitGrid, 3>& blocked,
+// Meshes the faces of unknown cells towards reached ones, unless a surface separates the two.
+Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, const std::array<SparseBitGrid, 3>& blocked,
                   const CellGrid& grid) {
   VoxelFaceMesher mesher(grid);
   VoxelFaces faces;
@@ -115,9 +114,11 @@ Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, std::array<Bit
     for (const int step : {1, -1}) {
       faces.step = step;
       faces.cells = reached;  // in the memory of the last ones
-      BitGrid& bars = blocked[static_cast<std::size_t>(faces.axis)];
-      if (step < 0) bars.shift(faces.axis, -1);
-      faces.cells.shift(faces.axis, step).subtract(bars) &= unknown;
+      const SparseBitGrid& bars = blocked[static_cast<std::size_t>(faces.axis)];
+      if (step < 0) faces.cells.subtract(bars);  // a bar belongs to the lower of its two cells
+      faces.cells.shift(faces.axis, step);
+      if (step > 0) faces.cells.subtract(bars);
+      faces.cells &= unknown;
       mesher.add(faces);
     }
   return mesher.take();
@@ -153,11 +154,12 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
       std::async(std::launch::async, [&] { return blocked_neighbours(surface_world, result.grid); });
   Known known = known_cells(map, result.grid, edge);
   result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
-  std::array<BitGrid, 3> blocked = blocking.get();
+  const std::array<SparseBitGrid, 3> blocked = blocking.get();
   leave_out_pockets(known, blocked, config, result.unknown);
   const BitGrid reached = reachable(std::move(known.free), result.unknown, blocked, config);
   result.mesh_world = mesh_between(result.unknown, reached, blocked, known.grid);
   result.memory_bytes = kGridsAtOnce * reached.memory_bytes();
+  for (const SparseBitGrid& bars : blocked) result.memory_bytes += bars.memory_bytes();
   return result;
 }
 

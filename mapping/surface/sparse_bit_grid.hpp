@@ -1,0 +1,38 @@
+// sparse_bit_grid.hpp: a 3D grid of bits, of which few are set, in the words of BitGrid.
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace roomradar {
+
+/// Constant 3D grid with one bit per voxel. Only words with a set voxel take memory: 12 bytes each. Rows and
+/// words as in BitGrid.
+class SparseBitGrid {
+ public:
+  SparseBitGrid() = default;
+  /// @param set  voxels that are set, in any order, also repeated; those outside the grid are ignored
+  SparseBitGrid(const Eigen::Vector3i& size, std::span<const Eigen::Vector3i> set);
+
+  [[nodiscard]] const Eigen::Vector3i& size() const { return size_; }
+  [[nodiscard]] std::size_t memory_bytes() const;
+  [[nodiscard]] bool at(const Eigen::Vector3i& p) const;
+
+  /// Sets `words` to the rows of a plane, y after y. All are clear if z is outside the grid.
+  void read_plane(int z, std::vector<std::uint64_t>& words) const;
+  /// Calls visit(index, word) for each word that has a set voxel, by increasing index in the whole grid.
+  template <typename Visit>
+  void for_each_word(const Visit& visit) const {
+    for (std::size_t i = 0; i < words_.size(); ++i) visit(std::size_t{indices_[i]}, words_[i]);
+  }
+
+ private:
+  Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
+  std::size_t words_a_row_ = 0;
+  std::vector<std::uint32_t> indices_;  // of words_ in the whole grid, increasing
+  std::vector<std::uint64_t> words_;
+};
+
+}  // namespace roomradar
