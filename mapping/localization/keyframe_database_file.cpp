@@ -20,6 +20,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,24 +48,57 @@ struct ViewColumns {
   std::vector<std::uint8_t> bytes;
 };
 
-void put_point(const Eigen::Vector3f& point, ViewColumns& columns) {
+std::vector<std::uint16_t> depth_column(std::span<const MapKeyframe> views) {
+  std::vector<std::uint16_t> depth_mm;
+  for (const MapKeyframe& view : views) {
+    std::uint16_t before = 0;
+    for (const std::uint16_t pixel_mm : view.preview_depth_mm.pixels) {
+      depth_mm.push_back(static_cast<std::uint16_t>(pixel_mm - before));
+      before = pixel_mm;
+    }
+  }
+  return depth_mm;
+}
+
+std::vector<std::int32_t> point_column(std::span<const MapKeyframe> views) {
   constexpr float kMost = 1e9F;  // 200 km
-  for (const float component : point)
-    columns.points.push_back(
-        static_cast<std::int32_t>(std::lround(std::clamp(component / kPointStep_m, -kMost, kMost))));
+  std::vector<std::int32_t> points;
+  const auto put_point = [&](const Eigen::Vector3f& point) {
+    for (const float component : point)
+      points.push_back(
+          static_cast<std::int32_t>(std::lround(std::clamp(component / kPointStep_m, -kMost, kMost))));
+  };
+  for (const MapKeyframe& view : views) {
+    for (const Eigen::Vector3f& point : view.points_camera) put_point(point);
+    for (const SurfacePatch& patch : view.patches) put_point(patch.point);
+  }
+  return points;
 }
 
-void put_direction(const Eigen::Vector3f& direction, ViewColumns& columns) {
-  for (const float component : direction)
-    columns.directions.push_back(
-        static_cast<std::int16_t>(std::lround(std::clamp(component, -1.0F, 1.0F) / kDirectionStep)));
+std::vector<std::int16_t> direction_column(std::span<const MapKeyframe> views) {
+  std::vector<std::int16_t> directions;
+  for (const MapKeyframe& view : views)
+    for (const SurfacePatch& patch : view.patches)
+      for (const Eigen::Vector3f& direction : {patch.normal, patch.along})
+        for (const float component : direction)
+          directions.push_back(
+              static_cast<std::int16_t>(std::lround(std::clamp(component, -1.0F, 1.0F) / kDirectionStep)));
+  return directions;
 }
 
-void put_bits(const Descriptor& bits, ViewColumns& columns) {
-  columns.bytes.insert(columns.bytes.end(), bits.begin(), bits.end());
+std::vector<std::uint8_t> byte_column(std::span<const MapKeyframe> views) {
+  std::vector<std::uint8_t> bytes;
+  for (const MapKeyframe& view : views) {
+    for (const Descriptor& bits : view.descriptors) bytes.insert(bytes.end(), bits.begin(), bits.end());
+    for (const SurfacePatch& patch : view.patches) {
+      bytes.push_back(patch.size);
+      bytes.insert(bytes.end(), patch.bits.begin(), patch.bits.end());
+    }
+  }
+  return bytes;
 }
 
-void put_place(std::string& out, const MapKeyframe& place, ViewColumns& columns) {
+void put_place(std::string& out, const MapKeyframe& place) {
   put(out, place.frame_index);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) put(out, place.T_world_camera.linear()(row, column));
@@ -78,20 +112,6 @@ void put_place(std::string& out, const MapKeyframe& place, ViewColumns& columns)
   }
   put(out, static_cast<std::uint32_t>(place.descriptors.size()));
   put(out, static_cast<std::uint32_t>(place.patches.size()));
-  std::uint16_t before = 0;
-  for (const std::uint16_t depth_mm : place.preview_depth_mm.pixels) {
-    columns.depth_mm.push_back(static_cast<std::uint16_t>(depth_mm - before));
-    before = depth_mm;
-  }
-  for (const Eigen::Vector3f& p : place.points_camera) put_point(p, columns);
-  for (const Descriptor& bits : place.descriptors) put_bits(bits, columns);
-  for (const SurfacePatch& patch : place.patches) {
-    put_point(patch.point, columns);
-    put_direction(patch.normal, columns);
-    put_direction(patch.along, columns);
-    columns.bytes.push_back(patch.size);
-    put_bits(patch.bits, columns);
-  }
 }
 
 /// Takes the items of views, in the order of views: from columns, or in version 2 from the views themselves.
@@ -247,16 +267,15 @@ ViewColumns take_columns(ColumnReader& in) {
 }  // namespace
 
 void write_keyframe_database(const KeyframeDatabase& keyframe_database, const std::filesystem::path& path) {
-  std::string views;
-  ViewColumns columns;
-  for (const MapKeyframe& place : keyframe_database.keyframes) put_place(views, place, columns);
+  const std::vector<MapKeyframe>& views = keyframe_database.keyframes;
   std::string out;
-  put_column(out, columns.depth_mm);
-  put_column(out, columns.points);
-  put_column(out, columns.directions);
-  put_column(out, columns.bytes);
-  put(out, static_cast<std::uint32_t>(keyframe_database.keyframes.size()));
-  write_binary(path, kMagic, kColumns, out + views);
+  put_column(out, depth_column(views));
+  put_column(out, point_column(views));
+  put_column(out, direction_column(views));
+  put_column(out, byte_column(views));
+  put(out, static_cast<std::uint32_t>(views.size()));
+  for (const MapKeyframe& view : views) put_place(out, view);
+  write_binary(path, kMagic, kColumns, out);
 }
 
 KeyframeDatabase read_keyframe_database(const std::filesystem::path& path) {

@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mapping/storage/compressed_columns.hpp"
@@ -84,19 +85,21 @@ class BlockWriter {
     put_node(tree.root);
   }
 
-  [[nodiscard]] std::string body() const {
+  /// Returns the file's body. Uses up the columns.
+  [[nodiscard]] std::string take_body() {
     std::string out;
     put(out, tree_.resolution_m());
     for (const float step : {tree_.units().log_odds, tree_.units().distance_m, tree_.units().weight})
       put(out, step);
-    put_column(out, kinds_);
-    put_column(out, cubes_);
-    put_column(out, log_odds_);
-    put_column(out, sampled_);
-    put_column(out, coloured_);
-    put_column(out, distances_);
-    put_column(out, weights_);
-    for (const std::vector<std::uint8_t>* channel : {&red_, &green_, &blue_}) put_column(out, *channel);
+    const auto move_column = [&](auto& column) { put_column(out, std::exchange(column, {})); };
+    move_column(kinds_);
+    move_column(cubes_);
+    move_column(log_odds_);
+    move_column(sampled_);
+    move_column(coloured_);
+    move_column(distances_);
+    move_column(weights_);
+    for (std::vector<std::uint8_t>* channel : {&red_, &green_, &blue_}) move_column(*channel);
     return out;
   }
 
@@ -303,7 +306,7 @@ float take_step(BinaryReader& in) {
 }  // namespace
 
 void write_octree_file(const BlockOctree& tree, const std::filesystem::path& path) {
-  write_binary(path, kOctreeMagic, kOctreeVersion, BlockWriter(tree).body());
+  write_binary(path, kOctreeMagic, kOctreeVersion, BlockWriter(tree).take_body());
 }
 
 void read_octree_file(const std::filesystem::path& path, const MakeOctree& make_tree) {

@@ -12,8 +12,10 @@ namespace {
 
 constexpr std::size_t kHash_bytes = sizeof(std::uint64_t);
 
-std::uint64_t fnv1a(std::string_view bytes) {
-  std::uint64_t hash = 14695981039346656037ULL;
+constexpr std::uint64_t kHashOfNothing = 14695981039346656037ULL;
+
+/// @param hash  of the bytes before these
+std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash = kHashOfNothing) {
   for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
   return hash;
 }
@@ -32,11 +34,10 @@ double BinaryReader::take_finite(const char* what) {
 
 void write_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
                   std::string_view body) {
-  std::string out(magic);
-  put(out, version);
-  out.append(body);
-  put(out, fnv1a(out));
-  write_bytes(path, out);
+  std::string beginning(magic), checksum;
+  put(beginning, version);
+  put(checksum, fnv1a(body, fnv1a(beginning)));
+  write_parts(path, {beginning, body, checksum});
 }
 
 BinaryBody read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t oldest,

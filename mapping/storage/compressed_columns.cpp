@@ -3,6 +3,11 @@
 
 #include <zstd.h>
 
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <new>
+
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -11,24 +16,58 @@ namespace {
 // At higher levels, planes of noise take ten times as long and are 1 % smaller.
 constexpr int kLevel = 3;
 
+void require_compressed(std::size_t result) {
+  if (ZSTD_isError(result) != 0)
+    throw Error(std::string("zstd cannot compress an array: ") + ZSTD_getErrorName(result));
+}
+
+/// Appends one zstd frame to a string, from parts of its contents.
+class Compressor {
+ public:
+  /// @param size  bytes of all parts together
+  Compressor(std::size_t size, std::string& out) : context_(ZSTD_createCCtx(), &ZSTD_freeCCtx), out_(out) {
+    if (!context_) throw std::bad_alloc();
+    require_compressed(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, kLevel));
+    require_compressed(ZSTD_CCtx_setPledgedSrcSize(context_.get(), size));
+  }
+
+  void add(std::string_view part) { compress(part, ZSTD_e_continue); }
+  void finish() { compress({}, ZSTD_e_end); }
+
+ private:
+  void compress(std::string_view part, ZSTD_EndDirective mode) {
+    ZSTD_inBuffer in{part.data(), part.size(), 0};
+    for (std::size_t left = 1; in.pos < in.size || (mode == ZSTD_e_end && left > 0);) {
+      ZSTD_outBuffer packed{packed_.data(), packed_.size(), 0};
+      left = ZSTD_compressStream2(context_.get(), &packed, &in, mode);
+      require_compressed(left);
+      out_.append(packed_.data(), packed.pos);
+    }
+  }
+
+  std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context_;
+  std::string& out_;
+  std::array<char, 1U << 16U> packed_{};
+};
+
 }  // namespace
 
 void put_column(std::string& out, const void* items, std::size_t count, std::size_t item_bytes) {
-  const auto* const bytes = static_cast<const char*>(items);
-  std::string planes(count * item_bytes, '\0');
-  for (std::size_t plane = 0; plane < item_bytes; ++plane)
-    for (std::size_t i = 0; i < count; ++i) planes[plane * count + i] = bytes[i * item_bytes + plane];
   put(out, std::uint64_t{count});
   const std::size_t size_at = out.size();
   put(out, std::uint64_t{0});
   const std::size_t begin = out.size();
-  out.resize(begin + ZSTD_compressBound(planes.size()));
-  const std::size_t size =
-      ZSTD_compress(out.data() + begin, out.size() - begin, planes.data(), planes.size(), kLevel);
-  if (ZSTD_isError(size) != 0)
-    throw Error(std::string("zstd cannot compress an array: ") + ZSTD_getErrorName(size));
-  out.resize(begin + size);
-  const auto stored = std::uint64_t{size};
+  Compressor compressor(count * item_bytes, out);
+  const auto* const bytes = static_cast<const char*>(items);
+  std::array<char, 1U << 16U> part;
+  for (std::size_t plane = 0; plane < item_bytes; ++plane)
+    for (std::size_t first = 0; first < count; first += part.size()) {
+      const std::size_t size = std::min(part.size(), count - first);
+      for (std::size_t i = 0; i < size; ++i) part[i] = bytes[(first + i) * item_bytes + plane];
+      compressor.add({part.data(), size});
+    }
+  compressor.finish();
+  const auto stored = std::uint64_t{out.size() - begin};
   std::memcpy(out.data() + size_at, &stored, sizeof(stored));
 }
 

@@ -34,11 +34,12 @@ std::string read_bytes(const fs::path& path, std::string_view what, std::uintmax
   return bytes;
 }
 
-void write_bytes(const fs::path& path, std::string_view bytes) {
+void write_parts(const fs::path& path, std::initializer_list<std::string_view> parts) {
   errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   const bool was_opened = file.is_open();
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  for (const std::string_view part : parts)
+    file.write(part.data(), static_cast<std::streamsize>(part.size()));
   file.close();
   if (file) return;
   const int why = errno;

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <iosfwd>
 #include <limits>
 #include <string>
@@ -16,9 +17,13 @@ namespace roomradar {
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::string_view what,
                                      std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 
-/// Replaces the contents of the file `path`. Not atomic; use AtomicFile for atomic writing.
+/// Replaces the contents of the file `path` with `parts`, one after the other. Not atomic; use AtomicFile for
+/// atomic writing.
 /// @throws Error naming the file if some bytes could not be written; the partial file is removed
-void write_bytes(const std::filesystem::path& path, std::string_view bytes);
+void write_parts(const std::filesystem::path& path, std::initializer_list<std::string_view> parts);
+inline void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
+  write_parts(path, {bytes});
+}
 
 /// Returns the reason why a file cannot be written at this path, as the end of a sentence. Detects a folder
 /// that does not exist, is not writable or whose file system accepts no files (/proc), and a full disk.
