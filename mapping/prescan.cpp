@@ -125,6 +125,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   // Ghost removal.
   if (config.remove_ghosts) run_ghost_removal(work, pass);
   map.octree = std::move(pass.octree);
+  release_unused_memory();  // of the passes: the surface needs it
 
   // Surface extraction.
   work.show("surface", {});
