@@ -23,10 +23,12 @@ struct StoredView {
 /// to 0.06 mm at 1 m, and to 2 mm at 6 m, a thirtieth of a Kinect's noise there.
 constexpr float kInverseDepthStep_per_m = 5.7e-5F;
 
+struct PackedView;
+
 struct Keyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::shared_ptr<const StoredView> view;  ///< never null; refined depth is stored as a new view
+  std::shared_ptr<const PackedView> view;  ///< never null; refined depth is stored as a new view
   std::uint32_t revision = 0;              ///< number of times that `view` was replaced
   /// Length of the camera's path up to this keyframe, m. A rotation by 1 rad counts as 1 m, and motion while
   /// tracking was degenerate counts tenfold. The assumed drift between two keyframes grows with the length of

@@ -6,11 +6,11 @@
 
 namespace roomradar {
 
-std::shared_ptr<CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
+std::shared_ptr<CachedKeyframe> prepare_keyframe(const PackedView& view, const ViewConfig& config,
                                                  PreparedParts parts) {
   auto made = std::make_shared<CachedKeyframe>();
   ViewPyramid pyramid;
-  restore(view, config, pyramid);
+  restore(unpacked(view), config, pyramid);
   if (parts == PreparedParts::kAll)
     make_target_view(pyramid, Eigen::Isometry3d::Identity(), config, made->reference);
   make_source_points(pyramid, made->live);
@@ -25,7 +25,7 @@ std::shared_ptr<const CachedKeyframe> KeyframeCache::find(std::size_t keyframe) 
   return entries_.back().held;
 }
 
-std::shared_ptr<const CachedKeyframe> KeyframeCache::get(std::size_t keyframe, const StoredView& view,
+std::shared_ptr<const CachedKeyframe> KeyframeCache::get(std::size_t keyframe, const PackedView& view,
                                                          const ViewConfig& config) {
   if (auto held = find(keyframe)) return held;
   put(keyframe, prepare_keyframe(view, config, parts_));

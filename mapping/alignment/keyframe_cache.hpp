@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "mapping/alignment/keyframe.hpp"
+#include "mapping/alignment/packed_view.hpp"
 
 namespace roomradar {
 
@@ -19,7 +19,7 @@ struct CachedKeyframe {
 /// Members of a CachedKeyframe to prepare. kLive: only `live`; `reference` stays empty.
 enum class PreparedParts { kAll, kLive };
 
-std::shared_ptr<CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
+std::shared_ptr<CachedKeyframe> prepare_keyframe(const PackedView& view, const ViewConfig& config,
                                                  PreparedParts parts = PreparedParts::kAll);
 
 /// Caches at most `capacity` keyframes and evicts the least recently used. A returned entry stays valid after
@@ -33,7 +33,7 @@ class KeyframeCache {
   /// Returns null if the keyframe is not cached.
   std::shared_ptr<const CachedKeyframe> find(std::size_t keyframe);
   /// Returns the keyframe's entry. Prepares and caches the entry if it is not cached.
-  std::shared_ptr<const CachedKeyframe> get(std::size_t keyframe, const StoredView& view,
+  std::shared_ptr<const CachedKeyframe> get(std::size_t keyframe, const PackedView& view,
                                             const ViewConfig& config);
   /// Caches `made` as the keyframe's entry; replaces an existing entry.
   void put(std::size_t keyframe, std::shared_ptr<CachedKeyframe> made);

@@ -5,6 +5,8 @@
 #include <future>
 #include <utility>
 
+#include "mapping/alignment/packed_view.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -43,7 +45,7 @@ void align_halves(std::span<const Keyframe> keyframes, std::span<HalfPair> halve
     HalfPair& half = halves[i];
     const Keyframe &reference = keyframes[half.reference], &live = keyframes[half.live];
     if (i == 0 || halves[i - 1].reference != half.reference) {
-      restore(*reference.view, config.view, pyramid);
+      restore(unpacked(*reference.view), config.view, pyramid);
       make_target_view(pyramid, Eigen::Isometry3d::Identity(), config.view, target);
     }
     const auto source = lives.get(half.live, *live.view, config.view);

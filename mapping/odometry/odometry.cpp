@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mapping/alignment/packed_view.hpp"
 #include "mapping/alignment/stationary_camera.hpp"
 #include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/odometry_state.hpp"
@@ -105,9 +106,9 @@ Odometry::Odometry(const OdometryConfig& config, OdometrySnapshot snapshot)
   state_->kept = std::move(snapshot);
   update_index(state_->kept.keyframe_database);
   if (state_->kept.graph.keyframes.empty()) return;
-  const StoredView& view = *state_->kept.graph.keyframes[state_->kept.current].view;
+  StoredView view = unpacked(*state_->kept.graph.keyframes[state_->kept.current].view);
   restore(view, config.view, state_->open);
-  state_->open_measured = view.measured;
+  state_->open_measured = std::move(view.measured);
 }
 
 void Odometry::set_prior_map(KeyframeDatabase known) {

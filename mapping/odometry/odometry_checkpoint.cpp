@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "mapping/alignment/packed_view.hpp"
 #include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/storage/binary_file.hpp"
@@ -221,7 +222,8 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
     keyframe.velocity = take_velocity(in);
     keyframe.steady_velocity = take_velocity(in);
     keyframe.timing = take_times(in);
-    keyframe.view = std::make_shared<const StoredView>(read_view(folder / view_name(i, keyframe.revision)));
+    keyframe.view =
+        std::make_shared<const PackedView>(packed(read_view(folder / view_name(i, keyframe.revision))));
   }
   graph.constraints.resize(take_count(in, kPose_bytes + kInformation_bytes, "constraints"));
   for (PoseConstraint& c : graph.constraints) {
@@ -290,7 +292,7 @@ void save_odometry(const Odometry& odometry, const fs::path& into, const fs::pat
   };
   for (std::size_t i = 0; i < kept.graph.keyframes.size(); ++i) {
     const fs::path name = view_name(i, kept.graph.keyframes[i].revision);
-    if (!is_carried_over(name)) write_view(*kept.graph.keyframes[i].view, into / name);
+    if (!is_carried_over(name)) write_view(unpacked(*kept.graph.keyframes[i].view), into / name);
   }
   for (std::size_t i = 0; i < kept.keyframe_database.keyframes.size(); ++i) {
     const fs::path name = place_name(i);

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "mapping/alignment/packed_view.hpp"
+
 namespace roomradar {
 
 KeyframeJobConfig job_config(const OdometryConfig& config) {
@@ -73,9 +75,9 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking)
   open.grey.resize(0, 0);
   open_measured.resize(open.levels.front().camera.width_px, open.levels.front().camera.height_px, 1);
   kept.graph.keyframes.push_back(
-      {frame.index, tracking.T_world_camera, std::make_shared<const StoredView>(store(open, open_measured)),
-       0, kept.path_length_m, velocity, mean_velocity(kept, tracking.T_world_camera, frame.stamp_s),
-       kept.timing.current});
+      {frame.index, tracking.T_world_camera,
+       std::make_shared<const PackedView>(packed(store(open, open_measured))), 0, kept.path_length_m,
+       velocity, mean_velocity(kept, tracking.T_world_camera, frame.stamp_s), kept.timing.current});
   first_frame = kept.graph.keyframes.size() == 1 ? frame : Frame{};
   ++kept.counts.keyframes;
   kept.current = kept.graph.keyframes.size() - 1;
@@ -95,14 +97,15 @@ void Odometry::State::take_up(std::size_t keyframe) {
   store_open();
   kept.current = keyframe;
   kept.improved = 0;
-  restore(*kept.graph.keyframes[keyframe].view, config.view, open);
-  open_measured = kept.graph.keyframes[keyframe].view->measured;
+  StoredView view = unpacked(*kept.graph.keyframes[keyframe].view);
+  restore(view, config.view, open);
+  open_measured = std::move(view.measured);
 }
 
 void Odometry::State::store_open() {
   if (!std::exchange(open_is_newer, false)) return;
   Keyframe& keyframe = kept.graph.keyframes[kept.current];
-  keyframe.view = std::make_shared<const StoredView>(store(open, open_measured));
+  keyframe.view = std::make_shared<const PackedView>(packed(store(open, open_measured)));
   ++keyframe.revision;
 }
 

@@ -61,8 +61,7 @@ double peak_rss_mb() {
 double kept_mb(const OdometrySnapshot& kept) {
   std::size_t bytes = 0;
   for (const Keyframe& keyframe : kept.graph.keyframes) {
-    bytes += 2 * keyframe.view->inverse_depth.pixels.size() + keyframe.view->intensity.pixels.size() +
-             keyframe.view->measured.pixels.size();
+    bytes += keyframe.view->columns.size();
   }
   for (const MapKeyframe& place : kept.keyframe_database.keyframes) {
     bytes += 2 * place.preview_depth_mm.pixels.size() +

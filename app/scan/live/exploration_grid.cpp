@@ -129,7 +129,7 @@ ExplorationGrid explored_around(const Eigen::Vector3d& camera_world, const std::
                     [&](const Keyframe* a, const Keyframe* b) { return distance(a) < distance(b); });
   ExplorationGrid grid(T_grid_world * camera_world);
   for (std::size_t i = 0; i < count; ++i)
-    grid.add(*nearest[i]->view, T_grid_world * nearest[i]->T_world_camera);
+    grid.add(unpacked(*nearest[i]->view), T_grid_world * nearest[i]->T_world_camera);
   return grid;
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mapping/alignment/keyframe.hpp"
+#include "mapping/alignment/packed_view.hpp"
 #include "mapping/coverage/occupancy_cells.hpp"
 #include "mapping/types/frame.hpp"
 

@@ -1,5 +1,6 @@
 // keyframe_graph_test.cpp: keyframes are saved and restored; loops are closed if drift explains them, and
 // rejected otherwise.
+#include "mapping/alignment/packed_view.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 
 #include <gtest/gtest.h>
@@ -33,10 +34,10 @@ struct RoundTrip {
     // In between, away from both: three keyframes that observe none of this.
     for (int i = 1; i <= 3; ++i) {
       Keyframe blind = graph.keyframes[0];
-      blind.view = std::make_shared<const StoredView>([&] {
-        StoredView view = *blind.view;
+      blind.view = std::make_shared<const PackedView>([&] {
+        StoredView view = unpacked(*blind.view);
         std::fill(view.inverse_depth.pixels.begin(), view.inverse_depth.pixels.end(), std::uint16_t{0});
-        return view;
+        return packed(view);
       }());
       blind.T_world_camera.translation().x() += 3.0 * i;
       blind.path_length_m = path_length_m * i / 4.0;
@@ -69,6 +70,32 @@ TEST(StoredView, ComesBackWithinAThirtiethOfTheNoise) {
                 0.51F * kInverseDepthStep_per_m);
     ASSERT_NEAR(b.intensity.pixels[i], a.intensity.pixels[i], 1.0F);
   }
+}
+
+TEST(PackedView, ComesBackAsItWas) {
+  ViewPyramid pyramid;
+  make_pyramid(frame_at(on_path(0, 1), 0), {}, pyramid);
+  Image<std::uint8_t> measured(320, 240, 1);
+  for (std::size_t i = 0; i < measured.pixels.size(); ++i) measured.pixels[i] = static_cast<std::uint8_t>(i);
+  StoredView with_colour = store(pyramid, measured);
+  with_colour.inverse_depth.pixels[0] = 65535;  // the greatest differences, in both directions
+  with_colour.inverse_depth.pixels[1] = 0;
+  with_colour.inverse_depth.pixels[2] = 32768;
+  with_colour.intensity.pixels[0] = 255;
+  with_colour.intensity.pixels[1] = 0;
+  with_colour.intensity.pixels[2] = 128;
+  StoredView without_colour = with_colour;
+  without_colour.intensity.resize(0, 0);
+  for (const StoredView& view : {with_colour, without_colour, StoredView{}}) {
+    const StoredView again = unpacked(packed(view));
+    EXPECT_EQ(again.camera, view.camera);
+    EXPECT_EQ(again.noise, view.noise);
+    EXPECT_EQ(again.inverse_depth.pixels, view.inverse_depth.pixels);
+    EXPECT_EQ(again.intensity.pixels, view.intensity.pixels);
+    EXPECT_EQ(again.measured.pixels, view.measured.pixels);
+    EXPECT_EQ(again.intensity.width, view.intensity.width);
+  }
+  EXPECT_LT(packed(with_colour).columns.size(), 4U * 320 * 240 * 6 / 10);
 }
 
 TEST(StoredView, HasNoIntensityWhereThereWasNoColour) {
@@ -159,7 +186,7 @@ struct Way {
       const Eigen::Isometry3d T = truth.back() * Eigen::Translation3d(off, -off, 0.01) *
                                   Eigen::AngleAxisd(off, Eigen::Vector3d::UnitX());
       graph.keyframes.push_back(
-          {i, i == 0 ? truth.back() : T, std::make_shared<const StoredView>(), 0, 0.1 * i, {}});
+          {i, i == 0 ? truth.back() : T, std::make_shared<const PackedView>(), 0, 0.1 * i, {}});
     }
     for (std::size_t a = 0; a < truth.size(); ++a) {
       for (std::size_t b = a + 1; b < truth.size() && b <= a + reach; ++b)

@@ -1,0 +1,69 @@
+// packed_view.cpp: differences of neighbouring pixels, compressed as columns.
+#include "mapping/alignment/packed_view.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <type_traits>
+#include <vector>
+
+#include "mapping/storage/compressed_columns.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Returns the difference of each pixel from the one before, with the sign as its lowest bit, so that small
+/// differences have small numbers.
+template <typename Pixel>
+std::vector<Pixel> differences(const std::vector<Pixel>& pixels) {
+  using Signed = std::make_signed_t<Pixel>;
+  std::vector<Pixel> out;
+  out.reserve(pixels.size());
+  Pixel before = 0;
+  for (const Pixel pixel : pixels) {
+    const auto difference = static_cast<Signed>(static_cast<Pixel>(pixel - before));
+    out.push_back(static_cast<Pixel>(difference < 0 ? ~(difference * 2) : difference * 2));
+    before = pixel;
+  }
+  return out;
+}
+
+template <typename Pixel>
+Image<Pixel> image_of(const std::vector<Pixel>& differences, const Intrinsics& camera) {
+  Image<Pixel> image(camera.width_px, camera.height_px);
+  Pixel before = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const Pixel stored = differences[i];
+    const auto difference = static_cast<Pixel>((stored & 1U) != 0 ? ~(stored >> 1U) : stored >> 1U);
+    before = image.pixels[i] = static_cast<Pixel>(before + difference);
+  }
+  return image;
+}
+
+}  // namespace
+
+PackedView packed(const StoredView& view) {
+  PackedView out{view.camera, view.noise, !view.intensity.empty(), {}};
+  if (view.inverse_depth.empty()) return out;
+  put_column(out.columns, differences(view.inverse_depth.pixels));
+  if (out.has_intensity) put_column(out.columns, differences(view.intensity.pixels));
+  put_column(out.columns, view.measured.pixels);
+  out.columns.shrink_to_fit();
+  return out;
+}
+
+StoredView unpacked(const PackedView& view) {
+  StoredView out{view.camera, view.noise, {}, {}, {}};
+  if (view.columns.empty()) return out;
+  static const std::filesystem::path kName = "a keyframe's view";  // in messages
+  ColumnReader in(view.columns, kName);
+  const std::size_t pixels =
+      static_cast<std::size_t>(view.camera.width_px) * static_cast<std::size_t>(view.camera.height_px);
+  out.inverse_depth = image_of(in.take<std::uint16_t>("depth", pixels), view.camera);
+  if (view.has_intensity) out.intensity = image_of(in.take<std::uint8_t>("intensity", pixels), view.camera);
+  out.measured.resize(view.camera.width_px, view.camera.height_px);
+  out.measured.pixels = in.take<std::uint8_t>("counts", pixels);
+  return out;
+}
+
+}  // namespace roomradar
