@@ -46,9 +46,7 @@ std::optional<Eigen::Isometry3d> recorded_pose(const Frame& frame, const Eigen::
 }
 
 /// Skips frames that a checkpoint already covers, without reading them if the source can seek.
-void skip_frames(FrameSource& source, std::int64_t count, const char* stage,
-                 const PrescanProgress& progress) {
-  for (std::int64_t i = 0; progress && i < count; ++i) progress(stage, "resumed");
+void skip_frames(FrameSource& source, std::int64_t count) {
   Frame frame;
   const auto refuse = [&](const std::string& has) {
     throw Error(source.name() + ": has " + has + " frames, but the scan to be resumed had read " +
@@ -60,6 +58,11 @@ void skip_frames(FrameSource& source, std::int64_t count, const char* stage,
   if (position < count - 1 && source.seek(0)) refuse("fewer");
   while (position < count && source.next(frame).status != ReadStatus::kEnd) ++position;
   if (position < count) refuse(std::to_string(position));
+}
+
+/// Reports frames of a resumed stage as done.
+void show_resumed(const PrescanWork& work, const char* stage, std::size_t frames) {
+  for (std::size_t i = 0; i < frames; ++i) work.show(stage, "resumed");
 }
 
 /// Returns true if the memory in use, plus the memory that later stages need, exceeds the cap.
@@ -263,7 +266,8 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
   if (checkpoint) {
     pass = read_tracking_pass(*checkpoint, work.config.odometry);
     pass.counts.frames_resumed = pass.counts.frames_read;
-    skip_frames(*work.source, pass.counts.frames_read, kTrackingStage, work.progress);
+    show_resumed(work, kTrackingStage, static_cast<std::size_t>(pass.counts.frames_read));
+    skip_frames(*work.source, pass.counts.frames_read);
   }
   const KeyframeDatabase* const known =
       map && work.config.poses == PoseOrigin::kTracked ? &map->keyframe_database : nullptr;
@@ -290,7 +294,8 @@ void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory
   for (const TimedPose& pose : to_fuse) T_world_camera[pose.frame_index] = pose.T_world_camera;
   if (!work.source->rewind()) throw Error(work.source->name() + ": cannot be read a second time");
   PrescanCounts second_pass;
-  if (pass.frames_read > 0) skip_frames(*work.source, pass.frames_read, kFusingStage, work.progress);
+  show_resumed(work, kFusingStage, pass.fused.size());
+  if (pass.frames_read > 0) skip_frames(*work.source, pass.frames_read);
   release_unused_memory();
   bool has_room = !pass.stopped_for_memory;  // set if the pass had ended before it was resumed
   ReadAhead frames(*work.source, pass.frames_read, positions_of(T_world_camera, pass));

@@ -12,7 +12,7 @@ std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolu
   constexpr std::int64_t kLooks = 4, kTries = 5, kMinute = 1800;
   constexpr double kFramesAnew = 80.0, kWholeRoom = 20.0;
   constexpr double kTracking_bytes = 60e6,
-                   kKeyframe_bytes = 0.05e6;  // per frame; one frame in eight becomes a keyframe
+                   kKeyframe_bytes = 0.04e6;  // per frame; one frame in eight becomes a keyframe
   const std::optional<std::int64_t> count = source.frame_count();
   MemoryEstimate estimate{.frames = count.value_or(kMinute), .length_known = count.has_value()};
   double sum_bytes = 0.0;

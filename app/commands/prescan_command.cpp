@@ -106,7 +106,7 @@ PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, S
       // On a terminal the progress line has no line end.
       std::fprintf(stderr, "%sroomradar: %s\n", isatty(STDERR_FILENO) != 0 ? "\n" : "", sentence.c_str());
     });
-  ScanProgress progress(options.map, start, window);
+  ScanProgress progress(options.map, start, config, window);
   PrescanResult scanned = or_say_what_is_kept(start, [&] {
     const auto show = [&](const std::string& stage, const std::string& note) {
       if (is_tracking(stage)) last_frame_s = report.seconds();

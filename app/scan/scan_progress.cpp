@@ -1,6 +1,7 @@
 // scan_progress.cpp: titles and totals of the stages.
 #include "app/scan/scan_progress.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "app/cli/interrupt.hpp"
@@ -13,6 +14,12 @@ namespace roomradar {
 namespace {
 
 constexpr const char* kSearched = "searched";  // the note of each frame in which ghosts are searched
+
+std::optional<std::int64_t> most_fused(std::optional<std::int64_t> frames, const PrescanConfig& config) {
+  if (!frames) return std::nullopt;
+  const std::int64_t every = (*frames + config.fuse_every - 1) / config.fuse_every;
+  return config.max_fused_frames > 0 ? std::min(every, std::int64_t{config.max_fused_frames}) : every;
+}
 
 }  // namespace
 
@@ -40,10 +47,11 @@ void ScanProgress::show(const std::string& stage, const std::string& note) {
   if (is_stopping_ && start_.checkpoints) start_.checkpoints->write_soon();
 }
 
-/// Returns the number of frames of a stage. The search for ghosts looks at evenly spaced fused frames;
-/// after a resumed scan their number is not known here.
+/// Returns the number of frames of a stage. Of frames to fuse, the number is an upper limit. The search for
+/// ghosts looks at evenly spaced fused frames; after a resumed scan their number is not known here.
 std::optional<std::int64_t> ScanProgress::total_of(const std::string& stage) const {
   if (stage == "fuse again" || (stage == "ghosts" && fused_ == 0)) return std::nullopt;
+  if (stage == "fuse") return most_fused(start_.source->frame_count(), config_);
   if (stage != "ghosts") return start_.source->frame_count();
   const std::int64_t stride = look_stride(fused_, GhostConfig{});
   return (fused_ + stride - 1) / stride;

@@ -9,6 +9,7 @@
 #include "app/scan/scan_channel.hpp"
 #include "app/scan/scan_view.hpp"
 #include "app/scan/unfinished_scan.hpp"
+#include "mapping/prescan.hpp"
 
 namespace roomradar {
 
@@ -31,8 +32,9 @@ class ScanProgress {
  public:
   /// @param map  name of the map, for messages
   /// All arguments must outlive this object.
-  ScanProgress(const std::string& map, const ScanStart& start, ScanWindow& window)
-      : map_(map), start_(start), window_(window) {}
+  ScanProgress(const std::string& map, const ScanStart& start, const PrescanConfig& config,
+               ScanWindow& window)
+      : map_(map), start_(start), config_(config), window_(window) {}
 
   /// Shows progress. Call after each frame of a stage. The first call after Ctrl-C requests a checkpoint of
   /// the frames read so far; the next call throws StoppedByUser. While a live source is tracked, ignores
@@ -42,6 +44,7 @@ class ScanProgress {
  private:
   const std::string& map_;
   const ScanStart& start_;
+  const PrescanConfig& config_;
   ScanWindow& window_;
   std::unique_ptr<Progress> progress_;
   std::string stage_;
