@@ -155,44 +155,10 @@ struct BitGrid::Rows {
   const std::uint64_t *own, *y_before, *y_after, *z_before, *z_after;
 };
 
-/// Rows of the grids that block steps from or to a row.
-struct BitGrid::Bars {
-  const std::uint64_t *x, *y_before, *y, *z_before, *z;
-};
-
-/// The planes of the blocking grids around one plane of a grid.
-class BitGrid::BarPlanes {
- public:
-  BarPlanes(const std::array<SparseBitGrid, 3>& blocked, std::size_t words_a_row)
-      : blocked_(blocked), words_a_row_(words_a_row) {}
-
-  /// The returned rows are valid until the next call.
-  Bars around(int y, int z) {
-    if (z != z_) read(z);
-    const std::size_t row = words_a_row_ * static_cast<std::size_t>(y);
-    return {x_.data() + row, y > 0 ? y_.data() + row - words_a_row_ : nullptr, y_.data() + row,
-            z > 0 ? z_before_.data() + row : nullptr, z_after_.data() + row};
-  }
-
- private:
-  void read(int z) {
-    z_ = z;
-    blocked_[0].read_plane(z, x_);
-    blocked_[1].read_plane(z, y_);
-    blocked_[2].read_plane(z - 1, z_before_);
-    blocked_[2].read_plane(z, z_after_);
-  }
-
-  const std::array<SparseBitGrid, 3>& blocked_;
-  std::size_t words_a_row_;
-  int z_ = -1;  // of the planes
-  std::vector<std::uint64_t> x_, y_, z_before_, z_after_;
-};
-
 /// Sets the voxels of `row` that dilating `source` sets in it. Returns true if a voxel was added.
 /// @param where  null: everywhere, also past the row's end
 bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::uint64_t* where,
-                            const Bars& bars, std::size_t words) {
+                            const BlockedRows& bars, std::size_t words) {
   bool any = false;
   const auto add = [&](std::size_t i, std::uint64_t word) {
     word &= (where ? where[i] : kAll) & ~row[i];
@@ -217,7 +183,7 @@ bool BitGrid::spread_to_row(std::uint64_t* row, const Rows& source, const std::u
 
 // Only the previous rows of two planes must be kept.
 void BitGrid::spread(const BitGrid* where, const std::array<SparseBitGrid, 3>& blocked) {
-  BarPlanes bars(blocked, words_a_row_);
+  BlockedPlanes bars(blocked);
   const std::size_t plane_words = words_a_row_ * static_cast<std::size_t>(size_.y());
   std::vector<std::uint64_t> below, plane;  // z - 1 and z before the operation
   for (int z = 0; z < size_.z(); ++z) {
@@ -247,7 +213,7 @@ void BitGrid::spread(const std::array<SparseBitGrid, 3>& blocked) {
 // In place, alternately upwards and downwards, so a straight path of any length takes one pass. A row is
 // visited again only after one beside it has changed.
 void BitGrid::flood(const BitGrid& where, const std::array<SparseBitGrid, 3>& blocked) {
-  BarPlanes planes(blocked, words_a_row_);
+  BlockedPlanes planes(blocked);
   struct Times {
     std::uint32_t visited = 0, changed = 1;
   };
@@ -268,7 +234,7 @@ void BitGrid::flood(const BitGrid& where, const std::array<SparseBitGrid, 3>& bl
     rows.z_after = beside(y, z + 1);
     if (newest <= own.visited) return false;
     own.visited = ++now;
-    const Bars bars = planes.around(y, z);
+    const BlockedRows bars = planes.around(y, z);
     bool any = false;
     while (spread_to_row(row(y, z), rows, where.row(y, z), bars, words_a_row_)) any = true;
     if (any) own.changed = now;

@@ -104,10 +104,8 @@ class BitGrid {
   void move_rows(int axis, int step);
   void spread(const BitGrid* where, const std::array<SparseBitGrid, 3>& blocked);
   struct Rows;
-  struct Bars;
-  class BarPlanes;
   static bool spread_to_row(std::uint64_t* row, const Rows& source, const std::uint64_t* where,
-                            const Bars& bars, std::size_t words);
+                            const BlockedRows& bars, std::size_t words);
 
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
   std::size_t words_a_row_ = 0;

@@ -51,4 +51,17 @@ void SparseBitGrid::read_plane(int z, std::vector<std::uint64_t>& words) const {
     words[indices_[i] - first] = words_[i];
 }
 
+BlockedRows BlockedPlanes::around(int y, int z) {
+  if (z != z_) {
+    z_ = z;
+    blocked_[0].read_plane(z, x_);
+    blocked_[1].read_plane(z, y_);
+    blocked_[2].read_plane(z - 1, z_before_);
+    blocked_[2].read_plane(z, z_after_);
+  }
+  const std::size_t words = blocked_[0].words_a_row(), row = words * static_cast<std::size_t>(y);
+  return {x_.data() + row, y > 0 ? y_.data() + row - words : nullptr, y_.data() + row,
+          z > 0 ? z_before_.data() + row : nullptr, z_after_.data() + row};
+}
+
 }  // namespace roomradar
