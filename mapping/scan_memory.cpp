@@ -11,6 +11,8 @@ namespace roomradar {
 std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolution_m) {
   constexpr std::int64_t kLooks = 4, kTries = 5, kMinute = 1800;
   constexpr double kFramesAnew = 80.0, kWholeRoom = 20.0;
+  // Of the stages after surface extraction: pictures for the texture, coverage, unknown space.
+  constexpr double kLaterStages_bytes = 130e6;
   constexpr double kTracking_bytes = 60e6,
                    kKeyframe_bytes = 0.04e6;  // per frame; one frame in eight becomes a keyframe
   const std::optional<std::int64_t> count = source.frame_count();
@@ -36,7 +38,8 @@ std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolu
   estimate.octree_bytes = sum_bytes / looks * std::min(1.0 + frames / kFramesAnew, kWholeRoom);
   estimate.process_bytes =
       static_cast<double>(resident_bytes()) +
-      std::max(kTracking_bytes + frames * kKeyframe_bytes, (1.0 + kSurfaceMemory) * estimate.octree_bytes);
+      std::max(kTracking_bytes + frames * kKeyframe_bytes,
+               estimate.octree_bytes + std::max(kSurfaceMemory * estimate.octree_bytes, kLaterStages_bytes));
   return estimate;
 }
 
