@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <type_traits>
 #include <vector>
 
 #include "mapping/storage/compressed_columns.hpp"
@@ -12,17 +11,14 @@
 namespace roomradar {
 namespace {
 
-/// Returns the difference of each pixel from the one before, with the sign as its lowest bit, so that small
-/// differences have small numbers.
+/// Returns the difference of each pixel from the one before.
 template <typename Pixel>
 std::vector<Pixel> differences(const std::vector<Pixel>& pixels) {
-  using Signed = std::make_signed_t<Pixel>;
   std::vector<Pixel> out;
   out.reserve(pixels.size());
   Pixel before = 0;
   for (const Pixel pixel : pixels) {
-    const auto difference = static_cast<Signed>(static_cast<Pixel>(pixel - before));
-    out.push_back(static_cast<Pixel>(difference < 0 ? ~(difference * 2) : difference * 2));
+    out.push_back(with_sign_last(static_cast<Pixel>(pixel - before)));
     before = pixel;
   }
   return out;
@@ -33,9 +29,7 @@ Image<Pixel> image_of(const std::vector<Pixel>& differences, const Intrinsics& c
   Image<Pixel> image(camera.width_px, camera.height_px);
   Pixel before = 0;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    const Pixel stored = differences[i];
-    const auto difference = static_cast<Pixel>((stored & 1U) != 0 ? ~(stored >> 1U) : stored >> 1U);
-    before = image.pixels[i] = static_cast<Pixel>(before + difference);
+    before = image.pixels[i] = static_cast<Pixel>(before + from_sign_last(differences[i]));
   }
   return image;
 }

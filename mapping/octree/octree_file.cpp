@@ -62,14 +62,6 @@ class Predictor {
   int first_ = 0;  ///< of the last block that has the field
 };
 
-std::uint16_t with_sign_last(int difference) {
-  const auto d = static_cast<std::int16_t>(difference);
-  return static_cast<std::uint16_t>(d < 0 ? ~(d * 2) : d * 2);
-}
-int from_sign_last(std::uint16_t stored) {
-  return static_cast<std::int16_t>((stored & 1U) != 0 ? ~(stored >> 1U) : stored >> 1U);
-}
-
 struct Predictors {
   Predictor distance, weight, green, red, blue;
 
@@ -131,7 +123,7 @@ class BlockWriter {
   }
 
   static void put_difference(int value, Predictor& predictor, unsigned i, std::vector<std::uint16_t>& out) {
-    out.push_back(with_sign_last(value - predictor.prediction(i)));
+    out.push_back(with_sign_last(static_cast<std::uint16_t>(value - predictor.prediction(i))));
     predictor.add(i, value);
   }
 
@@ -256,7 +248,7 @@ class BlockReader {
   }
 
   int take_value(Column<std::uint16_t>& column, const Predictor& predictor, unsigned i) const {
-    return predictor.prediction(i) + from_sign_last(take(column));
+    return predictor.prediction(i) + static_cast<std::int16_t>(from_sign_last(take(column)));
   }
 
   Rgb take_colour(unsigned i) {

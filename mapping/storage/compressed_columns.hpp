@@ -24,6 +24,20 @@ void put_column(std::string& out, const std::vector<Number>& numbers) {
   put_column(out, numbers.data(), numbers.size(), sizeof(Number));
 }
 
+/// Returns a difference, which may have wrapped, with its sign as the lowest bit: small differences have
+/// small numbers, so that their high bytes compress well. from_sign_last() is the inverse.
+template <typename Number>
+Number with_sign_last(Number difference) {
+  static_assert(std::is_unsigned_v<Number>);
+  const auto d = static_cast<std::make_signed_t<Number>>(difference);
+  return static_cast<Number>(d < 0 ? ~(d * 2) : d * 2);
+}
+template <typename Number>
+Number from_sign_last(Number stored) {
+  static_assert(std::is_unsigned_v<Number>);
+  return static_cast<Number>((stored & 1U) != 0 ? ~(stored >> 1U) : stored >> 1U);
+}
+
 /// Takes columns from the body of a file. Throws Error naming the file if the body is cut short or damaged.
 /// Rejects columns that together take more than 64 MB plus 1,000 times the body's size before memory is
 /// allocated for them: no map compresses that well. Body and path must outlive the reader.
