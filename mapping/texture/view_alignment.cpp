@@ -20,10 +20,13 @@ constexpr float kHuber = 12.0F;  // of 255: differences beyond count less
 // Prior: standard deviation of a correction, and of the differences of brightness.
 constexpr double kPrior_m = 0.01, kPrior_rad = 0.01, kBrightnessSigma = 8.0;
 
+// A sixteenth of the noise of an averaged pixel; gains of up to 8 fit 16 bits.
+constexpr float kUnitsPerLevel = 32.0F;
+
 /// Grey picture, evened by the view's gain, reduced by averaging.
 struct GreyPicture {
-  Image<float> grey;
-  float scale = 1.0F;  // from coordinates of the full picture
+  Image<std::uint16_t> grey;  // brightness (0..255) times kUnitsPerLevel
+  float scale = 1.0F;         // from coordinates of the full picture
 };
 
 GreyPicture grey_of(const TextureView& view, int factor) {
@@ -33,7 +36,9 @@ GreyPicture grey_of(const TextureView& view, int factor) {
   const Eigen::Array3f gain(view.gain[0], view.gain[1], view.gain[2]);
   for (int y = 0; y < picture.grey.height; ++y)
     for (int x = 0; x < picture.grey.width; ++x)
-      picture.grey.at(x, y) = (gain * mean_colour(view.colour, x * factor, y * factor, factor)).mean();
+      picture.grey.at(x, y) = static_cast<std::uint16_t>(std::lround(std::clamp(
+          kUnitsPerLevel * (gain * mean_colour(view.colour, x * factor, y * factor, factor)).mean(), 0.0F,
+          65535.0F)));
   return picture;
 }
 
@@ -46,26 +51,31 @@ struct Grey {
 
 Grey grey_at(const GreyPicture& picture, const Eigen::Vector2f& pixel) {
   const float x = (pixel.x() + 0.5F) * picture.scale - 0.5F, y = (pixel.y() + 0.5F) * picture.scale - 0.5F;
-  const Image<float>& grey = picture.grey;
+  const Image<std::uint16_t>& grey = picture.grey;
   if (!(x >= 1.0F && y >= 1.0F && x < static_cast<float>(grey.width - 2) &&
         y < static_cast<float>(grey.height - 2)))
     return {};
   const int left = static_cast<int>(x), top = static_cast<int>(y);
   const float u = x - static_cast<float>(left), v = y - static_cast<float>(top);
-  const float a = grey.at(left, top), b = grey.at(left + 1, top), c = grey.at(left, top + 1),
-              d = grey.at(left + 1, top + 1);
+  const auto level = [&grey](int column, int row) {
+    return static_cast<float>(grey.at(column, row)) / kUnitsPerLevel;
+  };
+  const float a = level(left, top), b = level(left + 1, top), c = level(left, top + 1),
+              d = level(left + 1, top + 1);
   return {true,
           (1.0F - v) * ((1.0F - u) * a + u * b) + v * ((1.0F - u) * c + u * d),
           {picture.scale * ((1.0F - v) * (b - a) + v * (d - c)),
            picture.scale * ((1.0F - u) * (c - a) + u * (d - b))}};
 }
 
+constexpr float kOutside = -1.0F;
+
 /// A view while it is aligned.
 struct Aligned {
   TextureView* view = nullptr;
   Eigen::Isometry3f T_first;           // the view's first pose
   std::vector<std::uint32_t> visible;  // indices of points
-  std::vector<Grey> greys;             // of visible, from the present pose
+  std::vector<float> values;           // brightness of visible, from the present pose; kOutside: none
   GreyPicture picture;
 };
 
@@ -88,13 +98,15 @@ Vector6d moved(const Aligned& aligned) {
 /// Looks up the visible points in the view's picture.
 void look(std::span<const MeshPoint> points, Aligned& aligned) {
   const TextureView& view = *aligned.view;
-  aligned.greys.resize(aligned.visible.size());
-  for (std::size_t k = 0; k < aligned.visible.size(); ++k)
-    aligned.greys[k] = grey_at(
+  aligned.values.resize(aligned.visible.size());
+  for (std::size_t k = 0; k < aligned.visible.size(); ++k) {
+    const Grey grey = grey_at(
         aligned.picture, pixel_of(view.camera, view.T_camera_local * points[aligned.visible[k]].p_local));
+    aligned.values[k] = grey.is_inside ? grey.value : kOutside;
+  }
 }
 
-/// One Gauss-Newton step of the view's pose. Call look() before.
+/// One Gauss-Newton step of the view's pose.
 void step(std::span<const MeshPoint> points, std::span<const float> brightness, Aligned& aligned) {
   TextureView& view = *aligned.view;
   Matrix6d H = Matrix6d::Zero();
@@ -102,10 +114,11 @@ void step(std::span<const MeshPoint> points, std::span<const float> brightness, 
   const auto fx = static_cast<float>(view.camera.fx_px), fy = static_cast<float>(view.camera.fy_px);
   for (std::size_t k = 0; k < aligned.visible.size(); ++k) {
     const std::uint32_t i = aligned.visible[k];
-    const Grey& grey = aligned.greys[k];
-    if (brightness[i] < 0.0F || !grey.is_inside) continue;
+    if (brightness[i] < 0.0F) continue;
     const Eigen::Vector3f p = view.T_camera_local * points[i].p_local;
     if (!(p.z() > 0.1F)) continue;
+    const Grey grey = grey_at(aligned.picture, pixel_of(view.camera, p));
+    if (!grey.is_inside) continue;
     const float difference = grey.value - brightness[i];
     const float weight = std::min(1.0F, kHuber / std::max(std::abs(difference), 1e-3F));
     // Gradient by the point in the camera frame, then by a twist: p moves by t + r x p.
@@ -138,8 +151,8 @@ void set_brightness(std::span<const Aligned> all, std::vector<float>& brightness
   std::fill(brightness.begin(), brightness.end(), 0.0F);
   for (const Aligned& aligned : all)
     for (std::size_t k = 0; k < aligned.visible.size(); ++k) {
-      if (!aligned.greys[k].is_inside) continue;
-      brightness[aligned.visible[k]] += aligned.greys[k].value;
+      if (aligned.values[k] == kOutside) continue;
+      brightness[aligned.visible[k]] += aligned.values[k];
       count[aligned.visible[k]] += 1.0F;
     }
   for (std::size_t i = 0; i < brightness.size(); ++i)
@@ -207,10 +220,7 @@ void align_view(std::span<const MeshPoint> points, std::span<const float> bright
   Aligned aligned = begin(points, view);
   for (const int factor : kFactors) {
     aligned.picture = grey_of(view, factor);
-    for (int i = 0; i < kStepsPerFactor; ++i) {
-      look(points, aligned);
-      step(points, brightness, aligned);
-    }
+    for (int i = 0; i < kStepsPerFactor; ++i) step(points, brightness, aligned);
   }
 }
 
