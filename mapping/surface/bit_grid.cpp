@@ -1,4 +1,4 @@
-// bit_grid.cpp: set operations, shifts, flood fill and opening, a word at a time.
+// bit_grid.cpp: set operations, neighbours, flood fill and opening, a word at a time.
 #include "mapping/surface/bit_grid.hpp"
 
 #include <algorithm>
@@ -57,51 +57,28 @@ BitGrid& BitGrid::operator|=(const BitGrid& other) {
   return *this;
 }
 
-BitGrid& BitGrid::subtract(const SparseBitGrid& other) {
-  assert(size_ == other.size());
-  other.for_each_word([&](std::size_t i, std::uint64_t word) { words_[i] &= ~word; });
-  return *this;
-}
-
 BitGrid& BitGrid::flip() {
   for (std::uint64_t& word : words_) word = ~word;
   clear_row_ends();
   return *this;
 }
 
-BitGrid& BitGrid::shift(int axis, int step) {
-  axis == 0 ? shift_rows(step) : move_rows(axis, step);
-  return *this;
-}
-
-void BitGrid::shift_rows(int step) {
-  for (std::size_t start = 0; start < words_.size(); start += words_a_row_) {
-    std::uint64_t* const words = words_.data() + start;
-    if (step > 0)
-      for (std::size_t i = 0; i < words_a_row_; ++i)
-        words[i] = words[i] >> 1U | (i + 1 < words_a_row_ ? words[i + 1] << 63U : 0);
+void BitGrid::BesideRow::read(int y, int z) {
+  const std::size_t count = other.words_a_row_;
+  const int from_y = axis == 1 ? y + step : y, from_z = axis == 2 ? z + step : z;
+  if (y == 0) blocked.read_plane(axis == 2 && step < 0 ? from_z : z, plane);  // of the lower voxels
+  words.assign(count, 0);
+  if (from_y < 0 || from_y >= other.size_.y() || from_z < 0 || from_z >= other.size_.z()) return;
+  const std::uint64_t* const from = other.row(from_y, from_z);
+  const std::uint64_t* const bars =
+      plane.data() + count * static_cast<std::size_t>(axis == 1 && step < 0 ? from_y : y);
+  for (std::size_t i = 0; i < count; ++i)
+    if (axis > 0)
+      words[i] = from[i] & ~bars[i];
+    else if (step > 0)
+      words[i] = (from[i] >> 1U | (i + 1 < count ? from[i + 1] << 63U : 0)) & ~bars[i];
     else
-      for (std::size_t i = words_a_row_; i-- > 0;)
-        words[i] = words[i] << 1U | (i > 0 ? words[i - 1] >> 63U : 0);
-  }
-  clear_row_ends();
-}
-
-void BitGrid::move_rows(int axis, int step) {
-  const Eigen::Vector3i offset = step * Eigen::Vector3i::Unit(axis);
-  const auto move_row = [&](int y, int z) {
-    const int from_y = y + offset.y(), from_z = z + offset.z();
-    if (from_y >= 0 && from_y < size_.y() && from_z >= 0 && from_z < size_.z())
-      std::copy_n(row(from_y, from_z), words_a_row_, row(y, z));
-    else
-      std::fill_n(row(y, z), words_a_row_, 0);
-  };
-  const int rows =
-      size_.y() * size_.z();  // in the direction of the offset: no row is overwritten before its use
-  for (int i = 0; i < rows; ++i) {
-    const int at = step > 0 ? i : rows - 1 - i;
-    move_row(at % size_.y(), at / size_.y());
-  }
+      words[i] = (from[i] & ~bars[i]) << 1U | (i > 0 ? (from[i - 1] & ~bars[i - 1]) >> 63U : 0);
 }
 
 // In place: a row changes after all rows that need its old value.

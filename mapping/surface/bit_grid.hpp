@@ -31,13 +31,9 @@ class BitGrid {
   /// Both grids must have the same size.
   BitGrid& operator&=(const BitGrid& other);
   BitGrid& operator|=(const BitGrid& other);
-  BitGrid& subtract(const SparseBitGrid& other);
   /// Sets all clear voxels and clears all set ones.
   BitGrid& flip();
   friend bool operator==(const BitGrid&, const BitGrid&) = default;
-
-  /// Gives each voxel the value of its neighbour `step` (-1 or 1) along the axis.
-  BitGrid& shift(int axis, int step);
 
   /// Keeps the voxels whose next `steps` (0..63) voxels along the axis are all set.
   BitGrid& erode(int axis, int steps);
@@ -68,6 +64,21 @@ class BitGrid {
             if (x < size_.x()) visit(Eigen::Vector3i(x, y, z));
           }
   }
+  /// Calls visit(p) for each set voxel whose neighbour at `step` (-1 or 1) along the axis is set in `other`.
+  /// A voxel set in `blocked` blocks the step between it and the next voxel along the axis. All grids must
+  /// have the same size. Order as for_each_set().
+  template <typename Visit>
+  void for_each_set_beside(const BitGrid& other, int axis, int step, const SparseBitGrid& blocked,
+                           const Visit& visit) const {
+    BesideRow beside{axis, step, other, blocked, {}, {}};
+    for (int z = 0; z < size_.z(); ++z)
+      for (int y = 0; y < size_.y(); ++y) {
+        beside.read(y, z);
+        for (std::size_t i = 0; i < words_a_row_; ++i)
+          for (std::uint64_t word = row(y, z)[i] & beside.words[i]; word != 0; word &= word - 1)
+            visit(Eigen::Vector3i(static_cast<int>(64 * i) + std::countr_zero(word), y, z));
+      }
+  }
   /// Calls visit(first voxel, length) for each run of set voxels along x, in the order of for_each_set(). A
   /// run that crosses a multiple of 64 in x is visited as several consecutive runs.
   template <typename Visit>
@@ -88,6 +99,15 @@ class BitGrid {
   }
 
  private:
+  /// The neighbours at `step` along the axis of a row's voxels, with those behind a block clear.
+  struct BesideRow {
+    int axis, step;
+    const BitGrid& other;
+    const SparseBitGrid& blocked;
+    std::vector<std::uint64_t> words;  ///< read() sets them; bits past the row's end are arbitrary
+    std::vector<std::uint64_t> plane;  ///< of `blocked`
+    void read(int y, int z);
+  };
   [[nodiscard]] std::size_t row_index(int y, int z) const {
     return static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y()) + static_cast<std::size_t>(y);
   }
@@ -100,8 +120,6 @@ class BitGrid {
     return words_a_row_ * (axis == 1 ? 1 : static_cast<std::size_t>(size_.y()));
   }
   void clear_row_ends();
-  void shift_rows(int step);
-  void move_rows(int axis, int step);
   void spread(const BitGrid* where, const std::array<SparseBitGrid, 3>& blocked);
   struct Rows;
   static bool spread_to_row(std::uint64_t* row, const Rows& source, const std::uint64_t* where,

@@ -24,11 +24,6 @@ class SparseBitGrid {
   [[nodiscard]] std::size_t words_a_row() const { return words_a_row_; }
   /// Sets `words` to the rows of a plane, y after y. All are clear if z is outside the grid.
   void read_plane(int z, std::vector<std::uint64_t>& words) const;
-  /// Calls visit(index, word) for each word that has a set voxel, by increasing index in the whole grid.
-  template <typename Visit>
-  void for_each_word(const Visit& visit) const {
-    for (std::size_t i = 0; i < words_.size(); ++i) visit(std::size_t{indices_[i]}, words_[i]);
-  }
 
  private:
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();

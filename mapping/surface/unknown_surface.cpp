@@ -109,17 +109,12 @@ BitGrid reachable(BitGrid free, const BitGrid& unknown, const std::array<SparseB
 Mesh mesh_between(const BitGrid& unknown, const BitGrid& reached, const std::array<SparseBitGrid, 3>& blocked,
                   const CellGrid& grid) {
   VoxelFaceMesher mesher(grid);
-  VoxelFaces faces;
-  for (faces.axis = 0; faces.axis < 3; ++faces.axis)
+  for (int axis = 0; axis < 3; ++axis)
     for (const int step : {1, -1}) {
-      faces.step = step;
-      faces.cells = reached;  // in the memory of the last ones
-      const SparseBitGrid& bars = blocked[static_cast<std::size_t>(faces.axis)];
-      if (step < 0) faces.cells.subtract(bars);  // a bar belongs to the lower of its two cells
-      faces.cells.shift(faces.axis, step);
-      if (step > 0) faces.cells.subtract(bars);
-      faces.cells &= unknown;
-      mesher.add(faces);
+      VoxelFaces faces(axis, step);
+      unknown.for_each_set_beside(reached, axis, step, blocked[static_cast<std::size_t>(axis)],
+                                  [&](const Vector3i& cell) { faces.add(cell); });
+      mesher.add(std::move(faces));
     }
   return mesher.take();
 }

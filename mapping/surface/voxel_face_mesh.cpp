@@ -2,7 +2,6 @@
 #include "mapping/surface/voxel_face_mesh.hpp"
 
 #include <algorithm>
-#include <tuple>
 #include <vector>
 
 namespace roomradar {
@@ -10,20 +9,23 @@ namespace {
 
 using Eigen::Vector3i;
 
+// Coordinates of a cell have this many bits in a code.
+constexpr unsigned kBits = 21;
+
+std::uint64_t code_of(int high, int middle, int low) {
+  return static_cast<std::uint64_t>(high) << 2 * kBits | static_cast<std::uint64_t>(middle) << kBits |
+         static_cast<std::uint64_t>(low);
+}
+
 // A face in its plane: u and v are the next two axes after the face's own.
 struct Face {
   int plane, v, u;
 };
 
-// Sorted by plane, then by row.
-std::vector<Face> sorted_faces(const VoxelFaces& faces) {
-  const int u = (faces.axis + 1) % 3, v = (faces.axis + 2) % 3;
-  std::vector<Face> sorted;
-  faces.cells.for_each_set([&](const Vector3i& p) { sorted.push_back({p[faces.axis], p[v], p[u]}); });
-  std::sort(sorted.begin(), sorted.end(), [](const Face& a, const Face& b) {
-    return std::tie(a.plane, a.v, a.u) < std::tie(b.plane, b.v, b.u);
-  });
-  return sorted;
+Face face_of(std::uint64_t code) {
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+  return {static_cast<int>(code >> 2 * kBits), static_cast<int>(code >> kBits & kMask),
+          static_cast<int>(code & kMask)};
 }
 
 // The faces of a plane that are not in a rectangle so far.
@@ -67,19 +69,26 @@ VoxelFaceMesher::VoxelFaceMesher(const CellGrid& grid) : grid_(grid) {
   mesh_.origin = (grid.first_cell + grid.size / 2).cast<double>() * grid.cell_m;
 }
 
-void VoxelFaceMesher::add(const VoxelFaces& faces) {
-  const std::vector<Face> sorted = sorted_faces(faces);
-  OpenFaces plane(grid_.size[(faces.axis + 1) % 3], grid_.size[(faces.axis + 2) % 3]);
+void VoxelFaces::add(const Vector3i& cell) {
+  codes_.push_back(code_of(cell[axis_], cell[(axis_ + 2) % 3], cell[(axis_ + 1) % 3]));
+}
+
+void VoxelFaceMesher::add(VoxelFaces faces) {
+  std::vector<std::uint64_t>& sorted = faces.codes_;
+  std::sort(sorted.begin(), sorted.end());
+  OpenFaces plane(grid_.size[(faces.axis_ + 1) % 3], grid_.size[(faces.axis_ + 2) % 3]);
   for (auto begin = sorted.begin(); begin != sorted.end();) {
-    const auto end =
-        std::find_if(begin, sorted.end(), [&](const Face& face) { return face.plane != begin->plane; });
-    std::for_each(begin, end, [&](const Face& face) { plane.open(face.u, face.v); });
+    const int at = face_of(*begin).plane;
+    auto end = begin;
+    for (; end != sorted.end() && face_of(*end).plane == at; ++end)
+      plane.open(face_of(*end).u, face_of(*end).v);
     for (; begin != end; ++begin) {
-      if (!plane.is_open(begin->u, begin->v)) continue;
-      const int to_u = plane.row_end(begin->u, begin->v);
-      const int to_v = plane.column_end(begin->u, to_u, begin->v);
-      plane.close(begin->u, to_u, begin->v, to_v);
-      add_rectangle(faces, begin->plane, begin->u, to_u, begin->v, to_v);
+      const Face face = face_of(*begin);
+      if (!plane.is_open(face.u, face.v)) continue;
+      const int to_u = plane.row_end(face.u, face.v);
+      const int to_v = plane.column_end(face.u, to_u, face.v);
+      plane.close(face.u, to_u, face.v, to_v);
+      add_rectangle(faces, at, face.u, to_u, face.v, to_v);
     }
   }
 }
@@ -88,25 +97,21 @@ void VoxelFaceMesher::add_rectangle(const VoxelFaces& faces, int plane, int from
                                     int to_v) {
   const auto corner = [&](int u, int v) {
     Vector3i cell;
-    cell[faces.axis] = faces.step > 0 ? plane + 1 : plane;
-    cell[(faces.axis + 1) % 3] = u;
-    cell[(faces.axis + 2) % 3] = v;
+    cell[faces.axis_] = faces.step_ > 0 ? plane + 1 : plane;
+    cell[(faces.axis_ + 1) % 3] = u;
+    cell[(faces.axis_ + 2) % 3] = v;
     return vertex(cell);
   };
   const std::uint32_t a = corner(from_u, from_v), c = corner(to_u, to_v);
   std::uint32_t b = corner(to_u, from_v), d = corner(from_u, to_v);
-  if (faces.step < 0) std::swap(b, d);
+  if (faces.step_ < 0) std::swap(b, d);
   mesh_.triangles.push_back({a, b, c});
   mesh_.triangles.push_back({a, c, d});
 }
 
 std::uint32_t VoxelFaceMesher::vertex(const Vector3i& cell) {
-  constexpr unsigned kBits = 21;
-  const std::uint64_t code = static_cast<std::uint64_t>(cell.z()) << 2 * kBits |
-                             static_cast<std::uint64_t>(cell.y()) << kBits |
-                             static_cast<std::uint64_t>(cell.x());
   const auto number = static_cast<std::uint32_t>(mesh_.vertices.size());
-  const auto [found, is_new] = vertex_at_.try_emplace(code, number);
+  const auto [found, is_new] = vertex_at_.try_emplace(code_of(cell.z(), cell.y(), cell.x()), number);
   if (is_new) mesh_.vertices.push_back(((cell - grid_.size / 2).cast<double>() * grid_.cell_m).cast<float>());
   return found->second;
 }

@@ -38,21 +38,6 @@ BitGrid random_bits(std::mt19937& random, unsigned out_of_8) {
   return bits;
 }
 
-TEST(BitGrid, ShiftingTakesTheNeighboursValueAndClearPastTheEnd) {
-  std::mt19937 random(1);
-  const BitGrid bits = random_bits(random, 4);
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int step : {-1, 1}) {
-      BitGrid shifted = bits;
-      shifted.shift(axis, step);
-      int wrong = 0;
-      for_each_voxel(kSize, [&](const Vector3i& p) {
-        wrong += shifted.at(p) != bits.at(p + step * Vector3i::Unit(axis)) ? 1 : 0;
-      });
-      EXPECT_EQ(wrong, 0) << "axis " << axis << ", step " << step;
-    }
-}
-
 TEST(BitGrid, ABoxIsSetAsFarAsItLiesInside) {
   BitGrid bits(kSize, false);
   bits.set_box({60, -3, 2}, {131, 4, 99}, true);
@@ -106,12 +91,27 @@ TEST(SparseBitGrid, HoldsTheVoxelsThatWereSetAndNoOthers) {
     EXPECT_EQ(wrong, 0);
     EXPECT_FALSE(few.at({-1, 0, 0}));
     EXPECT_FALSE(few.at(kSize));
-    BitGrid left(kSize, true);
-    BitGrid expected = bits;
-    EXPECT_EQ(left.subtract(few), expected.flip());
   }
   EXPECT_EQ(sparse(BitGrid(kSize, false)).memory_bytes(), 0U);
   EXPECT_EQ(SparseBitGrid(kSize, std::vector<Vector3i>(5, Vector3i(70, 3, 2))).memory_bytes(), 12U);
+}
+
+TEST(BitGrid, VoxelsBesideOthersAreThoseWhoseStepIsNotBarred) {
+  std::mt19937 random(1);
+  const BitGrid bits = random_bits(random, 4), other = random_bits(random, 4), bars = random_bits(random, 2);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int step : {-1, 1}) {
+      BitGrid visited(kSize, false), expected(kSize, false);
+      bits.for_each_set_beside(other, axis, step, sparse(bars), [&](const Vector3i& p) {
+        EXPECT_FALSE(visited.at(p));
+        visited.set(p, true);
+      });
+      for_each_voxel(kSize, [&](const Vector3i& p) {
+        const Vector3i next = p + step * Vector3i::Unit(axis), lower = step > 0 ? p : next;
+        expected.set(p, bits.at(p) && other.at(next) && !bars.at(lower));
+      });
+      EXPECT_EQ(visited, expected) << "axis " << axis << ", step " << step;
+    }
 }
 
 // Steps by their definition, voxel by voxel.
@@ -162,7 +162,9 @@ TEST(VoxelFaces, RectanglesCoverEachFaceOnce) {
     for (const int step : {-1, 1}) {
       const BitGrid cells = random_bits(random, 6);
       VoxelFaceMesher mesher(grid);
-      mesher.add({cells, axis, step});
+      VoxelFaces faces(axis, step);
+      cells.for_each_set([&](const Vector3i& p) { faces.add(p); });
+      mesher.add(faces);
       const Mesh mesh = mesher.take();
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
       BitGrid covered(kSize, false);
@@ -247,9 +249,9 @@ TEST(BarredSteps, OnlyStepsThatMeetTheSurfaceAreBarred) {
   const CellGrid grid{Vector3i::Zero(), Vector3i(8, 8, 4), 0.05};
   const auto blocked = blocked_neighbours(mesh, grid);
   std::set<std::tuple<int, int, int>> cells;
-  BitGrid crossed(grid.size, true);
-  crossed.subtract(blocked[2]).flip().for_each_set([&](const Vector3i& p) {
-    cells.insert({p.x(), p.y(), p.z()});
+  const BitGrid everywhere(grid.size, true);
+  everywhere.for_each_set([&](const Vector3i& p) {
+    if (blocked[2].at(p)) cells.insert({p.x(), p.y(), p.z()});
   });
   // Cell centres are at 0.075, 0.125, ...; those with x + y <= 0.4 are above it.
   std::set<std::tuple<int, int, int>> expected;
