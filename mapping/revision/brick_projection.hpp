@@ -8,7 +8,6 @@
 #include <span>
 
 #include "mapping/octree/static_map.hpp"
-#include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
@@ -26,15 +25,29 @@ inline bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_
          pixel.y() < camera.height_px + margin_px;
 }
 
+/// Edge of a brick in voxels, a power of two.
+inline constexpr int kCellBrickEdge = 8;
+
 /// A brick of 8 x 8 x 8 voxels. Its cells are at begin to end - 1 in the caller's list of cells.
 struct CellBrick {
-  VoxelIndex first = VoxelIndex::Zero();
+  VoxelIndex first = VoxelIndex::Zero();  ///< lowest voxel; coordinates are multiples of kCellBrickEdge
   std::size_t begin = 0, end = 0;
 };
 
+/// Returns the lowest voxel of the brick that contains `voxel`.
+inline VoxelIndex cell_brick_of(const VoxelIndex& voxel) {
+  return voxel.unaryExpr([](int v) { return v & ~(kCellBrickEdge - 1); });
+}
+
+/// Returns the number of the voxel at `offset` from the brick's lowest voxel, 0 to 511. Each coordinate must
+/// be in 0..kCellBrickEdge-1.
+inline std::size_t cell_brick_offset(const Eigen::Vector3i& offset) {
+  return static_cast<std::size_t>((offset.z() * kCellBrickEdge + offset.y()) * kCellBrickEdge + offset.x());
+}
+
 /// Position of a cell in its brick.
 struct CellInBrick {
-  std::size_t offset = 0;  ///< brick_offset() of its lowest voxel
+  std::size_t offset = 0;  ///< cell_brick_offset() of its lowest voxel
   bool coarse = false;     ///< its edge is two voxels, not one
 };
 
@@ -53,7 +66,7 @@ class BrickProjection {
         height_(static_cast<float>(frame.depth_m.height)) {
     const Eigen::Matrix3f R_camera_voxels = (T_camera_world_.linear() * resolution_m).cast<float>();
     for (int axis = 0; axis < 3; ++axis)
-      for (int i = 0; i < kBrickEdge; ++i)
+      for (int i = 0; i < kCellBrickEdge; ++i)
         steps_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] =
             R_camera_voxels.col(axis) * static_cast<float>(i);
     to_coarse_centre_ = R_camera_voxels * Eigen::Vector3f::Constant(0.5F);
@@ -66,11 +79,11 @@ class BrickProjection {
   template <typename CellAt, typename Visit>
   void for_each_nearer(float farthest_m, std::span<const CellBrick> bricks, const CellAt& cell_at,
                        const Visit& visit) const {
-    const double brick_radius_m = 0.5 * std::sqrt(3.0) * kBrickEdge * resolution_m_;
+    const double brick_radius_m = 0.5 * std::sqrt(3.0) * kCellBrickEdge * resolution_m_;
     for (const CellBrick& brick : bricks) {
       const Eigen::Vector3d low_world = brick.first.cast<double>() * resolution_m_;
       const Eigen::Vector3d middle_camera =
-          T_camera_world_ * (low_world + Eigen::Vector3d::Constant(0.5 * kBrickEdge * resolution_m_));
+          T_camera_world_ * (low_world + Eigen::Vector3d::Constant(0.5 * kCellBrickEdge * resolution_m_));
       if (middle_camera.z() > static_cast<double>(farthest_m) + brick_radius_m ||
           !may_be_seen(camera_, middle_camera, brick_radius_m))
         continue;
@@ -98,7 +111,7 @@ class BrickProjection {
   float fx_, fy_, cx_, cy_, width_, height_;
   /// Offsets from the centre of a brick's first voxel to the centres of the voxels along each axis, in the
   /// camera frame, m.
-  std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps_;
+  std::array<std::array<Eigen::Vector3f, kCellBrickEdge>, 3> steps_;
   /// Offset from the centre of a coarse cell's lowest voxel to the cell's centre, in the camera frame, m.
   Eigen::Vector3f to_coarse_centre_;
 };

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/revision/brick_projection.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
@@ -19,7 +19,7 @@ constexpr double kNearest_m =
     0.1;  // a brick with a corner nearer to the camera plane is treated as filling the image
 
 std::size_t offset_of(const VoxelIndex& voxel) {
-  return brick_offset(voxel.unaryExpr([](int v) { return v & (kBrickEdge - 1); }));
+  return cell_brick_offset(voxel.unaryExpr([](int v) { return v & (kCellBrickEdge - 1); }));
 }
 
 // Index of the voxel's cell within its brick.
@@ -39,8 +39,9 @@ std::optional<Rectangle> covered_by(const VoxelIndex& first, double resolution_m
   Eigen::Array2d high = -low;
   int behind = 0;
   for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d corner(first.x() + (i & 1 ? kBrickEdge : 0), first.y() + (i & 2 ? kBrickEdge : 0),
-                                 first.z() + (i & 4 ? kBrickEdge : 0));
+    const Eigen::Vector3d corner(first.x() + (i & 1 ? kCellBrickEdge : 0),
+                                 first.y() + (i & 2 ? kCellBrickEdge : 0),
+                                 first.z() + (i & 4 ? kCellBrickEdge : 0));
     const Eigen::Vector3d p_camera = T_camera_world * (corner * resolution_m);
     if (p_camera.z() < kNearest_m) {
       ++behind;
@@ -72,8 +73,8 @@ GhostZone::BitsOfBricks GhostZone::bits_of(std::initializer_list<std::span<const
     VoxelBits* own = nullptr;  // voxels come brick by brick
     VoxelIndex first = VoxelIndex::Zero();
     for (const VoxelIndex& voxel : voxels) {
-      if (!own || brick_of(voxel) != first) {
-        first = brick_of(voxel);
+      if (!own || cell_brick_of(voxel) != first) {
+        first = cell_brick_of(voxel);
         own = &bits[voxel_key(first)];
       }
       own->set(offset_of(voxel));
@@ -86,7 +87,7 @@ GhostZone::VoxelBits GhostZone::near_in_brick(const VoxelIndex& first, const Bit
   std::array<const VoxelBits*, kCellsRound> round{};  // the brick and those around it
   bool any = false;
   for (int i = 0; i < kCellsRound; ++i) {
-    const auto found = set.find(voxel_key(first + kBrickEdge * neighbour_offset(i)));
+    const auto found = set.find(voxel_key(first + kCellBrickEdge * neighbour_offset(i)));
     if (found == set.end()) continue;
     round[static_cast<std::size_t>(i)] = &found->second;
     any = true;
@@ -95,22 +96,22 @@ GhostZone::VoxelBits GhostZone::near_in_brick(const VoxelIndex& first, const Bit
   if (!any) return near;
   const auto byte_at = [&](int brick_x, int y, int z) -> unsigned {  // of a row, bit x
     const VoxelBits* const bits = round[static_cast<std::size_t>(
-        brick_x + 3 * ((y + kBrickEdge) / kBrickEdge + 3 * ((z + kBrickEdge) / kBrickEdge)))];
+        brick_x + 3 * ((y + kCellBrickEdge) / kCellBrickEdge + 3 * ((z + kCellBrickEdge) / kCellBrickEdge)))];
     return bits ? static_cast<unsigned>(bits->planes[z & 7] >> 8 * (y & 7) & 0xFFU) : 0U;
   };
-  for (int z = -kNear; z < kBrickEdge + kNear; ++z) {
+  for (int z = -kNear; z < kCellBrickEdge + kNear; ++z) {
     std::uint64_t plane = 0;
-    for (int y = -kNear; y < kBrickEdge + kNear; ++y) {
+    for (int y = -kNear; y < kCellBrickEdge + kNear; ++y) {
       // The row from x = -kNear on, and what is within kNear of it.
       const unsigned row = byte_at(0, y, z) >> (8 - kNear) | byte_at(1, y, z) << kNear |
                            (byte_at(2, y, z) & ((1U << kNear) - 1U)) << (8 + kNear);
       unsigned wide = row;
       for (int step = 1; step <= kNear; ++step) wide |= row << step | row >> step;
       const std::uint64_t byte = wide >> kNear & 0xFFU;
-      for (int at = std::max(y - kNear, 0); at <= std::min(y + kNear, kBrickEdge - 1); ++at)
+      for (int at = std::max(y - kNear, 0); at <= std::min(y + kNear, kCellBrickEdge - 1); ++at)
         plane |= byte << 8 * at;
     }
-    for (int at = std::max(z - kNear, 0); at <= std::min(z + kNear, kBrickEdge - 1); ++at)
+    for (int at = std::max(z - kNear, 0); at <= std::min(z + kNear, kCellBrickEdge - 1); ++at)
       near.planes[static_cast<std::size_t>(at)] |= plane;
   }
   return near;
@@ -119,20 +120,20 @@ GhostZone::VoxelBits GhostZone::near_in_brick(const VoxelIndex& first, const Bit
 GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
     : resolution_m_(resolution_m) {
   const auto mark = [this](const VoxelIndex& ghost, VoxelBits Marks::*bits) {
-    const auto found = marks_.find(voxel_key(brick_of(ghost)));
+    const auto found = marks_.find(voxel_key(cell_brick_of(ghost)));
     if (found != marks_.end() && found->second.ghost_cells.test(cell_of(ghost))) {
       (found->second.*bits).set(offset_of(ghost));
       return;
     }
     for (int i = 0; i < kCellsRound; ++i) {
-      const VoxelIndex first = brick_of(ghost) + kBrickEdge * neighbour_offset(i);
+      const VoxelIndex first = cell_brick_of(ghost) + kCellBrickEdge * neighbour_offset(i);
       if (marks_.try_emplace(voxel_key(first)).second) bricks_.push_back(first);
     }
     for (int i = 0; i < kCellsRound; ++i) {
       const VoxelIndex neighbour = ghost + kCellEdge * neighbour_offset(i);
-      marks_.at(voxel_key(brick_of(neighbour))).cells.set(cell_of(neighbour));
+      marks_.at(voxel_key(cell_brick_of(neighbour))).cells.set(cell_of(neighbour));
     }
-    Marks& own = marks_.at(voxel_key(brick_of(ghost)));
+    Marks& own = marks_.at(voxel_key(cell_brick_of(ghost)));
     own.ghost_cells.set(cell_of(ghost));
     (own.*bits).set(offset_of(ghost));
   };
@@ -153,19 +154,19 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
 bool GhostZone::reaches(const VoxelIndex& voxel) const {
   for (int i = 0; i < 8; ++i) {
     const VoxelIndex corner(i & 1 ? kNear : -kNear, i & 2 ? kNear : -kNear, i & 4 ? kNear : -kNear);
-    if (marks_.contains(voxel_key(brick_of(voxel + corner)))) return true;
+    if (marks_.contains(voxel_key(cell_brick_of(voxel + corner)))) return true;
   }
   return false;
 }
 
 bool GhostZone::touches(const VoxelIndex& first) const {
   for (int i = 0; i < kCellsRound; ++i)
-    if (marks_.contains(voxel_key(first + kBrickEdge * neighbour_offset(i)))) return true;
+    if (marks_.contains(voxel_key(first + kCellBrickEdge * neighbour_offset(i)))) return true;
   return false;
 }
 
 const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {
-  const auto found = marks_.find(voxel_key(brick_of(voxel)));
+  const auto found = marks_.find(voxel_key(cell_brick_of(voxel)));
   return found == marks_.end() ? nullptr : &found->second;
 }
 
@@ -200,7 +201,7 @@ void GhostZone::mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_
       if (!(depth > 0.0F)) continue;
       const Eigen::Vector3d p_world = T_world_camera * back_project(camera, x, y, static_cast<double>(depth));
       const VoxelIndex voxel = (p_world / resolution_m_).array().floor().cast<int>();
-      if (const std::uint64_t brick = voxel_key(brick_of(voxel)); brick != last_brick) {
+      if (const std::uint64_t brick = voxel_key(cell_brick_of(voxel)); brick != last_brick) {
         marks = marks_of(voxel);
         last_brick = brick;
       }

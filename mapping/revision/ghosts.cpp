@@ -8,7 +8,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/revision/ghost_zone.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/system/parallel_for.hpp"
@@ -61,7 +60,7 @@ class HiddenCells {
 };
 
 Eigen::Vector3i in_brick(std::uint16_t offset) {
-  static_assert(kBrickEdge == 8);
+  static_assert(kCellBrickEdge == 8);
   return {offset & 7, offset >> 3 & 7, offset >> 6};
 }
 
@@ -119,11 +118,11 @@ GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
   const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(map.reach_m());
   map.visit_cells({-reach_m, reach_m}, [&](const SurfaceSample& sample, int edge_voxels) {
     if (sample.occupancy != Occupancy::kOccupied && std::abs(sample.distance_m) > voxel_m) return;
-    const VoxelIndex first = brick_of(sample.voxel);
+    const VoxelIndex first = cell_brick_of(sample.voxel);
     if (bricks_.empty() || bricks_.back().first != first)
       bricks_.push_back({first, votes_.size(), votes_.size()});
     Votes& votes = votes_.emplace_back();
-    votes.offset = brick_offset(sample.voxel - first) & 511U;
+    votes.offset = cell_brick_offset(sample.voxel - first) & 511U;
     votes.coarse = edge_voxels > 1 ? 1U : 0U;
     votes.occupied = sample.occupancy == Occupancy::kOccupied ? 1U : 0U;
     bricks_.back().end = votes_.size();

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/surface/cell_sheets.hpp"
+#include "mapping/surface/tsdf_bricks.hpp"
 
 namespace roomradar {
 

@@ -2,6 +2,7 @@
 #include "mapping/surface/tsdf_levels.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <unordered_set>
 #include <utility>
@@ -34,19 +35,69 @@ class CellSet {
   std::unordered_set<std::uint64_t> keys_;
 };
 
+template <typename Visit>
+void for_each_in_cube(int edge, const Visit& visit) {
+  for (int z = 0; z < edge; ++z)
+    for (int y = 0; y < edge; ++y)
+      for (int x = 0; x < edge; ++x) visit(Eigen::Vector3i(x, y, z));
+}
+
+/// Returns for each place of a cell in its brick the neighbouring bricks that the cell touches, one bit each,
+/// numbered as by neighbour_offset().
+std::array<std::uint32_t, kBrickSize> touched_bricks() {
+  std::array<std::uint32_t, kBrickSize> touched{};
+  const auto side = [](int at) { return at == 0 ? -1 : at == kBrickEdge - 1 ? 1 : 0; };
+  for_each_in_cube(kBrickEdge, [&](const Eigen::Vector3i& at) {
+    const Eigen::Vector3i sides = at.unaryExpr(side);
+    for (int i = 0; i < kCellsRound; ++i)
+      if (i != kOwnCell && neighbour_offset(i).cwiseProduct(sides) == neighbour_offset(i).cwiseAbs())
+        touched[brick_offset(at)] |= 1U << static_cast<unsigned>(i);
+  });
+  return touched;
+}
+
+/// Bricks of a grid: those with a sample, and those that a sample near the surface touches. Samples are
+/// extrapolated there.
+class BrickSet {
+ public:
+  /// Adds the brick of a cell. Cells of one brick should follow each other.
+  /// @param distance_cells  signed distance, in edges of a cell
+  void add(const VoxelIndex& cell, float distance_cells) {
+    // Of two samples with a zero crossing between them, one is nearer than this.
+    constexpr float kNear_cells = 1.5F;
+    static const std::array<std::uint32_t, kBrickSize> kTouched = touched_bricks();
+    const VoxelIndex first = brick_of(cell);
+    if (first != first_) {
+      add_touched();
+      first_ = first;
+      bricks_.add(first);
+    }
+    if (std::abs(distance_cells) <= kNear_cells) touched_ |= kTouched[brick_offset(cell - first)];
+  }
+  void add_brick(const VoxelIndex& first) { bricks_.add(first); }
+  /// Returns the lowest cells of the bricks.
+  [[nodiscard]] const std::vector<VoxelIndex>& firsts() {
+    add_touched();
+    return bricks_.cells;
+  }
+
+ private:
+  CellSet bricks_;
+  VoxelIndex first_ = VoxelIndex::Ones();  // lowest cell of the brick added last; of none at the start
+  std::uint32_t touched_ = 0;              // its neighbours to be added
+
+  void add_touched() {
+    for (int i = 0; touched_ != 0; ++i, touched_ >>= 1U)
+      if ((touched_ & 1U) != 0) bricks_.add(first_ + kBrickEdge * neighbour_offset(i));
+  }
+};
+
 /// Calls visit(node) for the 26 nodes around each node of a set.
 template <typename Visit>
 void for_each_beside(const CellSet& nodes, const Visit& visit) {
   for (const VoxelIndex& node : nodes.cells)
     for (int i = 0; i < kCellsRound; ++i)
       if (i != kOwnCell) visit(VoxelIndex(node + neighbour_offset(i)));
-}
-
-template <typename Visit>
-void for_each_in_cube(int edge, const Visit& visit) {
-  for (int z = 0; z < edge; ++z)
-    for (int y = 0; y < edge; ++y)
-      for (int x = 0; x < edge; ++x) visit(Eigen::Vector3i(x, y, z));
 }
 
 /// Finds samples of a grid, faster if successive ones are in the same brick.
@@ -94,11 +145,17 @@ const TsdfSample* sample_in(const TsdfBricks& bricks, const VoxelIndex& cell) {
 
 TsdfLevels::TsdfLevels(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world)
     : voxels(std::vector<VoxelIndex>{}), coarse(std::vector<VoxelIndex>{}) {
-  // The nodes of each grid.
+  // The nodes and bricks of each grid.
   CellSet voxel_nodes, coarse_nodes;
+  BrickSet voxel_bricks, coarse_bricks;
+  const auto voxel_m = static_cast<float>(map.resolution_m());
   map.visit_cells(box_world, [&](const SurfaceSample& sample, int edge) {
     if (sample.weight < min_weight) return;
     (edge == 1 ? voxel_nodes : coarse_nodes).add(divided(sample.voxel, kNodeEdge));
+    if (edge == 1)
+      voxel_bricks.add(sample.voxel, sample.distance_m / voxel_m);
+    else
+      coarse_bricks.add(divided(sample.voxel, kCoarseEdge), sample.distance_m / (kCoarseEdge * voxel_m));
   });
   CellSet around_voxels, coarse_beside, voxels_beside;
   for_each_beside(voxel_nodes, [&](const VoxelIndex& node) {
@@ -115,17 +172,10 @@ TsdfLevels::TsdfLevels(const StaticMap& map, float min_weight, const Eigen::Alig
   });
 
   // The bricks, with the places that belong to the other grid marked.
-  constexpr int kVoxelNodes = kBrickEdge / kNodeEdge, kCoarseNodes = kBrickEdge / kCoarsePerNode;
-  CellSet voxel_bricks, coarse_bricks;
-  const auto add_brick = [](CellSet& bricks, const VoxelIndex& node, int nodes_per_brick) {
-    bricks.add(divided(node, nodes_per_brick) * kBrickEdge);
-  };
-  for (const VoxelIndex& node : voxel_nodes.cells) add_brick(voxel_bricks, node, kVoxelNodes);
-  for (const VoxelIndex& node : coarse_beside.cells) add_brick(voxel_bricks, node, kVoxelNodes);
-  for (const VoxelIndex& node : coarse_nodes.cells) add_brick(coarse_bricks, node, kCoarseNodes);
-  for (const VoxelIndex& node : voxels_beside.cells) add_brick(coarse_bricks, node, kCoarseNodes);
-  voxels = TsdfBricks(voxel_bricks.cells);
-  coarse = TsdfBricks(coarse_bricks.cells);
+  for (const VoxelIndex& node : coarse_beside.cells) voxel_bricks.add_brick(brick_of(kNodeEdge * node));
+  for (const VoxelIndex& node : voxels_beside.cells) coarse_bricks.add_brick(brick_of(kCoarsePerNode * node));
+  voxels = TsdfBricks(voxel_bricks.firsts());
+  coarse = TsdfBricks(coarse_bricks.firsts());
   const auto mark = [&](TsdfBricks& bricks, int node_edge, bool marks_voxels) {
     for (Brick& brick : bricks.bricks())
       for_each_in_cube(kBrickEdge / node_edge, [&](const Eigen::Vector3i& at) {

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "mapping/octree/static_map.hpp"
-#include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/surface/tsdf_bricks.hpp"
 
 namespace roomradar {
 
 /// Edge of a coarse cell in voxels.
 inline constexpr int kCoarseEdge = 2;
 /// Number of bricks that a thread takes at a time.
-inline constexpr std::size_t kBricksAtOnce = 64;
+inline constexpr std::size_t kBricksAtOnce = 256;
 
 /// Samples of a map, at the size at which the octree stores them: a grid of voxels and a grid of coarse
 /// cells. Coarse cell c covers the voxels 2 c and 2 c + 1 along each axis. Each node (a cube with an edge of

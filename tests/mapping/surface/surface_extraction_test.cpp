@@ -129,6 +129,23 @@ TEST(Surface, NoiseOfAFarWallIsAveragedAndThatOfANearOneIsNot) {
   EXPECT_LT(roughness_m(0.05F), 0.001);
 }
 
+TEST(Surface, ItsBorderDoesNotDependOnWhereBricksBegin) {
+  const auto triangles = [](const VoxelIndex& shift) {
+    StaticMap map(0.01);
+    for (int x = 0; x < 13; ++x)
+      for (int y = 0; y < 13; ++y)
+        for (int z = -3; z < 3; ++z)
+          map.add_evidence(SurfaceSample{.voxel = shift + VoxelIndex(x, y, z),
+                                         .distance_m = 0.01F * (static_cast<float>(z) + 0.5F),
+                                         .weight = 20.0F});
+    return extract_surface(map, {.min_component_area_m2 = 0.0F, .max_deviation_m = 0.0F}).triangles.size();
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (int shift = 0; shift < 8; ++shift)
+      // Two for each of the 13 x 13 measured crossings.
+      EXPECT_EQ(triangles(shift * VoxelIndex::Unit(axis)), 338U) << "axis " << axis << ", shift " << shift;
+}
+
 TEST(Surface, SpecksGoAndSurfacesStay) {
   StaticMap map(0.01);
   const test::Scene scene =

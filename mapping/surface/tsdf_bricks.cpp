@@ -1,5 +1,7 @@
 // tsdf_bricks.cpp: hash index of bricks, and look-ups in a brick's neighbourhood.
-#include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/surface/tsdf_bricks.hpp"
+
+#include <bit>
 
 #include "mapping/types/voxel_key.hpp"
 
@@ -7,22 +9,36 @@ namespace roomradar {
 namespace {
 
 static_assert(sizeof(TsdfSample) == 12);
-constexpr int kBrickShift = 3;
+constexpr int kBrickShift = 2;
 static_assert(1 << kBrickShift == kBrickEdge);
+
+constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
+
+std::uint64_t hash_of(const VoxelIndex& first) {
+  const std::uint64_t hash = voxel_key(first) * 0x9E37'79B9'7F4A'7C15U;  // 2^64 / golden ratio
+  return hash ^ hash >> 32U;
+}
 
 }  // namespace
 
-TsdfBricks::TsdfBricks(const std::vector<VoxelIndex>& firsts) : bricks_(firsts.size()) {
-  by_code_.reserve(firsts.size());
+TsdfBricks::TsdfBricks(const std::vector<VoxelIndex>& firsts)
+    : bricks_(firsts.size()), slots_(std::bit_ceil(2 * firsts.size() + 1)) {
   for (std::size_t b = 0; b < firsts.size(); ++b) {
     bricks_[b].first = firsts[b];
-    by_code_.emplace(voxel_key(firsts[b]), b);
+    const std::uint64_t hash = hash_of(firsts[b]);
+    std::size_t slot = hash & (slots_.size() - 1);
+    while (slots_[slot].brick != kEmpty) slot = (slot + 1) & (slots_.size() - 1);
+    slots_[slot] = {static_cast<std::uint32_t>(hash >> 32U), static_cast<std::uint32_t>(b)};
   }
 }
 
 std::size_t TsdfBricks::find(const VoxelIndex& first) const {
-  const auto found = by_code_.find(voxel_key(first));
-  return found == by_code_.end() ? kNone : found->second;
+  const std::uint64_t hash = hash_of(first);
+  for (std::size_t slot = hash & (slots_.size() - 1); slots_[slot].brick != kEmpty;
+       slot = (slot + 1) & (slots_.size() - 1))
+    if (slots_[slot].hash == hash >> 32U && bricks_[slots_[slot].brick].first == first)
+      return slots_[slot].brick;
+  return kNone;
 }
 
 BrickNeighbourhood::BrickNeighbourhood(const TsdfBricks& bricks, std::size_t centre) {
