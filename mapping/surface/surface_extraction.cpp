@@ -10,6 +10,7 @@
 #include "mapping/mesh/components.hpp"
 #include "mapping/mesh/mesh_simplify.hpp"
 #include "mapping/surface/dual_marching_cubes.hpp"
+#include "mapping/surface/surface_parts.hpp"
 #include "mapping/surface/tsdf_extrapolation.hpp"
 #include "mapping/surface/tsdf_levels.hpp"
 #include "mapping/surface/tsdf_smoothing.hpp"
@@ -18,6 +19,8 @@
 namespace roomradar {
 namespace {
 
+// Bricks that are extracted at once: takes 150 MB. More than most rooms have.
+constexpr std::size_t kMostBricks = 100'000;
 constexpr int kSweeps = 6;  // more change the surface by less than 0.1 mm
 // Margin around a box in which samples are used; samples beyond move the surface in the box by less than 0.1
 // mm.
@@ -36,9 +39,8 @@ void require_valid(const SurfaceConfig& config) {
   require("max_deviation_m", config.max_deviation_m);
 }
 
-Eigen::AlignedBox3d whole_box(const StaticMap& map) {
-  const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(map.reach_m());
-  return {-reach_m, reach_m};
+Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double by_m) {
+  return {box.min() - Eigen::Vector3d::Constant(by_m), box.max() + Eigen::Vector3d::Constant(by_m)};
 }
 
 // Returns the triangles that have a corner in the box.
@@ -67,7 +69,11 @@ Mesh extract_full_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_w
 }
 
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceStats* facts) {
-  Mesh full = extract_full_surface(map, whole_box(map), config);
+  require_valid(config);
+  const double reach_m = kSurfaceReach_voxels * map.resolution_m();
+  Mesh full = join_parts(divide(map, kMostBricks), [&](const Eigen::AlignedBox3d& box_world) {
+    return extract_full_surface(map, grown(box_world, reach_m), config);
+  });
   SimplifiedMesh result{drop_small_components(full, config.min_component_area_m2), 0.0F};
   full = {};
   const std::size_t full_triangles = result.mesh.triangles.size();
@@ -84,13 +90,9 @@ Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
   require_valid(config);
   if (box_world.isEmpty()) return {};
   const double voxel_m = map.resolution_m();
-  const auto grown = [&](double voxels) {
-    const Eigen::Vector3d by = Eigen::Vector3d::Constant(voxels * voxel_m);
-    return Eigen::AlignedBox3d(box_world.min() - by, box_world.max() + by);
-  };
-  const Mesh full = extract_full_surface(map, grown(kMargin_voxels), config);
+  const Mesh full = extract_full_surface(map, grown(box_world, kMargin_voxels * voxel_m), config);
   Mesh mesh = drop_small_components(full, config.min_component_area_m2);
-  mesh = compacted(mesh, triangles_in(mesh, grown(kOverlap_voxels)));
+  mesh = compacted(mesh, triangles_in(mesh, grown(box_world, kOverlap_voxels * voxel_m)));
   if (config.max_deviation_m <= 0.0F) return mesh;
   const auto spacing_m = kSpacing_voxels * static_cast<float>(voxel_m);
   return simplified(std::move(mesh), config.max_deviation_m, spacing_m).mesh;

@@ -5,11 +5,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <random>
 
 #include "mapping/mesh/components.hpp"
+#include "mapping/surface/surface_parts.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/exact_depth.hpp"
 
@@ -144,6 +146,32 @@ TEST(Surface, ItsBorderDoesNotDependOnWhereBricksBegin) {
     for (int shift = 0; shift < 8; ++shift)
       // Two for each of the 13 x 13 measured crossings.
       EXPECT_EQ(triangles(shift * VoxelIndex::Unit(axis)), 338U) << "axis " << axis << ", shift " << shift;
+}
+
+TEST(SurfaceParts, JoinedAreTheWholeSurface) {
+  const StaticMap map = ball_map({0.3, -0.2, 0.1}, 0.3, 0.01);
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(map.reach_m());
+  const Mesh whole = extract_full_surface(map, {-reach, reach});
+  const std::vector<Eigen::AlignedBox3d> boxes = divide(map, 300);
+  ASSERT_GT(boxes.size(), 4U);
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kSurfaceReach_voxels * map.resolution_m());
+  const Mesh joined = join_parts(boxes, [&](const Eigen::AlignedBox3d& box) {
+    return extract_full_surface(map, {box.min() - margin, box.max() + margin});
+  });
+  EXPECT_EQ(joined.vertices.size(), whole.vertices.size()) << "vertices on seams are merged";
+  expect_consistent(joined);
+  const auto triangles_of = [](const Mesh& mesh) {
+    std::vector<std::array<double, 9>> triangles;
+    for (const Triangle& t : mesh.triangles) {
+      std::array<double, 9> corners{};
+      for (std::size_t i = 0; i < 9; ++i)
+        corners[i] = place(mesh, t[i / 3])[static_cast<Eigen::Index>(i % 3)];
+      triangles.push_back(corners);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
+  };
+  EXPECT_EQ(triangles_of(joined), triangles_of(whole));
 }
 
 TEST(Surface, SpecksGoAndSurfacesStay) {
