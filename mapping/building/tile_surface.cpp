@@ -6,23 +6,12 @@
 
 #include "mapping/mesh/components.hpp"
 #include "mapping/mesh/mesh_simplify.hpp"
+#include "mapping/surface/surface_parts.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr float kSpacing_voxels = 1.5F;  // spacing of the points at which the deviation is measured
-
-Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double by_m) {
-  return {box.min() - Eigen::Vector3d::Constant(by_m), box.max() + Eigen::Vector3d::Constant(by_m)};
-}
-
-/// Returns whether the tile's cube contains the triangle's centre. Vertices are on a grid of 2^-17 m, so the
-/// sum is exact and all tiles agree.
-bool owns(const TileGrid& grid, const TileIndex& tile, const Mesh& mesh, const Triangle& t) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const std::uint32_t v : t) sum += mesh.origin + mesh.vertices[v].cast<double>();
-  return tile_at(grid, sum / 3.0) == tile;
-}
 
 }  // namespace
 
@@ -42,7 +31,7 @@ Mesh extract_tile_surface(const StaticMap& map, const TileGrid& grid, const Tile
   std::vector<Triangle> own;
   std::vector<bool> is_others(full.vertices.size(), false);
   for (const Triangle& t : full.triangles) {
-    if (owns(grid, tile, full, t))
+    if (tile_at(grid, centre_world(full, t)) == tile)
       own.push_back(t);
     else
       for (const std::uint32_t v : t) is_others[v] = true;

@@ -39,10 +39,6 @@ void require_valid(const SurfaceConfig& config) {
   require("max_deviation_m", config.max_deviation_m);
 }
 
-Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double by_m) {
-  return {box.min() - Eigen::Vector3d::Constant(by_m), box.max() + Eigen::Vector3d::Constant(by_m)};
-}
-
 // Returns the triangles that have a corner in the box.
 std::vector<Triangle> triangles_in(const Mesh& mesh, const Eigen::AlignedBox3d& box_world) {
   const Eigen::AlignedBox3f box((box_world.min() - mesh.origin).cast<float>(),

@@ -1,4 +1,4 @@
-// surface_parts.cpp: halves the map's nodes until the parts are small; merges the parts' common vertices.
+// surface_parts.cpp: halves the map's bricks until the parts are small; merges the parts' common vertices.
 #include "mapping/surface/surface_parts.hpp"
 
 #include <algorithm>
@@ -13,54 +13,48 @@
 namespace roomradar {
 namespace {
 
-constexpr int kNode_voxels = 4;
-
-/// Returns the nodes that have a sample, each by its lowest voxel divided by 4. Of the eight nodes that share
-/// a brick of coarse cells, returns the lowest.
-std::vector<VoxelIndex> nodes_with_samples(const StaticMap& map) {
-  static_assert(kBrickEdge == kNode_voxels);
-  std::vector<VoxelIndex> nodes;
+/// Returns the bricks that have a sample, each by its lowest voxel divided by kBrickEdge. Bricks of coarse
+/// cells are among those of voxels.
+std::vector<VoxelIndex> bricks_with_samples(const StaticMap& map) {
+  std::vector<VoxelIndex> bricks;
   const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(map.reach_m());
   map.visit_cells({-reach_m, reach_m}, [&](const SurfaceSample& sample, int edge) {
-    const VoxelIndex node =
-        edge * sample.voxel.unaryExpr([&](int v) { return floor_div(v, edge * kNode_voxels); });
-    if (nodes.empty() || nodes.back() != node) nodes.push_back(node);  // a brick's cells follow each other
+    const VoxelIndex brick =
+        edge * sample.voxel.unaryExpr([&](int v) { return floor_div(v, edge * kBrickEdge); });
+    if (bricks.empty() || bricks.back() != brick)
+      bricks.push_back(brick);  // a brick's cells follow each other
   });
-  return nodes;
+  return bricks;
 }
 
-/// Appends the boxes of some nodes, all within `box`.
-void divide(std::span<VoxelIndex> nodes, std::size_t most_bricks, double node_m,
+/// Appends the boxes of some bricks, all within `box`.
+void divide(std::span<VoxelIndex> bricks, std::size_t most_bricks, double brick_m,
             const Eigen::AlignedBox3d& box, std::vector<Eigen::AlignedBox3d>& boxes) {
   VoxelIndex low = VoxelIndex::Zero(), high = VoxelIndex::Zero();
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    low = i == 0 ? nodes[i] : VoxelIndex(low.cwiseMin(nodes[i]));
-    high = i == 0 ? nodes[i] : VoxelIndex(high.cwiseMax(nodes[i]));
+  for (std::size_t i = 0; i < bricks.size(); ++i) {
+    low = i == 0 ? bricks[i] : VoxelIndex(low.cwiseMin(bricks[i]));
+    high = i == 0 ? bricks[i] : VoxelIndex(high.cwiseMax(bricks[i]));
   }
-  if (nodes.size() <= most_bricks || low == high) {
+  if (bricks.size() <= most_bricks || low == high) {
     boxes.push_back(box);
     return;
   }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
-  const auto middle = nodes.begin() + static_cast<std::ptrdiff_t>(nodes.size() / 2);
-  std::nth_element(nodes.begin(), middle, nodes.end(),
+  const auto middle = bricks.begin() + static_cast<std::ptrdiff_t>(bricks.size() / 2);
+  std::nth_element(bricks.begin(), middle, bricks.end(),
                    [axis](const VoxelIndex& a, const VoxelIndex& b) { return a[axis] < b[axis]; });
   const int plane = std::max((*middle)[axis], low[axis] + 1);  // neither side is empty
-  const auto first_above =
-      std::partition(nodes.begin(), nodes.end(), [&](const VoxelIndex& node) { return node[axis] < plane; });
+  const auto first_above = std::partition(bricks.begin(), bricks.end(),
+                                          [&](const VoxelIndex& brick) { return brick[axis] < plane; });
   Eigen::AlignedBox3d below = box, above = box;
-  below.max()[axis] = above.min()[axis] = plane * node_m;
-  divide({nodes.begin(), first_above}, most_bricks, node_m, below, boxes);
-  divide({first_above, nodes.end()}, most_bricks, node_m, above, boxes);
+  below.max()[axis] = above.min()[axis] = plane * brick_m;
+  divide({bricks.begin(), first_above}, most_bricks, brick_m, below, boxes);
+  divide({first_above, bricks.end()}, most_bricks, brick_m, above, boxes);
 }
 
-/// Returns whether a triangle's centre is in the box. Vertices are on a grid of 2^-17 m, so their sum is
-/// exact.
 bool owns(const Eigen::AlignedBox3d& box, const Mesh& mesh, const Triangle& t) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const std::uint32_t v : t) sum += mesh.origin + mesh.vertices[v].cast<double>();
-  const Eigen::Array3d centre = sum.array() / 3.0;
+  const Eigen::Array3d centre = centre_world(mesh, t).array();
   return (centre >= box.min().array()).all() && (centre < box.max().array()).all();
 }
 
@@ -106,11 +100,17 @@ class JoinedParts {
 
 }  // namespace
 
+Eigen::Vector3d centre_world(const Mesh& mesh, const Triangle& triangle) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::uint32_t v : triangle) sum += mesh.origin + mesh.vertices[v].cast<double>();
+  return sum / 3.0;
+}
+
 std::vector<Eigen::AlignedBox3d> divide(const StaticMap& map, std::size_t most_bricks) {
-  std::vector<VoxelIndex> nodes = nodes_with_samples(map);
+  std::vector<VoxelIndex> bricks = bricks_with_samples(map);
   std::vector<Eigen::AlignedBox3d> boxes;
   const Eigen::Vector3d reach_m = Eigen::Vector3d::Constant(map.reach_m());
-  divide(nodes, most_bricks, kNode_voxels * map.resolution_m(), {-reach_m, reach_m}, boxes);
+  divide(bricks, most_bricks, kBrickEdge * map.resolution_m(), {-reach_m, reach_m}, boxes);
   return boxes;
 }
 

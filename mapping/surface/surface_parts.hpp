@@ -1,5 +1,4 @@
-// surface_parts.hpp: extracts a large map's full surface in parts, which bounds the memory. Private to
-// surface_extraction.
+// surface_parts.hpp: extracts a large map's full surface in parts, which bounds the memory.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -10,6 +9,15 @@
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
+
+/// Returns the box with each side moved outwards by by_m.
+inline Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double by_m) {
+  return {box.min() - Eigen::Vector3d::Constant(by_m), box.max() + Eigen::Vector3d::Constant(by_m)};
+}
+
+/// Returns the centre of a triangle, in the world. The vertices of a full surface are on a grid of 2^-17 m,
+/// so their sum is exact, and all parts that have the triangle agree.
+Eigen::Vector3d centre_world(const Mesh& mesh, const Triangle& triangle);
 
 /// Divides the world into boxes along planes between voxels, such that each box has at most most_bricks (>=
 /// 1) bricks with a sample (see tsdf_bricks.hpp), or only one. Each point is in one box: a box contains its
