@@ -12,6 +12,7 @@
 #include "mapping/coverage/coverage.hpp"
 #include "mapping/deskewed_source.hpp"
 #include "mapping/map/map_merge.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/mesh/ply_file.hpp"
 #include "mapping/prescan_passes.hpp"
 #include "mapping/texture_pass.hpp"
@@ -65,12 +66,12 @@ std::future<TimedCoverage> begin_coverage(const StaticMap& octree, const Mesh& m
   return std::async(std::launch::async, [&octree, &mesh, poses = std::move(earlier)] {
     const auto start = std::chrono::steady_clock::now();
     Coverage coverage = survey_coverage(octree, mesh, poses);
-    release_unused_memory();  // the texture needs it
+    release_unused_memory();  // the frontier of unknown space needs it
     return TimedCoverage{std::move(coverage), ms_since(start)};
   });
 }
 
-/// Fills in the map's description, except for the fields that save_map sets.
+/// Fills in the map's description, except for the fields that a MapWriter sets.
 MapInfo describe_map(const PrescanWork& work, const FusionPass& pass,
                      const std::vector<TimedPose>& trajectory) {
   MapInfo info;
@@ -137,18 +138,24 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   if (config.bake_texture)
     erase_flat_triangles(map.mesh);  // so that the texture fits the mesh that is read from the map
 
-  // Texture. Unobserved regions are found meanwhile.
+  // Unobserved regions. Octree and its frontier are saved meanwhile, so that the texture can have the memory.
+  const MapCounts octree_counts = map.octree->counts();
   auto coverage = begin_coverage(
       map.octree, map.mesh, start.map ? start.map->trajectory : std::vector<TimedPose>{}, map.trajectory);
+  if (start.writer) times.timed("save_octree", [&] { start.writer->write_octree(map.octree, map.mesh); });
+  TimedCoverage surveyed = coverage.get();
+  times.add_ms("coverage", surveyed.ms);
+  map.coverage_png = std::move(surveyed.coverage.picture_png);
+  result.holes = std::move(surveyed.coverage.holes);
+  if (start.writer) map.octree = start.writer->written_octree();
+  release_unused_memory();
+
+  // Texture.
   if (config.bake_texture) {
     EarlierTextures earlier;
     if (start.map) add_texture_of(*start.map, Eigen::Isometry3d::Identity(), earlier);
     map.texture = run_texture_pass(work, map.trajectory, pass, earlier, map.mesh);
   }
-  TimedCoverage surveyed = coverage.get();
-  times.add_ms("coverage", surveyed.ms);
-  map.coverage_png = std::move(surveyed.coverage.picture_png);
-  result.holes = std::move(surveyed.coverage.holes);
   map.keyframe_database = std::move(pass.found.keyframe_database);
   transform(map.keyframe_database, pass.T_world_found);
 
@@ -164,8 +171,10 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     if (error.poses > 0) counts.trajectory_error = error;
   }
   map.info = describe_map(work, pass, map.trajectory);
+  map.info.counts = octree_counts;
   if (start.map) {
     append_session(*start.map, map);
+    start.map->info.counts = octree_counts;
     start.map->octree = std::move(map.octree);
     start.map->mesh = std::move(map.mesh);
     start.map->texture = std::move(map.texture);

@@ -51,7 +51,7 @@ struct FrameSpan {
 };
 
 struct PrescanResult {
-  SavedMap map;
+  SavedMap map;                 ///< map.info.counts are set, too
   std::vector<Hole> holes;      ///< regions that the scan did not observe; largest first, outer borders last
   std::vector<FrameSpan> lost;  ///< readable frames without a trusted pose, in order
   PrescanCounts counts;
@@ -65,8 +65,9 @@ struct PrescanResult {
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
 class Checkpoints;
+class MapWriter;
 
-/// Optional inputs: checkpoints to resume from, a map to extend, and an observer.
+/// Optional inputs: checkpoints to resume from, a map to extend, an observer, and where the map is saved.
 struct PrescanInput {
   /// Receives the prescan's state at intervals. If a checkpoint exists already, the prescan resumes from it.
   /// The source must then deliver the same frames again. Null: no checkpoints.
@@ -74,6 +75,9 @@ struct PrescanInput {
   /// Map to extend with the source's frames. The map's world frame and resolution are kept.
   std::optional<SavedMap> map;
   ScanObserver* observer = nullptr;  ///< follows the first pass; null: none
+  /// Writes the octree before the texture is baked, which then has the octree's memory; null: none. The
+  /// caller commits. The octree of the result is read from the saved map if it is used.
+  MapWriter* writer = nullptr;
 };
 
 /// Scans a room. Reads the source once to track the camera, and a second time to fuse the frames with their
@@ -84,8 +88,8 @@ struct PrescanInput {
 /// With tracked poses, the origin is on the floor below the first camera. If no level surface is measured,
 /// the origin is at the height of the first camera. With start.map, the map's world frame is kept.
 ///
-/// Stages timed: read, track, optimise, fuse, ghosts, surface, texture, coverage, checkpoint (time during
-/// which the work is blocked), and frame (track plus fuse of one frame, without reading).
+/// Stages timed: read, track, optimise, fuse, ghosts, surface, coverage, save_octree, texture, checkpoint
+/// (time during which the work is blocked), and frame (track plus fuse of one frame, without reading).
 ///
 /// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface. Also
 ///         throws if start.map shows another room, or overlaps the source too little for a reliable

@@ -10,6 +10,7 @@
 #include "app/media/picture_file.hpp"
 #include "app/page/map_page.hpp"
 #include "mapping/map/map_merge.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 

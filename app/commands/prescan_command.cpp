@@ -24,6 +24,7 @@
 #include "app/window/scan/scan_window.hpp"
 #include "mapping/deskewed_source.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/types/system/error.hpp"
@@ -98,9 +99,10 @@ void keep_settings_of_map(const PrescanOptions& options, SavedMap& map, PrescanC
 }
 
 /// Scans the room; the map to extend is moved from `start`. Errors say whether the scan can be resumed.
+/// @param writer  saves the octree before the texture is baked
 /// @param last_frame_s  out: Report::seconds() when the last frame was tracked
 PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, ScanStart& start,
-                   ScanWindow& window, Report& report, double& last_frame_s) {
+                   ScanWindow& window, MapWriter& writer, Report& report, double& last_frame_s) {
   if (start.checkpoints)
     start.checkpoints->tell_failure([](const std::string& sentence) {
       // On a terminal the progress line has no line end.
@@ -113,7 +115,7 @@ PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, S
       progress.show(stage, note);
     };
     return prescan(*start.source, config, report.times, show,
-                   {start.checkpoints.get(), std::move(start.map), window.view.get()});
+                   {start.checkpoints.get(), std::move(start.map), window.view.get(), &writer});
   });
   report.frames_read = scanned.counts.frames_read;
   report.frames_skipped = scanned.counts.frames_skipped;
@@ -194,7 +196,8 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   }
 
   double last_frame_s = 0.0;
-  const PrescanResult scanned = scan(options, config, start, window, report, last_frame_s);
+  MapWriter writer(options.map);
+  const PrescanResult scanned = scan(options, config, start, window, writer, report, last_frame_s);
   const bool was_stopped = scanned.counts.stopped_for_memory;
   const bool keep_frames = was_stopped && !start.spool.empty();
   if (extends && was_stopped) {
@@ -202,8 +205,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
     write_report(report, options.report);
     fail_to_extend(options, keep_frames);
   }
-  or_say_what_is_kept(start,
-                      [&] { report.times.timed("save", [&] { save_map(options.map, scanned.map); }); });
+  or_say_what_is_kept(start, [&] { report.times.timed("save", [&] { writer.commit(scanned.map); }); });
   report.results["ready_after_s"] = report.seconds() - last_frame_s;
 
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, poses_of_scan(scanned));

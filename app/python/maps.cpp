@@ -12,6 +12,7 @@
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/map/map_merge.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/types/system/format_number.hpp"
 
 namespace roomradar::python {

@@ -18,6 +18,7 @@
 #include "app/session/apply_quality.hpp"
 #include "app/session/script/session_events.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/make_folder.hpp"

@@ -25,7 +25,7 @@ nlohmann::json hole_row(const Hole& hole) {
 
 nlohmann::json results_of(const PrescanResult& scanned) {
   const PrescanCounts& counts = scanned.counts;
-  const MapCounts octree = scanned.map.octree->counts();
+  const MapCounts& octree = scanned.map.info.counts;
   nlohmann::json results = {
       {"frames_tracked", counts.frames_tracked},
       {"frames_fused", counts.frames_fused},

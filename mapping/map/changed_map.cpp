@@ -5,6 +5,7 @@
 
 #include "mapping/coverage/coverage.hpp"
 #include "mapping/map/map_texture.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 
 namespace roomradar {

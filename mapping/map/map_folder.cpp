@@ -1,4 +1,4 @@
-// map_folder.cpp: saves, verifies and loads a map.
+// map_folder.cpp: verifies and loads a map.
 #include "mapping/map/map_folder.hpp"
 
 #include <algorithm>
@@ -20,7 +20,6 @@
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/process_memory.hpp"
-#include "mapping/types/system/version.hpp"
 
 namespace roomradar {
 namespace {
@@ -94,60 +93,6 @@ StaticMap read_octree(const fs::path& folder, const MapInfo& info) {
     fail(path, "its resolution is not the one in " + std::string(kMapInfoFile));
   return octree;
 }
-
-}  // namespace
-
-void save_map(const fs::path& folder, const SavedMap& map) {
-  const fs::path target = tidy_map_name(folder);
-  require_replaceable(target);
-  if (map.mesh.triangles.empty())
-    fail(target, "not saved: the map has no surface; were there frames with depth and trusted poses?");
-  if (map.mesh.triangles.size() > kMaxMeshTriangles || map.mesh.vertices.size() > 3 * kMaxMeshTriangles)
-    fail(target, "not saved: its surface has " + std::to_string(map.mesh.triangles.size()) +
-                     " triangles, and " + std::to_string(kMaxMeshTriangles) +
-                     " is the most; take a larger --deviation, or a coarser --resolution.");
-  AtomicFolder partial(target);
-
-  const StaticMap& octree = map.octree;
-  // On another thread, since the extraction takes as long as writing the rest.
-  auto unknown = std::async(std::launch::async, [&] {
-    write_unknown_surface(unknown_surface(octree, map.mesh), partial.path() / kMapUnknownFile);
-  });
-  octree.write(partial.path() / kMapOctreeFile);
-  write_mesh(map.mesh, partial.path() / kMapMeshFile);
-  write_keyframe_database(map.keyframe_database, partial.path() / kMapKeyframesFile);
-  write_trajectory(partial.path() / kMapTrajectoryFile, map.trajectory);
-  if (!map.coverage_png.empty())
-    write_bytes(partial.path() / kMapCoverageFile,
-                std::string(map.coverage_png.begin(), map.coverage_png.end()));
-
-  const std::shared_ptr<const SurfaceTexture> texture = fitting_texture(map);
-  if (texture)
-    write_surface_texture(*texture, partial.path() / kMapTextureFile, partial.path() / kMapTexturePointsFile);
-
-  MapInfo info = map.info;
-  info.format_version = kMapFormatVersion;
-  info.tool_version = kVersion;
-  info.resolution_m = octree.resolution_m();
-  info.counts = octree.counts();
-  info.vertices = map.mesh.vertices.size();
-  info.triangles = map.mesh.triangles.size();
-  info.keyframes = map.keyframe_database.keyframes.size();
-  info.poses = map.trajectory.size();
-  unknown.get();
-  info.files.clear();
-  std::vector<std::string> parts(kMapParts.begin(), kMapParts.end());
-  parts.emplace_back(kMapUnknownFile);
-  if (!map.coverage_png.empty()) parts.emplace_back(kMapCoverageFile);
-  if (texture) parts.insert(parts.end(), {kMapTextureFile, kMapTexturePointsFile});
-  for (const std::string& part : parts)
-    info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
-  write_bytes(partial.path() / kMapInfoFile, to_json(info));
-
-  partial.commit();
-}
-
-namespace {
 
 MapInfo read_info(const fs::path& folder) {
   std::error_code fault;

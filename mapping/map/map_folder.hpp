@@ -1,4 +1,4 @@
-// map_folder.hpp: a prescanned room on disk, saved atomically. The format is in maps/README.md.
+// map_folder.hpp: a prescanned room on disk. The format is in maps/README.md.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
-#include "mapping/map/lazy_part.hpp"
 #include "mapping/map/map_files.hpp"
 #include "mapping/map/map_info.hpp"
 #include "mapping/octree/static_map.hpp"
+#include "mapping/storage/lazy_part.hpp"
 #include "mapping/surface/unknown_surface.hpp"
 #include "mapping/texture/surface_texture.hpp"
 #include "mapping/types/mesh.hpp"
@@ -33,13 +33,6 @@ struct SavedMap {
   /// Texture of the mesh, or of an earlier mesh (see fits()); null: none.
   LazyPart<std::shared_ptr<const SurfaceTexture>> texture{std::shared_ptr<const SurfaceTexture>()};
 };
-
-/// Writes the map to folder.partial-PID, syncs that folder to disk, and renames it to `folder` atomically.
-/// Extracts the border of unknown space from map.octree and map.mesh, and writes it to unknown.bin. A texture
-/// that does not fit the mesh is left out. Afterwards `folder` is the complete new map or, after an Error,
-/// unchanged. Creates parent folders. Throws Error if `folder` exists and is not a map, the map has no
-/// surface or too many triangles, or the disk fails.
-void save_map(const std::filesystem::path& folder, const SavedMap& map);
 
 /// Reads a map of this or an earlier format version. Verifies the sizes of all files, and the checksum of
 /// each file before parsing it. Octree, unknown surface and texture are read and verified when they are first

@@ -30,6 +30,7 @@
 #include "app/session/session.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/system/error.hpp"
 #include "radar/exact/ray_hit.hpp"

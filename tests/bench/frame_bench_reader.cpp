@@ -10,6 +10,7 @@
 
 #include "app/cli/open_source.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/prescan.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/frame_bench_pipe.hpp"

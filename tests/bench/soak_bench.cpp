@@ -22,6 +22,7 @@
 #include "app/session/session.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/process_memory.hpp"

@@ -8,6 +8,7 @@
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/camera_path.hpp"
 #include "bench_times.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/map/surface_points.hpp"
 #include "mapping/mesh/mesh_distance.hpp"
 #include "mapping/types/system/counter_random.hpp"

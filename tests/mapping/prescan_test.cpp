@@ -4,8 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <utility>
 
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
+#include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/process_memory.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
@@ -162,7 +168,8 @@ TEST(Prescan, ALongScanThatOnlyBeginsInTheMapIsAddedToIt) {
 }
 
 /// Prescan that also bakes a texture.
-PrescanResult textured_prescan(std::vector<Frame> frames, std::size_t max_memory_bytes = 0) {
+PrescanResult textured_prescan(std::vector<Frame> frames, std::size_t max_memory_bytes = 0,
+                               MapWriter* writer = nullptr) {
   test::KeptSource source(std::move(frames));
   PrescanConfig config;
   config.poses = PoseOrigin::kRecorded;
@@ -170,7 +177,9 @@ PrescanResult textured_prescan(std::vector<Frame> frames, std::size_t max_memory
   config.bake_texture = true;
   config.max_memory_bytes = max_memory_bytes;
   StageTimes times;
-  return prescan(source, config, times);
+  PrescanInput input;
+  input.writer = writer;
+  return prescan(source, config, times, {}, std::move(input));
 }
 
 TEST(Prescan, TheTextureFitsTheMeshThatIsSaved) {
@@ -182,6 +191,40 @@ TEST(Prescan, TheTextureFitsTheMeshThatIsSaved) {
   EXPECT_TRUE(fits(texture, mesh));
   EXPECT_EQ(verify_map(folder.path() / "map"), std::vector<std::string>{});
   EXPECT_EQ(*prescan_of(posed_frames()).map.texture, nullptr);  // only where it is asked for
+}
+
+std::string content(const std::filesystem::path& file) { return read_bytes(file, "a map's file", 1U << 26U); }
+
+TEST(Prescan, AnOctreeThatIsSavedBeforeTheTextureIsThatOfTheMap) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path in_two_steps = folder.path() / "two", at_once = folder.path() / "one";
+  MapWriter writer(in_two_steps);
+  const PrescanResult result = textured_prescan(posed_frames(), 0, &writer);
+  EXPECT_FALSE(std::filesystem::exists(in_two_steps)) << "only commit() makes it a map";
+  writer.commit(result.map);
+  save_map(at_once, textured_prescan(posed_frames()).map);
+  EXPECT_EQ(verify_map(in_two_steps), std::vector<std::string>{});
+  std::size_t files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(at_once)) {
+    const std::filesystem::path name = file.path().filename();
+    EXPECT_EQ(content(in_two_steps / name), content(at_once / name)) << name;
+    ++files;
+  }
+  EXPECT_GE(files, 8U);
+  EXPECT_EQ(result.map.octree->counts().nodes, load_map_octree(at_once).counts().nodes);
+  EXPECT_EQ(result.map.info.counts.nodes, load_map_octree(at_once).counts().nodes);
+}
+
+TEST(Prescan, AMapThatIsNotCommittedLeavesTheOldOneAndNothingBeside) {
+  const test::TemporaryFolder folder;
+  save_map(folder.path() / "map", prescan_of(posed_frames()).map);
+  const std::string before = content(folder.path() / "map" / kMapInfoFile);
+  {
+    MapWriter writer(folder.path() / "map");
+    (void)textured_prescan(posed_frames(), 0, &writer);
+  }
+  EXPECT_EQ(content(folder.path() / "map" / kMapInfoFile), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST(Prescan, WithoutColourThereIsNoTexture) {

@@ -9,6 +9,7 @@
 #include "app/cli/progress.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/surface/unknown_surface.hpp"

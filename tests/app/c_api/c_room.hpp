@@ -9,6 +9,7 @@
 #include "app/c_api/conversions.hpp"
 #include "app/c_api/roomradar.h"
 #include "app/sim/sensor/simulated_source.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/prescan.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/session/session.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "tests/app/c_api/c_room.hpp"
 
 namespace roomradar::session_calls_test {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/forked_program.hpp"
 #include "tests/support/temporary_folder.hpp"

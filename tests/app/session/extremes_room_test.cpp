@@ -11,6 +11,7 @@
 
 #include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/octree/fusion.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/surface/surface_extraction.hpp"

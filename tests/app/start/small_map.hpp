@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "tests/support/exact_depth.hpp"
 
 namespace roomradar::test {

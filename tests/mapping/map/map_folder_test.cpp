@@ -1,5 +1,6 @@
 // map_folder_test.cpp: a loaded map equals the saved one, and every damage is reported.
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>

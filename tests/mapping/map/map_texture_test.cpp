@@ -6,6 +6,7 @@
 
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/mapping/texture/texture_scene.hpp"

@@ -1,0 +1,88 @@
+// map_writer.cpp: writes the parts of a map, then map.json with their sizes and checksums.
+#include "mapping/map/map_writer.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/map/map_info_json.hpp"
+#include "mapping/map/unknown_surface_file.hpp"
+#include "mapping/mesh/mesh_file.hpp"
+#include "mapping/storage/sha256.hpp"
+#include "mapping/texture/surface_texture_file.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/version.hpp"
+
+namespace roomradar {
+namespace {
+
+void require_savable(const std::filesystem::path& target, const Mesh& mesh) {
+  const auto fail = [&](const std::string& fault) { throw Error(target.string() + ": not saved: " + fault); };
+  if (mesh.triangles.empty()) fail("the map has no surface; were there frames with depth and trusted poses?");
+  if (mesh.triangles.size() > kMaxMeshTriangles || mesh.vertices.size() > 3 * kMaxMeshTriangles)
+    fail("its surface has " + std::to_string(mesh.triangles.size()) + " triangles, and " +
+         std::to_string(kMaxMeshTriangles) +
+         " is the most; take a larger --deviation, or a coarser --resolution.");
+}
+
+}  // namespace
+
+void save_map(const std::filesystem::path& folder, const SavedMap& map) {
+  MapWriter writer(folder);
+  writer.write_octree(map.octree, map.mesh);
+  writer.commit(map);
+}
+
+MapWriter::MapWriter(const std::filesystem::path& folder) : target_(tidy_map_name(folder)) {}
+
+void MapWriter::write_octree(const StaticMap& octree, const Mesh& mesh) {
+  require_replaceable(target_);
+  require_savable(target_, mesh);
+  partial_.emplace(target_);
+  octree.write(partial_->path() / kMapOctreeFile);
+  resolution_m_ = octree.resolution_m();
+  counts_ = octree.counts();
+  write_unknown_surface(unknown_surface(octree, mesh), partial_->path() / kMapUnknownFile);
+}
+
+LazyPart<StaticMap> MapWriter::written_octree() const {
+  return LazyPart<StaticMap>([folder = target_]() -> StaticMap { return load_map_octree(folder); });
+}
+
+void MapWriter::commit(const SavedMap& map) {
+  require_savable(target_, map.mesh);
+  require_replaceable(target_);
+  const std::filesystem::path& path = partial_.value().path();
+  write_mesh(map.mesh, path / kMapMeshFile);
+  write_keyframe_database(map.keyframe_database, path / kMapKeyframesFile);
+  write_trajectory(path / kMapTrajectoryFile, map.trajectory);
+  if (!map.coverage_png.empty())
+    write_bytes(path / kMapCoverageFile, std::string(map.coverage_png.begin(), map.coverage_png.end()));
+
+  const std::shared_ptr<const SurfaceTexture> texture = fitting_texture(map);
+  if (texture) write_surface_texture(*texture, path / kMapTextureFile, path / kMapTexturePointsFile);
+
+  MapInfo info = map.info;
+  info.format_version = kMapFormatVersion;
+  info.tool_version = kVersion;
+  info.resolution_m = resolution_m_;
+  info.counts = counts_;
+  info.vertices = map.mesh.vertices.size();
+  info.triangles = map.mesh.triangles.size();
+  info.keyframes = map.keyframe_database.keyframes.size();
+  info.poses = map.trajectory.size();
+  info.files.clear();
+  std::vector<std::string> parts(kMapParts.begin(), kMapParts.end());
+  parts.emplace_back(kMapUnknownFile);
+  if (!map.coverage_png.empty()) parts.emplace_back(kMapCoverageFile);
+  if (texture) parts.insert(parts.end(), {kMapTextureFile, kMapTexturePointsFile});
+  for (const std::string& part : parts)
+    info.files[part] = {std::filesystem::file_size(path / part), sha256_of_file(path / part)};
+  write_bytes(path / kMapInfoFile, to_json(info));
+
+  partial_->commit();
+}
+
+}  // namespace roomradar
