@@ -126,7 +126,13 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   // Ghost removal.
   if (config.remove_ghosts) run_ghost_removal(work, pass);
   map.octree = std::move(pass.octree);
-  release_unused_memory();  // of the passes: the surface needs it
+
+  // Keyframes. Parts that are not needed any more are saved at once, so that the next stages have the memory.
+  map.keyframe_database = std::move(pass.found.keyframe_database);
+  transform(map.keyframe_database, pass.T_world_found);
+  if (start.writer && !start.map)
+    map.keyframe_database = start.writer->write_keyframes(map.keyframe_database);
+  release_unused_memory();
 
   // Surface extraction.
   work.show("surface", {});
@@ -138,16 +144,18 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   if (config.bake_texture)
     erase_flat_triangles(map.mesh);  // so that the texture fits the mesh that is read from the map
 
-  // Unobserved regions. Octree and its frontier are saved meanwhile, so that the texture can have the memory.
+  // Unobserved regions; the octree is saved meanwhile.
   const MapCounts octree_counts = map.octree->counts();
   auto coverage = begin_coverage(
       map.octree, map.mesh, start.map ? start.map->trajectory : std::vector<TimedPose>{}, map.trajectory);
-  if (start.writer) times.timed("save_octree", [&] { start.writer->write_octree(map.octree, map.mesh); });
+  std::optional<LazyPart<StaticMap>> saved_octree;
+  if (start.writer)
+    times.timed("save_octree", [&] { saved_octree = start.writer->write_octree(map.octree, map.mesh); });
   TimedCoverage surveyed = coverage.get();
   times.add_ms("coverage", surveyed.ms);
   map.coverage_png = std::move(surveyed.coverage.picture_png);
   result.holes = std::move(surveyed.coverage.holes);
-  if (start.writer) map.octree = start.writer->written_octree();
+  if (saved_octree) map.octree = std::move(*saved_octree);
   release_unused_memory();
 
   // Texture.
@@ -156,8 +164,6 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     if (start.map) add_texture_of(*start.map, Eigen::Isometry3d::Identity(), earlier);
     map.texture = run_texture_pass(work, map.trajectory, pass, earlier, map.mesh);
   }
-  map.keyframe_database = std::move(pass.found.keyframe_database);
-  transform(map.keyframe_database, pass.T_world_found);
 
   result.lost = lost_frames(pass.found.frames);
   counts = pass.counts;

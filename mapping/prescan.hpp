@@ -75,8 +75,8 @@ struct PrescanInput {
   /// Map to extend with the source's frames. The map's world frame and resolution are kept.
   std::optional<SavedMap> map;
   ScanObserver* observer = nullptr;  ///< follows the first pass; null: none
-  /// Writes the octree before the texture is baked, which then has the octree's memory; null: none. The
-  /// caller commits. The octree of the result is read from the saved map if it is used.
+  /// Writes keyframes and octree as soon as they are not needed, which frees their memory; null: none. The
+  /// caller commits. Both parts of the result are then read from the saved map if they are used.
   MapWriter* writer = nullptr;
 };
 

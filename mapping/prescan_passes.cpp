@@ -270,7 +270,7 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
     skip_frames(*work.source, pass.counts.frames_read);
   }
   const KeyframeDatabase* const known =
-      map && work.config.poses == PoseOrigin::kTracked ? &map->keyframe_database : nullptr;
+      map && work.config.poses == PoseOrigin::kTracked ? &*map->keyframe_database : nullptr;
   if (known) pass.odometry.set_prior_map(*known);
   FusionPass fusing;
   fusing.found = estimate_trajectory(work, known, pass);

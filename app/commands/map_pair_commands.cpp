@@ -37,7 +37,7 @@ int run(const MapMergeOptions& options) {
   report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree->memory_bytes()}};
   write_report(report, options.report);
   std::printf("%s: %zu triangles, %zu keyframes\n", options.map.c_str(), both.mesh.triangles.size(),
-              both.keyframe_database.keyframes.size());
+              both.keyframe_database->keyframes.size());
   return 0;
 }
 

@@ -55,7 +55,7 @@ py::object trajectory_of(const Map& map) {
 /// Returns the keyframes, each of which keeps the map alive.
 std::vector<std::shared_ptr<const MapKeyframe>> keyframes_of(Map& map) {
   std::vector<std::shared_ptr<const MapKeyframe>> keyframes;
-  for (const MapKeyframe& keyframe : map.saved.keyframe_database.keyframes)
+  for (const MapKeyframe& keyframe : map.saved.keyframe_database->keyframes)
     keyframes.emplace_back(map.shared_from_this(), &keyframe);
   return keyframes;
 }

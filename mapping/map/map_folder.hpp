@@ -24,7 +24,7 @@ struct SavedMap {
   MapInfo info;
   LazyPart<StaticMap> octree{StaticMap(0.01)};
   Mesh mesh;
-  KeyframeDatabase keyframe_database;
+  LazyPart<KeyframeDatabase> keyframe_database{KeyframeDatabase()};
   std::vector<TimedPose> trajectory;
   std::vector<std::uint8_t> coverage_png;  ///< coverage picture; empty: none
   /// Border of unknown space, set by load_map(). Null if the map was not saved before, or was saved by an

@@ -142,9 +142,9 @@ void append_session(SavedMap& map, const SavedMap& session) {
     pose.stamp_s += shift_s;
     map.trajectory.push_back(pose);
   }
-  map.keyframe_database.keyframes.insert(map.keyframe_database.keyframes.end(),
-                                         session.keyframe_database.keyframes.begin(),
-                                         session.keyframe_database.keyframes.end());
+  map.keyframe_database->keyframes.insert(map.keyframe_database->keyframes.end(),
+                                          session.keyframe_database->keyframes.begin(),
+                                          session.keyframe_database->keyframes.end());
   map.info.source += "; " + session.info.source;
   if (const auto stopped = session.info.settings.find(kStoppedSetting);
       stopped != session.info.settings.end())
@@ -234,7 +234,7 @@ SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_
   renew_texture(earlier, a);
   SavedMap session;
   session.info = b.info;
-  session.keyframe_database = b.keyframe_database;
+  session.keyframe_database = *b.keyframe_database;
   transform(session.keyframe_database, T_a_b);
   session.trajectory = b.trajectory;
   for (TimedPose& pose : session.trajectory) pose.T_world_camera = T_a_b * pose.T_world_camera;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mapping/localization/keyframe_database_file.hpp"
@@ -29,34 +30,39 @@ void require_savable(const std::filesystem::path& target, const Mesh& mesh) {
 
 }  // namespace
 
-void save_map(const std::filesystem::path& folder, const SavedMap& map) {
-  MapWriter writer(folder);
-  writer.write_octree(map.octree, map.mesh);
-  writer.commit(map);
-}
+void save_map(const std::filesystem::path& folder, const SavedMap& map) { MapWriter(folder).commit(map); }
 
 MapWriter::MapWriter(const std::filesystem::path& folder) : target_(tidy_map_name(folder)) {}
 
-void MapWriter::write_octree(const StaticMap& octree, const Mesh& mesh) {
+const std::filesystem::path& MapWriter::begin() {
   require_replaceable(target_);
-  require_savable(target_, mesh);
-  partial_.emplace(target_);
-  octree.write(partial_->path() / kMapOctreeFile);
-  resolution_m_ = octree.resolution_m();
-  counts_ = octree.counts();
-  write_unknown_surface(unknown_surface(octree, mesh), partial_->path() / kMapUnknownFile);
+  if (!partial_) partial_.emplace(target_);
+  return partial_->path();
 }
 
-LazyPart<StaticMap> MapWriter::written_octree() const {
-  return LazyPart<StaticMap>([folder = target_]() -> StaticMap { return load_map_octree(folder); });
+LazyPart<KeyframeDatabase> MapWriter::write_keyframes(const KeyframeDatabase& keyframes) {
+  write_keyframe_database(keyframes, begin() / kMapKeyframesFile);
+  keyframes_ = keyframes.keyframes.size();
+  return LazyPart<KeyframeDatabase>(
+      [folder = target_] { return std::move(*load_map(folder).keyframe_database); });
+}
+
+LazyPart<StaticMap> MapWriter::write_octree(const StaticMap& octree, const Mesh& mesh) {
+  require_savable(target_, mesh);
+  const std::filesystem::path& path = begin();
+  octree.write(path / kMapOctreeFile);
+  resolution_m_ = octree.resolution_m();
+  counts_ = octree.counts();
+  write_unknown_surface(unknown_surface(octree, mesh), path / kMapUnknownFile);
+  return LazyPart<StaticMap>([folder = target_] { return load_map_octree(folder); });
 }
 
 void MapWriter::commit(const SavedMap& map) {
   require_savable(target_, map.mesh);
-  require_replaceable(target_);
-  const std::filesystem::path& path = partial_.value().path();
+  const std::filesystem::path& path = begin();
+  if (!keyframes_) write_keyframes(map.keyframe_database);
+  if (!resolution_m_) write_octree(map.octree, map.mesh);
   write_mesh(map.mesh, path / kMapMeshFile);
-  write_keyframe_database(map.keyframe_database, path / kMapKeyframesFile);
   write_trajectory(path / kMapTrajectoryFile, map.trajectory);
   if (!map.coverage_png.empty())
     write_bytes(path / kMapCoverageFile, std::string(map.coverage_png.begin(), map.coverage_png.end()));
@@ -67,11 +73,11 @@ void MapWriter::commit(const SavedMap& map) {
   MapInfo info = map.info;
   info.format_version = kMapFormatVersion;
   info.tool_version = kVersion;
-  info.resolution_m = resolution_m_;
+  info.resolution_m = *resolution_m_;
   info.counts = counts_;
   info.vertices = map.mesh.vertices.size();
   info.triangles = map.mesh.triangles.size();
-  info.keyframes = map.keyframe_database.keyframes.size();
+  info.keyframes = *keyframes_;
   info.poses = map.trajectory.size();
   info.files.clear();
   std::vector<std::string> parts(kMapParts.begin(), kMapParts.end());

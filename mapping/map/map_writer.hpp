@@ -1,8 +1,10 @@
-// map_writer.hpp: saves a map; its octree can be written, and freed, before the rest is ready.
+// map_writer.hpp: saves a map; parts that are ready early can be written, and freed, before the rest.
 #pragma once
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 
+#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/storage/atomic_folder.hpp"
@@ -18,29 +20,30 @@ namespace roomradar {
 /// surface or too many triangles, or the disk fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);
 
-/// Same as save_map(), in two steps. Until commit() succeeds, `folder` is unchanged; the destructor then
-/// removes what was written.
+/// Same as save_map(), in steps. Until commit() succeeds, `folder` is unchanged; the destructor then removes
+/// what was written. Each member function throws Error as save_map() does.
 class MapWriter {
  public:
   /// Writes nothing yet. Throws Error if the name is not usable.
   explicit MapWriter(const std::filesystem::path& folder);
 
-  /// Writes the octree, and the border of unknown space. Call it once, before commit(). Throws Error as
-  /// save_map() does.
-  void write_octree(const StaticMap& octree, const Mesh& mesh);
+  /// Writes the keyframes. Returns them as a part that is read from `folder` when it is used after commit().
+  LazyPart<KeyframeDatabase> write_keyframes(const KeyframeDatabase& keyframes);
 
-  /// Returns the octree that was written. It is read from `folder` when it is first used, after commit().
-  [[nodiscard]] LazyPart<StaticMap> written_octree() const;
+  /// Writes the octree, and the border of unknown space. Returns the octree as write_keyframes() does.
+  LazyPart<StaticMap> write_octree(const StaticMap& octree, const Mesh& mesh);
 
-  /// Writes the other parts, and replaces the folder. Does not use map.octree. Throws Error as save_map()
-  /// does.
+  /// Writes the parts that were not written yet, and replaces the folder. Does not use those that were.
   void commit(const SavedMap& map);
 
  private:
+  const std::filesystem::path& begin();  // returns the partial folder
+
   std::filesystem::path target_;
-  std::optional<AtomicFolder> partial_;  ///< set by write_octree()
-  double resolution_m_ = 0.0;            ///< of the octree
-  MapCounts counts_;                     ///< of the octree
+  std::optional<AtomicFolder> partial_;   // unset: nothing was written
+  std::optional<std::size_t> keyframes_;  // number; unset: not written
+  std::optional<double> resolution_m_;    // of the octree; unset: not written
+  MapCounts counts_;                      // of the octree
 };
 
 }  // namespace roomradar

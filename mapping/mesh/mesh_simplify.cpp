@@ -128,18 +128,6 @@ class BlockSimplifier {
   std::atomic<std::size_t> next_ = 0;
 };
 
-// Returns the used vertices in the order of compacted().
-std::vector<std::uint32_t> vertices_by_use(const Mesh& mesh) {
-  std::vector<bool> is_known(mesh.vertices.size(), false);
-  std::vector<std::uint32_t> used;
-  for (const Triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) {
-      if (!is_known[v]) used.push_back(v);
-      is_known[v] = true;
-    }
-  return used;
-}
-
 }  // namespace
 
 SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles,
@@ -154,7 +142,8 @@ SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std
     deviation_m = blocks.work();
   }
   std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == kNoCorner; });
-  return {compacted(mesh, mesh.triangles), deviation_m, vertices_by_use(mesh)};
+  std::vector<std::uint32_t> full_vertex = drop_unused_vertices(mesh);
+  return {std::move(mesh), deviation_m, std::move(full_vertex)};
 }
 
 }  // namespace roomradar

@@ -85,7 +85,8 @@ class Cutter {
       else
         cut(triangle);
     }
-    return compacted(out_, out_.triangles);
+    drop_unused_vertices(out_);
+    return std::move(out_);
   }
 
  private:

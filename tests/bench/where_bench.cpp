@@ -118,7 +118,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
   }
   std::sort(errors_mm.begin(), errors_mm.end());
   return {{"row", name},
-          {"keyframes", mapped.map.keyframe_database.keyframes.size()},
+          {"keyframes", mapped.map.keyframe_database->keyframes.size()},
           {"asked", asked},
           {"found", found},
           {"right", right},

@@ -54,8 +54,8 @@ TEST(Prescan, ARecordedPoseThatNoMapReachesIsNone) {
     EXPECT_EQ(result.counts.frames_lost, 1) << away_m;
     EXPECT_EQ(result.counts.frames_fused, kFrames - 1) << away_m;
     EXPECT_TRUE(knows_recorded_world(result.map.info));
-    ASSERT_FALSE(result.map.keyframe_database.keyframes.empty());
-    for (const MapKeyframe& place : result.map.keyframe_database.keyframes)
+    ASSERT_FALSE(result.map.keyframe_database->keyframes.empty());
+    for (const MapKeyframe& place : result.map.keyframe_database->keyframes)
       EXPECT_LT(place.T_world_camera.translation().norm(), 3.0) << away_m;
     for (const TimedPose& pose : result.map.trajectory)
       EXPECT_LT(pose.T_world_camera.translation().norm(), 3.0) << away_m;
@@ -127,13 +127,13 @@ TEST(Prescan, AMapOfImagesOfAFewRowsIsReadAgain) {
       frame.colour.resize(0, 0);
     }
     const SavedMap map = prescan_of(std::move(frames), PoseOrigin::kRecorded, 0.01).map;
-    ASSERT_FALSE(map.keyframe_database.keyframes.empty());
-    EXPECT_GT(map.keyframe_database.keyframes.front().preview_depth_mm.height, 0);
+    ASSERT_FALSE(map.keyframe_database->keyframes.empty());
+    EXPECT_GT(map.keyframe_database->keyframes.front().preview_depth_mm.height, 0);
     const test::TemporaryFolder folder;
     save_map(folder.path() / "slit", map);
     EXPECT_TRUE(verify_map(folder.path() / "slit").empty());
-    EXPECT_EQ(load_map(folder.path() / "slit").keyframe_database.keyframes.size(),
-              map.keyframe_database.keyframes.size());
+    EXPECT_EQ(load_map(folder.path() / "slit").keyframe_database->keyframes.size(),
+              map.keyframe_database->keyframes.size());
   }
 }
 

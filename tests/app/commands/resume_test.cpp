@@ -404,7 +404,7 @@ TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
   EXPECT_NE(said().find("nothing to resume"), std::string::npos) << said();
   EXPECT_EQ(text_of(map() / "map.json"), extended);
   EXPECT_EQ(after.info.frames_fused, before.info.frames_fused + 40);
-  EXPECT_GT(after.keyframe_database.keyframes.size(), before.keyframe_database.keyframes.size());
+  EXPECT_GT(after.keyframe_database->keyframes.size(), before.keyframe_database->keyframes.size());
   EXPECT_EQ(after.trajectory.size(), before.trajectory.size() + 40);
   EXPECT_TRUE(after.info.T_world_recorded.isApprox(before.info.T_world_recorded, 1e-12));
   EXPECT_NEAR(after.octree->resolution_m(), 0.03, 1e-12);

@@ -24,7 +24,7 @@ inline void save_small_map(const std::filesystem::path& folder, bool has_ball = 
   keyframe.descriptors = {Descriptor{1, 2, 3}};
   keyframe.preview_camera = {4, 3, 4.0, 4.0, 1.5, 1.0};
   keyframe.preview_depth_mm = {4, 3, 1500};
-  map.keyframe_database.keyframes = {keyframe};
+  map.keyframe_database->keyframes = {keyframe};
   map.trajectory.push_back({0, 0.0, T_world_camera});
   map.info.source = "a wall";
   map.info.frames_read = map.info.frames_fused = 8;

@@ -54,7 +54,7 @@ SavedMap a_room() {
   place.descriptors = {Descriptor{1, 2, 3}};
   place.preview_camera = {4, 3, 4.0, 4.0, 1.5, 1.0};
   place.preview_depth_mm = {4, 3, 1500};
-  map.keyframe_database.keyframes = {place};
+  map.keyframe_database->keyframes = {place};
   for (int i = 0; i < 5; ++i) {
     TimedPose pose{i, i / 30.0, T_world_camera};
     pose.T_world_camera.translation().y() = 0.01 * i;
@@ -158,8 +158,8 @@ TEST_F(MapFolder, ComesBackAsItWasSaved) {
         (read.mesh.vertices[i].cast<double>() - room_.mesh.origin - room_.mesh.vertices[i].cast<double>())
             .norm(),
         1e-6);
-  ASSERT_EQ(read.keyframe_database.keyframes.size(), 1U);
-  EXPECT_EQ(read.keyframe_database.keyframes[0].frame_index, 7);
+  ASSERT_EQ(read.keyframe_database->keyframes.size(), 1U);
+  EXPECT_EQ(read.keyframe_database->keyframes[0].frame_index, 7);
   ASSERT_EQ(read.trajectory.size(), 5U);
   EXPECT_TRUE(read.trajectory[4].T_world_camera.isApprox(room_.trajectory[4].T_world_camera, 1e-9));
 }

@@ -54,7 +54,7 @@ SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& 
     frame.index = i;
     const Isometry3d T_own_camera = T_own_world * T_world_camera;
     EXPECT_EQ(map.octree->fuse(frame, T_own_camera), FuseStatus::kFused);
-    if (i % 2 == 0) map.keyframe_database.keyframes.push_back(make_map_keyframe(frame, T_own_camera));
+    if (i % 2 == 0) map.keyframe_database->keyframes.push_back(make_map_keyframe(frame, T_own_camera));
     map.trajectory.push_back({i, i / 30.0, T_own_camera});
   }
   map.mesh = extract_surface(map.octree);
@@ -147,7 +147,7 @@ TEST_F(MapPairs, ALookAlikeIsRefused) {
 
 TEST_F(MapPairs, WithoutColourNothingIsRecognised) {
   SavedMap blind = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 3);
-  for (MapKeyframe& place : blind.keyframe_database.keyframes) {
+  for (MapKeyframe& place : blind.keyframe_database->keyframes) {
     place.points_camera.clear();
     place.descriptors.clear();
   }
@@ -197,8 +197,8 @@ TEST_F(MapPairs, MergedItsSurfaceIsAsCloseAsTheFirstOnes) {
 
 TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
   const SavedMap merged = merge_maps(scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1), b(), kT_a_b);
-  EXPECT_EQ(merged.keyframe_database.keyframes.size(),
-            a().keyframe_database.keyframes.size() + b().keyframe_database.keyframes.size());
+  EXPECT_EQ(merged.keyframe_database->keyframes.size(),
+            a().keyframe_database->keyframes.size() + b().keyframe_database->keyframes.size());
   ASSERT_EQ(merged.trajectory.size(), 32U);
   for (std::size_t i = 1; i < merged.trajectory.size(); ++i)
     EXPECT_GT(merged.trajectory[i].stamp_s, merged.trajectory[i - 1].stamp_s);
