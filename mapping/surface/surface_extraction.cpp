@@ -64,20 +64,43 @@ Mesh extract_full_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_w
   return dual_marching_cubes(levels, map.resolution_m());
 }
 
+SurfacePart extract_surface_part(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
+                                 const SurfaceConfig& config, SurfaceStats* facts) {
+  const double voxel_m = map.resolution_m(), reach_m = kSurfaceReach_voxels * voxel_m;
+  Mesh mesh = extract_full_surface(map, grown(box_world, reach_m), config);
+  // A component that reaches the end of what is known here goes on beyond it.
+  const Eigen::AlignedBox3d known = grown(box_world, reach_m - 4.0 * voxel_m);
+  mesh = drop_small_components(std::move(mesh), config.min_component_area_m2,
+                               [&](const Eigen::Vector3d& p_world) { return !known.contains(p_world); });
+  SurfacePart part = part_in(box_world, std::move(mesh));
+  SurfaceStats stats{part.mesh.triangles.size(), part.mesh.triangles.size(), 0.0F};
+  if (config.max_deviation_m > 0.0F) {
+    SimplifiedMesh simple =
+        simplified(std::move(part.mesh), config.max_deviation_m,
+                   kSpacing_voxels * static_cast<float>(voxel_m), kBlockTriangles, part.on_seam);
+    std::vector<bool> on_seam;
+    for (const std::uint32_t v : simple.full_vertex) on_seam.push_back(part.on_seam[v]);
+    part = {std::move(simple.mesh), std::move(on_seam)};
+    stats.triangles = part.mesh.triangles.size();
+    stats.deviation_m = simple.deviation_m;
+  }
+  if (facts) *facts = stats;
+  return part;
+}
+
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceStats* facts) {
   require_valid(config);
-  const double reach_m = kSurfaceReach_voxels * map.resolution_m();
-  Mesh full = join_parts(divide(map, kMostBricks), [&](const Eigen::AlignedBox3d& box_world) {
-    return extract_full_surface(map, grown(box_world, reach_m), config);
+  SurfaceStats total;
+  Mesh mesh = join_parts(divide(map, kMostBricks), [&](const Eigen::AlignedBox3d& box_world) {
+    SurfaceStats stats;
+    SurfacePart part = extract_surface_part(map, box_world, config, &stats);
+    total.full_triangles += stats.full_triangles;
+    total.triangles += stats.triangles;
+    total.deviation_m = std::max(total.deviation_m, stats.deviation_m);
+    return part;
   });
-  SimplifiedMesh result{drop_small_components(std::move(full), config.min_component_area_m2), 0.0F};
-  const std::size_t full_triangles = result.mesh.triangles.size();
-  if (config.max_deviation_m > 0.0F) {
-    const auto spacing_m = kSpacing_voxels * static_cast<float>(map.resolution_m());
-    result = simplified(std::move(result.mesh), config.max_deviation_m, spacing_m);
-  }
-  if (facts) *facts = {full_triangles, result.mesh.triangles.size(), result.deviation_m};
-  return result.mesh;
+  if (facts) *facts = total;
+  return mesh;
 }
 
 Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "mapping/octree/static_map.hpp"
+#include "mapping/surface/surface_parts.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
@@ -36,6 +37,13 @@ struct SurfaceStats {
 /// dual_marching_cubes.hpp, tsdf_smoothing.hpp and mesh_simplify.hpp.
 /// @param facts  receives the statistics; may be null
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceStats* facts = nullptr);
+
+/// Extracts the triangles of the map's surface that have a centre in the box, and simplifies them. The parts
+/// of boxes beside each other fit without cracks: simplification does not move vertices on their seam. A box
+/// contains its lower sides, not its upper ones.
+/// @param map  must contain all samples within kSurfaceReach_voxels of the box
+SurfacePart extract_surface_part(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
+                                 const SurfaceConfig& config = {}, SurfaceStats* facts = nullptr);
 
 /// Extracts all triangles with a vertex in the box grown by one voxel. The result can therefore extend two
 /// voxels beyond the box. Samples farther than 12 voxels from the box are ignored, and do not count towards

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 
+#include "mapping/mesh/components.hpp"
 #include "mapping/surface/tsdf_bricks.hpp"
 #include "mapping/types/voxel_key.hpp"
 
@@ -53,43 +55,35 @@ void divide(std::span<VoxelIndex> bricks, std::size_t most_bricks, double brick_
   divide({first_above, bricks.end()}, most_bricks, brick_m, above, boxes);
 }
 
-bool owns(const Eigen::AlignedBox3d& box, const Mesh& mesh, const Triangle& t) {
-  const Eigen::Array3d centre = centre_world(mesh, t).array();
-  return (centre >= box.min().array()).all() && (centre < box.max().array()).all();
+Eigen::Vector3d centre_world(const Mesh& mesh, const Triangle& triangle) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::uint32_t v : triangle) sum += mesh.origin + mesh.vertices[v].cast<double>();
+  return sum / 3.0;
 }
 
 /// The parts joined so far.
 class JoinedParts {
  public:
-  void add(const Mesh& part, const Eigen::AlignedBox3d& box) {
-    if (part.vertices.empty()) return;
-    if (joined_.vertices.empty()) joined_.origin = part.origin;
-    enum : std::uint8_t { kOwn = 1, kOthers = 2 };
-    std::vector<std::uint8_t> users(part.vertices.size(), 0);
-    std::vector<bool> is_own(part.triangles.size());
-    for (std::size_t t = 0; t < part.triangles.size(); ++t) {
-      is_own[t] = owns(box, part, part.triangles[t]);
-      for (const std::uint32_t v : part.triangles[t]) users[v] |= is_own[t] ? kOwn : kOthers;
-    }
-    std::vector<std::uint32_t> index(part.vertices.size(), 0);  // in joined_
-    for (std::uint32_t v = 0; v < part.vertices.size(); ++v) {
-      if ((users[v] & kOwn) == 0) continue;
+  void add(const SurfacePart& part) {
+    const Mesh& mesh = part.mesh;
+    if (joined_.vertices.empty()) joined_.origin = mesh.origin;
+    std::vector<std::uint32_t> index(mesh.vertices.size());  // in joined_
+    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
       const Eigen::Vector3f position =
-          (part.vertices[v].cast<double>() + (part.origin - joined_.origin)).cast<float>();
+          (mesh.vertices[v].cast<double>() + (mesh.origin - joined_.origin)).cast<float>();
       index[v] = static_cast<std::uint32_t>(joined_.vertices.size());
-      if ((users[v] & kOthers) != 0) {
+      if (part.on_seam[v]) {
         const auto [found, is_new] =
             on_seam_.try_emplace({position.x(), position.y(), position.z()}, index[v]);
         index[v] = found->second;
         if (!is_new) continue;
       }
       joined_.vertices.push_back(position);
-      joined_.normals.push_back(part.normals[v]);
-      joined_.colours.push_back(part.colours[v]);
+      joined_.normals.push_back(mesh.normals[v]);
+      joined_.colours.push_back(mesh.colours[v]);
     }
-    for (std::size_t t = 0; t < part.triangles.size(); ++t)
-      if (const Triangle& corners = part.triangles[t]; is_own[t])
-        joined_.triangles.push_back({index[corners[0]], index[corners[1]], index[corners[2]]});
+    for (const Triangle& t : mesh.triangles)
+      joined_.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
   }
   Mesh take() { return std::move(joined_); }
 
@@ -100,10 +94,18 @@ class JoinedParts {
 
 }  // namespace
 
-Eigen::Vector3d centre_world(const Mesh& mesh, const Triangle& triangle) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const std::uint32_t v : triangle) sum += mesh.origin + mesh.vertices[v].cast<double>();
-  return sum / 3.0;
+SurfacePart part_in(const Eigen::AlignedBox3d& box_world, Mesh mesh) {
+  std::vector<bool> is_others(mesh.vertices.size(), false);
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    const Eigen::Array3d centre = centre_world(mesh, t).array();
+    if ((centre >= box_world.min().array()).all() && (centre < box_world.max().array()).all()) return false;
+    for (const std::uint32_t v : t) is_others[v] = true;
+    return true;
+  });
+  SurfacePart part;
+  for (const std::uint32_t v : drop_unused_vertices(mesh)) part.on_seam.push_back(is_others[v]);
+  part.mesh = std::move(mesh);
+  return part;
 }
 
 std::vector<Eigen::AlignedBox3d> divide(const StaticMap& map, std::size_t most_bricks) {
@@ -115,10 +117,10 @@ std::vector<Eigen::AlignedBox3d> divide(const StaticMap& map, std::size_t most_b
 }
 
 Mesh join_parts(const std::vector<Eigen::AlignedBox3d>& boxes,
-                const std::function<Mesh(const Eigen::AlignedBox3d&)>& extract) {
-  if (boxes.size() == 1) return extract(boxes.front());
+                const std::function<SurfacePart(const Eigen::AlignedBox3d&)>& extract) {
+  if (boxes.size() == 1) return extract(boxes.front()).mesh;
   JoinedParts joined;
-  for (const Eigen::AlignedBox3d& box : boxes) joined.add(extract(box), box);
+  for (const Eigen::AlignedBox3d& box : boxes) joined.add(extract(box));
   return joined.take();
 }
 

@@ -13,6 +13,7 @@
 #include "mapping/mesh/components.hpp"
 #include "mapping/surface/surface_parts.hpp"
 #include "mapping/types/system/error.hpp"
+#include "tests/support/edge_counts.hpp"
 #include "tests/support/exact_depth.hpp"
 
 namespace roomradar::surface_extraction_test {
@@ -156,7 +157,7 @@ TEST(SurfaceParts, JoinedAreTheWholeSurface) {
   ASSERT_GT(boxes.size(), 4U);
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kSurfaceReach_voxels * map.resolution_m());
   const Mesh joined = join_parts(boxes, [&](const Eigen::AlignedBox3d& box) {
-    return extract_full_surface(map, {box.min() - margin, box.max() + margin});
+    return part_in(box, extract_full_surface(map, {box.min() - margin, box.max() + margin}));
   });
   EXPECT_EQ(joined.vertices.size(), whole.vertices.size()) << "vertices on seams are merged";
   expect_consistent(joined);
@@ -172,6 +173,30 @@ TEST(SurfaceParts, JoinedAreTheWholeSurface) {
     return triangles;
   };
   EXPECT_EQ(triangles_of(joined), triangles_of(whole));
+}
+
+TEST(SurfaceParts, SimplifiedTheyFitWithoutCracks) {
+  const Eigen::Vector3d centre(0.3, -0.2, 0.1);
+  const StaticMap map = ball_map(centre, 0.3, 0.01);
+  const std::vector<Eigen::AlignedBox3d> boxes = divide(map, 300);
+  ASSERT_GT(boxes.size(), 4U);
+  std::size_t full_triangles = 0;
+  const Mesh joined = join_parts(boxes, [&](const Eigen::AlignedBox3d& box) {
+    SurfaceStats stats;
+    SurfacePart part = extract_surface_part(map, box, {}, &stats);
+    EXPECT_LE(stats.deviation_m, SurfaceConfig{}.max_deviation_m);
+    full_triangles += stats.full_triangles;
+    return part;
+  });
+  SurfaceStats whole;
+  extract_surface(map, {}, &whole);
+  EXPECT_EQ(full_triangles, whole.full_triangles);
+  EXPECT_LT(joined.triangles.size(), full_triangles / 2);
+  expect_consistent(joined);
+  for (const auto& [edge, use] : test::edge_uses(joined)) {
+    ASSERT_EQ(use.forward, 1) << "the ball has a crack";
+    ASSERT_EQ(use.backward, 1) << "the ball has a crack";
+  }
 }
 
 TEST(Surface, SpecksGoAndSurfacesStay) {
