@@ -99,7 +99,7 @@ void keep_settings_of_map(const PrescanOptions& options, SavedMap& map, PrescanC
 }
 
 /// Scans the room; the map to extend is moved from `start`. Errors say whether the scan can be resumed.
-/// @param writer  saves the octree before the texture is baked
+/// @param writer  saves parts of the map as soon as they are ready
 /// @param last_frame_s  out: Report::seconds() when the last frame was tracked
 PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, ScanStart& start,
                    ScanWindow& window, MapWriter& writer, Report& report, double& last_frame_s) {
