@@ -177,16 +177,15 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     if (error.poses > 0) counts.trajectory_error = error;
   }
   map.info = describe_map(work, pass, map.trajectory);
-  map.info.counts = octree_counts;
   if (start.map) {
     append_session(*start.map, map);
-    start.map->info.counts = octree_counts;
     start.map->octree = std::move(map.octree);
     start.map->mesh = std::move(map.mesh);
     start.map->texture = std::move(map.texture);
     start.map->coverage_png = std::move(map.coverage_png);
     map = std::move(*start.map);
   }
+  map.info.counts = octree_counts;
   return result;
 }
 

@@ -146,15 +146,17 @@ SurfaceTexture read_texture(const fs::path& folder) {
   return read_surface_texture(folder / kMapTextureFile, folder / kMapTexturePointsFile);
 }
 
+KeyframeDatabase read_keyframes(const fs::path& folder, const MapInfo& info) {
+  require_sound(folder, info, kMapKeyframesFile);
+  return read_keyframe_database(folder / kMapKeyframesFile);
+}
+
 SavedMap read_map(const fs::path& folder) {
   SavedMap map;
   map.info = read_info(folder);
   const MapInfo& info = map.info;
   for (const auto& [name, file] : info.files) throw_if(size_fault_of(folder / name, file));
-  auto keyframes = std::async(std::launch::async, [&] {
-    require_sound(folder, info, kMapKeyframesFile);
-    return read_keyframe_database(folder / kMapKeyframesFile);
-  });
+  auto keyframes = std::async(std::launch::async, [&] { return read_keyframes(folder, info); });
   require_sound(folder, info, kMapMeshFile);
   map.mesh = read_mesh(folder / kMapMeshFile);
   require_sound(folder, info, kMapTrajectoryFile);
@@ -236,6 +238,10 @@ StaticMap load_map_octree(const fs::path& folder) {
     require_sound(folder, info, octree_file_of(info));
     return read_octree(folder, info);
   });
+}
+
+KeyframeDatabase load_map_keyframes(const fs::path& folder) {
+  return read_consistent(folder, [&] { return read_keyframes(folder, read_info(folder)); });
 }
 
 std::shared_ptr<const SurfaceTexture> fitting_texture(const SavedMap& map) {

@@ -53,6 +53,9 @@ Mesh load_map_mesh(const std::filesystem::path& folder);
 /// Reads the map's octree, as load_map_mesh() does.
 StaticMap load_map_octree(const std::filesystem::path& folder);
 
+/// Reads the map's keyframes, as load_map_mesh() does.
+KeyframeDatabase load_map_keyframes(const std::filesystem::path& folder);
+
 /// Returns the map's texture; null if it has none that fits its mesh. Throws Error if the texture is damaged.
 std::shared_ptr<const SurfaceTexture> fitting_texture(const SavedMap& map);
 

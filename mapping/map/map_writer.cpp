@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mapping/localization/keyframe_database_file.hpp"
@@ -43,8 +42,7 @@ const std::filesystem::path& MapWriter::begin() {
 LazyPart<KeyframeDatabase> MapWriter::write_keyframes(const KeyframeDatabase& keyframes) {
   write_keyframe_database(keyframes, begin() / kMapKeyframesFile);
   keyframes_ = keyframes.keyframes.size();
-  return LazyPart<KeyframeDatabase>(
-      [folder = target_] { return std::move(*load_map(folder).keyframe_database); });
+  return LazyPart<KeyframeDatabase>([folder = target_] { return load_map_keyframes(folder); });
 }
 
 LazyPart<StaticMap> MapWriter::write_octree(const StaticMap& octree, const Mesh& mesh) {

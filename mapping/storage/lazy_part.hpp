@@ -1,4 +1,4 @@
-// lazy_part.hpp: a part of a saved map that is read from disk when it is first used.
+// lazy_part.hpp: a value that is read from disk when it is first used.
 #pragma once
 #include <functional>
 #include <memory>

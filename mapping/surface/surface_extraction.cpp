@@ -73,7 +73,8 @@ SurfacePart extract_surface_part(const StaticMap& map, const Eigen::AlignedBox3d
   mesh = drop_small_components(std::move(mesh), config.min_component_area_m2,
                                [&](const Eigen::Vector3d& p_world) { return !known.contains(p_world); });
   SurfacePart part = part_in(box_world, std::move(mesh));
-  SurfaceStats stats{part.mesh.triangles.size(), part.mesh.triangles.size(), 0.0F};
+  const std::size_t full_triangles = part.mesh.triangles.size();
+  float deviation_m = 0.0F;
   if (config.max_deviation_m > 0.0F) {
     SimplifiedMesh simple =
         simplified(std::move(part.mesh), config.max_deviation_m,
@@ -81,10 +82,9 @@ SurfacePart extract_surface_part(const StaticMap& map, const Eigen::AlignedBox3d
     std::vector<bool> on_seam;
     for (const std::uint32_t v : simple.full_vertex) on_seam.push_back(part.on_seam[v]);
     part = {std::move(simple.mesh), std::move(on_seam)};
-    stats.triangles = part.mesh.triangles.size();
-    stats.deviation_m = simple.deviation_m;
+    deviation_m = simple.deviation_m;
   }
-  if (facts) *facts = stats;
+  if (facts) *facts = {full_triangles, part.mesh.triangles.size(), deviation_m};
   return part;
 }
 
@@ -95,10 +95,10 @@ Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceS
     SurfaceStats stats;
     SurfacePart part = extract_surface_part(map, box_world, config, &stats);
     total.full_triangles += stats.full_triangles;
-    total.triangles += stats.triangles;
     total.deviation_m = std::max(total.deviation_m, stats.deviation_m);
     return part;
   });
+  total.triangles = mesh.triangles.size();
   if (facts) *facts = total;
   return mesh;
 }

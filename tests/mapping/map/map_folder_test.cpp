@@ -1,6 +1,5 @@
 // map_folder_test.cpp: a loaded map equals the saved one, and every damage is reported.
 #include "mapping/map/map_folder.hpp"
-#include "mapping/map/map_writer.hpp"
 
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
@@ -21,6 +20,7 @@
 
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_info_json.hpp"
+#include "mapping/map/map_writer.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/storage/atomic_folder.hpp"
 #include "mapping/storage/sha256.hpp"
