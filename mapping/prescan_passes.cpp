@@ -72,9 +72,9 @@ bool is_full(const PrescanConfig& config, double needed_later_bytes) {
 }
 
 /// Intervals of `every_s` between two checkpoints of the second pass, which can be repeated from the frames.
-/// While a checkpoint is being written, the first change to a page of the octree copies the page. With one
-/// interval, the time from the last frame to the saved map was 8 % longer.
-constexpr double kFusingIntervals = 4.0;
+/// Checkpoints slow this pass down: the octree is compressed on one core, and meanwhile the first change to a
+/// page of the octree copies the page.
+constexpr double kFusingIntervals = 24.0;
 
 void write(Checkpoints& checkpoints, const char* stage, auto& pass, StageTimes& times) {
   times.timed("checkpoint", [&] {
@@ -315,7 +315,7 @@ void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory
       pass.fused.push_back({pass.frames_read - 1, frame.index, frame.depth_camera, pose->second});
     work.show(kFusingStage, std::string(to_string(fused)));
     keep_fusing(work.checkpoints, pass, work.times);
-    has_room = !is_full(work.config, kSurfaceMemory * static_cast<double>(pass.octree.memory_bytes()));
+    has_room = !is_full(work.config, memory_after_fusion(static_cast<double>(pass.octree.memory_bytes())));
   }
   pass.stopped_for_memory = !has_room;
   keep_fusing(work.checkpoints, pass, work.times, /*between_frames=*/false);

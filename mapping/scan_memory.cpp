@@ -8,6 +8,8 @@
 
 namespace roomradar {
 
+double memory_after_fusion(double octree_bytes) { return std::min(4.0 * octree_bytes, 100e6 + octree_bytes); }
+
 std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolution_m) {
   constexpr std::int64_t kLooks = 4, kTries = 5, kMinute = 1800;
   constexpr double kFramesAnew = 80.0, kWholeRoom = 20.0;
@@ -38,8 +40,9 @@ std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolu
   estimate.octree_bytes = sum_bytes / looks * std::min(1.0 + frames / kFramesAnew, kWholeRoom);
   estimate.process_bytes =
       static_cast<double>(resident_bytes()) +
-      std::max(kTracking_bytes + frames * kKeyframe_bytes,
-               estimate.octree_bytes + std::max(kSurfaceMemory * estimate.octree_bytes, kLaterStages_bytes));
+      std::max(
+          kTracking_bytes + frames * kKeyframe_bytes,
+          estimate.octree_bytes + std::max(memory_after_fusion(estimate.octree_bytes), kLaterStages_bytes));
   return estimate;
 }
 

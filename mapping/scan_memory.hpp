@@ -7,9 +7,10 @@
 
 namespace roomradar {
 
-/// Temporary memory of surface extraction, as a multiple of the octree's own memory. Measured for the
-/// extraction alone: 3.5 for an octree of 20 MB, 2.8 for 34 MB, 1.8 for 203 MB. The rest is a margin.
-inline constexpr double kSurfaceMemory = 4.0;
+/// Returns the temporary memory (bytes) that surface extraction needs beside the octree, with a margin.
+/// Measured: 68 MB for an octree of 20 MB, 62 MB for one of 26 MB, 195 MB for one of 203 MB. Large maps need
+/// less than in proportion, since their surface is extracted and simplified in parts.
+double memory_after_fusion(double octree_bytes);
 
 struct MemoryEstimate {
   std::int64_t frames = 0;  ///< number of frames in the source; that of one minute if unknown

@@ -176,7 +176,7 @@ ScanStart start_scan(const PrescanOptions& options) {
   if (extend) {
     start.map = load_map(map);
     require_memory_to_begin(options.max_memory_mb,
-                            kSurfaceMemory * static_cast<double>(start.map->octree->memory_bytes()));
+                            memory_after_fusion(static_cast<double>(start.map->octree->memory_bytes())));
   }
   if (extend && !live && holds(start.map->info, *start.source) &&
       (!is_unfinished(folder) || identity_of(folder)["into"] != into)) {

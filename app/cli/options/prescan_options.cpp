@@ -79,7 +79,7 @@ void add_options(CLI::App& command, PrescanOptions& options) {
   command
       .add_option(
           "--checkpoint-every", options.checkpoint_every_s,
-          "seconds between checkpoints, four times as long while frames are fused; 0: none, so the scan "
+          "seconds between checkpoints, 24 times as long while frames are fused; 0: none, so the scan "
           "cannot be resumed (default: 2.5)")
       ->check(within(0.0, 86400.0, "seconds"))
       ->type_name("S");
