@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -48,8 +49,16 @@ struct ViewColumns {
   std::vector<std::uint8_t> bytes;
 };
 
+/// Returns the sum over all views of count(view). Reserving it avoids copies: long scans have 100 MB of items.
+template <typename Count>
+std::size_t sum_of(std::span<const MapKeyframe> views, const Count& count) {
+  return std::accumulate(views.begin(), views.end(), std::size_t{0},
+                         [&](std::size_t sum, const MapKeyframe& view) { return sum + count(view); });
+}
+
 std::vector<std::uint16_t> depth_column(std::span<const MapKeyframe> views) {
   std::vector<std::uint16_t> depth_mm;
+  depth_mm.reserve(sum_of(views, [](const MapKeyframe& v) { return v.preview_depth_mm.pixels.size(); }));
   for (const MapKeyframe& view : views) {
     std::uint16_t before = 0;
     for (const std::uint16_t pixel_mm : view.preview_depth_mm.pixels) {
@@ -63,6 +72,8 @@ std::vector<std::uint16_t> depth_column(std::span<const MapKeyframe> views) {
 std::vector<std::int32_t> point_column(std::span<const MapKeyframe> views) {
   constexpr float kMost = 1e9F;  // 200 km
   std::vector<std::int32_t> points;
+  points.reserve(3 *
+                 sum_of(views, [](const MapKeyframe& v) { return v.points_camera.size() + v.patches.size(); }));
   const auto put_point = [&](const Eigen::Vector3f& point) {
     for (const float component : point)
       points.push_back(
@@ -77,6 +88,7 @@ std::vector<std::int32_t> point_column(std::span<const MapKeyframe> views) {
 
 std::vector<std::int16_t> direction_column(std::span<const MapKeyframe> views) {
   std::vector<std::int16_t> directions;
+  directions.reserve(6 * sum_of(views, [](const MapKeyframe& v) { return v.patches.size(); }));
   for (const MapKeyframe& view : views)
     for (const SurfacePatch& patch : view.patches)
       for (const Eigen::Vector3f& direction : {patch.normal, patch.along})
@@ -88,6 +100,9 @@ std::vector<std::int16_t> direction_column(std::span<const MapKeyframe> views) {
 
 std::vector<std::uint8_t> byte_column(std::span<const MapKeyframe> views) {
   std::vector<std::uint8_t> bytes;
+  bytes.reserve(sum_of(views, [](const MapKeyframe& v) {
+    return v.descriptors.size() * sizeof(Descriptor) + v.patches.size() * (1 + sizeof(Descriptor));
+  }));
   for (const MapKeyframe& view : views) {
     for (const Descriptor& bits : view.descriptors) bytes.insert(bytes.end(), bits.begin(), bits.end());
     for (const SurfacePatch& patch : view.patches) {

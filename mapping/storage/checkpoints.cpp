@@ -125,8 +125,9 @@ bool Checkpoints::is_due(double intervals) {
 }
 
 bool Checkpoints::is_due_at_end(double intervals) {
-  reap(/*wait=*/true);
-  return writes_soon_ || since_last_s() >= intervals * every_s_.count() / 3.0;
+  const bool is_due = writes_soon_ || since_last_s() >= intervals * every_s_.count() / 3.0;
+  reap(/*wait=*/is_due);
+  return is_due;
 }
 
 double Checkpoints::since_last_s() const {

@@ -46,8 +46,8 @@ class Checkpoints {
   /// Returns true if the last checkpoint began at least `intervals` times `every_s` ago, and no checkpoint is
   /// being written.
   bool is_due(double intervals = 1.0);
-  /// Waits for the last checkpoint to complete, and returns true if it began at least a third of `intervals`
-  /// times `every_s` ago. Call at the end of a stage.
+  /// Returns true if the last checkpoint began at least a third of `intervals` times `every_s` ago, and then
+  /// waits until it is complete. Call at the end of a stage.
   bool is_due_at_end(double intervals = 1.0);
   /// Makes is_due() and is_due_at_end() wait for the last checkpoint and return true, until write() is
   /// called. For work that is about to be stopped.

@@ -57,6 +57,7 @@ void put_column(std::string& out, const void* items, std::size_t count, std::siz
   const std::size_t size_at = out.size();
   put(out, std::uint64_t{0});
   const std::size_t begin = out.size();
+  out.reserve(begin + ZSTD_compressBound(count * item_bytes));  // growing would copy what is there
   Compressor compressor(count * item_bytes, out);
   const auto* const bytes = static_cast<const char*>(items);
   std::array<char, 1U << 16U> part;
