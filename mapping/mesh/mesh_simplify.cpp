@@ -2,10 +2,8 @@
 #include "mapping/mesh/mesh_simplify.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <future>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -15,6 +13,7 @@
 #include "mapping/mesh/edge_collapse.hpp"
 #include "mapping/mesh/mesh_blocks.hpp"
 #include "mapping/mesh/mesh_distance.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
@@ -74,8 +73,8 @@ SimplifiedMesh simplified_block(const Mesh& mesh, std::vector<float> tolerance_m
   return {mesh, 0.0F};
 }
 
-// Simplifies the blocks of one mesh; several threads may call work(). Each block writes only its own
-// triangles and the vertices that no other block uses.
+// Simplifies the blocks of one mesh. Threads may simplify different blocks at a time, since each block writes
+// only its own triangles and the vertices that no other block uses.
 class BlockSimplifier {
  public:
   BlockSimplifier(Mesh& mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles,
@@ -90,17 +89,11 @@ class BlockSimplifier {
     for (std::size_t v = 0; v < fixed_.size(); ++v) fixed_[v] = fixed_[v] || on_seam[v];
   }
 
-  /// Returns the greatest deviation (m) among the blocks processed by this call.
-  float work() {
-    float deviation_m = 0.0F;
-    for (std::size_t b = next_++; b < blocks_.size(); b = next_++)
-      deviation_m = std::max(deviation_m, simplify(blocks_[b]));
-    return deviation_m;
-  }
-  [[nodiscard]] bool has_many() const { return blocks_.size() > 1; }
+  [[nodiscard]] std::size_t block_count() const { return blocks_.size(); }
 
- private:
-  float simplify(std::span<Triangle> block) {
+  /// Simplifies a block, and returns its deviation, m.
+  float simplify(std::size_t index) {
+    const std::span<Triangle> block = blocks_[index];
     const BlockMesh full = block_mesh(mesh_, block);
     std::vector<float> tolerance_m;
     for (const std::uint32_t v : full.name)
@@ -120,12 +113,12 @@ class BlockSimplifier {
     return result.deviation_m;
   }
 
+ private:
   Mesh& mesh_;
   float max_deviation_m_;
   float spacing_m_;
   std::vector<std::span<Triangle>> blocks_;
   std::vector<bool> fixed_;  // on the seam of two blocks, or fixed by the caller
-  std::atomic<std::size_t> next_ = 0;
 };
 
 }  // namespace
@@ -133,14 +126,11 @@ class BlockSimplifier {
 SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles,
                           std::vector<bool> fixed) {
   BlockSimplifier blocks(mesh, max_deviation_m, spacing_m, block_triangles, std::move(fixed));
-  float deviation_m = 0.0F;
-  if (blocks.has_many()) {
-    auto second = std::async(std::launch::async, [&] { return blocks.work(); });
-    deviation_m = blocks.work();
-    deviation_m = std::max(deviation_m, second.get());
-  } else {
-    deviation_m = blocks.work();
-  }
+  std::vector<float> deviations_m(blocks.block_count());
+  parallel_for(blocks.block_count(), hardware_threads(),
+               [&](std::size_t block, unsigned) { deviations_m[block] = blocks.simplify(block); });
+  const float deviation_m =
+      deviations_m.empty() ? 0.0F : *std::max_element(deviations_m.begin(), deviations_m.end());
   std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == kNoCorner; });
   std::vector<std::uint32_t> full_vertex = drop_unused_vertices(mesh);
   return {std::move(mesh), deviation_m, std::move(full_vertex)};

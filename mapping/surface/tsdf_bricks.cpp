@@ -14,6 +14,7 @@ static_assert(1 << kBrickShift == kBrickEdge);
 
 constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
 
+// Each step can be inverted, so different bricks have different hashes.
 std::uint64_t hash_of(const VoxelIndex& first) {
   const std::uint64_t hash = voxel_key(first) * 0x9E37'79B9'7F4A'7C15U;  // 2^64 / golden ratio
   return hash ^ hash >> 32U;
@@ -28,7 +29,7 @@ TsdfBricks::TsdfBricks(const std::vector<VoxelIndex>& firsts)
     const std::uint64_t hash = hash_of(firsts[b]);
     std::size_t slot = hash & (slots_.size() - 1);
     while (slots_[slot].brick != kEmpty) slot = (slot + 1) & (slots_.size() - 1);
-    slots_[slot] = {static_cast<std::uint32_t>(hash >> 32U), static_cast<std::uint32_t>(b)};
+    slots_[slot] = {hash, static_cast<std::uint32_t>(b)};
   }
 }
 
@@ -36,8 +37,7 @@ std::size_t TsdfBricks::find(const VoxelIndex& first) const {
   const std::uint64_t hash = hash_of(first);
   for (std::size_t slot = hash & (slots_.size() - 1); slots_[slot].brick != kEmpty;
        slot = (slot + 1) & (slots_.size() - 1))
-    if (slots_[slot].hash == hash >> 32U && bricks_[slots_[slot].brick].first == first)
-      return slots_[slot].brick;
+    if (slots_[slot].hash == hash) return slots_[slot].brick;
   return kNone;
 }
 

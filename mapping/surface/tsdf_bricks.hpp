@@ -49,7 +49,7 @@ class TsdfBricks {
   std::vector<Brick> bricks_;
   /// Open addressing: a brick is in the first slot from its hash on that no other takes.
   struct Slot {
-    std::uint32_t hash = 0;                   ///< upper half of the brick's hash
+    std::uint64_t hash = 0;                   ///< different for different lowest cells
     std::uint32_t brick = ~std::uint32_t{0};  ///< index in bricks_; the default: the slot is empty
   };
   std::vector<Slot> slots_;  ///< more than twice as many as bricks, a power of two

@@ -3,7 +3,8 @@
 // usage: track_bench [--frames N] [--places N] [--json FILE] [--trajectory FILE] SOURCE...      SOURCE: a
 // folder or sim:ROOM?... One row per source: ATE RMSE over all frames, median RPE over 1 and 30 frames, the
 // error of the last pose after aligning the first with its true pose, time per frame (wall clock, and CPU
-// time of the tracking thread), loops, the memory used by keyframes, and the recall of the feature index.
+// time of the tracking thread), loops, the memory used by keyframes, the recall of the feature index, and how
+// many submaps of 50 frames still move after they are complete.
 // With --places N the first N frames, at their recorded poses, become map keyframes, and the later frames are
 // localised among them. Settings are the defaults of OdometryConfig: changing them breaks the comparison with
 // earlier results.
@@ -114,6 +115,44 @@ double recall_of_index(KeyframeDatabase keyframe_database) {
   return expected > 0 ? static_cast<double>(found) / static_cast<double>(expected) : 1.0;
 }
 
+constexpr std::size_t kSubmap = 50;  // frames
+
+/// Appends the poses of a submap once as many frames again have been tracked.
+void note_submap(const OdometrySnapshot& kept, std::vector<Eigen::Isometry3d>& T_world_noted) {
+  if (kept.frames.size() < T_world_noted.size() + 2 * kSubmap) return;
+  for (std::size_t i = 0; i < kSubmap; ++i)
+    T_world_noted.push_back(T_world_camera_of(kept, kept.frames[T_world_noted.size()]));
+}
+
+/// Numbers of submaps. Each counts where any point 2 m in front of a camera has moved by more than 5 mm.
+struct SubmapMotion {
+  std::size_t all = 0;
+  std::size_t moved = 0;  ///< moved between note_submap() and the end
+  std::size_t bent = 0;   ///< moved relative to the submap's middle frame
+};
+
+SubmapMotion submap_motion(const std::vector<Eigen::Isometry3d>& T_world_noted,
+                           const std::vector<TrackedFrame>& frames) {
+  constexpr double kMoved_m = 0.005;
+  const Eigen::Vector3d ahead_m(0.0, 0.0, 2.0);
+  SubmapMotion motion;
+  for (std::size_t first = 0; first + kSubmap <= T_world_noted.size(); first += kSubmap) {
+    const std::size_t middle = first + kSubmap / 2;
+    const Eigen::Isometry3d T_end_noted = frames[middle].T_world_camera * T_world_noted[middle].inverse();
+    bool moved = false, bent = false;
+    for (std::size_t i = first; i < first + kSubmap; ++i) {
+      if (!frames[i].trusted) continue;
+      const Eigen::Vector3d end = frames[i].T_world_camera * ahead_m, noted = T_world_noted[i] * ahead_m;
+      moved |= (end - noted).norm() > kMoved_m;
+      bent |= (end - T_end_noted * noted).norm() > kMoved_m;
+    }
+    ++motion.all;
+    motion.moved += moved ? 1 : 0;
+    motion.bent += bent ? 1 : 0;
+  }
+  return motion;
+}
+
 nlohmann::json bench_tracking(const std::string& name, const Settings& settings) {
   const std::unique_ptr<FrameSource> source = open(name);
   OdometryConfig config;
@@ -121,6 +160,7 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
   int restarts = 0;
   Frame frame;
   std::vector<TimedPose> truth;
+  std::vector<Eigen::Isometry3d> T_world_noted;
   std::vector<double> times_ms, cpu_ms, stamps_s, residuals_m;
   double inliers = 0.0;
   const std::int64_t last_frame = std::min(settings.frames, source->frame_count().value_or(settings.frames));
@@ -134,6 +174,7 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
     cpu_ms.push_back(test::thread_ms() - cpu_start_ms);
     times_ms.push_back(since_ms(start));
     stamps_s.push_back(frame.stamp_s);
+    note_submap(odometry.state(), T_world_noted);
     inliers += tracking.inlier_fraction;
     residuals_m.push_back(tracking.rms_m);
     truth.push_back(
@@ -143,19 +184,22 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
     ++restarts;
     config.timing = odometry.state().timing.current;
     odometry = Odometry(config);
-    truth.clear(), times_ms.clear(), cpu_ms.clear(), stamps_s.clear(), residuals_m.clear();
+    truth.clear(), T_world_noted.clear(), times_ms.clear(), cpu_ms.clear(), stamps_s.clear(),
+        residuals_m.clear();
     inliers = 0.0;
     source->rewind();
   }
   const auto start = Clock::now();
   std::vector<TimedPose> estimate;
   double furthest_m = 0.0;
-  for (const TrackedFrame& f : odometry.optimise()) {
+  const std::vector<TrackedFrame> frames = odometry.optimise();
+  for (const TrackedFrame& f : frames) {
     estimate.push_back({f.frame_index, f.stamp_s, f.T_world_camera});
     furthest_m = std::max(furthest_m, f.T_world_camera.translation().norm());
   }
   const double optimise_ms = since_ms(start);
   if (!settings.trajectory.empty()) write_trajectory(settings.trajectory, estimate);
+  const SubmapMotion submaps = submap_motion(T_world_noted, frames);
   const bool known = frame.T_world_camera.has_value();
   const TrajectoryError ate = absolute_trajectory_error(estimate, truth);
   const OdometryCounts counts = odometry.counts();
@@ -175,6 +219,9 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
           {"end_to_start_gap_mm", known ? 1e3 * end_gap_m(estimate, truth) : -1.0},
           {"rpe30_median_mm", known ? 1e3 * relative_error_m(estimate, truth, 30) : -1.0},
           {"furthest_m", furthest_m},
+          {"submaps", submaps.all},
+          {"submaps_moved", submaps.moved},
+          {"submaps_bent", submaps.bent},
           {"inlier_mean", inliers / static_cast<double>(std::max<std::size_t>(times_ms.size(), 1))},
           {"residual_median_mm", 1e3 * test::quantile(residuals_m, 0.5)},
           {"restarts", restarts},
