@@ -192,7 +192,6 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
   pass.counts.loops_found = pass.odometry.counts().loops_found;
   pass.counts.timing = pass.odometry.state().timing.current;
   found.keyframe_database = pass.odometry.take_keyframe_database();
-  found.keyframe_database.index = {};  // only tracking needs it
   return found;
 }
 

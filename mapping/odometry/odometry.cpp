@@ -192,6 +192,7 @@ std::vector<TrackedFrame> Odometry::optimise() {
   State& s = *state_;
   s.take_over_job();
   s.store_open();
+  s.kept.keyframe_database.index = {};  // only tracking needs it, and would build it again
   if (!s.kept.graph.keyframes.empty()) {
     KeyframeGraph graph = s.kept.graph;
     s.cache = KeyframeCache(s.config.graph.cached_keyframes);  // no longer needed, and large

@@ -43,7 +43,7 @@ class Odometry {
   /// all frames so far with their final poses.
   std::vector<TrackedFrame> optimise();
 
-  /// Moves the keyframe database out, with current poses. Call optimise() first.
+  /// Moves the keyframe database out, with current poses and without an index. Call optimise() first.
   KeyframeDatabase take_keyframe_database();
 
   [[nodiscard]] OdometryCounts counts() const;

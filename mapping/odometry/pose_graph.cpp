@@ -170,7 +170,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
     return constant.empty() ? i == 0 : i < constant.size() && constant[i];
   };
   std::vector<std::size_t> constraint_of;
-  const std::vector<Measured> measured =
+  std::vector<Measured> measured =
       usable_measurements(count, constraints, anchors, is_constant, constraint_of);
   if (measured.empty()) {
     result.status = PoseGraphStatus::kNothingToSolve;
@@ -182,6 +182,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
 
   ceres::Problem problem;
   const std::vector<ceres::ResidualBlockId> ids = add_residuals(measured, place, blocks, problem);
+  measured = {};  // the problem has copies, and the solver needs memory
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(), &problem, &summary);
   if (!summary.IsSolutionUsable()) return result;
