@@ -49,7 +49,8 @@ struct ViewColumns {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Returns the sum over all views of count(view). Reserving it avoids copies: long scans have 100 MB of items.
+/// Returns the sum over all views of count(view). Reserving it avoids copies: long scans have 100 MB of
+/// items.
 template <typename Count>
 std::size_t sum_of(std::span<const MapKeyframe> views, const Count& count) {
   return std::accumulate(views.begin(), views.end(), std::size_t{0},
@@ -72,8 +73,8 @@ std::vector<std::uint16_t> depth_column(std::span<const MapKeyframe> views) {
 std::vector<std::int32_t> point_column(std::span<const MapKeyframe> views) {
   constexpr float kMost = 1e9F;  // 200 km
   std::vector<std::int32_t> points;
-  points.reserve(3 *
-                 sum_of(views, [](const MapKeyframe& v) { return v.points_camera.size() + v.patches.size(); }));
+  points.reserve(
+      3 * sum_of(views, [](const MapKeyframe& v) { return v.points_camera.size() + v.patches.size(); }));
   const auto put_point = [&](const Eigen::Vector3f& point) {
     for (const float component : point)
       points.push_back(

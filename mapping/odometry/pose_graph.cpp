@@ -182,7 +182,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
 
   ceres::Problem problem;
   const std::vector<ceres::ResidualBlockId> ids = add_residuals(measured, place, blocks, problem);
-  measured = {};  // the problem has copies, and the solver needs memory
+  measured = std::vector<Measured>();  // the problem has copies, and the solver needs memory
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(), &problem, &summary);
   if (!summary.IsSolutionUsable()) return result;
