@@ -2,9 +2,11 @@
 // resumed.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "mapping/storage/checkpoints.hpp"
 #include "tests/support/error_of.hpp"
@@ -85,6 +87,22 @@ TEST_F(CheckpointsTest, WorkAboutToStopGetsOneMoreBeforeItsTime) {
   checkpoints.write_soon();
   EXPECT_TRUE(checkpoints.is_due()) << "also while one is being written";
   EXPECT_TRUE(checkpoints.has_any());
+}
+
+TEST_F(CheckpointsTest, TheEndOfAStageDoesNotWaitForAWriterIfNoOtherIsDue) {
+  const fs::path go_on = folder().string() + ".go_on";
+  fs::remove(go_on);
+  Checkpoints checkpoints(folder(), kScan, 1000.0);
+  checkpoints.write("fuse", [&](const fs::path& into, const fs::path&) {
+    for (int tenths = 0; tenths < 100 && !fs::exists(go_on); ++tenths)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::ofstream(into / "state") << "7";
+  });
+  EXPECT_FALSE(checkpoints.is_due_at_end());
+  EXPECT_FALSE(fs::exists(folder() / "checkpoint-1")) << "it is still being written";
+  std::ofstream(go_on) << "";
+  EXPECT_TRUE(checkpoints.has_any());
+  fs::remove(go_on);
 }
 
 TEST_F(CheckpointsTest, AFolderWithNothingToGoOnFromGoes) {
