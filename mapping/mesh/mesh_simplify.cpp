@@ -129,8 +129,8 @@ SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std
   std::vector<float> deviations_m(blocks.block_count());
   parallel_for(blocks.block_count(), hardware_threads(),
                [&](std::size_t block, unsigned) { deviations_m[block] = blocks.simplify(block); });
-  const float deviation_m =
-      deviations_m.empty() ? 0.0F : *std::max_element(deviations_m.begin(), deviations_m.end());
+  float deviation_m = 0.0F;
+  for (const float of_block : deviations_m) deviation_m = std::max(deviation_m, of_block);
   std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == kNoCorner; });
   std::vector<std::uint32_t> full_vertex = drop_unused_vertices(mesh);
   return {std::move(mesh), deviation_m, std::move(full_vertex)};

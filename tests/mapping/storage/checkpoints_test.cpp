@@ -90,8 +90,7 @@ TEST_F(CheckpointsTest, WorkAboutToStopGetsOneMoreBeforeItsTime) {
 }
 
 TEST_F(CheckpointsTest, TheEndOfAStageDoesNotWaitForAWriterIfNoOtherIsDue) {
-  const fs::path go_on = folder().string() + ".go_on";
-  fs::remove(go_on);
+  const fs::path go_on = folder().parent_path() / "go_on";
   Checkpoints checkpoints(folder(), kScan, 1000.0);
   checkpoints.write("fuse", [&](const fs::path& into, const fs::path&) {
     for (int tenths = 0; tenths < 100 && !fs::exists(go_on); ++tenths)
@@ -102,7 +101,6 @@ TEST_F(CheckpointsTest, TheEndOfAStageDoesNotWaitForAWriterIfNoOtherIsDue) {
   EXPECT_FALSE(fs::exists(folder() / "checkpoint-1")) << "it is still being written";
   std::ofstream(go_on) << "";
   EXPECT_TRUE(checkpoints.has_any());
-  fs::remove(go_on);
 }
 
 TEST_F(CheckpointsTest, AFolderWithNothingToGoOnFromGoes) {
