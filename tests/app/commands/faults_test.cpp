@@ -173,10 +173,10 @@ TEST_F(DeferredErrors, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
   const auto words = [](const fs::path& map) {
     return std::vector<std::string>{
         "prescan", kSource, "--map", map, "--poses", "recorded", "--resolution", "0.02", "--checkpoint-every",
-        "0.01"};
+        "0.0001"};
   };
   ASSERT_EQ(run(words(at("reference"))), 0) << said();
-  mount_disk(1500);  // enough for a checkpoint, not for the map beside it
+  mount_disk(1400);  // enough for the checkpoints, which are due at each step, not for the map beside them
   EXPECT_EQ(run(words(disk() / "map")), 1);
   EXPECT_NE(said().find("with --resume continues from there"), std::string::npos) << said();
   EXPECT_FALSE(fs::exists(disk() / "map"));
