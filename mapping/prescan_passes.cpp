@@ -23,11 +23,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Reads the next readable frame; returns false at the end.
-/// @param source  FrameSource or ReadAhead
-template <typename Source>
-bool read(Source& source, StageTimes& times, Frame& frame, PrescanCounts& counts) {
+/// @param next  as FrameSource::next()
+template <typename Next>
+bool read(const Next& next, StageTimes& times, PrescanCounts& counts) {
   for (;;) {
-    const ReadResult result = times.timed("read", [&] { return source.next(frame); });
+    const ReadResult result = times.timed("read", next);
     if (result.status == ReadStatus::kEnd) return false;
     if (result.waiting) continue;
     ++counts.frames_read;
@@ -149,7 +149,8 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
   const PrescanConfig& config = work.config;
   Frame frame;
   ObservedArea seen;
-  while (read(*work.source, work.times, frame, pass.counts)) {
+  const auto next = [&] { return work.source->next(frame); };
+  while (read(next, work.times, pass.counts)) {
     const Clock::time_point start = Clock::now();
     const std::optional<Eigen::Isometry3d> recorded =
         recorded_pose(frame, middle_of_recorded(work, pass, frame), work.reach_m);
@@ -297,14 +298,21 @@ void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory
   if (pass.frames_read > 0) skip_frames(*work.source, pass.frames_read);
   release_unused_memory();
   bool has_room = !pass.stopped_for_memory;  // set if the pass had ended before it was resumed
-  ReadAhead frames(*work.source, pass.frames_read, positions_of(T_world_camera, pass));
+  ReadAhead<PreparedFrame> frames(*work.source, pass.frames_read, positions_of(T_world_camera, pass),
+                                  [&](const Frame& ahead, PreparedFrame& made) {
+                                    const auto pose = T_world_camera.find(ahead.index);
+                                    if (pose != T_world_camera.end())
+                                      pass.octree.prepare(ahead, pose->second, made);
+                                  });
   Frame frame;
-  while (has_room && read(frames, work.times, frame, second_pass)) {
+  PreparedFrame prepared;
+  const auto next = [&] { return frames.next(frame, prepared); };
+  while (has_room && read(next, work.times, second_pass)) {
     pass.frames_read = frames.position() + 1;
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end()) continue;
     const Clock::time_point start = Clock::now();
-    const FuseStatus fused = pass.octree.fuse(frame, pose->second);
+    const FuseStatus fused = pass.octree.fuse(frame, prepared);
     const double fuse_ms = ms_since(start);
     work.times.add_ms("fuse", fuse_ms);
     if (const auto track_ms = work.track_ms.find(frame.index); track_ms != work.track_ms.end())

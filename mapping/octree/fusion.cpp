@@ -273,7 +273,8 @@ void descend(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_w
 }  // namespace
 
 void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                const FusionConfig& config, FusionScratch& scratch, unsigned threads, Arithmetic arithmetic) {
+                const FusionConfig& config, const FusionScratch& scratch, unsigned threads,
+                Arithmetic arithmetic) {
   if (arithmetic == Arithmetic::kFastest)
     descend<Float8>(tree, frame, T_world_camera, config, scratch, threads);
   else

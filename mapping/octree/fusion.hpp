@@ -21,7 +21,7 @@ namespace roomradar {
 /// weight (projective TSDF).
 /// @param threads  1..kMaxLanes; the result does not depend on it
 void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                const FusionConfig& config, FusionScratch& scratch, unsigned threads,
+                const FusionConfig& config, const FusionScratch& scratch, unsigned threads,
                 Arithmetic arithmetic = Arithmetic::kFastest);
 
 }  // namespace roomradar

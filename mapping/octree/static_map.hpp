@@ -28,6 +28,22 @@ enum class FuseStatus {
 };
 std::string_view to_string(FuseStatus status);
 
+/// Intermediate result of the fusion of one frame: what depends on the frame, its pose and the map's
+/// settings, but not on what the map holds. Reuse an object for many frames, so that its memory is allocated
+/// once.
+class PreparedFrame {
+ public:
+  PreparedFrame();
+  ~PreparedFrame();
+  PreparedFrame(PreparedFrame&&) noexcept;
+  PreparedFrame& operator=(PreparedFrame&&) noexcept;
+
+ private:
+  friend class StaticMap;
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
 /// Integer voxel coordinates. The lower corner of voxel `index` is at index * resolution_m in the world
 /// frame.
 using VoxelIndex = Eigen::Vector3i;
@@ -83,6 +99,13 @@ class StaticMap {
   /// Fuses one frame, including its colour image if it has one. T_world_camera is the pose of the depth
   /// camera. The map changes only if the return value is kFused.
   FuseStatus fuse(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+
+  /// Computes the part of fuse() that does not depend on the map's content. Thread safe, also while another
+  /// frame is being fused.
+  void prepare(const Frame& frame, const Eigen::Isometry3d& T_world_camera, PreparedFrame& prepared) const;
+  /// Does the rest of fuse(). `frame` must be the frame for which this map, or another one with the same
+  /// resolution and config, prepared `prepared`.
+  FuseStatus fuse(const Frame& frame, const PreparedFrame& prepared);
 
   /// Returns the occupancy of the voxel that contains p_world. Returns kUnknown if no ray has crossed or
   /// ended in the voxel, or if p_world is outside the octree or NaN.
@@ -159,6 +182,8 @@ class StaticMap {
  private:
   struct Octree;
   explicit StaticMap(std::unique_ptr<Octree> octree);
+  void prepare(const Frame& frame, const Eigen::Isometry3d& T_world_camera, PreparedFrame& prepared,
+               unsigned threads) const;
   template <typename ReadFile>
   static StaticMap read_by(const ReadFile& read_file, const FusionConfig& config);
   std::unique_ptr<Octree> octree_;

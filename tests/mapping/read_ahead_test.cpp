@@ -1,4 +1,5 @@
-// read_ahead_test.cpp: frames come in order, and no more of them are read than asked for.
+// read_ahead_test.cpp: frames come in order, each with what was prepared of it, and no more are read than
+// asked for.
 #include "mapping/read_ahead.hpp"
 
 #include <gtest/gtest.h>
@@ -54,14 +55,25 @@ std::vector<std::int64_t> first(std::int64_t count) {
   return positions;
 }
 
+/// What is prepared of each frame here: ten times its index.
+using Prepared = std::int64_t;
+ReadAhead<Prepared> read_ahead(FrameSource& source, std::vector<std::int64_t> wanted) {
+  return {source, 0, std::move(wanted),
+          [](const Frame& frame, Prepared& prepared) { prepared = 10 * frame.index; }};
+}
+
 /// Indices of the delivered frames; -1: unreadable, -2: waiting.
 std::vector<std::int64_t> delivered(FrameSource& source, std::int64_t count) {
-  ReadAhead frames(source, 0, first(count));
+  ReadAhead frames = read_ahead(source, first(count));
   std::vector<std::int64_t> indices;
   Frame frame;
+  Prepared prepared = -1;
   for (;;) {
-    const ReadResult result = frames.next(frame);
+    const ReadResult result = frames.next(frame, prepared);
     if (result.status == ReadStatus::kEnd) return indices;
+    if (result.status == ReadStatus::kFrame) {
+      EXPECT_EQ(prepared, 10 * frame.index);
+    }
     indices.push_back(result.status == ReadStatus::kFrame ? frame.index : result.waiting ? -2 : -1);
   }
 }
@@ -87,21 +99,34 @@ TEST(ReadAhead, EndsWithTheSource) {
 TEST(ReadAhead, ErrorsComeAtTheirFrame) {
   Endless source;
   source.faulty = 1;
-  ReadAhead frames(source, 0, first(6));
+  ReadAhead frames = read_ahead(source, first(6));
   Frame frame;
-  EXPECT_EQ(frames.next(frame).status, ReadStatus::kFrame);
+  Prepared prepared = -1;
+  EXPECT_EQ(frames.next(frame, prepared).status, ReadStatus::kFrame);
   EXPECT_EQ(frame.index, 0);
-  EXPECT_THROW((void)frames.next(frame), Error);
+  EXPECT_THROW((void)frames.next(frame, prepared), Error);
+}
+
+TEST(ReadAhead, ErrorsOfPreparingComeAtTheirFrame) {
+  Endless source;
+  ReadAhead<Prepared> frames(source, 0, first(6), [](const Frame& frame, Prepared&) {
+    if (frame.index == 1) throw Error("frame 1 cannot be prepared");
+  });
+  Frame frame;
+  Prepared prepared = -1;
+  EXPECT_EQ(frames.next(frame, prepared).status, ReadStatus::kFrame);
+  EXPECT_THROW((void)frames.next(frame, prepared), Error);
 }
 
 TEST(ReadAhead, DeliversTheWantedFramesOnlyWhetherTheSourceCanSeekOrNot) {
   for (const bool can_seek : {true, false}) {
     Endless source;
     source.can_seek = can_seek;
-    ReadAhead frames(source, 0, {1, 2, 5, 9});
+    ReadAhead frames = read_ahead(source, {1, 2, 5, 9});
     std::vector<std::int64_t> indices;
     Frame frame;
-    for (ReadResult result; (result = frames.next(frame)).status != ReadStatus::kEnd;) {
+    Prepared prepared = -1;
+    for (ReadResult result; (result = frames.next(frame, prepared)).status != ReadStatus::kEnd;) {
       if (result.waiting) continue;
       indices.push_back(result.status == ReadStatus::kFrame ? frame.index : -1);
       EXPECT_TRUE(indices.back() == -1 || frames.position() == indices.back());
@@ -114,9 +139,10 @@ TEST(ReadAhead, DeliversTheWantedFramesOnlyWhetherTheSourceCanSeekOrNot) {
 TEST(ReadAhead, MayBeLeftWhileAFrameIsRead) {
   Endless source;
   Frame frame;
+  Prepared prepared = -1;
   {
-    ReadAhead frames(source, 0, first(6));
-    EXPECT_EQ(frames.next(frame).status, ReadStatus::kFrame);
+    ReadAhead frames = read_ahead(source, first(6));
+    EXPECT_EQ(frames.next(frame, prepared).status, ReadStatus::kFrame);
   }
   EXPECT_EQ(source.reads, 2);
 }

@@ -3,6 +3,7 @@
 #include <octomap/OcTree.h>
 
 #include <cmath>
+#include <future>
 #include <memory>
 #include <random>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "mapping/octree/octomap_tree.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/file_io.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -202,6 +204,39 @@ TEST(FusionEdges, PlainAndFastestArithmeticMakeTheSameMapBitForBit) {
   const auto a = content(fastest), b = content(plain);
   EXPECT_GT(a.size(), 50'000U);
   EXPECT_EQ(a, b);
+}
+
+TEST(FusionEdges, PreparedFramesMakeTheSameMapAndFailLikeOthers) {
+  const test::TemporaryFolder folder;
+  StaticMap at_once(0.02), in_two_steps(0.02);
+  PreparedFrame now, next;
+  const auto pose = [](int i) { return looking_at({-0.1 * i, 0.07 * i, 0.0}, {1.5, 0, 0}); };
+  const auto frame = [](int i) { return wall_at(2.0 + 0.01 * i, {9, static_cast<std::uint8_t>(40 * i), 9}); };
+  in_two_steps.prepare(frame(0), pose(0), now);
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_EQ(at_once.fuse(frame(i), pose(i)), FuseStatus::kFused);
+    auto preparing =
+        std::async(std::launch::async, [&] { in_two_steps.prepare(frame(i + 1), pose(i + 1), next); });
+    ASSERT_EQ(in_two_steps.fuse(frame(i), now), FuseStatus::kFused);
+    preparing.get();
+    std::swap(now, next);
+  }
+  at_once.write(folder.path() / "at_once");
+  in_two_steps.write(folder.path() / "in_two_steps");
+  EXPECT_EQ(read_bytes(folder.path() / "at_once", "a map"),
+            read_bytes(folder.path() / "in_two_steps", "a map"));
+
+  Eigen::Isometry3d skewed = pose(0);
+  skewed.linear() *= 1.1;
+  in_two_steps.prepare(frame(0), skewed, now);
+  EXPECT_EQ(in_two_steps.fuse(frame(0), now), FuseStatus::kInvalidPose);
+  Frame empty = frame(0);
+  for (float& depth_m : empty.depth_m.pixels) depth_m = 0.0F;
+  in_two_steps.prepare(empty, pose(0), now);
+  EXPECT_EQ(in_two_steps.fuse(empty, now), FuseStatus::kNothingMeasured);
+  EXPECT_EQ(in_two_steps.fuse(frame(0), PreparedFrame()), FuseStatus::kNothingMeasured);
+  in_two_steps.prepare(frame(0), pose(0), now);
+  EXPECT_EQ(in_two_steps.fuse(frame(0), now), FuseStatus::kFused) << "after faults, it can be used again";
 }
 
 TEST(BlockOctree, OnePlaceLeavesNothingBehindWhenItIsFreedAgain) {
