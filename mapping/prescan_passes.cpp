@@ -9,6 +9,7 @@
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/registration.hpp"
 #include "mapping/map/surface_points.hpp"
+#include "mapping/octree/prepared_frame.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/read_ahead.hpp"
 #include "mapping/revision/ghost_removal.hpp"

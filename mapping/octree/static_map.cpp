@@ -3,18 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <string>
 #include <utility>
 
 #include "mapping/octree/fusion.hpp"
 #include "mapping/octree/map_samples.hpp"
 #include "mapping/octree/octree_file.hpp"
+#include "mapping/octree/prepared_frame.hpp"
 #include "mapping/octree/static_map_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/parallel_for.hpp"
-#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -40,17 +39,6 @@ unsigned threads_for(const DepthImage& depth_m, const FusionConfig& config) {
 
 }  // namespace
 
-struct PreparedFrame::Data {
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  FusionConfig config;  ///< with the frame's noise
-  FusionScratch scratch;
-  FuseStatus status = FuseStatus::kNothingMeasured;  ///< kFused: can be fused
-};
-PreparedFrame::PreparedFrame() : data_(std::make_unique<Data>()) {}
-PreparedFrame::~PreparedFrame() = default;
-PreparedFrame::PreparedFrame(PreparedFrame&&) noexcept = default;
-PreparedFrame& PreparedFrame::operator=(PreparedFrame&&) noexcept = default;
-
 struct StaticMap::Octree {
   Octree(double resolution_m, const FusionConfig& fusion);
   FusionConfig config;
@@ -69,53 +57,21 @@ StaticMap::StaticMap(StaticMap&&) noexcept = default;
 StaticMap& StaticMap::operator=(StaticMap&&) noexcept = default;
 
 FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  prepare(frame, T_world_camera, octree_->prepared, threads_for(frame.depth_m, octree_->config));
+  prepare_frame(frame, T_world_camera, resolution_m(), config(), threads_for(frame.depth_m, config()),
+                octree_->prepared);
   return fuse(frame, octree_->prepared);
 }
 
 void StaticMap::prepare(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                         PreparedFrame& prepared) const {
-  prepare(frame, T_world_camera, prepared, 1);
-}
-
-void StaticMap::prepare(const Frame& frame, const Eigen::Isometry3d& T_world_camera, PreparedFrame& prepared,
-                        unsigned threads) const {
-  constexpr int kMaxSide_px = 4096;  // pixel indices are computed in float
-  PreparedFrame::Data& p = *prepared.data_;
-  p.T_world_camera = T_world_camera;
-  p.config = octree_->config;
-  p.config.noise = frame.depth_noise;
-  if (!depth_fault_of(frame).empty() || std::max(frame.depth_m.width, frame.depth_m.height) > kMaxSide_px) {
-    p.status = FuseStatus::kInvalidFrame;
-    return;
-  }
-  if (!is_rigid(T_world_camera, 1e-3)) {
-    p.status = FuseStatus::kInvalidPose;
-    return;
-  }
-  const auto pyramid = std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&] {
-    build_pyramid(frame.depth_m, resolution_m(), p.config, p.scratch.pyramid);
-  });
-  switch (collect_hits(frame, T_world_camera, resolution_m(), p.config, p.scratch)) {
-    case HitStatus::kNone:
-      p.status = FuseStatus::kNothingMeasured;
-      return;
-    case HitStatus::kOutOfBounds:
-      p.status = FuseStatus::kOutOfBounds;
-      return;
-    case HitStatus::kCollected:
-      p.status = FuseStatus::kFused;
-      break;
-  }
-  pyramid.wait();
+  prepare_frame(frame, T_world_camera, resolution_m(), config(), /*threads=*/1, prepared);
 }
 
 FuseStatus StaticMap::fuse(const Frame& frame, const PreparedFrame& prepared) {
-  const PreparedFrame::Data& p = *prepared.data_;
-  if (p.status == FuseStatus::kFused)
-    fuse_depth(octree_->tree, frame, p.T_world_camera, p.config, p.scratch,
-               threads_for(frame.depth_m, p.config));
-  return p.status;
+  if (prepared.status == FuseStatus::kFused)
+    fuse_depth(octree_->tree, frame, prepared.T_world_camera, prepared.config, prepared.scratch,
+               threads_for(frame.depth_m, config()));
+  return prepared.status;
 }
 
 Occupancy StaticMap::occupancy_at(const Eigen::Vector3d& p_world) const {

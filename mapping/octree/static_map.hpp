@@ -28,21 +28,7 @@ enum class FuseStatus {
 };
 std::string_view to_string(FuseStatus status);
 
-/// Intermediate result of the fusion of one frame: what depends on the frame, its pose and the map's
-/// settings, but not on what the map holds. Reuse an object for many frames, so that its memory is allocated
-/// once.
-class PreparedFrame {
- public:
-  PreparedFrame();
-  ~PreparedFrame();
-  PreparedFrame(PreparedFrame&&) noexcept;
-  PreparedFrame& operator=(PreparedFrame&&) noexcept;
-
- private:
-  friend class StaticMap;
-  struct Data;
-  std::unique_ptr<Data> data_;
-};
+struct PreparedFrame;
 
 /// Integer voxel coordinates. The lower corner of voxel `index` is at index * resolution_m in the world
 /// frame.
@@ -100,8 +86,8 @@ class StaticMap {
   /// camera. The map changes only if the return value is kFused.
   FuseStatus fuse(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Computes the part of fuse() that does not depend on the map's content. Thread safe, also while another
-  /// frame is being fused.
+  /// Computes the part of fuse() that does not depend on the map's content, on the caller's thread. Another
+  /// frame may be fused meanwhile.
   void prepare(const Frame& frame, const Eigen::Isometry3d& T_world_camera, PreparedFrame& prepared) const;
   /// Does the rest of fuse(). `frame` must be the frame for which this map, or another one with the same
   /// resolution and config, prepared `prepared`.
@@ -182,8 +168,6 @@ class StaticMap {
  private:
   struct Octree;
   explicit StaticMap(std::unique_ptr<Octree> octree);
-  void prepare(const Frame& frame, const Eigen::Isometry3d& T_world_camera, PreparedFrame& prepared,
-               unsigned threads) const;
   template <typename ReadFile>
   static StaticMap read_by(const ReadFile& read_file, const FusionConfig& config);
   std::unique_ptr<Octree> octree_;

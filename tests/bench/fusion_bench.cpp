@@ -7,7 +7,7 @@
 // million random points. OctoMap is omitted at 0.005 m, where it would need minutes. Times are the thread's
 // CPU time with one thread, so other programs affect them only through shared caches; reading is not timed.
 // wall_median_ms and two_threads_wall_median_ms are wall times with one and two threads, frame by frame in
-// turn. The first line
+// turn; in prepared_wall_median_ms the next frame is prepared meanwhile, as in a prescan. The first line
 // names processor, compiler and flags; then follows one JSON row per cell. Settings are the defaults of
 // FusionConfig: changing them breaks the comparison with earlier results.
 #include <octomap/OcTree.h>
@@ -17,14 +17,17 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/sources/recordings/folder_source.hpp"
+#include "mapping/octree/prepared_frame.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/bench/bench_program.hpp"
@@ -123,8 +126,11 @@ nlohmann::json row(const char* method, double resolution_m, const std::vector<do
 }
 
 void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) {
-  std::vector<double> ours_ms, wall_ms, two_threads_ms;
-  StaticMap map(resolution_m, {.threads = 1}), by_two(resolution_m, {.threads = 2});
+  std::vector<double> ours_ms, wall_ms, two_threads_ms, prepared_ms;
+  StaticMap map(resolution_m, {.threads = 1}), by_two(resolution_m, {.threads = 2}),
+      ahead(resolution_m, {.threads = 2});
+  Frame before;
+  PreparedFrame prepared, next;
   for_frames(settings.recording, settings.frames, 1, [&](const Frame& frame) {
     const double start_ms = test::thread_ms();
     const Clock::time_point start = Clock::now();
@@ -133,12 +139,21 @@ void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) 
     ours_ms.push_back(test::thread_ms() - start_ms);
     static_cast<void>(by_two.fuse(frame, *frame.T_world_camera));
     wall_ms.push_back(ms_between(start, middle));
-    two_threads_ms.push_back(ms_between(middle, Clock::now()));
+    const Clock::time_point end = Clock::now();
+    two_threads_ms.push_back(ms_between(middle, end));
+    auto preparing =
+        std::async(std::launch::async, [&] { ahead.prepare(frame, *frame.T_world_camera, next); });
+    static_cast<void>(ahead.fuse(before, prepared));
+    preparing.get();
+    prepared_ms.push_back(ms_between(end, Clock::now()));
+    before = frame;
+    std::swap(prepared, next);
   });
   const MapCounts counts = map.counts();
   nlohmann::json ours = row("roomradar", resolution_m, ours_ms);
   ours["wall_median_ms"] = test::quantile(wall_ms, 0.5);
   ours["two_threads_wall_median_ms"] = test::quantile(two_threads_ms, 0.5);
+  ours["prepared_wall_median_ms"] = test::quantile(prepared_ms, 0.5);
   ours["memory_mb"] = static_cast<double>(counts.memory_bytes) / 1e6;
   ours["nodes"] = counts.nodes;
   ours["occupied_leaves"] = counts.occupied_leaves;

@@ -11,6 +11,7 @@
 #include "mapping/octree/block_octree.hpp"
 #include "mapping/octree/fusion.hpp"
 #include "mapping/octree/octomap_tree.hpp"
+#include "mapping/octree/prepared_frame.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/system/file_io.hpp"
