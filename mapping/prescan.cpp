@@ -143,6 +143,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
                 format_number(config.resolution_m) + " m; try another --resolution");
   if (config.bake_texture)
     erase_flat_triangles(map.mesh);  // so that the texture fits the mesh that is read from the map
+  release_unused_memory();
 
   // Unobserved regions; the octree is saved meanwhile.
   const MapCounts octree_counts = map.octree->counts();

@@ -66,6 +66,10 @@ MapKeyframe make_map_keyframe(const Frame& frame, const Eigen::Isometry3d& T_wor
   if (config.features > 0 && std::min(frame.colour.width, frame.colour.height) >= kSmallest_px) {
     describe_features(frame, std::min(config.features, kMostDescribed), place);
   }
+  // A long scan keeps hundreds of keyframes.
+  place.points_camera.shrink_to_fit();
+  place.descriptors.shrink_to_fit();
+  place.patches.shrink_to_fit();
   return place;
 }
 

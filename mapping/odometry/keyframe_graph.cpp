@@ -112,7 +112,9 @@ bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const Keyfr
 
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const ConnectConfig& config, KeyframeCache& cache) {
-  const auto a = cache.get(older, *graph.keyframes[older].view, config.view);
+  // `older` is rarely used again before the cache would evict it.
+  std::shared_ptr<const CachedKeyframe> a = cache.find(older);
+  if (!a) a = prepare_keyframe(*graph.keyframes[older].view, config.view);
   const auto b = cache.get(newer, *graph.keyframes[newer].view, config.view);
   return add_constraints(graph,
                          {older, newer, align(b->live, a->reference, T_older_newer, config.align),

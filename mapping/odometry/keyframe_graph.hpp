@@ -71,6 +71,7 @@ struct KeyframePair {
 bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const KeyframeGraphConfig& config);
 
 /// Aligns two keyframes, starting from T_older_newer, and adds their constraints as add_constraints() does.
+/// Caches `newer`; uses `older` from the cache if it is there.
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const ConnectConfig& config, KeyframeCache& cache);
 

@@ -85,7 +85,13 @@ class JoinedParts {
     for (const Triangle& t : mesh.triangles)
       joined_.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
   }
-  Mesh take() { return std::move(joined_); }
+  Mesh take() {
+    joined_.vertices.shrink_to_fit();
+    joined_.normals.shrink_to_fit();
+    joined_.colours.shrink_to_fit();
+    joined_.triangles.shrink_to_fit();
+    return std::move(joined_);
+  }
 
  private:
   Mesh joined_;

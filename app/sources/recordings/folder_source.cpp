@@ -29,7 +29,7 @@ void require_size(const Image<Pixel>& image, const Intrinsics& camera, const std
 template <typename ReadSize>
 std::optional<ImageSize> first_size(const std::filesystem::path& folder,
                                     const std::vector<RecordedFrame>& frames,
-                                    std::filesystem::path RecordedFrame::*file, const ReadSize& read_size) {
+                                    std::string RecordedFrame::*file, const ReadSize& read_size) {
   std::string first_fault;
   int bad = 0;
   for (const RecordedFrame& frame : frames) {
@@ -67,18 +67,19 @@ std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder, co
   IndexedRecording recording{.name = std::filesystem::canonical(folder).string()};
   if (!depth_size) throw Error(recording.name + ": contains no depth images");
   recording.rig = rig_of_recording(folder, index->nominal, options.depth_camera, *depth_size, colour_size);
+  recording.frames.reserve(index->frames.size());
   for (const RecordedFrame& frame : index->frames)
     recording.frames.push_back({frame.stamp_s, !frame.colour_file.empty(), frame.colour_after_depth_s,
                                 frame.T_world_camera, frame.down_camera, frame.fault});
   const Intrinsics depth_camera = recording.rig.depth_camera;
   const Intrinsics colour_camera = recording.rig.colour_camera.value_or(Intrinsics{});
   recording.read_depth = [index, depth_camera](std::size_t i, DepthImage& image) {
-    const std::filesystem::path& file = index->frames[i].depth_file;
+    const std::string& file = index->frames[i].depth_file;
     read_depth_file(file, index->depth_encoding, image);
     require_size(image, depth_camera, file);
   };
   recording.read_colour = [index, colour_camera](std::size_t i, ColourImage& image) {
-    const std::filesystem::path& file = index->frames[i].colour_file;
+    const std::string& file = index->frames[i].colour_file;
     read_colour_file(file, image);
     require_size(image, colour_camera, file);
   };

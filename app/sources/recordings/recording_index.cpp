@@ -59,9 +59,9 @@ std::vector<RecordedFrame> frames_of(const FilesByNumber& files, const fs::path&
   frames.reserve(files.size());
   for (const auto& [number, file] : files) {
     RecordedFrame frame{.stamp_s = static_cast<double>(number) / kNominalRate_hz,
-                        .depth_file = file.depth,
-                        .colour_file = file.colour.extension() == ".none" ? fs::path{} : file.colour,
-                        .pose_file = file.pose};
+                        .depth_file = file.depth.string(),
+                        .colour_file = file.colour.extension() == ".none" ? "" : file.colour.string(),
+                        .pose_file = file.pose.string()};
     const char* missing = file.depth.empty()                  ? "depth image"
                           : any_colour && file.colour.empty() ? "colour image"
                           : any_pose && file.pose.empty()     ? "pose"
@@ -159,8 +159,7 @@ void pair_up(StampPairing& pairing, const std::vector<ListedImage>& colours,
   while (const auto pair = pairing.take()) {
     RecordedFrame& frame = frames[static_cast<std::size_t>(pair->depth)];
     if (pair->stamp_goes_back)
-      frame.fault =
-          frame.depth_file.string() + ": its stamp is not later than that of the depth image before it";
+      frame.fault = frame.depth_file + ": its stamp is not later than that of the depth image before it";
     if (!pair->colour) continue;
     const ListedImage& colour = colours[static_cast<std::size_t>(*pair->colour)];
     frame.colour_file = colour.file;

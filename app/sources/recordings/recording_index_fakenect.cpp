@@ -85,11 +85,12 @@ RecordingIndex index_fakenect(const fs::path& folder) {
     const double stamp_s = clock.seconds(parsed->ticks);
     if (parsed->kind == 'r') {
       pairing.add_colour(static_cast<std::int64_t>(colours.size()), stamp_s);
-      colours.push_back({stamp_s, folder / line, {}});
+      colours.push_back({stamp_s, (folder / line).string(), {}});
     } else {
       if (!tilt_file.empty()) read_tilt_state(folder / tilt_file, down_camera);
       pairing.add_depth(static_cast<std::int64_t>(index.frames.size()), stamp_s);
-      index.frames.push_back({.stamp_s = stamp_s, .depth_file = folder / line, .down_camera = down_camera});
+      index.frames.push_back(
+          {.stamp_s = stamp_s, .depth_file = (folder / line).string(), .down_camera = down_camera});
     }
     pair_up(pairing, colours, index.frames);
   }

@@ -56,7 +56,7 @@ std::vector<ListedImage> read_image_list(const fs::path& folder, const char* nam
       image.fault = where + ": the stamp is not later than that of the line before";
     } else {
       image.stamp_s = last_s = *stamp_s;
-      image.file = folder / file;
+      image.file = (folder / file).string();
     }
     images.push_back(std::move(image));
   });
@@ -148,6 +148,7 @@ RecordingIndex index_tum(const fs::path& folder) {
 
   const bool is_bonn = fs::weakly_canonical(folder).filename().string().starts_with("rgbd_bonn_");
   RecordingIndex index{DepthEncoding::kTum, is_bonn ? NominalRig::kBonn : NominalRig::kTum, {}};
+  index.frames.reserve(depth.size());
   for (const ListedImage& image : depth) {
     RecordedFrame frame{.stamp_s = image.stamp_s, .depth_file = image.file, .fault = image.fault};
     if (image.fault.empty()) {
