@@ -37,12 +37,12 @@ void prepare_frame(const Frame& frame, const Eigen::Isometry3d& T_world_camera, 
   prepared.config.noise = frame.depth_noise;
   prepared.status = fault_of(frame, T_world_camera);
   if (prepared.status != FuseStatus::kFused) return;
-  const auto pyramid = std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&] {
+  auto pyramid = std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&] {
     build_pyramid(frame.depth_m, resolution_m, prepared.config, prepared.scratch.pyramid);
   });
   prepared.status =
       status_of(collect_hits(frame, T_world_camera, resolution_m, prepared.config, prepared.scratch));
-  if (prepared.status == FuseStatus::kFused) pyramid.wait();
+  if (prepared.status == FuseStatus::kFused) pyramid.get();
 }
 
 }  // namespace roomradar
