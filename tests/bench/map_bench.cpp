@@ -14,7 +14,7 @@
 //   gap        error of the last pose relative to the first
 //
 // `whole` runs the program's prescan of a recording, then fuses it with its own poses, with coarse cells and
-// with voxels only, see map_bench_whole.hpp. `scan` runs the prescan only.
+// with voxels only, see map_bench_whole.hpp. `scan` runs the prescan, and one frame in its map.
 //
 // Settings are the defaults of PrescanConfig: changing them breaks the comparison with earlier results.
 #include <algorithm>

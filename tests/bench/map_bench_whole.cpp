@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/cli/open_source.hpp"
@@ -190,13 +192,35 @@ nlohmann::json whole_rows(const WholeCell& cell) {
   return rows;
 }
 
+namespace {
+
+// Runs a command of the program on the source and the map; returns its report.
+nlohmann::json report_of(const std::string& command, const std::string& source,
+                         const std::filesystem::path& folder, const std::string& options = {}) {
+  const std::filesystem::path report = folder / (command + ".json");
+  const std::string line = "'" ROOMRADAR_PROGRAM "' " + command + " '" + source + "' --map '" +
+                           (folder / "map").string() + "' --report '" + report.string() + "' " + options +
+                           " > /dev/null 2>&1";
+  if (std::system(line.c_str()) != 0) throw Error(source + ": fails: " + line);
+  return nlohmann::json::parse(std::ifstream(report));
+}
+
+// Returns the wall time, s, and the peak, MB, of a run from its start to the first composed picture.
+nlohmann::json start_of_run(const std::string& source, const std::filesystem::path& folder) {
+  const std::string pictures =
+      "--frames 0:0 --pictures-stride 1 --pictures '" + (folder / "pictures").string() + "'";
+  const auto start = std::chrono::steady_clock::now();
+  const nlohmann::json told = report_of("run", source, folder, pictures);
+  const std::chrono::duration<double> wall_s = std::chrono::steady_clock::now() - start;
+  return {{"run_start_s", wall_s.count()}, {"run_start_peak_rss_mb", told["peak_rss_mb"]}};
+}
+
+}  // namespace
+
 nlohmann::json scan_row(const std::string& source) {
   const TemporaryFolder folder;
-  const std::filesystem::path map = folder.path() / "map", report = folder.path() / "report.json";
-  const std::string command = std::string("'" ROOMRADAR_PROGRAM "' prescan '") + source + "' --map '" +
-                              map.string() + "' --report '" + report.string() + "' > /dev/null 2>&1";
-  if (std::system(command.c_str()) != 0) throw Error(source + ": fails: " + command);
-  const nlohmann::json told = nlohmann::json::parse(std::ifstream(report));
+  const std::filesystem::path map = folder.path() / "map";
+  const nlohmann::json told = report_of("prescan", source, folder.path());
   double folder_bytes = 0.0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(map))
     if (entry.is_regular_file()) folder_bytes += static_cast<double>(entry.file_size());
@@ -210,6 +234,7 @@ nlohmann::json scan_row(const std::string& source) {
   for (const char* stage : {"track", "optimise", "fuse", "ghosts", "surface", "coverage", "save"})
     if (told["stages"].contains(stage))
       row[std::string(stage) + "_median_ms"] = told["stages"][stage]["median_ms"];
+  row.update(start_of_run(source, folder.path()));
   return row;
 }
 

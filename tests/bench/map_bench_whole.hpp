@@ -27,7 +27,8 @@ nlohmann::json whole_rows(const WholeCell& cell);
 
 /// Runs `roomradar prescan` on a source, with default settings. Returns its time, the time from the last
 /// frame to the saved map, the peak of its memory, the size of the map's folder, the trajectory's error, and
-/// the median time of its stages. Throws Error if the program fails.
+/// the median time of its stages; then the time and the peak of `roomradar run` in this map up to its first
+/// composed picture. Throws Error if the program fails.
 nlohmann::json scan_row(const std::string& source);
 
 /// Prints the rows of whole_rows() as a table.
