@@ -28,7 +28,7 @@ enum class FuseStatus {
 };
 std::string_view to_string(FuseStatus status);
 
-struct PreparedFrame;
+struct PreparedFrame;  // see prepared_frame.hpp
 
 /// Integer voxel coordinates. The lower corner of voxel `index` is at index * resolution_m in the world
 /// frame.

@@ -112,7 +112,7 @@ bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const Keyfr
 
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const ConnectConfig& config, KeyframeCache& cache) {
-  // `older` is rarely used again before the cache would evict it.
+  // `older` is not cached: it is rarely used again, and would stay in memory until the cache evicts it.
   std::shared_ptr<const CachedKeyframe> a = cache.find(older);
   if (!a) a = prepare_keyframe(*graph.keyframes[older].view, config.view);
   const auto b = cache.get(newer, *graph.keyframes[newer].view, config.view);
