@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 /// Drops patches and previews' spare memory: recognise_place() uses features and previews only.
 void drop_patches(KeyframeDatabase& database) {
   for (MapKeyframe& keyframe : database.keyframes) {
-    keyframe.patches = {};
+    keyframe.patches = std::vector<SurfacePatch>();  // "= {}" would keep the memory
     keyframe.descriptors.shrink_to_fit();
     keyframe.points_camera.shrink_to_fit();
   }

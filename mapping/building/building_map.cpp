@@ -105,7 +105,7 @@ namespace {
 
 /// Drops patches and spare memory.
 void reduce(MapKeyframe& keyframe) {
-  keyframe.patches = {};
+  keyframe.patches = std::vector<SurfacePatch>();  // "= {}" would keep the memory
   keyframe.descriptors.shrink_to_fit();
   keyframe.points_camera.shrink_to_fit();
 }
