@@ -27,7 +27,7 @@ const std::vector<std::vector<std::string>> kFloors = {
      "dynamic/surface", "app/sources/formats", "app/sources/containers", "app/sources/video",
      "app/sim/solids"},
     {"app/sources/datasets", "app/sim/room"},
-    {"mapping/surface", "mapping/revision", "mapping/localization", "mapping/coverage", "mapping/texture",
+    {"mapping/surface", "mapping/surface/unknown", "mapping/revision", "mapping/localization", "mapping/coverage", "mapping/texture",
      "radar/exact", "radar/gl", "app/sources/recordings", "app/calibration", "app/sim/building"},
     {"mapping/odometry", "mapping/map", "radar/motion", "radar/depth", "radar/batch", "app/sources/kinect",
      "app/sim/sensor", "app/quality", "app/models"},

@@ -19,7 +19,7 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/rounded.hpp"
 

@@ -9,7 +9,7 @@
 #include "app/python/arrays.hpp"
 #include "app/python/long_calls.hpp"
 #include "mapping/surface/surface_extraction.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 
 namespace roomradar::python {
 

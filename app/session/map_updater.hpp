@@ -14,7 +14,7 @@
 #include "mapping/octree/static_map.hpp"
 #include "mapping/revision/refuse_region.hpp"
 #include "mapping/surface/surface_extraction.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/mesh.hpp"
 #include "radar/geometry/triangle_tree.hpp"

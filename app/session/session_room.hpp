@@ -7,7 +7,7 @@
 #include "app/session/map_updater.hpp"
 #include "app/session/tiles/tile_window.hpp"
 #include "mapping/map/map_folder.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "radar/geometry/triangle_tree.hpp"
 
 namespace roomradar {

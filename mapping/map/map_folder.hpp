@@ -13,7 +13,7 @@
 #include "mapping/map/map_info.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/storage/lazy_part.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/texture/surface_texture.hpp"
 #include "mapping/types/mesh.hpp"
 #include "mapping/types/trajectory.hpp"

@@ -10,7 +10,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,39 +27,11 @@ constexpr std::uint32_t kUncompressed = 1, kCompressed = 2;  // versions of the 
 constexpr std::size_t kWord_bytes = sizeof(std::uint32_t);
 constexpr double kMaxReach_m = 2e5;  // a map reaches at most 32,768 voxels of 1 m, and the grid a margin more
 
-void put_cells(std::string& out, const BitGrid& cells) {
-  std::vector<std::uint32_t> runs;
-  std::uint64_t next = 0;  // linear index after the last run
-  const auto width = static_cast<std::uint64_t>(cells.size().x());
-  const auto depth = static_cast<std::uint64_t>(cells.size().y());
-  cells.for_each_run([&](const Eigen::Vector3i& first, int length) {
-    const std::uint64_t start =
-        (static_cast<std::uint64_t>(first.z()) * depth + static_cast<std::uint64_t>(first.y())) * width +
-        static_cast<std::uint64_t>(first.x());
-    if (start == next && !runs.empty()) {
-      runs.back() += static_cast<std::uint32_t>(length);
-    } else {
-      runs.push_back(static_cast<std::uint32_t>(start - next));
-      runs.push_back(static_cast<std::uint32_t>(length));
-    }
-    next = start + static_cast<std::uint64_t>(length);
-  });
-  put(out, static_cast<std::uint32_t>(runs.size() / 2));
-  put(out, runs.data(), runs.size());
-}
-
-/// Sets the cells with linear indices in [from, to), one row at a time.
-void set_range(BitGrid& cells, std::uint64_t from, std::uint64_t to) {
-  const auto width = static_cast<std::uint64_t>(cells.size().x());
-  const auto depth = static_cast<std::uint64_t>(cells.size().y());
-  while (from < to) {
-    const std::uint64_t row = from / width, x = from % width;
-    const std::uint64_t end = std::min(width, x + (to - from));
-    const Eigen::Vector3i low(static_cast<int>(x), static_cast<int>(row % depth),
-                              static_cast<int>(row / depth));
-    cells.set_box(low, {static_cast<int>(end), low.y() + 1, low.z() + 1}, true);
-    from += end - x;
-  }
+void put_cells(std::string& out, const RunGrid& cells) {
+  const std::span<const std::uint32_t> ends = cells.ends();
+  put(out, static_cast<std::uint32_t>(ends.size() / 2));
+  std::uint32_t before = 0;
+  for (const std::uint32_t end : ends) put(out, end - std::exchange(before, end));
 }
 
 CellGrid take_grid(BinaryReader& in) {
@@ -78,20 +52,25 @@ CellGrid take_grid(BinaryReader& in) {
   return grid;
 }
 
-BitGrid take_cells(BinaryReader& in, const Eigen::Vector3i& size) {
-  BitGrid cells(size, false);
+RunGrid take_cells(BinaryReader& in, const Eigen::Vector3i& size) {
   const auto total = static_cast<std::uint64_t>(size.cast<double>().prod());
   const auto count = in.take<std::uint32_t>("number of runs");
   in.require(count, 2 * sizeof(std::uint32_t), "runs of unknown cells");
+  std::vector<std::uint32_t> ends;
+  ends.reserve(2 * std::size_t{count});
   std::uint64_t next = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto clear = in.take<std::uint32_t>("runs"), length = in.take<std::uint32_t>("runs");
     const std::uint64_t from = next + clear;
     next = from + length;
     if (next > total) in.fail("a run of unknown cells that leaves the grid");
-    set_range(cells, from, next);
+    if (length == 0) continue;
+    if (!ends.empty() && ends.back() == from)
+      ends.back() = static_cast<std::uint32_t>(next);
+    else
+      ends.insert(ends.end(), {static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(next)});
   }
-  return cells;
+  return {size, std::move(ends)};
 }
 
 Mesh take_mesh(BinaryReader& in) {
@@ -119,12 +98,11 @@ Mesh take_mesh(BinaryReader& in) {
   return mesh;
 }
 
-std::string words_of(BinaryBody body, const std::filesystem::path& path) {
-  if (body.version == kUncompressed) return std::move(body.bytes);
+std::vector<std::uint32_t> take_words(const BinaryBody& body, const std::filesystem::path& path) {
   ColumnReader in(body.bytes, path);
-  const auto words = in.take<std::uint32_t>("words");
+  std::vector<std::uint32_t> words = in.take<std::uint32_t>("words");
   if (in.numbers().left() != 0) in.numbers().fail("bytes after its end");
-  return {reinterpret_cast<const char*>(words.data()), words.size() * kWord_bytes};
+  return words;
 }
 
 }  // namespace
@@ -147,8 +125,13 @@ void write_unknown_surface(const UnknownSurface& surface, const std::filesystem:
 }
 
 UnknownSurface read_unknown_surface(const std::filesystem::path& path) {
-  const std::string bytes = words_of(read_binary(path, kMagic, kUncompressed, kCompressed), path);
-  BinaryReader in(bytes, path);
+  const BinaryBody body = read_binary(path, kMagic, kUncompressed, kCompressed);
+  std::vector<std::uint32_t> words;
+  if (body.version == kCompressed) words = take_words(body, path);
+  BinaryReader in(body.version == kCompressed ? std::string_view(reinterpret_cast<const char*>(words.data()),
+                                                                 words.size() * kWord_bytes)
+                                              : std::string_view(body.bytes),
+                  path);
   UnknownSurface surface;
   surface.grid = take_grid(in);
   surface.unknown = take_cells(in, surface.grid.size);

@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 
 namespace roomradar {
 

@@ -30,7 +30,7 @@
 #include "bench_program.hpp"
 #include "bullet_bench_scenes.hpp"
 #include "mapping/map/map_folder.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 
 namespace roomradar::bench {
 namespace {

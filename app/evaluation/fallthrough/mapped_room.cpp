@@ -12,7 +12,7 @@
 #include "mapping/map/map_writer.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/surface_extraction.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/pose_origin.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/version.hpp"

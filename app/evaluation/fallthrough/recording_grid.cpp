@@ -10,7 +10,7 @@
 #include "app/cli/progress.hpp"
 #include "app/media/canvas.hpp"
 #include "app/sim/room/room_mesh.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "radar/exact/cyber_radar.hpp"
 
 namespace roomradar {

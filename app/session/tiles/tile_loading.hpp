@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "mapping/building/building_info.hpp"
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/mesh.hpp"
 #include "radar/depth/raster_mesh.hpp"
 #include "radar/geometry/triangle_tree.hpp"

@@ -27,13 +27,14 @@ UnknownSurface random_surface(const Vector3i& size, std::uint32_t seed) {
   std::mt19937 random(seed);
   UnknownSurface surface;
   surface.grid = {Vector3i(-30, 5, -2), size, 0.02};
-  surface.unknown = BitGrid(size, false);
+  BitGrid cells(size, false);
   for (int i = 0; i < 60; ++i) {
     const Vector3i low(static_cast<int>(random() % static_cast<unsigned>(size.x())),
                        static_cast<int>(random() % static_cast<unsigned>(size.y())),
                        static_cast<int>(random() % static_cast<unsigned>(size.z())));
-    surface.unknown.set_box(low, low + Vector3i(static_cast<int>(random() % 90), 2, 1), random() % 3 != 0);
+    cells.set_box(low, low + Vector3i(static_cast<int>(random() % 90), 2, 1), random() % 3 != 0);
   }
+  surface.unknown = RunGrid(cells);
   surface.mesh_world.origin = {1.25, -2.5, 0.125};
   for (int i = 0; i < 9; ++i)
     surface.mesh_world.vertices.emplace_back(0.1F * static_cast<float>(i), 0.2F, -0.3F);
@@ -52,7 +53,7 @@ TEST(UnknownSurfaceFile, ComesBackToTheBit) {
        {Vector3i(1, 1, 1), Vector3i(63, 4, 3), Vector3i(64, 3, 2), Vector3i(65, 5, 4), Vector3i(200, 7, 9)}) {
     UnknownSurface surface = random_surface(size, static_cast<std::uint32_t>(size.x()));
     for (const bool is_full : {false, true}) {  // full: one run across all rows
-      if (is_full) surface.unknown = BitGrid(size, true);
+      if (is_full) surface.unknown = RunGrid(BitGrid(size, true));
       write_unknown_surface(surface, path);
       const UnknownSurface read = read_unknown_surface(path);
       EXPECT_EQ(read.grid.first_cell, surface.grid.first_cell);

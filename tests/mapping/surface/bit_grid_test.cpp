@@ -1,11 +1,12 @@
 // bit_grid_test.cpp: boxes of bits against voxel-by-voxel operations, in rows of more than one word.
-#include "mapping/surface/bit_grid.hpp"
+#include "mapping/surface/unknown/bit_grid.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -14,8 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/surface/blocked_neighbours.hpp"
-#include "mapping/surface/voxel_face_mesh.hpp"
+#include "mapping/surface/unknown/blocked_neighbours.hpp"
+#include "mapping/surface/unknown/run_grid.hpp"
+#include "mapping/surface/unknown/voxel_face_mesh.hpp"
 
 namespace roomradar::bit_grid_test {
 namespace {
@@ -47,6 +49,28 @@ TEST(BitGrid, ABoxIsSetAsFarAsItLiesInside) {
   EXPECT_EQ(count, 71U * 4U * 5U);
   EXPECT_TRUE(bits.at({130, 0, 6}));
   EXPECT_FALSE(bits.at({131, 0, 6}));
+}
+
+TEST(RunGrid, HoldsTheSameBits) {
+  std::mt19937 random(3);
+  for (const unsigned out_of_8 : {0U, 1U, 4U, 7U, 8U}) {  // none, and one run across all rows
+    const BitGrid bits = random_bits(random, out_of_8);
+    const RunGrid runs(bits);
+    int wrong = 0;
+    for_each_voxel(kSize + Vector3i::Constant(2), [&](const Vector3i& p) {
+      const Vector3i at = p - Vector3i::Ones();  // also outside
+      wrong += runs.at(at) != bits.at(at);
+    });
+    EXPECT_EQ(wrong, 0) << out_of_8;
+    EXPECT_EQ(runs.size(), bits.size());
+    EXPECT_TRUE(RunGrid(kSize, {runs.ends().begin(), runs.ends().end()}) == runs);
+    EXPECT_TRUE(std::is_sorted(runs.ends().begin(), runs.ends().end(), std::less_equal<>())) << out_of_8;
+    if (out_of_8 == 8) {
+      EXPECT_EQ(runs.ends().size(), 2U);
+    }
+  }
+  EXPECT_FALSE(RunGrid().at({0, 0, 0}));
+  EXPECT_FALSE(RunGrid(BitGrid({0, 3, 2}, true)).at({0, 0, 0}));
 }
 
 TEST(BitGrid, OpeningKeepsWhatLiesInAWholeCube) {

@@ -1,6 +1,6 @@
 // unknown_surface_test.cpp: which unknown space counts, the position of its surface, and that no path leads
 // past the surface.
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 
 #include <gtest/gtest.h>
 

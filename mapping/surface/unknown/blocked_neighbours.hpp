@@ -2,8 +2,8 @@
 #pragma once
 #include <array>
 
-#include "mapping/surface/sparse_bit_grid.hpp"
-#include "mapping/surface/voxel_face_mesh.hpp"
+#include "mapping/surface/unknown/sparse_bit_grid.hpp"
+#include "mapping/surface/unknown/voxel_face_mesh.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {

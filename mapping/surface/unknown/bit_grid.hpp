@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mapping/surface/sparse_bit_grid.hpp"
+#include "mapping/surface/unknown/sparse_bit_grid.hpp"
 
 namespace roomradar {
 

@@ -1,5 +1,5 @@
 // blocked_neighbours.cpp: intersects triangles with the lines through cell centres, one axis at a time.
-#include "mapping/surface/blocked_neighbours.hpp"
+#include "mapping/surface/unknown/blocked_neighbours.hpp"
 
 #include <algorithm>
 #include <cmath>

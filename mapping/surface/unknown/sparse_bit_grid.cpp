@@ -1,5 +1,5 @@
 // sparse_bit_grid.cpp: words with set voxels, sorted by their index.
-#include "mapping/surface/sparse_bit_grid.hpp"
+#include "mapping/surface/unknown/sparse_bit_grid.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // voxel_face_mesh.cpp: merges faces into rectangles, one plane at a time.
-#include "mapping/surface/voxel_face_mesh.hpp"
+#include "mapping/surface/unknown/voxel_face_mesh.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,5 @@
 // unknown_surface.cpp: selects the unknown cells that count and are reachable, and meshes their faces.
-#include "mapping/surface/unknown_surface.hpp"
+#include "mapping/surface/unknown/unknown_surface.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/surface/bit_grid.hpp"
-#include "mapping/surface/blocked_neighbours.hpp"
-#include "mapping/surface/voxel_face_mesh.hpp"
+#include "mapping/surface/unknown/bit_grid.hpp"
+#include "mapping/surface/unknown/blocked_neighbours.hpp"
+#include "mapping/surface/unknown/voxel_face_mesh.hpp"
 #include "mapping/types/system/config_check.hpp"
 #include "mapping/types/voxel_key.hpp"
 
@@ -148,11 +148,13 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
   auto blocking =
       std::async(std::launch::async, [&] { return blocked_neighbours(surface_world, result.grid); });
   Known known = known_cells(map, result.grid, edge);
-  result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
+  BitGrid unknown =
+      opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
   const std::array<SparseBitGrid, 3> blocked = blocking.get();
-  leave_out_pockets(known, blocked, config, result.unknown);
-  const BitGrid reached = reachable(std::move(known.free), result.unknown, blocked, config);
-  result.mesh_world = mesh_between(result.unknown, reached, blocked, known.grid);
+  leave_out_pockets(known, blocked, config, unknown);
+  const BitGrid reached = reachable(std::move(known.free), unknown, blocked, config);
+  result.mesh_world = mesh_between(unknown, reached, blocked, known.grid);
+  result.unknown = RunGrid(unknown);
   result.memory_bytes = kGridsAtOnce * reached.memory_bytes();
   for (const SparseBitGrid& bars : blocked) result.memory_bytes += bars.memory_bytes();
   return result;

@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "mapping/octree/static_map.hpp"
-#include "mapping/surface/bit_grid.hpp"
-#include "mapping/surface/voxel_face_mesh.hpp"
+#include "mapping/surface/unknown/run_grid.hpp"
+#include "mapping/surface/unknown/voxel_face_mesh.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
@@ -38,7 +38,7 @@ void require_valid(const UnknownSurfaceConfig& config);
 struct UnknownSurface {
   Mesh mesh_world;  ///< no colours, no normals; triangles face away from unknown space
   CellGrid grid;    ///< cells of one voxel each, or larger, see max_cells
-  BitGrid unknown;  ///< cells of unknown space that counts; all space outside the grid is unknown, too
+  RunGrid unknown;  ///< cells of unknown space that counts; all space outside the grid is unknown, too
   std::size_t memory_bytes = 0;  ///< approximate temporary memory of the extraction, without the mesh
 };
 

@@ -1,5 +1,5 @@
 // bit_grid.cpp: set operations, neighbours, flood fill and opening, a word at a time.
-#include "mapping/surface/bit_grid.hpp"
+#include "mapping/surface/unknown/bit_grid.hpp"
 
 #include <algorithm>
 #include <cassert>
