@@ -20,13 +20,11 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
-#include "mapping/storage/binary_file.hpp"
 #include "mapping/storage/compressed_columns.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/validity.hpp"
@@ -40,14 +38,6 @@ constexpr std::uint32_t kMaxPreview_px = 4096;      // per side
 constexpr double kMaxPlace_m = 1e5;                 // a map reaches at most 32,768 voxels of 1 m
 constexpr float kPointStep_m = 2e-4F;
 constexpr float kDirectionStep = 1.0F / 32767.0F;
-
-/// The items of all views, in the order of views.
-struct ViewColumns {
-  std::vector<std::uint16_t> depth_mm;
-  std::vector<std::int32_t> points;
-  std::vector<std::int16_t> directions;
-  std::vector<std::uint8_t> bytes;
-};
 
 /// Returns the sum over all views of count(view). Reserving it avoids copies: long scans have 100 MB of
 /// items.
@@ -130,88 +120,14 @@ void put_place(std::string& out, const MapKeyframe& place) {
   put(out, static_cast<std::uint32_t>(place.patches.size()));
 }
 
-/// Takes the items of views, in the order of views: from columns, or in version 2 from the views themselves.
-class ItemReader {
- public:
-  ItemReader(BinaryReader& in, const ViewColumns* columns) : in_(in), columns_(columns) {}
-
-  void take_depth(std::vector<std::uint16_t>& depth_mm) {
-    if (!columns_) return in_.take(depth_mm.data(), depth_mm.size(), "preview depth");
-    std::uint16_t before = 0;
-    for (std::uint16_t& depth : depth_mm)
-      before = depth = static_cast<std::uint16_t>(before + next(columns_->depth_mm, depth_, "preview depth"));
-  }
-  Eigen::Vector3f take_point(const char* what) {
-    Eigen::Vector3f point;
-    if (!columns_) {
-      in_.take(point.data(), 3, what);
-      if (!point.allFinite()) in_.fail(std::string(what) + ": a position is not a number");
-    } else {
-      for (float& component : point)
-        component = static_cast<float>(next(columns_->points, point_, what)) * kPointStep_m;
-    }
-    return point;
-  }
-  Eigen::Vector3f take_direction() {
-    Eigen::Vector3f direction;
-    if (!columns_) {
-      in_.take(direction.data(), 3, "patches");
-    } else {
-      for (float& component : direction)
-        component = static_cast<float>(next(columns_->directions, direction_, "patches")) * kDirectionStep;
-    }
-    return direction;
-  }
-  void take_bytes(std::uint8_t* bytes, std::size_t count, const char* what) {
-    if (!columns_) return in_.take(bytes, count, what);
-    if (count > columns_->bytes.size() - byte_) fail_cut_short(what);
-    std::copy_n(columns_->bytes.data() + byte_, count, bytes);
-    byte_ += count;
-  }
-  /// Throw if not all pixels, features or patches are there.
-  void require_depth(std::size_t pixels) const {
-    if (!columns_) return in_.require(pixels, sizeof(std::uint16_t), "preview depth");
-    if (pixels > columns_->depth_mm.size() - depth_) fail_cut_short("preview depth");
-  }
-  void require_described(std::size_t count, const char* what) const {
-    if (!columns_) return in_.require(count, 3 * sizeof(float) + sizeof(Descriptor), what);
-    if (count > (columns_->bytes.size() - byte_) / sizeof(Descriptor)) fail_cut_short(what);
-  }
-  void require_end() const {
-    if (in_.left() != 0) in_.fail(std::to_string(in_.left()) + " bytes more than the views take");
-    if (columns_ && (depth_ != columns_->depth_mm.size() || point_ != columns_->points.size() ||
-                     direction_ != columns_->directions.size() || byte_ != columns_->bytes.size()))
-      in_.fail("items more than the views take");
-  }
-
- private:
-  [[noreturn]] void fail_cut_short(const char* what) const {
-    in_.fail(std::string("cut short: ") + what + " missing");
-  }
-  template <typename Item>
-  Item next(const std::vector<Item>& items, std::size_t& at, const char* what) const {
-    if (at == items.size()) fail_cut_short(what);
-    return items[at++];
-  }
-
-  BinaryReader& in_;
-  const ViewColumns* columns_;                                    ///< null: version 2
-  std::size_t depth_ = 0, point_ = 0, direction_ = 0, byte_ = 0;  ///< items taken of each column
+/// Items of the columns that no view read so far has claimed.
+struct UnclaimedItems {
+  std::size_t depth, points, directions, bytes;
 };
 
-SurfacePatch take_patch(ItemReader& items, const BinaryReader& in) {
-  SurfacePatch patch;
-  patch.point = items.take_point("patches");
-  patch.normal = items.take_direction();
-  patch.along = items.take_direction();
-  constexpr float kUnit = 1e-3F;
-  if (!(std::abs(patch.normal.norm() - 1.0F) <= kUnit && std::abs(patch.along.norm() - 1.0F) <= kUnit &&
-        std::abs(patch.normal.dot(patch.along)) <= kUnit))
-    in.fail("a patch's directions are not two at right angles");
-  items.take_bytes(&patch.size, 1, "patches");
-  if (patch.size >= kPatchSizes) in.fail("a patch of size " + std::to_string(patch.size));
-  items.take_bytes(patch.bits.data(), patch.bits.size(), "patches");
-  return patch;
+void claim(std::size_t count, std::size_t& unclaimed, const char* what, const BinaryReader& in) {
+  if (count > unclaimed) in.fail(std::string("cut short: ") + what + " missing");
+  unclaimed -= count;
 }
 
 /// Takes the number of features or patches of a view.
@@ -222,19 +138,17 @@ std::uint32_t take_count(BinaryReader& in, const char* what) {
   return count;
 }
 
-/// Takes the preview's camera, and sets the size of its depth image.
-void take_camera(BinaryReader& in, const ItemReader& items, MapKeyframe& place) {
+/// Takes the preview's camera. Returns the number of its pixels.
+std::size_t take_camera(BinaryReader& in, Intrinsics& preview) {
   const auto width = in.take<std::uint32_t>("preview size"), height = in.take<std::uint32_t>("preview size");
   if (width > kMaxPreview_px || height > kMaxPreview_px) {
     in.fail("a preview of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
   }
   std::array<double, 4> camera{};
   in.take(camera.data(), camera.size(), "preview camera");
-  place.preview_camera = {
-      static_cast<int>(width), static_cast<int>(height), camera[0], camera[1], camera[2], camera[3]};
-  require_valid(place.preview_camera, (in.path() + ": a preview's camera").c_str());
-  items.require_depth(std::size_t{width} * height);
-  place.preview_depth_mm.resize(static_cast<int>(width), static_cast<int>(height));
+  preview = {static_cast<int>(width), static_cast<int>(height), camera[0], camera[1], camera[2], camera[3]};
+  require_valid(preview, (in.path() + ": a preview's camera").c_str());
+  return std::size_t{width} * height;
 }
 
 void take_pose(BinaryReader& in, Eigen::Isometry3d& T_world_camera) {
@@ -250,34 +164,134 @@ void take_pose(BinaryReader& in, Eigen::Isometry3d& T_world_camera) {
   if (!is_rigid(T_world_camera, 1e-6)) in.fail("a view's pose is not a rotation");
 }
 
-MapKeyframe take_place(BinaryReader& in, ItemReader& items) {
+void require_sound(const SurfacePatch& patch, const BinaryReader& in) {
+  constexpr float kUnit = 1e-3F;
+  if (!(std::abs(patch.normal.norm() - 1.0F) <= kUnit && std::abs(patch.along.norm() - 1.0F) <= kUnit &&
+        std::abs(patch.normal.dot(patch.along)) <= kUnit))
+    in.fail("a patch's directions are not two at right angles");
+  if (patch.size >= kPatchSizes) in.fail("a patch of size " + std::to_string(patch.size));
+}
+
+Eigen::Vector3f take_point(BinaryReader& in, const char* what) {
+  Eigen::Vector3f point;
+  in.take(point.data(), 3, what);
+  if (!point.allFinite()) in.fail(std::string(what) + ": a position is not a number");
+  return point;
+}
+
+/// Takes a view of version 2, with its items.
+MapKeyframe take_whole_place(BinaryReader& in) {
+  constexpr std::size_t kDescribed_bytes = 3 * sizeof(float) + sizeof(Descriptor);
   MapKeyframe place;
   place.frame_index = in.take<std::int64_t>("frame index");
   take_pose(in, place.T_world_camera);
-  take_camera(in, items, place);
-  items.take_depth(place.preview_depth_mm.pixels);
+  in.require(take_camera(in, place.preview_camera), sizeof(std::uint16_t), "preview depth");
+  place.preview_depth_mm.resize(place.preview_camera.width_px, place.preview_camera.height_px);
+  std::vector<std::uint16_t>& depth_mm = place.preview_depth_mm.pixels;
+  in.take(depth_mm.data(), depth_mm.size(), "preview depth");
 
   const std::uint32_t features = take_count(in, "features");
-  items.require_described(features, "features");
+  in.require(features, kDescribed_bytes, "features");
   place.points_camera.resize(features);
   place.descriptors.resize(features);
-  for (Eigen::Vector3f& p : place.points_camera) p = items.take_point("feature points");
-  for (Descriptor& bits : place.descriptors) items.take_bytes(bits.data(), bits.size(), "descriptors");
+  for (Eigen::Vector3f& p : place.points_camera) p = take_point(in, "feature points");
+  for (Descriptor& bits : place.descriptors) in.take(bits.data(), bits.size(), "descriptors");
 
   const std::uint32_t patches = take_count(in, "patches");
-  items.require_described(patches, "patches");
-  place.patches.reserve(patches);
-  for (std::uint32_t i = 0; i < patches; ++i) place.patches.push_back(take_patch(items, in));
+  in.require(patches, kDescribed_bytes, "patches");
+  place.patches.resize(patches);
+  for (SurfacePatch& patch : place.patches) {
+    patch.point = take_point(in, "patches");
+    in.take(patch.normal.data(), 3, "patches");
+    in.take(patch.along.data(), 3, "patches");
+    patch.size = in.take<std::uint8_t>("patches");
+    in.take(patch.bits.data(), patch.bits.size(), "patches");
+    require_sound(patch, in);
+  }
   return place;
 }
 
-ViewColumns take_columns(ColumnReader& in) {
-  ViewColumns columns;
-  columns.depth_mm = in.take<std::uint16_t>("preview depths");
-  columns.points = in.take<std::int32_t>("points");
-  columns.directions = in.take<std::int16_t>("directions");
-  columns.bytes = in.take<std::uint8_t>("descriptors");
-  return columns;
+/// Takes a view whose items are in columns, and gives it room for them.
+MapKeyframe take_place(BinaryReader& in, UnclaimedItems& unclaimed) {
+  MapKeyframe place;
+  place.frame_index = in.take<std::int64_t>("frame index");
+  take_pose(in, place.T_world_camera);
+  claim(take_camera(in, place.preview_camera), unclaimed.depth, "preview depth", in);
+  place.preview_depth_mm.resize(place.preview_camera.width_px, place.preview_camera.height_px);
+
+  const std::size_t features = take_count(in, "features");
+  claim(3 * features, unclaimed.points, "feature points", in);
+  claim(features * sizeof(Descriptor), unclaimed.bytes, "descriptors", in);
+  place.points_camera.resize(features);
+  place.descriptors.resize(features);
+
+  const std::size_t patches = take_count(in, "patches");
+  claim(3 * patches, unclaimed.points, "patches", in);
+  claim(6 * patches, unclaimed.directions, "patches", in);
+  claim(patches * (1 + sizeof(Descriptor)), unclaimed.bytes, "patches", in);
+  place.patches.resize(patches);
+  return place;
+}
+
+// Each set_...() sets one column's items of all views, which have room for exactly as many.
+
+void set_depth(ColumnReader::Items<std::uint16_t> column, std::vector<MapKeyframe>& views) {
+  for (MapKeyframe& view : views) {
+    std::uint16_t before = 0;
+    for (std::uint16_t& depth_mm : view.preview_depth_mm.pixels)
+      before = depth_mm = static_cast<std::uint16_t>(before + column.next());
+  }
+}
+
+void set_points(ColumnReader::Items<std::int32_t> column, std::vector<MapKeyframe>& views) {
+  const auto set = [&](Eigen::Vector3f& point) {
+    for (float& component : point) component = static_cast<float>(column.next()) * kPointStep_m;
+  };
+  for (MapKeyframe& view : views) {
+    for (Eigen::Vector3f& point : view.points_camera) set(point);
+    for (SurfacePatch& patch : view.patches) set(patch.point);
+  }
+}
+
+void set_directions(ColumnReader::Items<std::int16_t> column, std::vector<MapKeyframe>& views) {
+  for (MapKeyframe& view : views)
+    for (SurfacePatch& patch : view.patches)
+      for (Eigen::Vector3f* const direction : {&patch.normal, &patch.along})
+        for (float& component : *direction) component = static_cast<float>(column.next()) * kDirectionStep;
+}
+
+void set_bytes(ColumnReader::Items<std::uint8_t> column, std::vector<MapKeyframe>& views) {
+  const auto set = [&](Descriptor& bits) {
+    for (std::uint8_t& byte : bits) byte = column.next();
+  };
+  for (MapKeyframe& view : views) {
+    for (Descriptor& bits : view.descriptors) set(bits);
+    for (SurfacePatch& patch : view.patches) {
+      patch.size = column.next();
+      set(patch.bits);
+    }
+  }
+}
+
+/// Takes the views of version 3. Unpacks one column at a time: together they are as large as the views.
+std::vector<MapKeyframe> take_places(ColumnReader& in) {
+  const auto depth_mm = in.take_packed<std::uint16_t>("preview depths");
+  const auto points = in.take_packed<std::int32_t>("points");
+  const auto directions = in.take_packed<std::int16_t>("directions");
+  const auto bytes = in.take_packed<std::uint8_t>("descriptors");
+  UnclaimedItems unclaimed{depth_mm.count, points.count, directions.count, bytes.count};
+  std::vector<MapKeyframe> views;
+  const auto count = in.numbers().take<std::uint32_t>("number of views");
+  for (std::uint32_t i = 0; i < count; ++i) views.push_back(take_place(in.numbers(), unclaimed));
+  if (unclaimed.depth + unclaimed.points + unclaimed.directions + unclaimed.bytes != 0)
+    in.numbers().fail("items more than the views take");
+  set_depth(in.unpack(depth_mm), views);
+  set_points(in.unpack(points), views);
+  set_directions(in.unpack(directions), views);
+  set_bytes(in.unpack(bytes), views);
+  for (const MapKeyframe& view : views)
+    for (const SurfacePatch& patch : view.patches) require_sound(patch, in.numbers());
+  return views;
 }
 
 }  // namespace
@@ -294,17 +308,19 @@ void write_keyframe_database(const KeyframeDatabase& keyframe_database, const st
   write_binary(path, kMagic, kColumns, out);
 }
 
-KeyframeDatabase read_keyframe_database(const std::filesystem::path& path) {
-  const BinaryBody body = read_binary(path, kMagic, kInline, kColumns);
+KeyframeDatabase read_keyframe_database(const std::filesystem::path& path, FileChecksum checksum) {
+  const BinaryBody body = read_binary(path, kMagic, kInline, kColumns, checksum);
   ColumnReader in(body.bytes, path);
-  std::optional<ViewColumns> columns;
-  if (body.version == kColumns) columns = take_columns(in);
-  ItemReader items(in.numbers(), columns ? &*columns : nullptr);
   KeyframeDatabase keyframe_database;
-  const auto count = in.numbers().take<std::uint32_t>("number of views");
-  for (std::uint32_t i = 0; i < count; ++i)
-    keyframe_database.keyframes.push_back(take_place(in.numbers(), items));
-  items.require_end();
+  if (body.version == kColumns) {
+    keyframe_database.keyframes = take_places(in);
+  } else {
+    const auto count = in.numbers().take<std::uint32_t>("number of views");
+    for (std::uint32_t i = 0; i < count; ++i)
+      keyframe_database.keyframes.push_back(take_whole_place(in.numbers()));
+  }
+  if (in.numbers().left() != 0)
+    in.numbers().fail(std::to_string(in.numbers().left()) + " bytes more than the views take");
   return keyframe_database;
 }
 

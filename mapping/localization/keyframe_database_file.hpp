@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "mapping/localization/keyframe_database.hpp"
+#include "mapping/storage/binary_file.hpp"
 
 namespace roomradar {
 
@@ -11,6 +12,7 @@ void write_keyframe_database(const KeyframeDatabase& keyframe_database, const st
 
 /// Reads a file written by write_keyframe_database(). Throws Error naming the file and the fault if the file
 /// is missing, truncated, altered, or of another version. Sizes are checked before memory is allocated.
-KeyframeDatabase read_keyframe_database(const std::filesystem::path& path);
+KeyframeDatabase read_keyframe_database(const std::filesystem::path& path,
+                                        FileChecksum checksum = FileChecksum::kCompared);
 
 }  // namespace roomradar

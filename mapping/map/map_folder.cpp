@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -134,6 +135,18 @@ LazyPart<Part> read_later(const fs::path& folder, const MapInfo& info, const std
   });
 }
 
+// Returns the part, which another thread begins to read now.
+template <typename Part>
+LazyPart<Part> read_meanwhile(LazyPart<Part> part) {
+  const auto whole = std::make_shared<LazyPart<Part>>(std::move(part));
+  const std::shared_future<void> reading =
+      std::async(std::launch::async, [whole] { static_cast<void>(**whole); }).share();
+  return LazyPart<Part>([whole, reading] {
+    reading.get();
+    return std::move(**whole);
+  });
+}
+
 std::shared_ptr<const UnknownSurface> read_unknown(const fs::path& folder, const MapInfo&) {
   return std::make_shared<const UnknownSurface>(read_unknown_surface(folder / kMapUnknownFile));
 }
@@ -146,9 +159,8 @@ SurfaceTexture read_texture(const fs::path& folder) {
   return read_surface_texture(folder / kMapTextureFile, folder / kMapTexturePointsFile);
 }
 
-KeyframeDatabase read_keyframes(const fs::path& folder, const MapInfo& info) {
-  require_sound(folder, info, kMapKeyframesFile);
-  return read_keyframe_database(folder / kMapKeyframesFile);
+KeyframeDatabase read_keyframes(const fs::path& folder, const MapInfo&) {
+  return read_keyframe_database(folder / kMapKeyframesFile, FileChecksum::kNotNeeded);
 }
 
 SavedMap read_map(const fs::path& folder) {
@@ -156,7 +168,8 @@ SavedMap read_map(const fs::path& folder) {
   map.info = read_info(folder);
   const MapInfo& info = map.info;
   for (const auto& [name, file] : info.files) throw_if(size_fault_of(folder / name, file));
-  auto keyframes = std::async(std::launch::async, [&] { return read_keyframes(folder, info); });
+  map.keyframe_database =
+      read_meanwhile(read_later<KeyframeDatabase>(folder, info, {kMapKeyframesFile}, read_keyframes));
   require_sound(folder, info, kMapMeshFile);
   map.mesh = read_mesh(folder / kMapMeshFile);
   require_sound(folder, info, kMapTrajectoryFile);
@@ -174,7 +187,6 @@ SavedMap read_map(const fs::path& folder) {
         folder, info, {kMapTextureFile, kMapTexturePointsFile}, [](const fs::path& from, const MapInfo&) {
           return std::make_shared<const SurfaceTexture>(read_texture(from));
         });
-  map.keyframe_database = keyframes.get();
   return map;
 }
 
@@ -241,7 +253,11 @@ StaticMap load_map_octree(const fs::path& folder) {
 }
 
 KeyframeDatabase load_map_keyframes(const fs::path& folder) {
-  return read_consistent(folder, [&] { return read_keyframes(folder, read_info(folder)); });
+  return read_consistent(folder, [&] {
+    const MapInfo info = read_info(folder);
+    require_sound(folder, info, kMapKeyframesFile);
+    return read_keyframes(folder, info);
+  });
 }
 
 std::shared_ptr<const SurfaceTexture> fitting_texture(const SavedMap& map) {

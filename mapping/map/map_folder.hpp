@@ -36,8 +36,9 @@ struct SavedMap {
 
 /// Reads a map of this or an earlier format version. Verifies the sizes of all files, and the checksum of
 /// each file before parsing it. Octree, unknown surface and texture are read and verified when they are first
-/// used. Throws Error naming the file and the fault. The first use of one of these three throws in the same
-/// cases, and if the folder was replaced since load_map().
+/// used; the keyframes on another thread, for which their first use waits. Throws Error naming the file and
+/// the fault. The first use of one of these four throws in the same cases, and if the folder was replaced
+/// before that part was read.
 SavedMap load_map(const std::filesystem::path& folder);
 
 /// Returns the SHA-256 of the file of the map's octree, 64 hexadecimal digits. Empty if the map was not

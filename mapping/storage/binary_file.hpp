@@ -72,11 +72,16 @@ struct BinaryBody {
   std::uint32_t version = 0;
   std::string bytes;
 };
+/// Whether read_binary() compares the checksum in the file, which takes 1.5 ms per MB.
+enum class FileChecksum {
+  kCompared,
+  kNotNeeded,  ///< the caller has just compared a checksum of the whole file
+};
 /// Returns the body of a file written by write_binary() with a version from `oldest` to `newest`. Throws
 /// Error naming the file and the fault if the file is missing, truncated, altered, or of another kind or
 /// version.
 BinaryBody read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t oldest,
-                       std::uint32_t newest);
+                       std::uint32_t newest, FileChecksum checksum = FileChecksum::kCompared);
 /// Returns the body of a file of this version.
 inline std::string read_binary(const std::filesystem::path& path, std::string_view magic,
                                std::uint32_t version) {

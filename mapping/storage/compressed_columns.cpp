@@ -83,15 +83,11 @@ std::size_t ColumnReader::take_count(std::size_t item_bytes, const char* what,
   return count;
 }
 
-void ColumnReader::take_items(void* items, std::size_t count, std::size_t item_bytes, const char* what) {
-  const std::string_view frame = in_.take_bytes(in_.take<std::uint64_t>(what), what);
-  std::string planes(count * item_bytes, '\0');
-  const std::size_t size = ZSTD_decompress(planes.data(), planes.size(), frame.data(), frame.size());
-  if (ZSTD_isError(size) != 0 || size != planes.size())
+void ColumnReader::unpack_planes(std::string_view frame, std::size_t bytes, const char* what) {
+  planes_.resize(std::max(planes_.size(), bytes));
+  const std::size_t size = ZSTD_decompress(planes_.data(), bytes, frame.data(), frame.size());
+  if (ZSTD_isError(size) != 0 || size != bytes)
     in_.fail(std::string("damaged: its ") + what + " cannot be unpacked");
-  auto* const bytes = static_cast<char*>(items);
-  for (std::size_t plane = 0; plane < item_bytes; ++plane)
-    for (std::size_t i = 0; i < count; ++i) bytes[i * item_bytes + plane] = planes[plane * count + i];
 }
 
 }  // namespace roomradar

@@ -1,5 +1,7 @@
 // compressed_columns.hpp: arrays of numbers in binary files, compressed with zstd.
 #pragma once
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -49,22 +51,63 @@ class ColumnReader {
   /// Returns the reader of the numbers between columns.
   [[nodiscard]] BinaryReader& numbers() { return in_; }
 
-  /// @param what  name of the items in messages
+  /// A column that is still compressed.
+  template <typename Number>
+  struct Packed {
+    std::size_t count = 0;
+    const char* what = "";
+    std::string_view frame;
+  };
+
+  /// Takes a column as it is, for unpack().
+  /// @param what  name of the items in messages; a literal
   /// @param count  required number of items; unset: any
   template <typename Number>
-  std::vector<Number> take(const char* what, std::optional<std::size_t> count = std::nullopt) {
+  Packed<Number> take_packed(const char* what, std::optional<std::size_t> count = std::nullopt) {
     static_assert(std::is_arithmetic_v<Number>);
-    std::vector<Number> numbers(take_count(sizeof(Number), what, count));
-    take_items(numbers.data(), numbers.size(), sizeof(Number), what);
+    const std::size_t items = take_count(sizeof(Number), what, count);
+    return {items, what, in_.take_bytes(in_.take<std::uint64_t>(what), what)};
+  }
+  /// Items of an unpacked column, one after the other. Valid until the reader unpacks another column.
+  template <typename Number>
+  class Items {
+   public:
+    Items(const char* planes, std::size_t count) : planes_(planes), count_(count) {}
+    /// At most `count` calls.
+    Number next() {
+      std::array<char, sizeof(Number)> bytes;
+      for (std::size_t plane = 0; plane < sizeof(Number); ++plane)
+        bytes[plane] = planes_[plane * count_ + at_];
+      ++at_;
+      return std::bit_cast<Number>(bytes);
+    }
+
+   private:
+    const char* planes_;
+    std::size_t count_, at_ = 0;
+  };
+  template <typename Number>
+  Items<Number> unpack(const Packed<Number>& packed) {
+    unpack_planes(packed.frame, packed.count * sizeof(Number), packed.what);
+    return {planes_.data(), packed.count};
+  }
+  /// Takes and unpacks a column.
+  template <typename Number>
+  std::vector<Number> take(const char* what, std::optional<std::size_t> count = std::nullopt) {
+    const Packed<Number> packed = take_packed<Number>(what, count);
+    Items<Number> items = unpack(packed);
+    std::vector<Number> numbers(packed.count);
+    for (Number& number : numbers) number = items.next();
     return numbers;
   }
 
  private:
   std::size_t take_count(std::size_t item_bytes, const char* what, std::optional<std::size_t> expected);
-  void take_items(void* items, std::size_t count, std::size_t item_bytes, const char* what);
+  void unpack_planes(std::string_view frame, std::size_t bytes, const char* what);
 
   BinaryReader in_;
   std::uint64_t bytes_left_;
+  std::string planes_;  ///< of the last column unpacked; reused
 };
 
 }  // namespace roomradar

@@ -97,6 +97,7 @@ class MapFolder : public ::testing::Test {
     const std::string message = error_of([&] {
       const SavedMap map = load_map(map_);
       static_cast<void>(*map.octree);
+      static_cast<void>(*map.keyframe_database);
       static_cast<void>(*map.unknown);
     });
     EXPECT_NE(message.find((map_ / file).string()), std::string::npos) << message;
@@ -308,6 +309,18 @@ TEST_F(MapFolder, OneChangedByteAnywhereIsNoticed) {
     put_text(map_ / file, content);
   }
   EXPECT_TRUE(verify_map(map_).empty());
+}
+
+TEST_F(MapFolder, KeyframesReadMeanwhileFailAtEachUse) {
+  std::string altered = text_of(map_ / "places.bin");
+  altered[altered.size() / 2] = static_cast<char>(altered[altered.size() / 2] ^ 1);
+  put_text(map_ / "places.bin", altered);
+  const SavedMap map = load_map(map_);
+  EXPECT_EQ(map.mesh.triangles, room_.mesh.triangles);
+  for (int use = 0; use < 2; ++use)
+    EXPECT_NE(error_of([&] { static_cast<void>(*map.keyframe_database); }).find("places.bin"),
+              std::string::npos)
+        << use;
 }
 
 TEST_F(MapFolder, AFileThatNoMemoryHoldsIsNotReadThrough) {
