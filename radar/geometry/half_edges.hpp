@@ -25,6 +25,10 @@ std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& 
 std::vector<HalfEdge> half_edges_of(const std::vector<Triangle>& triangles,
                                     const std::vector<std::uint32_t>& number);
 
+/// Returns false if some edge is certainly not used equally often in both directions, so that the mesh is not
+/// closed. O(n), without sorting. Vertices of the triangles must be finite.
+bool may_be_closed(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices);
+
 /// Returns true if the mesh is closed, as defined at TriangleTree::is_closed(). Needs at least one triangle.
 /// @param number  result of numbers_by_place()
 /// @param edges   result of half_edges_of()

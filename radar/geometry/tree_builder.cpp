@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 namespace roomradar {
@@ -49,99 +50,115 @@ class SurfaceAreaBuilder {
  public:
   SurfaceAreaBuilder(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
                      const NodeWriter& writer, std::vector<TreeNode>& nodes)
-      : writer_(writer), nodes_(nodes), order_(triangles.size()), bounds_(triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    for (std::size_t i = 0; i < triangles.size(); ++i) bounds_[i] = bounds_of(triangles[i], vertices);
+      : writer_(writer), nodes_(nodes), items_(triangles.size()) {
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      items_[i] = {bounds_of(triangles[i], vertices), static_cast<std::uint32_t>(i)};
+    nodes_.reserve(triangles.size() / kTrianglesANode);
   }
 
   std::vector<std::uint32_t> build() {
-    build_node({0, static_cast<std::uint32_t>(order_.size())});
-    return std::move(order_);
+    build_node({0, static_cast<std::uint32_t>(items_.size()), {}});
+    std::vector<std::uint32_t> order(items_.size());
+    std::transform(items_.begin(), items_.end(), order.begin(),
+                   [](const Item& item) { return item.triangle; });
+    return order;
   }
 
  private:
+  static constexpr std::size_t kTrianglesANode = 4;  // most meshes have 6 and more
+  struct Item {
+    FloatBounds box;
+    std::uint32_t triangle;
+
+    [[nodiscard]] Eigen::Array3f middle() const { return 0.5F * box.low + 0.5F * box.high; }
+  };
   struct Range {
     std::uint32_t first, last;
+    FloatBounds box;  ///< of the items; the root's is not needed
     [[nodiscard]] std::uint32_t size() const { return last - first; }
   };
   const NodeWriter& writer_;
   std::vector<TreeNode>& nodes_;
-  std::vector<std::uint32_t> order_;
-  std::vector<FloatBounds> bounds_;
+  std::vector<Item> items_;  ///< each node's are consecutive
 
-  [[nodiscard]] FloatBounds bounds_in(const Range& range) const {
-    FloatBounds b;
-    for (std::uint32_t i = range.first; i < range.last; ++i) b.extend(bounds_[order_[i]]);
-    return b;
-  }
-  [[nodiscard]] Eigen::Array3f middle_of(std::uint32_t triangle) const {
-    return 0.5F * bounds_[triangle].low + 0.5F * bounds_[triangle].high;
+  [[nodiscard]] Range range_of(std::uint32_t first, std::uint32_t last) const {
+    Range range{first, last, {}};
+    for (std::uint32_t i = first; i < last; ++i) range.box.extend(items_[i].box);
+    return range;
   }
 
-  std::uint32_t split(const Range& range) {
+  [[nodiscard]] std::pair<Range, Range> halves_of(const Range& range) const {
+    const std::uint32_t half = range.first + range.size() / 2;
+    return {range_of(range.first, half), range_of(half, range.last)};
+  }
+
+  std::pair<Range, Range> split(const Range& range) {
     FloatBounds middles;
-    for (std::uint32_t i = range.first; i < range.last; ++i) middles.extend(middle_of(order_[i]));
+    for (std::uint32_t i = range.first; i < range.last; ++i) middles.extend(items_[i].middle());
     Eigen::Index axis = 0;
     const float size = (middles.high - middles.low).maxCoeff(&axis);
-    const std::uint32_t half = range.first + range.size() / 2;
     constexpr int kBins = 16;
     const float scale = static_cast<float>(kBins) / size;
-    if (!(size > 0.0F) || !std::isfinite(size) || !std::isfinite(scale)) return half;  // all at one position
-    const auto bin_of = [&](std::uint32_t triangle) {
-      return std::min(kBins - 1, static_cast<int>((middle_of(triangle)[axis] - middles.low[axis]) * scale));
+    if (!(size > 0.0F) || !std::isfinite(size) || !std::isfinite(scale))
+      return halves_of(range);  // one place
+    const float low = middles.low[axis];
+    const auto bin_of = [&](const Item& item) {
+      const float middle = 0.5F * item.box.low[axis] + 0.5F * item.box.high[axis];
+      return std::min(kBins - 1, static_cast<int>((middle - low) * scale));
     };
     std::array<FloatBounds, kBins> bins;
     std::array<std::uint32_t, kBins> counts{};
     for (std::uint32_t i = range.first; i < range.last; ++i) {
-      const auto bin = static_cast<std::size_t>(bin_of(order_[i]));
-      bins[bin].extend(bounds_[order_[i]]);
+      const auto bin = static_cast<std::size_t>(bin_of(items_[i]));
+      bins[bin].extend(items_[i].box);
       ++counts[bin];
     }
+    std::array<FloatBounds, kBins> above;  // of the bins from this one on
     std::array<float, kBins> cost_above{};
-    FloatBounds above;
     std::uint32_t count = 0;
     for (std::size_t i = kBins - 1; i > 0; --i) {
-      above.extend(bins[i]);
+      above[i] = bins[i];
+      if (i + 1 < kBins) above[i].extend(above[i + 1]);
       count += counts[i];
-      cost_above[i] = count == 0 ? 0.0F : above.area() * static_cast<float>(count);
+      cost_above[i] = count == 0 ? 0.0F : above[i].area() * static_cast<float>(count);
     }
-    FloatBounds below;
+    FloatBounds below, best_below;
     count = 0;
     float best = std::numeric_limits<float>::infinity();
     std::size_t best_bin = 0;
+    std::uint32_t best_count = 0;
     for (std::size_t i = 1; i < kBins; ++i) {
       below.extend(bins[i - 1]);
       count += counts[i - 1];
       if (count == 0 || count == range.size()) continue;
       const float cost = below.area() * static_cast<float>(count) + cost_above[i];
-      if (cost < best) best = cost, best_bin = i;
+      if (cost < best) best = cost, best_bin = i, best_below = below, best_count = count;
     }
-    if (best_bin == 0) return half;
-    const auto middle =
-        std::partition(order_.begin() + range.first, order_.begin() + range.last,
-                       [&](std::uint32_t triangle) { return bin_of(triangle) < static_cast<int>(best_bin); });
-    return static_cast<std::uint32_t>(middle - order_.begin());
+    if (best_bin == 0) return halves_of(range);
+    std::partition(items_.begin() + range.first, items_.begin() + range.last,
+                   [&](const Item& item) { return bin_of(item) < static_cast<int>(best_bin); });
+    const std::uint32_t middle = range.first + best_count;
+    return {{range.first, middle, best_below}, {middle, range.last, above[best_bin]}};
   }
 
   std::uint32_t build_node(const Range& range) {
     std::array<Range, TreeNode::kWidth> parts{range};
     std::uint32_t part_count = 1;
+    if (range.size() <= kLeafTriangles) parts[0] = range_of(range.first, range.last);  // only the root
     while (part_count < TreeNode::kWidth) {
       const auto largest =
           std::max_element(parts.begin(), parts.begin() + part_count,
                            [](const Range& a, const Range& b) { return a.size() < b.size(); });
       if (largest->size() <= kLeafTriangles) break;
-      const std::uint32_t at = split(*largest);
-      parts[part_count++] = {at, largest->last};
-      largest->last = at;
+      std::tie(*largest, parts[part_count]) = split(*largest);
+      ++part_count;
     }
     const auto place = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
     for (std::uint32_t i = 0; i < part_count; ++i) {
       const bool is_leaf = parts[i].size() <= kLeafTriangles;
-      const FloatBounds bounds = bounds_in(parts[i]);
       const std::uint32_t first = is_leaf ? parts[i].first : build_node(parts[i]);
-      writer_.put(nodes_[place], i, bounds, first, is_leaf ? parts[i].size() : 0);
+      writer_.put(nodes_[place], i, parts[i].box, first, is_leaf ? parts[i].size() : 0);
     }
     NodeWriter::close(nodes_[place], part_count);
     return place;

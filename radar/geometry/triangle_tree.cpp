@@ -59,6 +59,7 @@ void TriangleTree::build_by_place(const Mesh& mesh) {
   std::vector<Triangle> sorted(triangles_.size());
   for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = triangles_[order[i]];
   triangles_ = std::move(sorted);
+  if (!may_be_closed(triangles_, vertices_)) return;  // as most rooms
   const std::vector<std::uint32_t> number = numbers_by_place(vertices_);
   const std::vector<HalfEdge> edges = half_edges_of(triangles_, number);
   is_closed_ = encloses_a_volume(triangles_, vertices_, number, edges);

@@ -126,9 +126,30 @@ TEST(TriangleTree, ClosedMeansEveryEdgeIsSharedAndTheVolumePositive) {
   with_a_point.triangles = {{point, point, point}};
   tree.build_by_place(with_a_point);
   EXPECT_FALSE(tree.is_closed());
-  box.triangles.pop_back();
+  for (std::size_t i = 0; i < box.triangles.size(); ++i) {
+    Mesh open = box, turned = box, twice = box;
+    open.triangles.erase(open.triangles.begin() + static_cast<std::ptrdiff_t>(i));
+    std::swap(turned.triangles[i][0], turned.triangles[i][1]);
+    twice.triangles.push_back(box.triangles[i]);
+    for (const Mesh& mesh : {open, turned, twice}) {
+      tree.build_by_place(mesh);
+      EXPECT_FALSE(tree.is_closed()) << i;
+    }
+  }
+}
+
+TEST(TriangleTree, ZeroAndMinusZeroAreOnePosition) {
+  Mesh box = shapes::box({1.0F, 1.0F, 1.0F});
+  std::size_t negated = 0;
+  for (std::size_t v = 0; v < box.vertices.size(); ++v) {
+    box.vertices[v] -= Eigen::Vector3f::Constant(0.5F);  // a corner at zero
+    for (float& coordinate : box.vertices[v])
+      if (coordinate == 0.0F && v % 2 == 0) coordinate = -0.0F, ++negated;
+  }
+  ASSERT_GT(negated, 0U);
+  TriangleTree tree;
   tree.build_by_place(box);
-  EXPECT_FALSE(tree.is_closed());
+  EXPECT_TRUE(tree.is_closed());
 }
 
 TEST(TriangleTree, APartThatIsInsideOutIsNotHiddenByALargerOne) {
