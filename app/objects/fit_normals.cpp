@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "app/objects/triangle_weights.hpp"
@@ -63,6 +64,7 @@ void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse)
   std::vector<Sums> sums(coarse.triangles.size());
   const MeshDistanceQuery coarse_surface(coarse, reach_m);
   double area_m2 = 0.0;
+  std::uint32_t near = MeshDistanceQuery::kNoGuess;
   for (const Triangle& t : fine.triangles) {
     const Corners place = corners_of(fine.vertices, t), shown = corners_of(fine.normals, t);
     const Eigen::Vector3f facing = (place.b - place.a).cross(place.c - place.a);
@@ -71,7 +73,7 @@ void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse)
       const float length = normal.norm();
       if (!(length > 0.0F && std::isfinite(length))) return;
       const Eigen::Vector3f p = place.at(at);
-      const auto nearest = coarse_surface.nearest_facing(p, facing);
+      const auto nearest = coarse_surface.nearest_facing(p, facing, near);
       if (!nearest) return;
       const Eigen::Vector3d weights =
           weights_at(corners_of(coarse.vertices, coarse.triangles[*nearest]), p).cast<double>();

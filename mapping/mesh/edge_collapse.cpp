@@ -282,8 +282,9 @@ class EdgeCollapser {
   // Returns true if the new vertex or the centroid of a large new triangle is farther than tolerance_m from
   // the full surface. Planes may intersect outside a rounded edge; a large triangle may span a notch.
   [[nodiscard]] bool bulges(const Eigen::Vector3f& p, float tolerance_m) const {
+    std::uint32_t near = MeshDistanceQuery::kNoGuess;
     const auto is_far = [&](const Eigen::Vector3f& q) {
-      return full_surface_.distance_m(q, tolerance_m) > tolerance_m;
+      return full_surface_.distance_m(q, tolerance_m, near) > tolerance_m;
     };
     return is_far(p) || std::any_of(made_.begin(), made_.end(), [&](const Made& made) {
              const auto& [a, b, c] = made.corners;

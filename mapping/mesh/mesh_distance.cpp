@@ -14,7 +14,9 @@ namespace roomradar {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kReachesACube = 4.0F;  // cube edge / reach: a query visits one to eight cubes
+// Cube edge / reach: a query visits one to eight cubes. With a long reach, cubes are only kSidesACube mean
+// triangle sides wide, since most queries find a triangle much nearer than the reach; at most 125 cubes.
+constexpr float kReachesACube = 4.0F, kSidesACube = 1.0F, kLeastReachesACube = 0.5F;
 // Min cube edge, for very short reaches: mean triangle side / kCubesASide and mesh extent / kCubesAcross.
 // Smaller cubes would put a triangle into countless cubes, or exceed float precision.
 constexpr float kCubesASide = 3.0F, kCubesAcross = 1e5F;
@@ -40,13 +42,15 @@ std::uint32_t tag_of(std::uint64_t mixed_code) { return static_cast<std::uint32_
 
 MeshDistanceQuery::MeshDistanceQuery(const Mesh& mesh, float reach_m)
     : mesh_(mesh), reach_m_(reach_m), edge_m_(kReachesACube * reach_m) {
+  const float side_m = mean_side_m(mesh);
+  edge_m_ = std::min(edge_m_, std::max(kSidesACube * side_m, kLeastReachesACube * reach_m));
   if (!mesh.vertices.empty()) {
     Eigen::Vector3f high = low_ = mesh.vertices.front();
     for (const Eigen::Vector3f& vertex : mesh.vertices) {
       low_ = low_.cwiseMin(vertex);
       high = high.cwiseMax(vertex);
     }
-    edge_m_ = std::max({edge_m_, mean_side_m(mesh) / kCubesASide, (high - low_).maxCoeff() / kCubesAcross});
+    edge_m_ = std::max({edge_m_, side_m / kCubesASide, (high - low_).maxCoeff() / kCubesAcross});
   }
   spheres_.reserve(mesh.triangles.size());
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -60,13 +64,18 @@ MeshDistanceQuery::MeshDistanceQuery(const Mesh& mesh, float reach_m)
     std::uint64_t mixed_code;
     std::uint32_t triangle;
   };
+  const auto for_each_part = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      for_each_cube(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c],
+                    [&](std::uint64_t cube) { visit(cube, t); });
+    }
+  };
+  std::size_t count = 0;  // counting them takes less time than letting `parts` grow
+  for_each_part([&](std::uint64_t, std::uint32_t) { ++count; });
   std::vector<Part> parts;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    for_each_cube(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], [&](std::uint64_t cube) {
-      parts.push_back({mixed(cube), t});
-    });
-  }
+  parts.reserve(count);
+  for_each_part([&](std::uint64_t cube, std::uint32_t t) { parts.push_back({mixed(cube), t}); });
   // About one hash value per triangle, more if triangles overlap very many cubes.
   const std::size_t hashes = std::max(mesh.triangles.size(), parts.size() / 4);
   hash_shift_ = 64 - static_cast<int>(std::bit_width(hashes | 1U));
@@ -110,10 +119,10 @@ void MeshDistanceQuery::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vec
 }
 
 template <typename Visit>
-void MeshDistanceQuery::visit_near(const Eigen::Vector3f& p, const Visit& visit) const {
+void MeshDistanceQuery::visit_near(const Eigen::Vector3f& p, float radius_m, const Visit& visit) const {
   const Eigen::Array3f place = (p - low_).array();
-  const Eigen::Array3i low = ((place - reach_m_) / edge_m_).floor().cast<int>();
-  const Eigen::Array3i high = ((place + reach_m_) / edge_m_).floor().cast<int>();
+  const Eigen::Array3i low = ((place - radius_m) / edge_m_).floor().cast<int>();
+  const Eigen::Array3i high = ((place + radius_m) / edge_m_).floor().cast<int>();
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int x = low.x(); x <= high.x(); ++x) {
@@ -125,37 +134,52 @@ void MeshDistanceQuery::visit_near(const Eigen::Vector3f& p, const Visit& visit)
       }
 }
 
-float MeshDistanceQuery::distance_m(const Eigen::Vector3f& p, float enough_m) const {
+float MeshDistanceQuery::squared_distance(std::uint32_t triangle, const Eigen::Vector3f& p) const {
+  const auto& [a, b, c] = mesh_.triangles[triangle];
+  return squared_distance_to_triangle(p, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+}
+
+bool MeshDistanceQuery::faces(std::uint32_t triangle, const Eigen::Vector3f& facing) const {
+  const auto& [i, j, k] = mesh_.triangles[triangle];
+  const Eigen::Vector3f &a = mesh_.vertices[i], &b = mesh_.vertices[j], &c = mesh_.vertices[k];
+  return (b - a).cross(c - a).dot(facing) > 0.0F;
+}
+
+float MeshDistanceQuery::distance_m(const Eigen::Vector3f& p, float enough_m, std::uint32_t& guess) const {
   float nearest = reach_m_ * reach_m_, nearest_m = reach_m_;
   bool found = false;
-  visit_near(p, [&](std::uint32_t triangle) {
-    if (is_farther(triangle, p, nearest_m)) return false;
-    const auto& [a, b, c] = mesh_.triangles[triangle];
-    const float distance =
-        squared_distance_to_triangle(p, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
-    if (distance > nearest) return false;
+  const auto try_triangle = [&](std::uint32_t triangle) {
+    const float distance = squared_distance(triangle, p);
+    if (!(distance <= nearest)) return false;
     nearest = distance;
     nearest_m = std::sqrt(distance);
     found = true;
+    guess = triangle;
     return distance <= enough_m * enough_m;
+  };
+  if (guess < mesh_.triangles.size() && try_triangle(guess)) return nearest_m;
+  visit_near(p, nearest_m, [&](std::uint32_t triangle) {
+    return !is_farther(triangle, p, nearest_m) && try_triangle(triangle);
   });
   return found ? nearest_m : kInfinity;
 }
 
+// The guess only limits the search: of several nearest triangles, the last one visited is found in any case.
 std::optional<std::uint32_t> MeshDistanceQuery::nearest_facing(const Eigen::Vector3f& p,
-                                                               const Eigen::Vector3f& facing) const {
-  float nearest = reach_m_ * reach_m_, nearest_m = reach_m_;
+                                                               const Eigen::Vector3f& facing,
+                                                               std::uint32_t& guess) const {
+  float nearest = reach_m_ * reach_m_;
+  if (guess < mesh_.triangles.size() && faces(guess, facing))
+    nearest = std::min(nearest, squared_distance(guess, p));
+  float nearest_m = std::sqrt(nearest);
   std::optional<std::uint32_t> found;
-  visit_near(p, [&](std::uint32_t triangle) {
-    if (is_farther(triangle, p, nearest_m)) return false;
-    const auto& [i, j, k] = mesh_.triangles[triangle];
-    const Eigen::Vector3f &a = mesh_.vertices[i], &b = mesh_.vertices[j], &c = mesh_.vertices[k];
-    if (!((b - a).cross(c - a).dot(facing) > 0.0F)) return false;
-    const float distance = squared_distance_to_triangle(p, a, b, c);
-    if (distance > nearest) return false;
+  visit_near(p, nearest_m, [&](std::uint32_t triangle) {
+    if (is_farther(triangle, p, nearest_m) || !faces(triangle, facing)) return false;
+    const float distance = squared_distance(triangle, p);
+    if (!(distance <= nearest)) return false;
     nearest = distance;
     nearest_m = std::sqrt(distance);
-    found = triangle;
+    found = guess = triangle;
     return false;
   });
   return found;
@@ -164,8 +188,9 @@ std::optional<std::uint32_t> MeshDistanceQuery::nearest_facing(const Eigen::Vect
 float greatest_distance_m(const Mesh& mesh, const MeshDistanceQuery& other, float spacing_m, float limit_m,
                           std::vector<FarPoint>& beyond_limit) {
   float greatest = 0.0F;  // smaller distances cannot raise it, so their search stops early
+  std::uint32_t near = MeshDistanceQuery::kNoGuess;
   const auto ask = [&](const Eigen::Vector3f& p) {
-    const float distance = other.distance_m(p, greatest);
+    const float distance = other.distance_m(p, greatest, near);
     if (distance <= limit_m) greatest = std::max(greatest, distance);
     if (distance > limit_m) beyond_limit.push_back({p, distance});
   };

@@ -18,12 +18,20 @@ class MeshDistanceQuery {
   /// Returns the distance (m) from a point, given relative to the mesh's origin, to the nearest surface.
   /// Returns infinity if the distance exceeds reach_m. The search stops at the first distance that is at most
   /// enough_m. With enough_m > 0, the result thus need not be the smallest distance.
-  [[nodiscard]] float distance_m(const Eigen::Vector3f& p, float enough_m = 0.0F) const;
+  [[nodiscard]] float distance_m(const Eigen::Vector3f& p, float enough_m = 0.0F) const {
+    std::uint32_t guess = kNoGuess;
+    return distance_m(p, enough_m, guess);
+  }
+  /// The same; faster if `guess`, the index of a triangle, is near the point. Sets it to the one found.
+  [[nodiscard]] float distance_m(const Eigen::Vector3f& p, float enough_m, std::uint32_t& guess) const;
 
   /// Returns the nearest triangle within reach_m whose normal is less than 90 degrees from `facing` (any
-  /// length). The far side of a thin sheet is thus skipped. Returns nullopt if there is none.
+  /// length). The far side of a thin sheet is thus skipped. Returns nullopt if there is none. Faster if
+  /// `guess`, the index of a triangle, is near the point; sets it to the one found.
   [[nodiscard]] std::optional<std::uint32_t> nearest_facing(const Eigen::Vector3f& p,
-                                                            const Eigen::Vector3f& facing) const;
+                                                            const Eigen::Vector3f& facing,
+                                                            std::uint32_t& guess) const;
+  static constexpr std::uint32_t kNoGuess = ~std::uint32_t{0};
 
  private:
   struct Entry {
@@ -36,10 +44,10 @@ class MeshDistanceQuery {
   void for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                      const Visit& visit) const;
 
-  /// Calls visit(triangle) for each triangle that may be within reach_m of the point, until visit returns
+  /// Calls visit(triangle) for each triangle that may be within radius_m of the point, until visit returns
   /// true.
   template <typename Visit>
-  void visit_near(const Eigen::Vector3f& p, const Visit& visit) const;
+  void visit_near(const Eigen::Vector3f& p, float radius_m, const Visit& visit) const;
 
   /// Bounding sphere of a triangle.
   struct Sphere {
@@ -54,6 +62,8 @@ class MeshDistanceQuery {
     const float reach_m = sphere.radius_m + distance_m;
     return (p - sphere.centre).squaredNorm() > kRounding * reach_m * reach_m;
   }
+  [[nodiscard]] float squared_distance(std::uint32_t triangle, const Eigen::Vector3f& p) const;
+  [[nodiscard]] bool faces(std::uint32_t triangle, const Eigen::Vector3f& facing) const;
   [[nodiscard]] std::size_t hash_of(std::uint64_t mixed) const { return mixed >> hash_shift_; }
 
   const Mesh& mesh_;

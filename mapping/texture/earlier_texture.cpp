@@ -36,7 +36,8 @@ EarlierTexture::EarlierTexture(Mesh mesh, const SurfaceTexture& texture)
 std::optional<EarlierTexture::Found> EarlierTexture::find(const Eigen::Vector3d& p_world,
                                                           const Eigen::Vector3f& normal) const {
   const Eigen::Vector3f p = (p_world - mesh_.origin).cast<float>();
-  const std::optional<std::uint32_t> nearest = query_.nearest_facing(p, normal);
+  std::uint32_t guess = MeshDistanceQuery::kNoGuess;
+  const std::optional<std::uint32_t> nearest = query_.nearest_facing(p, normal, guess);
   if (!nearest) return std::nullopt;
   const Triangle& t = mesh_.triangles[*nearest];
   const Eigen::Vector3f &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];

@@ -87,6 +87,48 @@ TEST(MeshDistanceQuery, FindsWhatAskingEveryTriangleFinds) {
   EXPECT_GT(within, 100);
 }
 
+TEST(MeshDistanceQuery, AGuessAndTheReachChangeNoAnswer) {
+  std::mt19937 random(5);
+  const Mesh mesh = random_triangles(random);
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  for (const float reach_m : {0.002F, 0.04F, 0.3F, 5.0F}) {
+    const MeshDistanceQuery surface(mesh, reach_m);
+    std::uint32_t guess = MeshDistanceQuery::kNoGuess, guess_facing = guess;
+    int within = 0, facing_it = 0;
+    for (int n = 0; n < 500; ++n) {
+      const Eigen::Vector3f p = 1.4F * point_in(random, 1.0F) - Eigen::Vector3f::Constant(0.2F);
+      const Eigen::Vector3f facing = point_in(random, 1.0F) - Eigen::Vector3f::Constant(0.5F);
+      float nearest = reach_m * reach_m, nearest_facing = nearest;
+      bool is_found = false, is_facing_found = false;
+      for (const auto& [i, j, k] : mesh.triangles) {
+        const Eigen::Vector3f &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k];
+        const float distance = squared_distance_to_triangle(p, a, b, c);
+        if (distance <= nearest) nearest = distance, is_found = true;
+        if (distance <= nearest_facing && (b - a).cross(c - a).dot(facing) > 0.0F)
+          nearest_facing = distance, is_facing_found = true;
+      }
+      if (n % 3 == 0) guess = guess_facing = static_cast<std::uint32_t>(random()) % count;  // a bad one
+      const float found = surface.distance_m(p, 0.0F, guess);
+      ASSERT_EQ(std::isfinite(found), is_found);
+      ASSERT_EQ(found, surface.distance_m(p));
+      if (is_found) {
+        ASSERT_FLOAT_EQ(found, std::sqrt(nearest));
+        ++within;
+      }
+      const auto triangle = surface.nearest_facing(p, facing, guess_facing);
+      ASSERT_EQ(triangle.has_value(), is_facing_found);
+      if (!triangle) continue;
+      const auto& [i, j, k] = mesh.triangles[*triangle];
+      ASSERT_EQ(squared_distance_to_triangle(p, mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]),
+                nearest_facing);
+      ASSERT_EQ(guess_facing, *triangle);
+      ++facing_it;
+    }
+    EXPECT_GT(within, reach_m > 0.01F ? 20 : -1);
+    EXPECT_GT(facing_it, reach_m > 0.01F ? 10 : -1);
+  }
+}
+
 // A reach of a millionth of the triangles' size, or below float resolution, leads neither to countless cubes
 // nor to endless halving.
 TEST(MeshDistanceQuery, AnswersWithinAReachThatIsNextToNothing) {
