@@ -23,7 +23,7 @@ std::vector<Eigen::Vector3d> corners_of(const GpuMesh& mesh) {
 
 }  // namespace
 
-ObjectParts object_parts(const std::string& name, Model source) {
+ObjectParts object_parts_without_levels(const std::string& name, Model source) {
   ObjectParts parts;
   parts.source = std::move(source);
   const Mesh& mesh = parts.source.mesh;
@@ -31,6 +31,11 @@ ObjectParts object_parts(const std::string& name, Model source) {
   if (parts.touched.empty()) throw Error(name + ": has no triangles; a virtual object is a surface");
   parts.mass = mass_properties(mesh, parts.touched.is_closed());
   parts.surface = spread_points(mesh);
+  return parts;
+}
+
+ObjectParts object_parts(const std::string& name, Model source) {
+  ObjectParts parts = object_parts_without_levels(name, std::move(source));
   parts.levels = levels_of_detail(parts.source);
   return parts;
 }
@@ -40,38 +45,54 @@ ObjectParts object_parts(const std::string& name, Mesh mesh) {
 }
 
 ObjectModel::ObjectModel(GlContext& context, ObjectParts made)
-    : source(std::move(made.source)), shape(context), mass(made.mass), surface(std::move(made.surface)) {
+    : source(std::move(made.source)),
+      shape(context),
+      mass(made.mass),
+      surface(std::move(made.surface)),
+      context_(context) {
   shape.set(source.mesh, std::move(made.touched));
   corners = corners_of(shape.drawn);
   middle = shape.drawn.bounds().center();
-  upload_textures(context);
-  parts = upload_parts(context, source);
-  for (const LevelOfDetail& level : made.levels) {
-    DrawnLevel drawn{level.deviation_m, std::make_unique<GpuMesh>(context)};
+  upload_textures();
+  parts = upload_parts(source);
+  if (made.levels)
+    upload_levels(*made.levels);
+  else
+    computed_ = std::async(std::launch::async, [this] { return levels_of_detail(source); });
+}
+
+std::span<const DrawnLevel> ObjectModel::levels() const {
+  if (computed_.valid()) upload_levels(computed_.get());
+  return levels_;
+}
+
+void ObjectModel::upload_levels(const std::vector<LevelOfDetail>& levels) const {
+  for (const LevelOfDetail& level : levels) {
+    DrawnLevel drawn{level.deviation_m, std::make_unique<GpuMesh>(context_)};
     drawn.mesh->upload(level.mesh, MeshUsage::kStatic);
     if (!level.parts.empty())
-      drawn.parts = upload_parts(
-          context, {.mesh = level.mesh, .texture_points = level.texture_points, .parts = level.parts});
-    levels.push_back(std::move(drawn));
+      drawn.parts =
+          upload_parts({.mesh = level.mesh, .texture_points = level.texture_points, .parts = level.parts});
+    levels_.push_back(std::move(drawn));
   }
 }
 
-void ObjectModel::upload_textures(GlContext& context) {
+void ObjectModel::upload_textures() {
   for (const Texture& texture : source.textures) {
-    textures.push_back(std::make_unique<GpuTexture>(context, texture));
+    textures.push_back(std::make_unique<GpuTexture>(context_, texture));
     is_opaque = is_opaque && texture.opacity.empty();
   }
 }
 
-std::vector<DrawnPart> ObjectModel::upload_parts(GlContext& context, const Model& of) {
+std::vector<DrawnPart> ObjectModel::upload_parts(const Model& of) const {
   std::vector<DrawnPart> drawn;
   for (const ModelPart& part : of.parts) {
     if (part.triangle_count == 0) continue;
     std::vector<std::uint32_t> triangles(part.triangle_count);
     std::iota(triangles.begin(), triangles.end(), part.first_triangle);
     const Model alone = triangles_alone(of, triangles);
-    part_meshes.push_back(std::make_unique<GpuMesh>(context));
-    GpuMesh& mesh = *part_meshes.back();
+    part_meshes_.push_back(std::make_unique<GpuMesh>(context_));
+    GpuMesh& mesh = *part_meshes_.back();
     mesh.upload(alone.mesh, MeshUsage::kStatic);
     const bool is_textured = part.texture != kNoTexture;
     if (is_textured) mesh.upload_texture_points(alone.texture_points);

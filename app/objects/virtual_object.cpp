@@ -71,7 +71,7 @@ DrawnObject drawn_object(const VirtualObject& object, const Intrinsics& camera,
   DrawnObject drawn{.instance = {&model.shape.drawn, object.body.T_world_object},
                     .is_closed = model.shape.touched.is_closed() && model.is_opaque,
                     .parts = model.parts};
-  for (const DrawnLevel& level : model.levels) {
+  for (const DrawnLevel& level : model.levels()) {
     if (!is_fine_enough(level.deviation_m, pixel_m, error_px)) continue;
     drawn.instance.mesh = level.mesh.get();
     drawn.parts = level.parts;

@@ -114,10 +114,20 @@ void main() {
 }
 )";
 
+unsigned program_with(const char* head, const char* name) {
+  return make_program(
+      name, {{GL_VERTEX_SHADER, {head, kVertexShader}}, {GL_FRAGMENT_SHADER, {head, kFragmentShader}}});
+}
+
+bool has_texture(const DrawnObject& object) {
+  return std::any_of(object.parts.begin(), object.parts.end(),
+                     [](const DrawnPart& part) { return part.texture != nullptr; });
+}
+
 }  // namespace
 
 struct ObjectDrawer::State {
-  unsigned plain = 0, textured = 0;  ///< programs
+  unsigned plain = 0, textured = 0;  ///< programs; 0: not compiled, since no texture has been drawn so far
   unsigned framebuffer = 0;
   std::array<unsigned, 2> textures{};  // colour, depth
   int width_px = 0;
@@ -210,12 +220,7 @@ struct ObjectDrawer::State {
 };
 
 ObjectDrawer::ObjectDrawer(GlContext& /*context*/) : state_(std::make_unique<State>()) {
-  const auto program = [](const char* name, const char* head) {
-    return make_program(
-        name, {{GL_VERTEX_SHADER, {head, kVertexShader}}, {GL_FRAGMENT_SHADER, {head, kFragmentShader}}});
-  };
-  state_->plain = program("virtual objects", kPlain);
-  state_->textured = program("textured virtual objects", kTextured);
+  state_->plain = program_with(kPlain, "virtual objects");
   glCreateFramebuffers(1, &state_->framebuffer);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &state_->most_px);
 }
@@ -243,7 +248,10 @@ void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics&
   if (width == 0 || height == 0) return;
 
   state_->prepare(width, height);
-  for (const unsigned program : {state_->plain, state_->textured}) State::set_lighting(program, lighting);
+  if (state_->textured == 0 && std::any_of(objects.begin(), objects.end(), has_texture))
+    state_->textured = program_with(kTextured, "textured virtual objects");
+  for (const unsigned program : {state_->plain, state_->textured})
+    if (program != 0) State::set_lighting(program, lighting);
   const Intrinsics fine_camera = scaled(camera, layer.samples);
   const PixelRect fine_rect{layer.rect.x * layer.samples, layer.rect.y * layer.samples, width, height};
   const Eigen::Matrix4d clip_from_world =

@@ -22,11 +22,13 @@
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/make_folder.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr double kVideoFramesPerS = 30.0;
+constexpr std::size_t kLargeFile_bytes = 4U << 20U;  // larger than a frame's images
 
 /// Returns the objects as given; a plain text if there is one.
 nlohmann::json object_texts(const RunOptions& options) {
@@ -196,14 +198,15 @@ double model_mb(const ScriptEvent& add) {
   return failed ? 0.0 : static_cast<double>(bytes) / 1e6;
 }
 
-/// Prepares the run's first object on another thread, since that takes as long as loading the map. Returns an
-/// empty future if there is no object, or its model is large.
+/// Prepares the run's first object on another thread, without its levels of detail, which are computed while
+/// the first frame is processed. Returns an empty future if there is no object, or its model is large.
 std::future<ObjectParts> first_object_of(const Script& script) {
   const auto add = std::find_if(script.events.begin(), script.events.end(),
                                 [](const ScriptEvent& event) { return event.action == Action::kAdd; });
   if (add == script.events.end() || model_mb(*add) > kLarge_mb) return {};
-  return std::async(std::launch::async,
-                    [add = *add] { return object_parts(add.name, object_model(source_of(add))); });
+  return std::async(std::launch::async, [add = *add] {
+    return object_parts_without_levels(add.name, object_model(source_of(add)));
+  });
 }
 
 /// Adds an object. A large model is announced, because preparing its levels of detail takes up to minutes.
@@ -237,13 +240,15 @@ void open_session(OpenedRun& run, bool has_picture, std::future<ObjectParts> fir
   run.session = std::make_unique<Session>(run.map, config, octree);
   run.report.renderer = run.session->renderer();
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
-  if (run.options.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   // Objects are loaded now, so an unreadable mesh is reported before the first frame.
   for (const ScriptEvent& event : run.script.events)
     if (event.action == Action::kAdd)
       add_object(*run.session, event, run.options.script, std::move(first_object));
+  // Afterwards, since another thread computes the first object's levels of detail meanwhile.
+  if (run.options.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   for (const ObjectNotice& notice : run.session->take_notices())
     std::fprintf(stderr, "roomradar: %s%s\n", notice.name.c_str(), notice.text.c_str());
+  release_unused_memory();  // what reading the map's files needed
 }
 
 void open_outputs(OpenedRun& run) {
@@ -280,6 +285,7 @@ void open_map(OpenedRun& run) {
     if (options.max_memory_mb > 0.0)
       throw Error("--max-memory: " + options.map +
                   " is the map of a room, which is loaded as a whole; the option is for buildings");
+    mmap_large_allocations(kLargeFile_bytes);
     run.map = load_map(options.map);
     return;
   }

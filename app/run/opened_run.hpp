@@ -42,18 +42,13 @@ struct OpenedRun {
   std::unique_ptr<FrameSource> source;
   /// The part of `source` that executes camera commands such as hold and rewind. Owned by `source`.
   PlaybackSource* playback = nullptr;
-  /// Set with --budget-ms.
-  std::unique_ptr<RunBudget> budget;
+  std::unique_ptr<RunBudget> budget;  ///< set with --budget-ms
   /// The AR session, with the script's objects loaded.
   std::unique_ptr<Session> session;
-  /// Set with --video.
-  std::unique_ptr<VideoWriter> video;
-  /// Set with --frames-csv.
-  std::optional<FrameUseFile> frames_csv;
-  /// Set with --trajectory.
-  std::optional<GrowingFile> trajectory;
-  /// Set with --stream.
-  std::optional<FrameStream> stream;
+  std::unique_ptr<VideoWriter> video;      ///< set with --video
+  std::optional<FrameUseFile> frames_csv;  ///< set with --frames-csv
+  std::optional<GrowingFile> trajectory;   ///< set with --trajectory
+  std::optional<FrameStream> stream;       ///< set with --stream
   /// Connection to the window; unset if there is no window.
   std::optional<PlayHost> host;
   RunTotals totals;

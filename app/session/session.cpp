@@ -15,6 +15,7 @@ namespace roomradar {
 Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
     : map_(map),
       config_(config),
+      preparation_(prepare_room(map, config.poses == PoseOrigin::kTracked && !config.tiles)),
       building_(config.tiles ? std::make_unique<BuildingTracker>(context_, *config.tiles) : nullptr),
       room_{.shape = Shape(context_), .tiles = building_ ? &building_->tiles() : nullptr},
       scene_(context_, room_.shape, config.scene),
@@ -23,9 +24,9 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   require_valid(config.physics);
   require_valid(config.picture);
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config.tracking_px;
-  room_.shape.set(map.mesh, MeshUsage::kStatic);
-  room_.lowest_known_m = lowest_known_m(map);
-  room_.extent_m = extent_m(map);
+  room_.shape.set(map.mesh, preparation_.tree.get());
+  if (preparation_.patches.valid()) locator_.index.patches = preparation_.patches.get();
+  set_extent(room_, map);
   scene_.set_tiles(room_.tiles);
   if (!config.map_updates) return;
   if (octree == nullptr || building_) throw Error("commit changes: the session has no octree to change");
@@ -224,10 +225,6 @@ void Session::renew_room() {
 
 std::vector<CommittedChange> Session::committed_changes() const {
   return map_updater_ ? map_updater_->committed_changes() : std::vector<CommittedChange>{};
-}
-
-void Session::finish_commits() {
-  if (map_updater_) map_updater_->finish();
 }
 
 }  // namespace roomradar

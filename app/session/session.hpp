@@ -29,7 +29,7 @@ namespace roomradar {
 /// that throws Error changes nothing, except that PlaceRefused cancels a waiting drop and ends carrying.
 class Session {
  public:
-  /// `map` must outlive the session. Throws Error if GL is not available or a config is invalid.
+  /// `map` must outlive the session. Throws Error if GL is not available, or a config or the map is invalid.
   /// @param octree  the map's octree; required with config.map_updates, which modify it
   Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree = nullptr);
   Session(const Session&) = delete;
@@ -103,7 +103,9 @@ class Session {
   [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
   [[nodiscard]] const BuildingTracker* building() const { return building_.get(); }  ///< null: a room
   /// Waits for a running commit. Afterwards the octree may be read. Throws as MapUpdater::finish() does.
-  void finish_commits();
+  void finish_commits() {
+    if (map_updater_) map_updater_->finish();
+  }
 
   /// Makes this session's GL context current. Call it before using or destroying one of several sessions of a
   /// thread. Throws Error if GL fails.
@@ -134,6 +136,7 @@ class Session {
  private:
   const SavedMap& map_;
   SessionConfig config_;
+  RoomPreparation preparation_;  ///< started before GL opens; used up by the constructor
   GlContext context_;
   std::unique_ptr<BuildingTracker> building_;  ///< null unless config.tiles is set
   SessionRoom room_;

@@ -18,6 +18,19 @@ Eigen::AlignedBox3d known_box(const SavedMap& map) {
 
 }  // namespace
 
+RoomPreparation prepare_room(const SavedMap& map, bool will_search) {
+  RoomPreparation preparation;
+  preparation.tree = std::async(std::launch::async, [&map] {
+    TriangleTree tree;
+    tree.build_by_place(map.mesh);
+    return tree;
+  });
+  if (will_search)
+    preparation.patches =
+        std::async(std::launch::async, [&map] { return build_patch_index(map.keyframe_database); });
+  return preparation;
+}
+
 bool is_unknown_at(const SessionRoom& room, const Eigen::Vector3d& p_world) {
   return room.tiles != nullptr ? room.tiles->is_unknown_at(p_world) : is_unknown(*room.unknown, p_world);
 }
@@ -62,11 +75,10 @@ bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object,
   });
 }
 
-double lowest_known_m(const SavedMap& map) { return known_box(map).min().z(); }
-
-double extent_m(const SavedMap& map) {
+void set_extent(SessionRoom& room, const SavedMap& map) {
   const Eigen::AlignedBox3d box = known_box(map);
-  return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+  room.lowest_known_m = box.min().z();
+  room.extent_m = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
 }
 
 }  // namespace roomradar

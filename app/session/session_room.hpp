@@ -1,11 +1,13 @@
 // session_room.hpp: the static room of a session, with its surface and the frontier of unknown space.
 #pragma once
+#include <future>
 #include <memory>
 
 #include "app/objects/shape.hpp"
 #include "app/objects/virtual_object.hpp"
 #include "app/session/map_updater.hpp"
 #include "app/session/tiles/tile_window.hpp"
+#include "mapping/localization/patch_matching.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
 #include "radar/geometry/triangle_tree.hpp"
@@ -25,6 +27,16 @@ struct SessionRoom {
   const TileWindow* tiles = nullptr;
 };
 
+/// What other threads compute from a map.
+struct RoomPreparation {
+  std::future<TriangleTree> tree;   ///< of the map's mesh
+  std::future<PatchIndex> patches;  ///< of the map's keyframes; empty unless requested
+};
+
+/// Starts the threads. `map` must outlive the result.
+/// @param will_search  true: the first frame searches the map, which needs `patches`
+RoomPreparation prepare_room(const SavedMap& map, bool will_search);
+
 /// Returns true if the surfaces near the object are loaded, which is always so in the map of a room. If not,
 /// the object is not advanced unless it is carried.
 bool is_loaded_round(const SessionRoom& room, const VirtualObject& object);
@@ -42,9 +54,7 @@ bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object);
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object,
                          const Eigen::Isometry3d& T_world_object);
 
-/// Returns the world z (m) of the lowest point of the map's surface and observed space.
-double lowest_known_m(const SavedMap& map);
-/// Returns the longest side (m) of the bounding box of the map's surface and observed space.
-double extent_m(const SavedMap& map);
+/// Sets lowest_known_m and extent_m to those of the map's surface and observed space.
+void set_extent(SessionRoom& room, const SavedMap& map);
 
 }  // namespace roomradar

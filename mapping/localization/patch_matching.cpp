@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/parallel_for.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
@@ -88,6 +89,19 @@ void add_alike(const SurfacePatch& seen, int seen_index, const PatchIndex::OfSiz
     ++count;
   }
   alike.insert(alike.end(), best.begin(), best.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+/// Returns the pairs of add_alike() for all patches of the frame, in their order.
+std::vector<Alike> alike_pairs(std::span<const SurfacePatch> seen, const PatchIndex& known) {
+  constexpr std::size_t kPiece = 64;
+  std::vector<std::vector<Alike>> pieces((seen.size() + kPiece - 1) / kPiece);
+  parallel_ranges(seen.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      add_alike(seen[i], static_cast<int>(i), known.by_size[seen[i].size], pieces[begin / kPiece]);
+  });
+  std::vector<Alike> alike;
+  for (const std::vector<Alike>& piece : pieces) alike.insert(alike.end(), piece.begin(), piece.end());
+  return alike;
 }
 
 Eigen::Matrix3f axes_of(const SurfacePatch& patch) {
@@ -267,9 +281,7 @@ PatchAgreement match_patches_at(std::span<const SurfacePatch> seen, const PatchI
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing) {
   constexpr std::size_t kTried = 24;
-  std::vector<Alike> alike;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    add_alike(seen[i], static_cast<int>(i), known.by_size[seen[i].size], alike);
+  const std::vector<Alike> alike = alike_pairs(seen, known);
   const std::vector<Group> groups = agreeing_groups(alike, min_agreeing);
 
   std::vector<PoseCandidate> candidates;

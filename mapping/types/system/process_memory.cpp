@@ -27,11 +27,10 @@ void release_unused_memory() {
 #endif
 }
 
-void mmap_large_allocations() {
+void mmap_large_allocations([[maybe_unused]] std::size_t least_bytes) {
 #ifdef __GLIBC__
-  // Larger than a 640 x 480 depth image, smaller than a keyframe's target view. By default glibc raises the
-  // threshold to the size of the last freed block.
-  ::mallopt(M_MMAP_THRESHOLD, 3 << 19);
+  // By default glibc raises the threshold to the size of the last freed block.
+  ::mallopt(M_MMAP_THRESHOLD, static_cast<int>(least_bytes));
   // Several images of a frame. By default glibc returns every free 128 kB at the end of a heap to the system,
   // and each frame would take the pages again.
   ::mallopt(M_TRIM_THRESHOLD, 8 << 20);

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "app/objects/object_model.hpp"
 #include "app/objects/published_objects.hpp"
 #include "app/objects/teapot.hpp"
 #include "app/objects/virtual_object.hpp"
@@ -158,7 +159,7 @@ TEST(ObjectLevels, TheDrawnMeshIsCoarserTheFartherTheObjectAndNeverOffByMoreThan
     const GpuMesh& mesh = *drawn_object(object, camera, Eigen::Isometry3d::Identity(), 0.5).instance.mesh;
     EXPECT_LE(mesh.triangle_count(), before) << z_m;
     before = mesh.triangle_count();
-    for (const DrawnLevel& level : object.model->levels) {
+    for (const DrawnLevel& level : object.model->levels()) {
       const double half_pixel_m = 0.5 * (z_m - radius_m) / camera.fx_px;
       if (&mesh == level.mesh.get()) {
         EXPECT_LE(static_cast<double>(level.deviation_m), half_pixel_m) << z_m;
@@ -169,6 +170,24 @@ TEST(ObjectLevels, TheDrawnMeshIsCoarserTheFartherTheObjectAndNeverOffByMoreThan
     }
   }
   EXPECT_LT(before, 1000U);
+}
+
+TEST(ObjectLevels, LevelsThatAreComputedLaterAreTheSame) {
+  GlContext context;
+  const Mesh torus = shapes::torus(120, 50, 0.08F, 0.035F, 0.01F);
+  const ObjectModel at_once(context, object_parts("torus", torus));
+  const ObjectModel later(context, object_parts_without_levels("torus", Model{.mesh = torus}));
+  ASSERT_GT(at_once.levels().size(), 2U);
+  ASSERT_EQ(later.levels().size(), at_once.levels().size());
+  EXPECT_EQ(later.levels().size(), at_once.levels().size());  // not uploaded twice
+  for (std::size_t i = 0; i < at_once.levels().size(); ++i) {
+    const DrawnLevel &a = at_once.levels()[i], &b = later.levels()[i];
+    EXPECT_EQ(a.deviation_m, b.deviation_m);
+    EXPECT_TRUE(std::equal(a.mesh->triangles().begin(), a.mesh->triangles().end(),
+                           b.mesh->triangles().begin(), b.mesh->triangles().end()));
+  }
+  // A model that is never drawn ends its thread.
+  EXPECT_NO_THROW(ObjectModel(context, object_parts_without_levels("torus", Model{.mesh = torus})));
 }
 
 constexpr Intrinsics kCamera{640, 480, 585.0, 585.0, 319.5, 239.5};

@@ -355,8 +355,8 @@ TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
   apply(session_, waited_for);
   EXPECT_EQ(session_.objects().back()->model.get(), &model);  // same mesh, so it shares the model
   const ObjectParts parts = object_parts("pot", object_mesh("teapot", 0.25));
-  ASSERT_EQ(model.levels.size(), parts.levels.size());
-  EXPECT_GT(parts.levels.size(), 0U);
+  ASSERT_EQ(model.levels().size(), parts.levels->size());
+  EXPECT_GT(parts.levels->size(), 0U);
   EXPECT_EQ(model.mass.mass_kg, parts.mass.mass_kg);
 }
 
