@@ -286,7 +286,7 @@ void open_map(OpenedRun& run) {
       throw Error("--max-memory: " + options.map +
                   " is the map of a room, which is loaded as a whole; the option is for buildings");
     mmap_large_allocations(kLargeFile_bytes);
-    run.map = load_map(options.map);
+    run.map = load_map(options.map, KeyframeReading::kMeanwhile);
     return;
   }
   OpenedBuilding building = open_building(options, run.script);

@@ -232,8 +232,12 @@ MapInfo load_map_info(const fs::path& folder) {
   return read_consistent(folder, [&] { return read_info(folder); });
 }
 
-SavedMap load_map(const fs::path& folder) {
-  return read_consistent(folder, [&] { return read_map(folder); });
+SavedMap load_map(const fs::path& folder, KeyframeReading keyframes) {
+  return read_consistent(folder, [&] {
+    SavedMap map = read_map(folder);
+    if (keyframes == KeyframeReading::kBefore) static_cast<void>(*map.keyframe_database);
+    return map;
+  });
 }
 
 Mesh load_map_mesh(const fs::path& folder) {

@@ -34,12 +34,17 @@ struct SavedMap {
   LazyPart<std::shared_ptr<const SurfaceTexture>> texture{std::shared_ptr<const SurfaceTexture>()};
 };
 
+/// When load_map() reads the keyframes.
+enum class KeyframeReading {
+  kBefore,     ///< before it returns
+  kMeanwhile,  ///< on another thread; their first use waits for it. A child forked before must not use them
+};
+
 /// Reads a map of this or an earlier format version. Verifies the sizes of all files, and the checksum of
 /// each file before parsing it. Octree, unknown surface and texture are read and verified when they are first
-/// used; the keyframes on another thread, for which their first use waits. Throws Error naming the file and
-/// the fault. The first use of one of these four throws in the same cases, and if the folder was replaced
-/// before that part was read.
-SavedMap load_map(const std::filesystem::path& folder);
+/// used. Throws Error naming the file and the fault. The first use of one of these three, and of keyframes
+/// read meanwhile, throws in the same cases, and if the folder was replaced before that part was read.
+SavedMap load_map(const std::filesystem::path& folder, KeyframeReading keyframes = KeyframeReading::kBefore);
 
 /// Returns the SHA-256 of the file of the map's octree, 64 hexadecimal digits. Empty if the map was not
 /// saved.
