@@ -7,19 +7,15 @@
 #include <bit>
 #include <numeric>
 
+#include "mapping/types/system/counter_random.hpp"
+
 namespace roomradar {
 namespace {
 
-std::uint64_t mixed(std::uint64_t bits) {  // the finalizer of MurmurHash3
-  bits = (bits ^ bits >> 33U) * 0xFF51'AFD7'ED55'8CCDU;
-  bits = (bits ^ bits >> 33U) * 0xC4CE'B9FE'1A85'EC53U;
-  return bits ^ bits >> 33U;
-}
-
 /// Equal for equal positions.
-std::uint64_t hash_of(const Eigen::Vector3f& p) {
+std::uint64_t position_hash(const Eigen::Vector3f& p) {
   std::uint64_t hash = 0;
-  for (const float coordinate : p) hash = mixed(hash + std::bit_cast<std::uint32_t>(coordinate + 0.0F));
+  for (const float coordinate : p) hash = hash_of(hash, std::bit_cast<std::uint32_t>(coordinate + 0.0F));
   return hash;
 }
 
@@ -60,13 +56,12 @@ std::vector<HalfEdge> half_edges_of(const std::vector<Triangle>& triangles,
 // Sums a hash of each side's positions, with the sign of its direction. Sides of opposite directions cancel.
 bool may_be_closed(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices) {
   std::vector<std::uint64_t> hash(vertices.size());
-  std::transform(vertices.begin(), vertices.end(), hash.begin(), hash_of);
-  constexpr std::uint64_t kOfSecond = 0x9E37'79B9'7F4A'7C15U;
+  std::transform(vertices.begin(), vertices.end(), hash.begin(), position_hash);
   std::uint64_t sum = 0;
   for (const Triangle& t : triangles)
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint64_t a = hash[t[i]], b = hash[t[(i + 1) % 3]];
-      sum += mixed(a + kOfSecond * b) - mixed(b + kOfSecond * a);
+      sum += hash_of(a, b) - hash_of(b, a);
     }
   return sum == 0;
 }
