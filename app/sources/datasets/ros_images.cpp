@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 
+#include "app/sources/containers/rvl_depth.hpp"
 #include "app/sources/datasets/indexed_source.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/raw_pixels.hpp"
@@ -173,27 +174,27 @@ std::vector<Candidate> candidates_of(const MessageLog& log) {
               (topics.empty() ? "none" : topics));
 }
 
-/// Decodes compressedDepth: the kind of compression and two floats, then a PNG of 16 bit. 32FC1 holds a /
-/// (depth + b) - quantised inverse depth; a and b are the floats.
-/// Source: ROS, compressed_depth_image_transport.
-void decode_compressed_depth(const RosCompressedImage& image, double unit_m, const std::string& where,
-                             DepthImage& depth_m) {
+/// Decodes compressedDepth: the kind of compression and two floats, then 16 bit as PNG or RVL. 32FC1 holds a
+/// / (depth + b) - quantised inverse depth; a and b are the floats. Source: ROS, image_transport_plugins,
+/// compressed_depth_image_transport/src/codec.cpp, decodeCompressedDepthImage().
+void decode_compressed_depth(const RosCompressedImage& image, const RosStream& stream, double unit_m,
+                             const std::string& where, DepthImage& depth_m) {
   constexpr std::size_t kHead_bytes = 12;
   if (image.data.size() < kHead_bytes) throw Error(where + ": is cut short");
-  if (image.format.find("rvl") != std::string::npos)
-    throw Error(where + ": is compressed by RVL, which is not read; record the raw depth or PNG");
   float a = 0.0F, b = 0.0F;
   std::memcpy(&a, image.data.data() + 4, sizeof a);
   std::memcpy(&b, image.data.data() + 8, sizeof b);
+  const std::string_view packed = image.data.substr(kHead_bytes);
   const bool is_float = image.format.starts_with("32FC1");
-  decode_depth_png(image.data.substr(kHead_bytes), is_float ? 1.0F : static_cast<float>(1.0 / unit_m), where,
-                   depth_m);
-  if (!is_float) return;
-  for (float& depth : depth_m.pixels) {
-    if (depth == 0.0F) continue;
-    depth = a / (depth - b);
-    if (!(std::isfinite(depth) && depth > 0.0F)) depth = 0.0F;
+  if (is_float) unit_m = 1.0;
+  if (image.format.find("compressedDepth rvl") != std::string::npos) {
+    Image<std::uint16_t> units;
+    decode_rvl(packed, {stream.width_px, stream.height_px}, where, units);
+    convert_depth(units, unit_m, where, depth_m);
+  } else {
+    decode_depth_png(packed, static_cast<float>(1.0 / unit_m), where, depth_m);
   }
+  if (is_float) convert_inverse_depth(a, b, depth_m);
 }
 
 RawLayout layout_of(const RosImage& image) {
@@ -239,7 +240,7 @@ void decode_ros_depth(const MessageLog& log, const RosStream& stream, const Mess
   const std::string bytes = log.read(entry);
   const MessageBytes from = message(log, bytes, stream.topic);
   if (stream.is_compressed)
-    return decode_compressed_depth(read_compressed_image(from), unit_m, from.where, depth_m);
+    return decode_compressed_depth(read_compressed_image(from), stream, unit_m, from.where, depth_m);
   const RosImage image = read_image(from);
   if (!is_depth_encoding(image.encoding))
     throw Error(from.where + ": its encoding is '" + image.encoding.substr(0, 40) + "', not depth");

@@ -4,10 +4,12 @@
 #include <array>
 #include <memory>
 
+#include "app/sources/containers/rvl_depth.hpp"
 #include "app/sources/containers/sqlite_file.hpp"
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/image_header.hpp"
+#include "app/sources/formats/raw_pixels.hpp"
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
@@ -61,19 +63,58 @@ RtabmapCamera read_camera(std::string_view bytes, const std::string& where) {
   return result;
 }
 
-ImageSize image_size(const std::string& bytes, const std::string& where) {
+constexpr std::string_view kRvlSignature = "DEPTHRVL", kInverseSignature = "DEPTHINV";
+
+/// Depth image of a node. Its signatures are of RTAB-Map, corelib/src/Compression.cpp, compressImage():
+/// DEPTHINV, two floats, and a depth image of either other kind, which holds quantised inverse depth;
+/// DEPTHRVL and 16 bit in RVL, the default; none and a PNG.
+struct RtabmapDepth {
+  std::string_view image;  ///< after the signatures
+  bool is_rvl = false;
+  bool is_inverse = false;
+  float a = 0.0F, b = 0.0F;  ///< of inverse depth
+};
+
+RtabmapDepth parse_depth(std::string_view bytes, const std::string& where) {
+  RtabmapDepth depth{.image = bytes};
+  if (depth.image.starts_with(kInverseSignature)) {
+    ByteReader reader(depth.image.substr(kInverseSignature.size()), where);
+    depth.is_inverse = true;
+    depth.a = reader.number<float>();
+    depth.b = reader.number<float>();
+    depth.image = reader.take(reader.left());
+  }
+  depth.is_rvl = depth.image.starts_with(kRvlSignature);
+  if (depth.is_rvl) depth.image.remove_prefix(kRvlSignature.size());
+  return depth;
+}
+
+ImageSize image_size(std::string_view bytes, const std::string& where) {
   const ImageHeader header = read_image_header(bytes, where);
   return {header.width_px, header.height_px};
 }
 
-void decode_rtabmap_depth(const std::string& bytes, const std::string& where, DepthImage& depth_m) {
-  if (bytes.starts_with("DRVL"))
-    throw Error(where + " is compressed by RVL, which is not read; set Mem/DepthCompressionFormat to .png");
-  const ImageHeader header = read_image_header(bytes, where);
-  if (header.channels == 4)
-    decode_float_png(bytes, where, depth_m);
-  else
-    decode_depth_png(bytes, 1000.0F, where, depth_m);
+ImageSize depth_image_size(const std::string& bytes, const std::string& where) {
+  const RtabmapDepth depth = parse_depth(bytes, where);
+  if (!depth.is_rvl) return image_size(depth.image, where);
+  const RvlSize size = read_rvl_size(depth.image, where);
+  return {size.width_px, size.height_px};
+}
+
+void decode_rtabmap_depth(const std::string& bytes, ImageSize size, const std::string& where,
+                          DepthImage& depth_m) {
+  const RtabmapDepth depth = parse_depth(bytes, where);
+  const double unit_m = depth.is_inverse ? 1.0 : 0.001;
+  if (depth.is_rvl) {
+    Image<std::uint16_t> units;
+    decode_rvl(depth.image, {size.width_px, size.height_px}, where, units);
+    convert_depth(units, unit_m, where, depth_m);
+  } else if (read_image_header(depth.image, where).channels == 4) {
+    decode_float_png(depth.image, where, depth_m);
+  } else {
+    decode_depth_png(depth.image, static_cast<float>(1.0 / unit_m), where, depth_m);
+  }
+  if (depth.is_inverse) convert_inverse_depth(depth.a, depth.b, depth_m);
 }
 
 }  // namespace
@@ -114,7 +155,7 @@ IndexedRecording index_rtabmap(const std::filesystem::path& path) {
   RtabmapCamera camera = read_camera(read("calibration", rows.front()), where);
   for (IndexedFrame& frame : recording.frames)
     if (frame.T_world_camera) frame.T_world_camera = *frame.T_world_camera * camera.T_robot_camera;
-  const ImageSize depth_size = image_size(read("depth", rows.front()), where + ": a depth image");
+  const ImageSize depth_size = depth_image_size(read("depth", rows.front()), where + ": a depth image");
   const bool has_colour = recording.frames.front().has_colour;
   const ImageSize colour_size =
       has_colour ? image_size(read("image", rows.front()), where + ": a colour image") : depth_size;
@@ -129,8 +170,8 @@ IndexedRecording index_rtabmap(const std::filesystem::path& path) {
     recording.rig.colour_camera = scaled_to_depth(camera.camera, colour_size, where);
     recording.colour_lens = camera.lens;
   }
-  recording.read_depth = [read, rows, where](std::size_t frame, DepthImage& depth_m) {
-    decode_rtabmap_depth(read("depth", rows[frame]), where + ": a depth image", depth_m);
+  recording.read_depth = [read, rows, depth_size, where](std::size_t frame, DepthImage& depth_m) {
+    decode_rtabmap_depth(read("depth", rows[frame]), depth_size, where + ": a depth image", depth_m);
   };
   recording.read_colour = [read, rows, where](std::size_t frame, ColourImage& image) {
     decode_colour(read("image", rows[frame]), where + ": a colour image", image);

@@ -69,6 +69,20 @@ void convert_depth(std::string_view bytes, const RawLayout& layout, DepthPixels 
   }
 }
 
+void convert_depth(const Image<std::uint16_t>& units, double unit_m, const std::string& where,
+                   DepthImage& depth_m) {
+  const std::string_view bytes(reinterpret_cast<const char*>(units.pixels.data()), 2 * units.pixels.size());
+  convert_depth(bytes, {units.width, units.height}, DepthPixels::kUint16, unit_m, where, depth_m);
+}
+
+void convert_inverse_depth(float a, float b, DepthImage& depth_m) {
+  for (float& depth : depth_m.pixels) {
+    if (depth == 0.0F) continue;
+    depth = a / (depth - b);
+    if (!(std::isfinite(depth) && depth > 0.0F)) depth = 0.0F;
+  }
+}
+
 void convert_colour(std::string_view bytes, const RawLayout& layout, ColourPixels pixels,
                     const std::string& where, ColourImage& colour) {
   require_sides(layout, where);

@@ -1,6 +1,7 @@
 // raw_pixels.hpp: converts uncompressed pixels of devices to depth and colour images.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -28,6 +29,15 @@ struct RawLayout {
 ///         than the layout requires
 void convert_depth(std::string_view bytes, const RawLayout& layout, DepthPixels pixels, double unit_m,
                    const std::string& where, DepthImage& depth_m);
+
+/// Converts depth of 16 bit. Throws Error as convert_depth() above does.
+void convert_depth(const Image<std::uint16_t>& units, double unit_m, const std::string& where,
+                   DepthImage& depth_m);
+
+/// Converts quantised inverse depth in place: each pixel, 1..65535 or 0, becomes a / (pixel - b), m. Results
+/// that are not finite or <= 0 become 0. Source: ROS, image_transport_plugins,
+/// compressed_depth_image_transport/src/codec.cpp, decodeCompressedDepthImage().
+void convert_inverse_depth(float a, float b, DepthImage& depth_m);
 
 /// Converts colour. Throws Error as convert_depth() does. kYuyv, kUyvy and kNv12 need an even width, kNv12
 /// also an even height.

@@ -8,11 +8,14 @@
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/process_memory.hpp"
 #include "tests/app/sources/containers/written_bag.hpp"
+#include "tests/app/sources/containers/written_rvl.hpp"
 
 namespace roomradar::ros_recording_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::bytes_of;
+using test::bytes_of;
 using test::contains;
 using test::error_of;
 using test::read_all;
@@ -24,6 +27,8 @@ using test::RosBytes;
 using test::some_frame;
 using test::TemporaryFolder;
 using test::write_text;
+using test::written_rvl;
+using test::written_rvl;
 using test::WrittenBag;
 
 constexpr int kFrames = 6;
@@ -217,6 +222,35 @@ TEST(RosBag, ReadsCompressedImages) {
   ASSERT_EQ(all.frames.size(), 1U);
   EXPECT_EQ(all.frames[0].depth_m.at(3, 2), 1.234F);
   EXPECT_NEAR(all.frames[0].colour.at(8, 8).r, 200, 3);
+}
+
+TEST(RosBag, ReadsRvl) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "rvl.bag";
+  WrittenBag bag(path);
+  Image<std::uint16_t> units(4, 3, 1234);
+  units.at(0, 0) = 0;
+  const auto write = [&](double stamp_s, const std::string& format, float a, float b,
+                         const std::string& rvl) {
+    RosBytes depth;
+    depth.header(stamp_s, "c").text(format).text(bytes_of(0) + bytes_of(a) + bytes_of(b) + rvl);
+    bag.write("/camera/depth/image_raw/compressedDepth", "sensor_msgs/CompressedImage", stamp_s, depth);
+  };
+  write(1, "16UC1; compressedDepth rvl", 0, 0, written_rvl(units));
+  write(2, "32FC1; compressedDepth rvl", 4000, -366, written_rvl(units));  // 4000 / (1234 + 366) = 2.5 m
+  write(3, "16UC1; compressedDepth rvl", 0, 0, written_rvl(units).substr(0, 10));
+  write(4, "16UC1; compressedDepth rvl", 0, 0, written_rvl(Image<std::uint16_t>(400, 300)));
+  bag.write("/camera/depth/camera_info", "sensor_msgs/CameraInfo", 1, ros_camera_info(1, 4, 3, 5));
+  bag.close();
+  const auto all = read_all(*open_folder(path));
+  ASSERT_EQ(all.frames.size(), 2U);
+  EXPECT_EQ(all.frames[0].depth_m.at(3, 2), 1.234F);
+  EXPECT_EQ(all.frames[0].depth_m.at(0, 0), 0.0F);
+  EXPECT_EQ(all.frames[1].depth_m.at(3, 2), 2.5F);
+  ASSERT_EQ(all.faults.size(), 2U);
+  EXPECT_TRUE(contains(all.faults[0], "is cut short")) << all.faults[0];
+  EXPECT_TRUE(contains(all.faults[1], "is 400 x 300; the recording's other depth images are 4 x 3"))
+      << all.faults[1];
 }
 
 TEST(RosBag, SaysWhatIsMissing) {

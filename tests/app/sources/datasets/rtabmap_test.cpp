@@ -7,6 +7,7 @@
 
 #include "app/sources/recordings/folder_source.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "tests/app/sources/containers/written_rvl.hpp"
 #include "tests/app/sources/sources_support.hpp"
 
 namespace roomradar::rtabmap_test {
@@ -17,6 +18,7 @@ using test::contains;
 using test::error_of;
 using test::read_all;
 using test::TemporaryFolder;
+using test::written_rvl;
 
 std::string png(const cv::Mat& image) {
   std::vector<std::uint8_t> bytes;
@@ -53,11 +55,21 @@ void write_database(const fs::path& path, const std::string& calibration) {
   cv::Mat depth_m(12, 16, CV_32FC1, cv::Scalar(2.5F));
   depth_m.at<float>(0, 0) = NAN;
   const cv::Mat colour(24, 32, CV_8UC3, cv::Scalar(9, 99, 199));
-  for (int i = 1; i <= 4; ++i) {
-    const std::string depth = i == 1   ? png(depth_mm)
-                              : i == 2 ? png(cv::Mat(12, 16, CV_8UC4, depth_m.data))
-                              : i == 3 ? std::string()
-                                       : "DRVL...";
+  Image<std::uint16_t> units(16, 12, 1250);
+  units.at(0, 0) = 0;
+  const std::string rvl = "DEPTHRVL" + written_rvl(units);
+  // Inverse depth: 4000 / (1250 + 350) = 2.5 m.
+  const std::string inverse = "DEPTHINV" + floats({4000, -350});
+  const std::vector<std::string> depth_blobs = {png(depth_mm),
+                                                png(cv::Mat(12, 16, CV_8UC4, depth_m.data)),
+                                                "",
+                                                rvl,
+                                                inverse + rvl,
+                                                inverse + png(cv::Mat(12, 16, CV_16UC1, units.pixels.data())),
+                                                rvl.substr(0, rvl.size() - 4),
+                                                "DEPTHRVL" + written_rvl(Image<std::uint16_t>(32, 24))};
+  for (int i = 1; i <= static_cast<int>(depth_blobs.size()); ++i) {
+    const std::string depth = depth_blobs[static_cast<std::size_t>(i - 1)];
     const std::string image = png(colour),
                       pose = floats({1, 0, 0, static_cast<float>(i), 0, 1, 0, 2, 0, 0, 1, 3});
     sqlite3_stmt* insert = nullptr;
@@ -83,11 +95,17 @@ TEST(Rtabmap, GivesNodesWithDepth) {
   const fs::path path = folder.path() / "map.db";
   write_database(path, camera(32, 24));
   const auto source = open_folder(path);
-  EXPECT_EQ(source->frame_count(), 3) << "one node has no depth";
+  EXPECT_EQ(source->frame_count(), 7) << "one node has no depth";
   const auto all = read_all(*source);
-  ASSERT_EQ(all.frames.size(), 2U);
-  ASSERT_EQ(all.faults.size(), 1U);
-  EXPECT_TRUE(contains(all.faults[0], "RVL"));
+  ASSERT_EQ(all.frames.size(), 5U);
+  ASSERT_EQ(all.faults.size(), 2U);
+  EXPECT_TRUE(contains(all.faults[0], "a depth image: is cut short")) << all.faults[0];
+  EXPECT_TRUE(contains(all.faults[1], "is 32 x 24; the recording's other depth images are 16 x 12"))
+      << all.faults[1];
+  for (const std::size_t i : {2U, 3U, 4U}) {
+    EXPECT_EQ(all.frames[i].depth_m.at(3, 3), i == 2 ? 1.25F : 2.5F) << "RVL, or inverse depth, " << i;
+    EXPECT_EQ(all.frames[i].depth_m.at(0, 0), 0.0F);
+  }
   EXPECT_EQ(all.frames[0].depth_m.at(3, 3), 1.5F);
   EXPECT_EQ(all.frames[1].depth_m.at(3, 3), 2.5F);
   EXPECT_EQ(all.frames[1].depth_m.at(0, 0), 0.0F);
@@ -98,6 +116,21 @@ TEST(Rtabmap, GivesNodesWithDepth) {
   // A point 1 m ahead of the camera is 1 m along the robot's x.
   EXPECT_TRUE(
       (*all.frames[1].T_world_camera * Eigen::Vector3d(0, 0, 1)).isApprox(Eigen::Vector3d(3, 2, 3.2), 1e-6));
+}
+
+// RTAB-Map's default: the first image, from which the size is read, is in RVL too.
+TEST(Rtabmap, ReadsTheSizeOfRvl) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "map.db";
+  write_database(path, camera(32, 24));
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "DELETE FROM Data WHERE id != 4", nullptr, nullptr, nullptr);
+  sqlite3_close(database);
+  const auto all = read_all(*open_folder(path));
+  ASSERT_EQ(all.frames.size(), 1U);
+  EXPECT_EQ(all.frames[0].depth_camera, (Intrinsics{16, 12, 20, 21, 7.5, 5.5}));
+  EXPECT_EQ(all.frames[0].depth_m.at(3, 3), 1.25F);
 }
 
 TEST(Rtabmap, SaysWhatIsWrong) {
