@@ -15,6 +15,7 @@
 #include "mapping/building/submap_join_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
@@ -172,10 +173,10 @@ void delete_others(const BuildingInfo& info, const fs::path& folder) {
   for (const BuildingRecording& recording : info.recordings) used.insert(recording.keyframe_file.name);
   std::vector<fs::path> others;
   for (const char* part : {kTilesFolder, kRecordingsFolder})
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder / part)) {
-      const fs::path name = fs::path(part) / entry.path().filename();
+    for (const fs::path& entry : entries_of(folder / part)) {
+      const fs::path name = fs::path(part) / entry.filename();
       if ((part == kTilesFolder || is_keyframe_file(name)) && !used.contains(name.generic_string()))
-        others.push_back(entry.path());
+        others.push_back(entry);
     }
   for (const fs::path& other : others) {
     std::error_code ignored;

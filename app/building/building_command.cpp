@@ -14,6 +14,7 @@
 #include "app/cli/report.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 
 namespace roomradar {
 namespace {
@@ -32,7 +33,7 @@ BuildingWork work_of(const BuildingOptions& options) {
   work.deviation_m = options.deviation_m;
   require_contents_outside_maps(work.folder);
   std::error_code ignored;
-  if (fs::is_directory(work.folder, ignored) && !fs::is_empty(work.folder, ignored) &&
+  if (fs::is_directory(work.folder, ignored) && !is_empty_folder(work.folder, ignored) &&
       !is_building(work.folder) && !fs::exists(work.jobs(), ignored))
     throw Error(work.folder.string() + ": is a folder of something else; take the name of a new folder");
   return work;

@@ -10,6 +10,7 @@
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/make_folder.hpp"
 
@@ -204,11 +205,11 @@ PartsByTile parts_by_tile(const BuildingWork& work, const std::vector<std::strin
   for (const std::string& recording : recordings)
     for (const std::string folder : {"parts", "margins"}) {
       const std::string relative = fuse_job(recording) + "/" + folder;
-      for (const fs::directory_entry& file : fs::directory_iterator(work.jobs() / relative)) {
-        const std::string tile = file.path().stem().string();
-        if (file.path().extension() != ".octree") continue;
+      for (const fs::path& file : entries_of(work.jobs() / relative)) {
+        const std::string tile = file.stem().string();
+        if (file.extension() != ".octree") continue;
         if (folder == "parts") with_surface.insert(tile);
-        parts_of[tile].push_back(relative + "/" + file.path().filename().string());
+        parts_of[tile].push_back(relative + "/" + file.filename().string());
       }
     }
   std::erase_if(parts_of, [&](const auto& entry) { return !with_surface.contains(entry.first); });

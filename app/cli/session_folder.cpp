@@ -16,6 +16,7 @@
 #include "app/sources/recordings/spooled_source.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/make_folder.hpp"
 
@@ -75,7 +76,7 @@ Value choice_of(const Json& json, const char* key, std::initializer_list<Value> 
 void require_can_become_session(const fs::path& folder) {
   require_contents_outside_maps(folder);
   std::error_code fault;
-  if (fs::exists(folder, fault) && (!fs::is_empty(folder, fault) || fault))
+  if (fs::exists(folder, fault) && !is_empty_folder(folder, fault))
     throw Error(folder.string() + ": is not empty; a session needs an empty or new folder");
 }
 

@@ -26,6 +26,7 @@
 #include "app/evaluation/fallthrough/trial_pictures.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/make_folder.hpp"
 
 namespace roomradar {
@@ -40,7 +41,7 @@ void require_folder_of_maps(const std::filesystem::path& folder) {
   require_contents_outside_maps(folder);
   make_folder(folder);
   std::error_code fault;
-  if (access(folder.c_str(), W_OK) != 0 && std::filesystem::is_empty(folder, fault))
+  if (access(folder.c_str(), W_OK) != 0 && is_empty_folder(folder, fault))
     throw Error(folder.string() + ": no map can be stored there: the folder is not writable");
 }
 

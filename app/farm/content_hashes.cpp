@@ -12,6 +12,7 @@
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 
 namespace roomradar {
 
@@ -46,10 +47,13 @@ std::string ContentHashes::of(const fs::path& path) {
   try {
     if (!fs::is_directory(path)) return of_file(path);
     std::vector<std::pair<std::string, fs::path>> files;
-    for (const auto& entry :
-         fs::recursive_directory_iterator(path, fs::directory_options::follow_directory_symlink))
-      if (entry.is_regular_file())
-        files.emplace_back(entry.path().lexically_relative(path).generic_string(), entry.path());
+    constexpr auto kFollow = fs::directory_options::follow_directory_symlink;
+    for (auto each = fs::recursive_directory_iterator(path, kFollow); each != fs::end(each); ++each) {
+      if (is_hidden_file(each->path().filename().string()))
+        each.disable_recursion_pending();
+      else if (each->is_regular_file())
+        files.emplace_back(each->path().lexically_relative(path).generic_string(), each->path());
+    }
     std::sort(files.begin(), files.end());
     std::string list;
     for (const auto& [name, file] : files) list += of_file(file) + " " + name + "\n";

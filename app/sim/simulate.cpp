@@ -13,6 +13,7 @@
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/make_folder.hpp"
 #include "mapping/types/trajectory.hpp"
@@ -124,7 +125,8 @@ void simulate_walks(const std::filesystem::path& folder, const SimOptions& optio
   if (first < 0 || last < first || last > kLastWalk)
     throw Error("walks " + std::to_string(first) + ":" + std::to_string(last) +
                 ": must be A:B with 0 <= A <= B <= " + std::to_string(kLastWalk));
-  if (std::filesystem::exists(folder) && !std::filesystem::is_empty(folder))
+  std::error_code fault;
+  if (std::filesystem::exists(folder) && !is_empty_folder(folder, fault))
     throw Error(folder.string() + ": is not empty; name a new folder for the recordings");
   std::string list;
   for (std::int64_t walk = first; walk <= last; ++walk) {

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 
 namespace roomradar {
 namespace {
@@ -35,8 +36,9 @@ void require_replaceable(const fs::path& folder) {
            "is the map of a building; a room's map takes its own folder, so choose another name for the map");
   bool empty = true;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
-    empty = false;
     const std::string name = entry.path().filename().string();
+    if (is_litter(name)) continue;
+    empty = false;
     if (name != kMapInfoFile && !is_map_part(name))
       refuse(folder, "exists and holds \"" + name +
                          "\", which is not part of a map; choose another name for the map");

@@ -29,8 +29,8 @@ inline constexpr const char* kMapTexturePointsFile = "texture.bin";
 /// version may contain.
 bool is_map_part(const std::string& name);
 
-/// Throws Error unless `folder` is missing, empty, or contains a map and nothing else. Also throws if
-/// `folder` is directly in a map's folder.
+/// Throws Error unless `folder` is missing, empty, or contains a map and nothing else but litter of desktops
+/// (is_litter()). Also throws if `folder` is directly in a map's folder.
 void require_replaceable(const std::filesystem::path& folder);
 
 /// Returns the path without "." and ".." components and without trailing slash. Throws Error if the result is

@@ -10,6 +10,7 @@
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 
 namespace roomradar {
 namespace {
@@ -44,11 +45,14 @@ Json read_json(const fs::path& path) {
   return json;
 }
 
-/// Returns sorted paths relative to the folder.
+/// Returns sorted paths relative to the folder, without litter of desktops.
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_directory()) files.push_back(entry.path().lexically_relative(folder));
+  for (fs::recursive_directory_iterator each(folder); each != fs::end(each); ++each) {
+    if (is_litter(each->path().filename().string()))
+      each.disable_recursion_pending();
+    else if (!each->is_directory())
+      files.push_back(each->path().lexically_relative(folder));
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -154,8 +158,10 @@ void write_identity(const fs::path& folder, const std::map<std::string, std::str
 
 bool has_nothing_to_resume(const fs::path& folder) {
   std::error_code fault;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault))
-    if (entry.path().filename() != kWork && entry.path().filename() != kCheckpointLock) return false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
+    const std::string name = entry.path().filename().string();
+    if (name != kWork && name != kCheckpointLock && !is_litter(name)) return false;
+  }
   return !fault;
 }
 
@@ -170,7 +176,7 @@ void require_checkpoints_only(const fs::path& folder, std::string_view beside) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
     const std::string name = entry.path().filename().string();
     if (name != kWork && name != kWorkWriting && name != kCheckpointLock && name != kWriting &&
-        name != beside && !name.starts_with(kPrefix))
+        name != beside && !name.starts_with(kPrefix) && !is_litter(name))
       reject(folder, "holds \"" + name + "\", which is not part of an interrupted scan; move it away");
   }
   if (fault) reject(folder, "cannot be listed: " + fault.message());

@@ -9,6 +9,7 @@
 #include "app/sources/containers/mcap.hpp"
 #include "app/sources/containers/sqlite_file.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 
 namespace roomradar {
 namespace {
@@ -56,8 +57,8 @@ MessageLog open_part(const fs::path& path) { return is_mcap(path) ? open_mcap(pa
 /// Returns the files of a bag's folder. bag_10 comes after bag_9.
 std::vector<fs::path> parts_of(const fs::path& folder) {
   std::vector<fs::path> parts;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (is_db3(entry.path()) || is_mcap(entry.path())) parts.push_back(entry.path());
+  for (const fs::path& file : entries_of(folder))
+    if (is_db3(file) || is_mcap(file)) parts.push_back(file);
   std::sort(parts.begin(), parts.end(), [](const fs::path& a, const fs::path& b) {
     const std::string x = a.string(), y = b.string();
     return std::pair(x.size(), x) < std::pair(y.size(), y);

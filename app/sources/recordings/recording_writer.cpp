@@ -15,6 +15,7 @@
 #include "app/sources/formats/parse_numbers.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/make_folder.hpp"
 
@@ -90,7 +91,7 @@ RecordingWriter::RecordingWriter(fs::path folder, RecordingFormat format, bool a
     : folder_(std::move(folder)), format_(format), are_calibrated_(are_calibrated) {
   make_folder(folder_);
   std::error_code fault;
-  if (!fs::is_empty(folder_, fault))
+  if (!is_empty_folder(folder_, fault))
     throw Error(folder_.string() + ": is not empty; name a new folder for the recording");
   if (format_ == RecordingFormat::kRosBag) bag_ = std::make_unique<BagFrameWriter>(folder_ / "recording.bag");
   if (format_ != RecordingFormat::kTum) return;

@@ -10,7 +10,9 @@ namespace roomradar {
 /// status values.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// Replaces control characters, which messages quote from damaged files, by '?': a zero would end what()
+  /// early, others would change the terminal. Keeps line breaks and tabs.
+  explicit Error(const std::string& message);
 };
 
 }  // namespace roomradar

@@ -15,6 +15,7 @@
 #include "app/farm/job_folder.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/litter.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::farm_test {
@@ -250,6 +251,8 @@ TEST_F(Farm, KeysDependOnWordsInputsAndNeeds) {
   fs::create_directories(folder_.path() / "set");
   write_bytes(folder_.path() / "set" / "x", "1");
   const std::string before = key("a: prescan write --in=set {}\n");
+  test::add_litter(folder_.path() / "set");
+  EXPECT_EQ(before, key("a: prescan write --in=set {}\n")) << "litter of desktops is no input";
   write_bytes(folder_.path() / "set" / "y", "1");
   EXPECT_NE(before, key("a: prescan write --in=set {}\n"));
 }

@@ -8,6 +8,7 @@
 
 #include "app/sim/sensor/sim_options.hpp"
 #include "app/sim/simulate.hpp"
+#include "tests/support/litter.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::test::source_list_test {
@@ -25,6 +26,7 @@ TEST(SourceList, FindsRecordingsHereAndInTheFolderOfRecordings) {
   fs::create_directories(here / ".hidden");
   fs::create_directories(here / "texts");
   std::ofstream(here / "texts/notes.txt") << "x";
+  add_litter(here);
   const std::vector<SourceEntry> entries = list_recordings(here);
   ASSERT_EQ(entries.size(), 2U);
   EXPECT_EQ(entries[0].source, (here / "b").string());

@@ -28,6 +28,7 @@
 #include "mapping/types/system/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/litter.hpp"
 #include "tests/support/map_content.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -202,6 +203,22 @@ TEST_F(MapFolder, SavingAgainReplacesTheMapAndLeavesNothingBeside) {
   save_map(map_ / "", room_);  // a trailing slash
   EXPECT_TRUE(verify_map(map_).empty());
   EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(MapFolder, LitterOfDesktopsDoesNotHinder) {
+  test::add_litter(map_);
+  EXPECT_EQ(load_map(map_).info.source, room_.info.source);
+  EXPECT_TRUE(verify_map(map_).empty());
+  EXPECT_NO_THROW(require_can_become_map(map_, {}));
+  room_.info.source = "another";
+  save_map(map_, room_);
+  EXPECT_EQ(load_map(map_).info.source, "another");
+  EXPECT_FALSE(fs::exists(map_ / ".DS_Store"));
+  fs::create_directory(folder_.path() / "new");
+  test::add_litter(folder_.path() / "new");
+  EXPECT_NO_THROW(save_map(folder_.path() / "new", room_));
+  put_text(map_ / ".gitignore", "mine");  // hidden, but not litter
+  EXPECT_NE(error_of([&] { save_map(map_, room_); }).find(".gitignore"), std::string::npos);
 }
 
 TEST_F(MapFolder, FoldersThatAreNoMapsAreNeverOverwritten) {

@@ -10,6 +10,7 @@
 
 #include "mapping/storage/checkpoints.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/litter.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::checkpoints_test {
@@ -127,6 +128,23 @@ TEST_F(CheckpointsTest, WhatSomebodyElseKeepsInTheFolderIsNamed) {
   std::ofstream(folder() / "thesis.txt") << "years of work";
   EXPECT_NE(error_of([&] { require_checkpoints_only(folder(), "spool"); }).find("thesis.txt"),
             std::string::npos);
+}
+
+TEST_F(CheckpointsTest, LitterOfDesktopsDoesNotHinder) {
+  {
+    Checkpoints checkpoints(folder(), kScan, 0.0);
+    checkpoints.ensure_folder();
+    test::add_litter(folder());
+  }
+  EXPECT_FALSE(fs::exists(folder())) << "there was nothing to resume";
+  write(2);
+  test::add_litter(folder());
+  EXPECT_NO_THROW(require_checkpoints_only(folder(), ""));
+  Checkpoints checkpoints(folder(), kScan, 0.0);
+  const auto newest = checkpoints.resume();
+  ASSERT_TRUE(newest);
+  EXPECT_EQ(text_of(newest->folder / "state"), "2");
+  EXPECT_TRUE(checkpoints.faults().empty());
 }
 
 TEST_F(CheckpointsTest, TheStateIsThatOfTheMomentWhateverTheWorkDoesMeanwhile) {

@@ -6,11 +6,13 @@
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/recordings/folder_source.hpp"
 #include "tests/app/sources/sources_support.hpp"
+#include "tests/support/litter.hpp"
 
 namespace roomradar::numbered_recordings_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::add_litter;
 using test::contains;
 using test::error_of;
 using test::read_all;
@@ -48,6 +50,7 @@ void write_stray(const fs::path& folder) {
 TEST(StrayScanner, GivesSureDepthColourOfTheVideoAndPoses) {
   const TemporaryFolder folder;
   write_stray(folder.path());
+  add_litter(folder.path());
   const auto source = open_folder(folder.path());
   EXPECT_EQ(source->frame_count(), kVideoFrames);
   const auto all = read_all(*source);
@@ -114,6 +117,7 @@ TEST(Redwood, GivesThePosesOfItsLog) {
     log += std::to_string(i) + " " + std::to_string(i) + " " + std::to_string(i + 1) + "\n1 0 0 " +
            std::to_string(i) + "\n0 0 -1 5\n0 1 0 6\n0 0 0 1\n";
   write_text(folder.path() / "livingroom.log", log);
+  add_litter(folder.path());
   const auto all = read_all(*open_folder(folder.path()));
   ASSERT_EQ(all.frames.size(), 12U);
   const Frame& frame = all.frames[10];

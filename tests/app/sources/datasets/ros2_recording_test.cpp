@@ -10,6 +10,7 @@
 #include "app/sources/recordings/folder_source.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "tests/app/sources/sources_support.hpp"
+#include "tests/support/litter.hpp"
 
 namespace roomradar::ros2_recording_test {
 namespace {
@@ -172,6 +173,7 @@ TEST(Ros2Bag, JoinsThePartsInAFolder) {
   write_db3(folder.path() / "bag_9.db3", {all.begin(), all.begin() + 4});
   write_db3(folder.path() / "bag_10.db3", {all.begin() + 4, all.end()});
   write_text(folder.path() / "metadata.yaml", "rosbag2_bagfile_information:\n");
+  test::add_litter(folder.path());
   expect_some_frames(folder.path());
   fs::remove(folder.path() / "bag_9.db3");
   fs::remove(folder.path() / "bag_10.db3");

@@ -9,6 +9,7 @@
 #include "app/sources/recordings/folder_source.hpp"
 #include "app/sources/recordings/recording_writer.hpp"
 #include "tests/app/sources/sources_support.hpp"
+#include "tests/support/litter.hpp"
 
 namespace roomradar::sources_folder_test {
 namespace {
@@ -91,6 +92,29 @@ TEST(RecordingRoundTrip, TumKeepsDepthColourPosesGravityAndStamps) {
     EXPECT_EQ(got.stamp_s, some_frame(i).stamp_s);  // thirds of a second, too
     EXPECT_NEAR(got.colour_after_depth_s, some_frame(i).colour_after_depth_s, 1e-12);
   }
+}
+
+TEST(RecordingRoundTrip, LitterOfDesktopsIsNotRead) {
+  for (const RecordingFormat format :
+       {RecordingFormat::kTum, RecordingFormat::kSevenScenes, RecordingFormat::kRosBag}) {
+    const TemporaryFolder folder;
+    write_recording(folder.path(), format);
+    const auto clean = read_all(*open_folder(folder.path()));
+    test::add_litter(folder.path());
+    const auto littered = read_all(*open_folder(folder.path()));
+    EXPECT_TRUE(littered.faults.empty()) << littered.faults[0];
+    ASSERT_EQ(littered.frames.size(), clean.frames.size()) << static_cast<int>(format);
+    EXPECT_EQ(littered.frames.back().depth_m.pixels, clean.frames.back().depth_m.pixels);
+  }
+  const TemporaryFolder numbered, empty;
+  write_numbered(numbered.path());
+  const auto clean = read_all(*open_folder(numbered.path()));
+  test::add_litter(numbered.path());
+  EXPECT_EQ(read_all(*open_folder(numbered.path())).frames.size(), clean.frames.size());
+  test::add_litter(empty.path());
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(empty.path()); }), "the folder is empty"));
+  EXPECT_NO_THROW(write_recording(empty.path(), RecordingFormat::kTum))
+      << "into a folder that is empty but for it";
 }
 
 TEST(RecordingRoundTrip, AFolderOfBonnsDatasetHasItsCamera) {
