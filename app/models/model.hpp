@@ -19,10 +19,11 @@ struct Texture {
   MaskImage opacity;                 ///< alpha, 0..255, same size as colour; empty: opaque everywhere
   std::uint8_t least_opacity = 128;  ///< alpha cutoff: pixels with a lower alpha are not drawn
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
+  bool is_pixelated = false;  ///< magnified pixels are drawn as squares, not blended with their neighbours
   friend bool operator==(const Texture& a, const Texture& b) {
     return a.colour.width == b.colour.width && a.colour.pixels == b.colour.pixels &&
            a.opacity.pixels == b.opacity.pixels && a.least_opacity == b.least_opacity &&
-           a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v;
+           a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v && a.is_pixelated == b.is_pixelated;
   }
 };
 

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/models/gltf_model.hpp"
 #include "app/models/scene_materials.hpp"
 #include "app/models/texture_file.hpp"
 #include "mapping/mesh/assimp_import.hpp"
@@ -30,7 +31,8 @@ namespace roomradar {
 namespace {
 
 constexpr std::array<const char*, 6> kExtensions = {".glb", ".gltf", ".obj", ".ply", ".stl", ".dae"};
-constexpr std::string_view kCopyHead = "roomradar model 1\n";
+constexpr std::string_view kCopyHead = "roomradar model 2\n";
+constexpr std::string_view kCopyHead1 = "roomradar model 1\n";  ///< without Texture::is_pixelated
 constexpr std::uintmax_t kMaxCopyBytes = std::uintmax_t{1} << 30U;
 
 template <typename Archive, typename Pixel>
@@ -59,11 +61,13 @@ void serialize(Archive& archive, Texture& texture) {
 }
 
 template <typename Archive>
-void serialize(Archive& archive, Model& model) {
+void serialize(Archive& archive, Model& model, bool has_filters = true) {
   serialize(archive, model.mesh);
   serialize_items(archive, model.texture_points);
   serialize_items(archive, model.parts);
   serialize(archive, model.textures);
+  if (!has_filters) return;
+  for (Texture& texture : model.textures) serialize(archive, texture.is_pixelated);
 }
 
 namespace {
@@ -140,7 +144,8 @@ Model read_sandboxed(const std::filesystem::path& path) {
   const std::size_t max_bytes = (std::size_t{2} << 30U) + 64 * bytes;
   const std::string answer = run_sandboxed(
       [&] {
-        Model model = read_by_assimp(path);
+        Model model =
+            extension == ".glb" || extension == ".gltf" ? read_gltf_model(path) : read_by_assimp(path);
         ByteWriter writer;
         serialize(writer, model);
         serialize(writer, model.notes);
@@ -170,11 +175,11 @@ void bring_origin_near(const std::filesystem::path& path, Model& model) {
 
 Model read_copy(const std::filesystem::path& path) {
   const std::string bytes = read_bytes(path, "a model of a recorded session", kMaxCopyBytes);
-  if (!bytes.starts_with(kCopyHead))
+  if (!bytes.starts_with(kCopyHead) && !bytes.starts_with(kCopyHead1))
     fail_for_file(path, "is not a model of a recorded session, or is damaged");
   ByteReader reader(std::string_view(bytes).substr(kCopyHead.size()), path.string());
   Model model;
-  serialize(reader, model);
+  serialize(reader, model, bytes.starts_with(kCopyHead));
   reader.require_end();
   return model;
 }

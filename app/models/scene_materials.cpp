@@ -2,7 +2,6 @@
 // coordinates per vertex.
 #include "app/models/scene_materials.hpp"
 
-#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
@@ -19,30 +18,22 @@
 
 #include "app/models/texture_file.hpp"
 #include "mapping/mesh/assimp_import.hpp"
+#include "mapping/mesh/model_folder.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {
-
-enum class Rules { kGltf, kCollada, kOther };
-
-Rules rules_of(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".glb" || extension == ".gltf") return Rules::kGltf;
-  return extension == ".dae" ? Rules::kCollada : Rules::kOther;
-}
 
 /// Texture of a material, as the file names it.
 struct TextureName {
   std::string name;
   unsigned channel = 0;  ///< set of texture coordinates
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
-  std::uint8_t least_opacity = 128;  ///< alpha cutoff; 0: alpha is ignored
 };
 
 /// Look of a material.
 struct Look {
-  aiColor3D colour{1.0F, 1.0F, 1.0F};  ///< linear for glTF, else sRGB
+  aiColor3D colour{1.0F, 1.0F, 1.0F};  ///< sRGB
   bool is_stated = false;              ///< false: filled in by assimp
   std::int32_t texture = kNoTexture;
   unsigned channel = 0;
@@ -53,7 +44,7 @@ TextureWrap wrap_of(aiTextureMapMode mode) {
   return mode == aiTextureMapMode_Wrap ? TextureWrap::kRepeat : TextureWrap::kClamp;
 }
 
-std::optional<TextureName> texture_name(const aiMaterial& material, Rules rules) {
+std::optional<TextureName> texture_name(const aiMaterial& material) {
   for (const aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
     aiString name;
     unsigned channel = 0;
@@ -63,49 +54,39 @@ std::optional<TextureName> texture_name(const aiMaterial& material, Rules rules)
             aiReturn_SUCCESS ||
         name.length == 0)
       continue;
-    TextureName found{name.C_Str(), channel, wrap_of(modes[0]), wrap_of(modes[1])};
-    if (rules == Rules::kGltf) {
-      aiString mode("OPAQUE");
-      float cutoff = 0.5F;
-      material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode);
-      material.Get(AI_MATKEY_GLTF_ALPHACUTOFF, cutoff);
-      const bool is_opaque = std::string_view(mode.C_Str()) == "OPAQUE";
-      found.least_opacity =
-          is_opaque ? 0 : channel_of(std::string_view(mode.C_Str()) == "MASK" ? cutoff : 0.5F);
-    }
-    return found;
+    return TextureName{name.C_Str(), channel, wrap_of(modes[0]), wrap_of(modes[1])};
   }
   return std::nullopt;
 }
 
-/// Returns the material libraries that an .obj names and that are not there.
-std::vector<std::string> missing_libraries(const std::filesystem::path& path) {
+/// Returns the material libraries that an .obj names and that cannot be read, each with the reason.
+std::vector<std::pair<std::string, std::string>> unreadable_libraries(const std::filesystem::path& path) {
   constexpr int kLines = 10'000;  // they are named at the start
-  std::vector<std::string> missing;
-  if (lower_extension(path) != ".obj") return missing;
+  std::vector<std::pair<std::string, std::string>> unreadable;
+  if (lower_extension(path) != ".obj") return unreadable;
   std::ifstream file(path);
   std::string line;
   for (int i = 0; i < kLines && std::getline(file, line); ++i) {
     if (!line.starts_with("mtllib ")) continue;
     const std::size_t end = line.find_last_not_of(" \t\r");
     const std::string name = line.substr(7, end == std::string::npos ? 0 : end - 6);
-    std::error_code unreadable;
-    if (!std::filesystem::is_regular_file(path.parent_path() / name, unreadable)) missing.push_back(name);
+    if (NamedFile found = file_in_folder_of(path, name); !found.fault.empty())
+      unreadable.emplace_back(name, std::move(found.fault));
   }
-  return missing;
+  return unreadable;
 }
 
 class Appearance {
  public:
   Appearance(const std::filesystem::path& path, const aiScene& scene, Model& model)
-      : path_(path), scene_(scene), model_(model), rules_(rules_of(path)) {
-    for (const std::string& library : missing_libraries(path)) {
-      note("its material file " + library + " is missing; it is drawn without its materials");
+      : path_(path), scene_(scene), model_(model), is_collada_(lower_extension(path) == ".dae") {
+    for (const auto& [library, fault] : unreadable_libraries(path)) {
+      note("its material file " + library + " " + fault + "; it is drawn without its materials");
       lacks_library_ = true;
     }
     std::set<std::string> names;
     for (unsigned i = 0; i < scene.mNumMaterials; ++i)
-      if (const auto texture = texture_name(*scene.mMaterials[i], rules_)) names.insert(texture->name);
+      if (const auto texture = texture_name(*scene.mMaterials[i])) names.insert(texture->name);
     max_pixels_ = kMaxTexturePixels / std::max<std::size_t>(names.size(), 1);
     for (unsigned i = 0; i < scene.mNumMaterials; ++i) looks_.push_back(look_of(i));
   }
@@ -132,11 +113,11 @@ class Appearance {
   const std::filesystem::path& path_;
   const aiScene& scene_;
   Model& model_;
-  Rules rules_;
+  bool is_collada_;
   bool lacks_library_ = false;
   std::size_t max_pixels_ = 0;
   std::vector<Look> looks_;
-  std::map<std::tuple<std::string, TextureWrap, TextureWrap, std::uint8_t>, std::int32_t> textures_;
+  std::map<std::tuple<std::string, TextureWrap, TextureWrap>, std::int32_t> textures_;
 
   void note(const std::string& sentence) { model_.notes.push_back(path_.string() + ": " + sentence); }
 
@@ -146,9 +127,7 @@ class Appearance {
   }
 
   /// Returns true if the file states the material, and assimp did not fill it in.
-  [[nodiscard]] bool is_stated(unsigned index, const aiMaterial& material, const aiColor3D& colour) const {
-    // assimp's glTF reader appends one material for the parts that have none.
-    if (rules_ == Rules::kGltf) return index + 1 < scene_.mNumMaterials;
+  [[nodiscard]] bool is_stated(const aiMaterial& material, const aiColor3D& colour) const {
     aiString name;
     material.Get(AI_MATKEY_NAME, name);
     const bool is_usual = colour == aiColor3D(0.6F, 0.6F, 0.6F) || colour == aiColor3D(1.0F, 1.0F, 1.0F);
@@ -160,29 +139,26 @@ class Appearance {
     Look look;
     if (material.Get(AI_MATKEY_COLOR_DIFFUSE, look.colour) != aiReturn_SUCCESS)
       material.Get(AI_MATKEY_BASE_COLOR, look.colour);
-    look.is_stated = is_stated(index, material, look.colour);
-    const std::optional<TextureName> name = texture_name(material, rules_);
+    look.is_stated = is_stated(material, look.colour);
+    const std::optional<TextureName> name = texture_name(material);
     if (!name) return look;
     look.is_stated = true;
     look.texture = texture_of(*name);
     look.channel = name->channel;
     if (look.texture == kNoTexture) return look;
     // Many exporters write black, or any colour, for a material whose texture gives the colour.
-    if (rules_ == Rules::kCollada || look.colour.IsBlack()) look.colour = aiColor3D(1.0F, 1.0F, 1.0F);
+    if (is_collada_ || look.colour.IsBlack()) look.colour = aiColor3D(1.0F, 1.0F, 1.0F);
     return look;
   }
 
   /// Returns the index of the texture; kNoTexture, with a note, if it cannot be read.
   std::int32_t texture_of(const TextureName& name) {
-    const auto [known, is_new] =
-        textures_.try_emplace({name.name, name.wrap_u, name.wrap_v, name.least_opacity}, kNoTexture);
+    const auto [known, is_new] = textures_.try_emplace({name.name, name.wrap_u, name.wrap_v}, kNoTexture);
     if (!is_new) return known->second;
     try {
       Texture texture = read(name.name);
       texture.wrap_u = name.wrap_u;
       texture.wrap_v = name.wrap_v;
-      texture.least_opacity = name.least_opacity;
-      if (name.least_opacity == 0) texture.opacity = {};
       known->second = static_cast<std::int32_t>(model_.textures.size());
       model_.textures.push_back(std::move(texture));
     } catch (const Error& fault) {
@@ -201,24 +177,22 @@ class Appearance {
                              static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight),
                              max_pixels_);
     }
-    const std::filesystem::path found = find_texture(path_, name);
-    if (found.empty()) throw Error("is missing");
-    return read_texture(found, max_pixels_);
+    const NamedFile found = find_texture(path_, name);
+    if (!found.fault.empty()) throw Error(found.fault);
+    return read_texture(found.path, max_pixels_);
   }
 
   void add_colours(const ScenePart& part) {
     const aiMesh& source = *scene_.mMeshes[part.source];
     const Look& look = look_at(source);
-    const bool is_gltf = rules_ == Rules::kGltf;
-    const bool uses_vertices = source.HasVertexColors(0) && (is_gltf || look.texture == kNoTexture);
-    const auto channel = [&](float value) { return channel_of(is_gltf ? srgb_of(value) : value); };
+    const bool uses_vertices = source.HasVertexColors(0) && look.texture == kNoTexture;
     for (std::uint32_t i = 0; i < part.vertex_count; ++i) {
       aiColor3D colour = look.colour;
       if (uses_vertices) {
         const aiColor4D& own = source.mColors[0][i];
-        colour = is_gltf ? colour * aiColor3D(own.r, own.g, own.b) : aiColor3D(own.r, own.g, own.b);
+        colour = aiColor3D(own.r, own.g, own.b);
       }
-      model_.mesh.colours.push_back({channel(colour.r), channel(colour.g), channel(colour.b)});
+      model_.mesh.colours.push_back({channel_of(colour.r), channel_of(colour.g), channel_of(colour.b)});
     }
   }
 

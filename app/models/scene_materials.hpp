@@ -12,11 +12,10 @@ namespace roomradar {
 
 /// Sets the model's colours, texture coordinates, parts, textures and notes from the scene.
 ///
-/// Resulting colours are in sRGB. In glTF, material factors and vertex colours are linear and are multiplied.
-/// In the other formats, colours are taken as sRGB, and vertex colours replace the material's colour. A
-/// texture then replaces both. In an .obj, however, the diffuse colour multiplies the texture. A model
-/// without any colour gets none. For a texture that is missing or broken, a note is added and the material's
-/// colour is used. Decodes image files, so call this function within run_sandboxed().
+/// Colours are taken as sRGB, and vertex colours replace the material's colour. A texture then replaces both.
+/// In an .obj, however, the diffuse colour multiplies the texture. A model without any colour gets none. For
+/// a texture that is missing or broken, a note is added and the material's colour is used. Decodes image
+/// files, so call this function within run_sandboxed().
 ///
 /// @param parts  parts of model.mesh, from scene_mesh()
 void set_appearance(const std::filesystem::path& path, const aiScene& scene, std::span<const ScenePart> parts,

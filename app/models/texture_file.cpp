@@ -1,4 +1,5 @@
-// texture_file.cpp: decodes by libpng, libjpeg and stb_image, and reduces by averaging blocks of pixels.
+// texture_file.cpp: decodes by libpng, libjpeg, libwebp and stb_image, and reduces by averaging blocks of
+// pixels.
 #include "app/models/texture_file.hpp"
 
 #include <algorithm>
@@ -11,7 +12,9 @@
 #include <system_error>
 
 #include <stb_image.h>
+#include <webp/decode.h>
 
+#include "mapping/mesh/model_folder.hpp"
 #include "mapping/types/codecs/jpeg.hpp"
 #include "mapping/types/codecs/png.hpp"
 #include "mapping/types/system/error.hpp"
@@ -130,6 +133,19 @@ Texture texture_of_bmp_or_tga(std::string_view bytes, std::size_t max_pixels) {
   return reduced({pixels.get(), width, height, 4}, max_pixels);
 }
 
+Texture texture_of_webp(std::string_view bytes, std::size_t max_pixels) {
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(data, bytes.size(), &features) != VP8_STATUS_OK)
+    throw Error("cannot be decoded as WebP: its header is damaged or cut short");
+  if (features.has_animation != 0) throw Error("cannot be decoded: it is an animated WebP");
+  int width = 0, height = 0;
+  const std::unique_ptr<std::uint8_t, decltype(&WebPFree)> pixels(
+      WebPDecodeRGBA(data, bytes.size(), &width, &height), &WebPFree);
+  if (pixels == nullptr) throw Error("cannot be decoded as WebP: it is damaged or cut short");
+  return reduced({pixels.get(), width, height, 4}, max_pixels);
+}
+
 }  // namespace
 
 Texture decode_texture(std::string_view bytes, std::size_t max_pixels) {
@@ -137,11 +153,13 @@ Texture decode_texture(std::string_view bytes, std::size_t max_pixels) {
   try {
     if (bytes.starts_with("\x89PNG")) return texture_of_png(bytes, max_pixels);
     if (bytes.starts_with("\xff\xd8")) return texture_of_jpeg(bytes, max_pixels);
+    if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP"))
+      return texture_of_webp(bytes, max_pixels);
     if (bytes.starts_with("BM") || is_tga(bytes)) return texture_of_bmp_or_tga(bytes, max_pixels);
   } catch (const std::bad_alloc&) {  // of a picture that claims to be huge
     throw Error("cannot be decoded: it is too large");
   }
-  throw Error("cannot be decoded: it is neither PNG, JPEG, BMP nor TGA");
+  throw Error("cannot be decoded: it is neither PNG, JPEG, WebP, BMP nor TGA");
 }
 
 Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size_t max_pixels) {
@@ -151,16 +169,17 @@ Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size
   return reduced({reinterpret_cast<const unsigned char*>(bytes.data()), width, height, 4, true}, max_pixels);
 }
 
-std::filesystem::path find_texture(const std::filesystem::path& model, const std::string& name) {
-  const std::filesystem::path folder = model.parent_path();
+NamedFile find_texture(const std::filesystem::path& model, const std::string& name) {
+  NamedFile first;
   for (const std::string& spelling : {name, plain_name(name)}) {
     const std::filesystem::path path = spelling;
-    for (const std::filesystem::path& candidate : {folder / path, folder / path.filename()}) {
-      std::error_code unreadable;
-      if (std::filesystem::is_regular_file(candidate, unreadable)) return candidate;
+    for (const std::filesystem::path& candidate : {path, path.filename()}) {
+      NamedFile found = file_in_folder_of(model, candidate);
+      if (found.fault.empty()) return found;
+      if (first.fault.empty()) first = std::move(found);
     }
   }
-  return {};
+  return first;
 }
 
 Texture read_texture(const std::filesystem::path& path, std::size_t max_pixels) {

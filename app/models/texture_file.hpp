@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/models/model.hpp"
+#include "mapping/mesh/model_folder.hpp"
 
 namespace roomradar {
 
@@ -13,8 +14,8 @@ inline constexpr int kMaxTextureSide_px = 4096;
 /// Max number of pixels of all textures of a model together.
 inline constexpr std::size_t kMaxTexturePixels = std::size_t{64} << 20U;
 
-/// Decodes a PNG, JPEG, BMP or TGA image. Pixels that a truncated JPEG, BMP or TGA lacks are grey or black.
-/// An image with more than kMaxTextureSide_px per side or more than max_pixels in total is reduced by
+/// Decodes a PNG, JPEG, WebP, BMP or TGA image. Pixels that a truncated JPEG, BMP or TGA lacks are grey or
+/// black. An image with more than kMaxTextureSide_px per side or more than max_pixels in total is reduced by
 /// averaging. Alpha is kept if some pixel is not opaque. `bytes` may be malicious: call this function within
 /// run_sandboxed().
 /// @throws Error such as "cannot be decoded as PNG: ...", without the file's name
@@ -23,11 +24,11 @@ Texture decode_texture(std::string_view bytes, std::size_t max_pixels);
 /// decode_texture() does.
 Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size_t max_pixels);
 
-/// Returns the path of an image that a model file names. The name is searched relative to the model's folder.
-/// Then its last component is searched in the model's folder, since many files contain paths of their
-/// author's machine. If neither exists, repeats the search without "file://", with percent encoding (%20)
-/// decoded, and with backslashes replaced by slashes. Returns an empty path if there is no such file.
-std::filesystem::path find_texture(const std::filesystem::path& model, const std::string& name);
+/// Looks up an image that a model file names, within the model's folder. The name is searched relative to
+/// this folder. Then its last component is searched in it, since many files contain paths of their author's
+/// machine. If neither exists, repeats the search without "file://", with percent encoding (%20) decoded, and
+/// with backslashes replaced by slashes. The fault is that of the first search.
+NamedFile find_texture(const std::filesystem::path& model, const std::string& name);
 
 /// @throws Error as decode_texture(), also for a file above 64 MiB
 Texture read_texture(const std::filesystem::path& path, std::size_t max_pixels);

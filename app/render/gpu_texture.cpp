@@ -49,7 +49,7 @@ GpuTexture::GpuTexture(GlContext& /*context*/, const Texture& texture) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glGenerateTextureMipmap(name_);
   glTextureParameteri(name_, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTextureParameteri(name_, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(name_, GL_TEXTURE_MAG_FILTER, texture.is_pixelated ? GL_NEAREST : GL_LINEAR);
   glTextureParameteri(name_, GL_TEXTURE_WRAP_S, gl_wrap(texture.wrap_u));
   glTextureParameteri(name_, GL_TEXTURE_WRAP_T, gl_wrap(texture.wrap_v));
   try {

@@ -1,5 +1,5 @@
-// assimp_import.cpp: checks the sizes that a file declares before assimp reads it, and works around bugs of
-// assimp.
+// assimp_import.cpp: checks the sizes that a file declares before assimp reads it, keeps assimp within the
+// file's folder, and works around bugs of assimp.
 #include "mapping/mesh/assimp_import.hpp"
 
 #include <assimp/DefaultIOSystem.h>
@@ -17,6 +17,7 @@
 #include <system_error>
 #include <utility>
 
+#include "mapping/mesh/model_folder.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -95,17 +96,25 @@ std::string obj_as_assimp_wants_it(const std::filesystem::path& path) {
   return is_mended ? mended : std::string();
 }
 
-/// Opens a text in place of one file, and all other files, such as materials, from disk.
-class MendedFile : public Assimp::DefaultIOSystem {
+/// Opens files of the model's folder only, and a text in place of the model if there is one.
+class ModelFolder : public Assimp::DefaultIOSystem {
  public:
-  MendedFile(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {}
+  ModelFolder(const std::filesystem::path& model, std::string text)
+      : model_(std::filesystem::absolute(model)), path_(model.string()), text_(std::move(text)) {}
+  bool Exists(const char* file) const override { return file == path_ || may_open(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    if (file != path_) return DefaultIOSystem::Open(file, mode);
-    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
+    if (file == path_ && !text_.empty())
+      return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
+    return file == path_ || may_open(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
   }
 
  private:
+  std::filesystem::path model_;
   std::string path_, text_;
+
+  [[nodiscard]] bool may_open(const char* file) const {
+    return file_in_folder_of(model_, std::filesystem::absolute(file)).fault.empty();
+  }
 };
 
 /// Returns a file's text as assimp reads it right; empty if the file itself is.
@@ -165,8 +174,7 @@ const aiScene& import_scene(Assimp::Importer& importer, const std::filesystem::p
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   constexpr unsigned kChecked = aiProcess_ValidateDataStructure | aiProcess_RemoveComponent;
-  if (std::string mended = mended_text(path); !mended.empty())
-    importer.SetIOHandler(new MendedFile(path.string(), std::move(mended)));  // owned by the importer
+  importer.SetIOHandler(new ModelFolder(path, mended_text(path)));  // owned by the importer
   const aiScene* scene = importer.ReadFile(path.string(), kChecked);
   // assimp treats a face without corners as a polygon and terminates the process when triangulating it.
   if (scene && has_empty_face(*scene)) fail_for_file(path, "has a face without corners; is it damaged?");

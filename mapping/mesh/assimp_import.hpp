@@ -28,7 +28,8 @@ std::string lower_extension(const std::filesystem::path& path);
 void require_plausible_size(const std::filesystem::path& path);
 
 /// Reads a file as triangles, without animations, lights and cameras. assimp crashes or hangs on some damaged
-/// files, so call this function within run_sandboxed(). In an .stl, vertices at equal positions are joined
+/// files, so call this function within run_sandboxed(). Files that the file names, such as materials, are
+/// opened only if they lie in its folder. In an .stl, vertices at equal positions are joined
 /// and facet normals dropped. Coordinates are in the file's own axes. Coordinates of a .dae are scaled to
 /// metres by the unit that the file states.
 /// @param dropped  further assimp components (aiComponent) to drop

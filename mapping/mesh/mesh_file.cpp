@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "mapping/mesh/assimp_import.hpp"
+#include "mapping/mesh/gltf_scene.hpp"
 #include "mapping/mesh/ply_file.hpp"
 #include "mapping/mesh/scene_mesh.hpp"
 #include "mapping/mesh/serialize_mesh.hpp"
@@ -162,14 +163,31 @@ void require_triangles(const std::filesystem::path& path, const Mesh& mesh) {
     fail_for_file(path, "contains no triangles with an area; must be a surface mesh");
 }
 
-Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
+Mesh read_by_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
   const aiScene& scene =
       import_scene(importer, path, aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_TEXTURES);
-  const bool gltf = is_gltf(format);
-  Mesh mesh = scene_mesh(path, scene, {.y_up_to_z_up = gltf, .has_linear_colours = gltf}).mesh;
-  require_triangles(path, mesh);
-  return mesh;
+  return scene_mesh(path, scene, {}).mesh;
+}
+
+Mesh read_gltf(const std::filesystem::path& path) {
+  GltfDocument document(path);
+  NotDrawn ignored;
+  GltfScene scene = gltf_scene(
+      document, [](auto) { return GltfMaterialUse{}; }, ignored);
+  Mesh& mesh = scene.mesh;
+  const auto& parts = scene.parts;
+  if (!std::all_of(parts.begin(), parts.end(), [](const GltfPart& part) { return part.has_normals; }))
+    mesh.normals.clear();
+  for (std::vector<Eigen::Vector3f>* const vectors : {&mesh.vertices, &mesh.normals})
+    for (Eigen::Vector3f& v : *vectors) v = Eigen::Vector3f(v.x(), -v.z(), v.y());
+  if (!std::all_of(parts.begin(), parts.end(), [](const GltfPart& part) { return part.has_colours; }))
+    scene.colours.clear();
+  for (const Eigen::Vector4f& c : scene.colours) {
+    const auto channel = [](float value) { return channel_of(srgb_of(value)); };
+    mesh.colours.push_back({channel(c.x()), channel(c.y()), channel(c.z())});
+  }
+  return std::move(mesh);
 }
 
 }  // namespace
@@ -183,13 +201,14 @@ Mesh read_mesh(const std::filesystem::path& path) {
       return std::move(*mesh);
     }
   }
-  // assimp crashes or hangs on damaged files, so it runs sandboxed.
+  // assimp crashes or hangs on damaged files, so it runs sandboxed, as do the decoders of glTF.
   const std::uintmax_t bytes = std::filesystem::file_size(path);
   const auto most_s = static_cast<unsigned>(3 + (bytes >> 20U));
   const std::size_t max_bytes = (std::size_t{1} << 30U) + 64 * bytes;
   const std::string answer = run_sandboxed(
       [&] {
-        Mesh mesh = read_by_assimp(path, format);
+        Mesh mesh = is_gltf(format) ? read_gltf(path) : read_by_assimp(path);
+        require_triangles(path, mesh);
         ByteWriter writer;
         serialize(writer, mesh);
         return writer.bytes();

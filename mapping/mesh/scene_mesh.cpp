@@ -14,20 +14,17 @@
 namespace roomradar {
 namespace {
 
-aiMatrix4x4 z_up_from_y_up() { return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}; }
-
 /// Transforms of a part's vertices to the mesh's frame.
 class PartTransforms {
  public:
-  PartTransforms(const aiScene& scene, const aiMesh& part, const aiMatrix4x4& T_root,
-                 const aiMatrix4x4& T_node)
+  PartTransforms(const aiScene& scene, const aiMesh& part, const aiMatrix4x4& T_node)
       : T_node_(T_node), of_normals_(normal_matrix(T_node)) {
     if (!part.HasBones()) return;
     blended_.assign(part.mNumVertices, aiMatrix4x4() * 0.0F);
     std::vector<float> sum(part.mNumVertices, 0.0F);
     for (unsigned b = 0; b < part.mNumBones; ++b) {
       const aiBone& bone = *part.mBones[b];
-      const aiMatrix4x4 T_bone = T_root * in_scene(scene, bone) * bone.mOffsetMatrix;
+      const aiMatrix4x4 T_bone = in_scene(scene, bone) * bone.mOffsetMatrix;
       for (unsigned i = 0; i < bone.mNumWeights; ++i) {
         const aiVertexWeight& weight = bone.mWeights[i];
         if (weight.mVertexId >= part.mNumVertices || !(weight.mWeight > 0.0F)) continue;
@@ -64,7 +61,7 @@ class PartTransforms {
 class Collector {
  public:
   Collector(const std::filesystem::path& path, const aiScene& scene, const SceneMeshConfig& config)
-      : path_(path), scene_(scene), config_(config) {
+      : path_(path), scene_(scene) {
     bool any_normals = false, all_normals = true;
     has_colours_ = true;
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
@@ -74,16 +71,13 @@ class Collector {
       has_colours_ = has_colours_ && scene.mMeshes[i]->HasVertexColors(0);
     }
     has_normals_ = config.mixes_normals ? any_normals : all_normals;
-    if (config.y_up_to_z_up) T_root_ = z_up_from_y_up();
-    if (scene.mRootNode) add(*scene.mRootNode, T_root_, 0);
+    if (scene.mRootNode) add(*scene.mRootNode, aiMatrix4x4(), 0);
   }
   SceneMesh take() { return std::move(collected_); }
 
  private:
   const std::filesystem::path& path_;
   const aiScene& scene_;
-  const SceneMeshConfig& config_;
-  aiMatrix4x4 T_root_;
   bool has_normals_ = false;
   bool has_colours_ = false;
   SceneMesh collected_;
@@ -107,7 +101,7 @@ class Collector {
           path_, "has more than " + std::to_string(3 * kMaxMeshTriangles) + " vertices; simplify it first");
     ScenePart added{source, static_cast<std::uint32_t>(mesh.vertices.size()), part.mNumVertices,
                     static_cast<std::uint32_t>(mesh.triangles.size()), 0};
-    const PartTransforms transforms(scene_, part, T_root_, T_node);
+    const PartTransforms transforms(scene_, part, T_node);
     for (unsigned i = 0; i < part.mNumVertices; ++i) add_vertex(part, i, transforms);
     const bool mirrored = part.mNumVertices > 0 && aiMatrix3x3(transforms.of(0)).Determinant() < 0.0F;
     for (unsigned i = 0; i < part.mNumFaces; ++i)
@@ -133,10 +127,7 @@ class Collector {
     }
     if (has_colours_) {
       const aiColor4D& c = part.mColors[0][i];
-      const auto channel = [&](float value) {
-        return channel_of(config_.has_linear_colours ? srgb_of(value) : value);
-      };
-      mesh.colours.push_back({channel(c.r), channel(c.g), channel(c.b)});
+      mesh.colours.push_back({channel_of(c.r), channel_of(c.g), channel_of(c.b)});
     }
   }
 

@@ -24,8 +24,6 @@ struct SceneMesh {
 };
 
 struct SceneMeshConfig {
-  bool y_up_to_z_up = false;
-  bool has_linear_colours = false;  ///< vertex colours are linear, not sRGB
   /// True: the mesh has normals if any part has them. The normals of other parts are then zero. False: the
   /// mesh has normals only if all parts have them.
   bool mixes_normals = false;

@@ -256,10 +256,11 @@ TEST_F(Models, ABitmapAndATgaAreTexturesAndOtherFormatsAreRefused) {
   EXPECT_EQ(targa.colour.pixels, (std::vector<Rgb>{{6, 5, 4}, {6, 5, 4}, {3, 2, 1}, {3, 2, 1}}));
   EXPECT_EQ(targa.opacity.pixels, (std::vector<std::uint8_t>{128, 128, 64, 64}));
   for (const std::string& other :
-       {std::string("RIFF\x10\0\0\0WEBPVP8 and more than 18 bytes", 40),
+       {std::string("RIFF\x10\0\0\0WAVEfmt and more than 18 bytes", 40),
         std::string("II*\0 a TIFF of more than 18 bytes", 34), std::string("\0", 1)})
-    EXPECT_NE(message_of([&] { (void)decode_texture(other, 100); }).find("neither PNG, JPEG, BMP nor TGA"),
-              std::string::npos);
+    EXPECT_NE(
+        message_of([&] { (void)decode_texture(other, 100); }).find("neither PNG, JPEG, WebP, BMP nor TGA"),
+        std::string::npos);
   std::string empty = tga;
   empty[12] = '\0';  // the width
   EXPECT_NE(message_of([&] { (void)decode_texture(empty, 100); }).find("1..16384 px"), std::string::npos);
