@@ -6,13 +6,16 @@
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -158,6 +161,28 @@ void replace_line(std::string& text, const std::string& word, const std::string&
   text.replace(from, text.find('\n', from) - from, rest);
 }
 
+/// Returns the name of the files beside an .obj, without extension: its own name, with '_' for characters
+/// that readers take for something else. Readers differ on blanks: tinyobjloader takes each word for a file
+/// unless
+/// '\\' stands before the blank, which Blender and assimp take for a part of the name. A name that would be
+/// another .obj's gets one '_' more.
+std::string stem_for_obj(const std::filesystem::path& path) {
+  std::string stem = path.stem().string();
+  const auto is_plain = [](unsigned char c) {
+    return c >= 0x80 || std::isalnum(c) != 0 || c == '.' || c == '_' || c == '-' || c == '+';
+  };
+  std::replace_if(
+      stem.begin(), stem.end(), [&](char c) { return !is_plain(static_cast<unsigned char>(c)); }, '_');
+  if (stem.starts_with('-')) stem.front() = '_';  // else an option, in a material
+  if (stem == path.stem().string()) return stem;
+  const auto is_taken = [&] {
+    std::error_code unreadable;
+    return std::filesystem::exists(path.parent_path() / (stem + ".obj"), unreadable);
+  };
+  while (is_taken()) stem += '_';
+  return stem;
+}
+
 void require_triangles(const std::filesystem::path& path, const Mesh& mesh) {
   if (mesh.triangles.empty())
     fail_for_file(path, "contains no triangles with an area; must be a surface mesh");
@@ -241,9 +266,10 @@ void write_mesh(const TexturedMesh& textured, const std::filesystem::path& path)
   if (textured.texture_points.size() != textured.mesh.vertices.size() || textured.texture_jpeg.empty())
     fail_for_file(path, "not written: its texture is missing, or has no point for each vertex");
   const bool for_gltf = is_gltf(format_of(path));
-  std::filesystem::path picture = path, material = path;
-  picture.replace_extension(".jpg");
-  material.replace_extension(".mtl");
+  const std::filesystem::path stem = path.parent_path() / stem_for_obj(path);
+  std::filesystem::path picture = stem, material = stem;
+  picture += ".jpg";
+  material += ".mtl";
   aiScene scene;  // owns everything in it
   fill_scene(textured.mesh, for_gltf, scene);
   add_texture(textured, for_gltf, picture.filename().string(), scene);

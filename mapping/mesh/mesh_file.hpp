@@ -33,8 +33,9 @@ Mesh read_mesh(const std::filesystem::path& path);
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
 /// Writes a textured mesh as .glb, with the texture in it, or as .obj, with NAME.mtl and NAME.jpg in the same
-/// folder. The material is matt, since lighting and highlights are baked into the texture. Throws Error as
-/// above, also for other extensions.
+/// folder; these names have '_' for blanks and other characters that readers of .obj take differently. The
+/// material is matt, since lighting and highlights are baked into the texture. Throws Error as above, also for
+/// other extensions.
 void write_mesh(const TexturedMesh& textured, const std::filesystem::path& path);
 
 /// Returns true if write_mesh() writes textures in the format that the extension names.

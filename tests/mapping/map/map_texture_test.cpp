@@ -103,6 +103,30 @@ TEST_F(MapTexture, ObjHasItBeside) {
   EXPECT_EQ(read_mesh(folder_.path() / "room.obj").triangles.size(), map_.mesh.triangles.size());
 }
 
+TEST_F(MapTexture, FilesBesideAnObjHaveNamesThatEveryReaderTakesWhole) {
+  const auto names_of = [&](const std::string& obj_name) {
+    export_map(path_, folder_.path() / (obj_name + ".obj"));
+    const auto rest_of_line = [](const std::string& text, const std::string& word) {
+      const std::size_t at = text.find("\n" + word) + 1 + word.size();
+      return text.substr(at, text.find('\n', at) - at);
+    };
+    const std::string obj = read_bytes(folder_.path() / (obj_name + ".obj"), "an obj");
+    std::string library = rest_of_line(obj, "mtllib ");
+    const std::string mtl = read_bytes(folder_.path() / library, "an mtl");
+    EXPECT_EQ(rest_of_line(mtl, "map_Ka "), rest_of_line(mtl, "map_Kd "));
+    EXPECT_TRUE(fs::exists(folder_.path() / rest_of_line(mtl, "map_Kd ")));
+    EXPECT_EQ(rest_of_line(mtl, "map_Kd "), library.substr(0, library.size() - 4) + ".jpg");
+    return library;
+  };
+  EXPECT_EQ(names_of("my room"), "my_room.mtl");
+  EXPECT_EQ(names_of("\xc3\xbcr v1.2"), "\xc3\xbcr_v1.2.mtl");
+  EXPECT_EQ(names_of("v1.2"), "v1.2.mtl");
+  EXPECT_EQ(names_of("-o a\\b\t#1"), "_o_a_b__1.mtl");
+  EXPECT_EQ(names_of("a_b"), "a_b.mtl");
+  EXPECT_EQ(names_of("a b"), "a_b_.mtl") << "not the material of a_b.obj";
+  EXPECT_EQ(names_of("a b"), "a_b_.mtl") << "again the same";
+}
+
 TEST_F(MapTexture, OtherFormatsRefuseATexture) {
   const TexturedMesh textured = textured_mesh(map_.mesh, **map_.texture);
   EXPECT_NE(test::error_of([&] { write_mesh(textured, folder_.path() / "a.ply"); }).find(".glb and .obj"),
