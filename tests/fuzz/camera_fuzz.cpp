@@ -1,7 +1,7 @@
 // camera_fuzz.cpp: camera.json, camera-intrinsics.txt, calibration.json and map.json, by the first byte.
 #include "app/calibration/calibration.hpp"
 #include "app/sources/formats/camera_rig.hpp"
-#include "app/sources/recordings/recording_index.hpp"
+#include "app/sources/datasets/seven_scenes.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
