@@ -7,6 +7,7 @@
 #include <new>
 
 #include "app/commands/command_line.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 int main(int argc, char** argv) {
@@ -23,7 +24,7 @@ int main(int argc, char** argv) {
     return 1;
   } catch (const std::filesystem::filesystem_error& error) {
     std::fprintf(stderr, "roomradar: %s: cannot be used: %s\n", error.path1().c_str(),
-                 error.code().message().c_str());
+                 roomradar::system_reason(error.code()).c_str());
     return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "roomradar: %s\n", error.what());

@@ -79,7 +79,7 @@ MapInfo describe_map(const PrescanWork& work, const FusionPass& pass,
   info.frames_read = pass.counts.frames_read;
   info.frames_fused = static_cast<std::int64_t>(pass.fused.size());
   info.up_source = to_string(pass.found.up.source);
-  info.settings = {{"resolution_m", std::to_string(work.config.resolution_m)},
+  info.settings = {{"resolution_m", format_fixed(work.config.resolution_m, 6)},
                    {kDeviationSetting, format_number(work.config.surface.max_deviation_m)},
                    {kPosesSetting, std::string(to_string(work.config.poses))}};
   if (pass.counts.stopped_for_memory || pass.stopped_for_memory)

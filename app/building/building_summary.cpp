@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
@@ -18,7 +19,7 @@ json array_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 template <typename... Values>
 std::string text_line(const char* format, Values... values) {
   std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
+  format_classic(text.data(), text.size(), format, values...);
   return text.data();
 }
 

@@ -14,6 +14,7 @@
 
 #include "app/calibration/board_pose.hpp"
 #include "app/calibration/median.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 
@@ -198,9 +199,9 @@ std::string advice_on(const BoardViews& views, const Board& board) {
     return views.with_board < kPatience_frames ? "" : "the board always moves: hold it still for a second";
   if (are_squares_off(views)) {
     std::array<char, 128> text{};
-    std::snprintf(text.data(), text.size(),
-                  "the squares seem to be %.3g m, not %.3g m: measure one, and give its side with --square",
-                  median_of(views.off_plane_ratios) * board.square_m, board.square_m);
+    format_classic(text.data(), text.size(),
+                   "the squares seem to be %.3g m, not %.3g m: measure one, and give its side with --square",
+                   median_of(views.off_plane_ratios) * board.square_m, board.square_m);
     return text.data();
   }
   if (views.views.size() >= 8 && 3 * count_tilted(views) < views.views.size())

@@ -15,6 +15,7 @@
 #include "app/calibration/board_pose.hpp"
 #include "app/calibration/calibration_problem.hpp"
 #include "app/calibration/median.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -119,7 +120,7 @@ void require_views(const BoardViews& views, const Board& board) {
   if (are_squares_off(views)) {
     const double ratio = median_of(views.off_plane_ratios);
     std::array<char, 160> sizes{};
-    std::snprintf(
+    format_classic(
         sizes.data(), sizes.size(),
         "is %.3g times as far as squares of %g m would be; squares of %.3g m would fit. Measure one, "
         "and give its side with --square",

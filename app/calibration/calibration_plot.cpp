@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "mapping/types/system/classic_locale.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -40,7 +42,7 @@ Panel make_panel(cv::Mat& picture, int column, int row, const std::string& title
 
 void number(cv::Mat& picture, const char* format, double value, cv::Point at) {
   char text[32];
-  std::snprintf(text, sizeof text, format, value);
+  format_classic(text, sizeof text, format, value);
   write(picture, text, at);
 }
 
@@ -83,8 +85,8 @@ void draw_correction(cv::Mat& picture, const Calibration& calibration) {
   for (int y = 0; y < camera.height_px; y += 8)
     for (int x = 0; x < camera.width_px; x += 8) most_mm = std::max(most_mm, std::abs(correction_mm(x, y)));
   char title[96];
-  std::snprintf(title, sizeof title, "depth correction at 2 m: red farther, blue nearer, by up to %.0f mm",
-                most_mm);
+  format_classic(title, sizeof title, "depth correction at 2 m: red farther, blue nearer, by up to %.0f mm",
+                 most_mm);
   const Panel panel = make_panel(picture, 1, 1, title, 0.0, camera.width_px, camera.height_px, 0.0);
   for (int row = 0; row < panel.inside.height; ++row)
     for (int column = 0; column < panel.inside.width; ++column) {

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "mapping/types/system/classic_locale.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -34,13 +36,13 @@ std::string progress_line(const ProgressState& state, bool with_bar) {
   if (has_total) line += "/" + std::to_string(*state.total);
   if (state.per_s > 0.0) {
     char text[48];
-    std::snprintf(text, sizeof(text), ", %.1f/s", state.per_s);
+    format_classic(text, sizeof(text), ", %.1f/s", state.per_s);
     line += text;
   }
   if (state.left_s >= 0.0) {
     const auto whole_s = static_cast<long long>(std::min(std::ceil(state.left_s), 3.6e6));
     char text[48];
-    std::snprintf(text, sizeof(text), ", %lld:%02lld left", whole_s / 60, whole_s % 60);
+    format_classic(text, sizeof(text), ", %lld:%02lld left", whole_s / 60, whole_s % 60);
     line += text;
   }
   return state.note.empty() ? line : line + ", " + state.note;

@@ -14,6 +14,7 @@
 #include "app/quality/quality_json.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/folder_entries.hpp"
@@ -117,7 +118,8 @@ ScriptEvent SessionRecorder::with_mesh_kept(ScriptEvent event, const Model& mode
   const std::string name = "mesh-" + std::to_string(++meshes_) + kModelCopyExtension;
   std::error_code fault;
   fs::create_directories(folder_ / kMeshes, fault);
-  if (fault) throw Error((folder_ / kMeshes).string() + ": the model cannot be copied: " + fault.message());
+  if (fault)
+    throw Error((folder_ / kMeshes).string() + ": the model cannot be copied: " + system_reason(fault));
   write_model_copy(model, folder_ / kMeshes / name);
   event.mesh = std::string(kMeshes) + "/" + name;
   event.size_m.reset();
@@ -134,8 +136,8 @@ void SessionRecorder::write(ScriptEvent event, std::int64_t run_frame) {
 
 void SessionRecorder::write(const FrameFingerprint& fingerprint) {
   std::array<char, 80> line{};
-  std::snprintf(line.data(), line.size(), "%" PRId64 " %016" PRIx64 " %016" PRIx64 "\n",
-                fingerprint.run_frame, fingerprint.objects, fingerprint.picture);
+  format_classic(line.data(), line.size(), "%" PRId64 " %016" PRIx64 " %016" PRIx64 "\n",
+                 fingerprint.run_frame, fingerprint.objects, fingerprint.picture);
   results_ << line.data() << std::flush;
   require_written(results_, folder_ / kResults);
 }

@@ -25,6 +25,7 @@
 #include "app/evaluation/fallthrough/trial.hpp"
 #include "app/evaluation/fallthrough/trial_pictures.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/make_folder.hpp"
@@ -109,8 +110,8 @@ std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vect
       MappedRoom& room = *rooms[row.room];
       PreparedScenario prepared(room.scanned.simulated, seed, turn_of(row.number, rooms.size()).number);
       char number[80];
-      std::snprintf(number, sizeof number, "%+.1f cm; scenario %lld, ", 100.0 * verdict.error_m,
-                    static_cast<long long>(row.number));
+      format_classic(number, sizeof number, "%+.1f cm; scenario %lld, ", 100.0 * verdict.error_m,
+                     static_cast<long long>(row.number));
       pictures.push_back({std::string(kFallthroughPolicies[i].name) + ": " +
                               std::string(to_string(verdict.outcome)) + ", " + number + row.room_title +
                               ", " + std::string(to_string(row.shape)) + " behind " +

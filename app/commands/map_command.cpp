@@ -20,6 +20,7 @@
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/rounded.hpp"
 
@@ -49,9 +50,9 @@ std::string describe(std::vector<LevelSurface> surfaces, const Mesh& mesh) {
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const Eigen::Vector3d& p = surfaces[i].middle_world;
     std::array<char, 120> line{};
-    std::snprintf(line.data(), line.size(), "%-16sz %.2f m, %.2f m2, middle at %.2f %.2f %.2f%s\n",
-                  i == 0 ? "level surfaces" : "", cm(surfaces[i].height_m), surfaces[i].area_m2, cm(p.x()),
-                  cm(p.y()), cm(p.z()), is_floor[i] ? " (floor)" : "");
+    format_classic(line.data(), line.size(), "%-16sz %.2f m, %.2f m2, middle at %.2f %.2f %.2f%s\n",
+                   i == 0 ? "level surfaces" : "", cm(surfaces[i].height_m), surfaces[i].area_m2, cm(p.x()),
+                   cm(p.y()), cm(p.z()), is_floor[i] ? " (floor)" : "");
     text += line.data();
   }
   if (std::find(is_floor.begin(), is_floor.end(), true) == is_floor.end())

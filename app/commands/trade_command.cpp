@@ -25,6 +25,7 @@
 #include "app/farm/manifest.hpp"
 #include "app/sim/scenarios/scenarios.hpp"
 #include "app/sim/sensor/sim_options.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -165,7 +166,7 @@ TradeResult traded(const MeasuredWork& work, const TradeOptions& options, Stop& 
       csv.write(work, result.settings, row);
       if (!progress) return;
       char note[64];
-      std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
+      format_classic(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
       progress->step(row.fault.empty() ? note : row.fault);
     };
     SweptRows made = result.is_by_jobs ? by_jobs(work, settings, watch)

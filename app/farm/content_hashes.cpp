@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 #include <fstream>
+#include <locale>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/atomic_file.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/folder_entries.hpp"
 
@@ -22,6 +24,7 @@ ContentHashes::ContentHashes(fs::path memory) : memory_(std::move(memory)) {
   std::ifstream file(memory_);
   for (std::string line; std::getline(file, line);) {
     std::istringstream in(line);
+    in.imbue(std::locale::classic());
     Known known;
     std::string path;
     if (in >> known.sha256 >> known.size >> known.changed && in.get() == ' ' && std::getline(in, path) &&
@@ -59,7 +62,7 @@ std::string ContentHashes::of(const fs::path& path) {
     for (const auto& [name, file] : files) list += of_file(file) + " " + name + "\n";
     return sha256_of(list);
   } catch (const fs::filesystem_error& error) {
-    throw Error(path.string() + ": cannot be read: " + error.code().message());
+    throw Error(path.string() + ": cannot be read: " + system_reason(error.code()));
   }
 }
 

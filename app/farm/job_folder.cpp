@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mapping/storage/atomic_folder.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/version.hpp"
@@ -57,7 +58,7 @@ std::optional<RunningFolder> RunningFolder::create(const fs::path& folder) {
   std::error_code fault;
   fs::create_directories(running, fault);
   const int lock = open(running.c_str(), O_RDONLY | O_DIRECTORY);
-  if (lock < 0) throw Error(running.string() + ": cannot be created: " + std::strerror(errno));
+  if (lock < 0) throw Error(running.string() + ": cannot be created: " + system_reason(errno));
   if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
     close(lock);
     return std::nullopt;

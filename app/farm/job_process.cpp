@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "app/farm/job_folder.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -66,7 +67,7 @@ pid_t start(const fs::path& program, std::vector<std::string> words, const fs::p
   const pid_t child = nothing >= 0 && log >= 0 ? fork() : -1;
   if (child == 0)
     become(program.c_str(), arguments.data(), environment.data(), folder.c_str(), nothing, log, parent);
-  const std::string reason = std::strerror(errno);
+  const std::string reason = system_reason(errno);
   if (nothing >= 0) close(nothing);
   if (log >= 0) close(log);
   if (child < 0) throw Error(log_file.string() + ": the job cannot be started: " + reason);
@@ -106,7 +107,7 @@ std::string wait_for(pid_t child, const fs::path& log_file, const IsCancelled& i
   rusage use{};
   for (pid_t ended = 0; ended == 0;) {
     ended = wait4(child, &status, WNOHANG, &use);
-    if (ended < 0 && errno != EINTR) return std::strerror(errno);
+    if (ended < 0 && errno != EINTR) return system_reason(errno);
     if (ended < 0) ended = 0;
     if (ended == 0 && !is_killed && is_cancelled()) {
       kill(-child, SIGKILL);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/media/canvas.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
@@ -110,7 +111,7 @@ void draw_scale_bar(const Layout& layout, int y, ColourImage& picture) {
   draw_line(picture, {left, y}, {right, y}, kPlanText, 2);
   for (const double x : {left, right}) draw_line(picture, {x, y - 6.0}, {x, y + 6.0}, kPlanText, 2);
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g m", length_m);
+  format_classic(text.data(), text.size(), "%g m", length_m);
   draw_text(picture, text.data(), static_cast<int>(right) + 12, y + 6, 0.6, kPlanText);
 }
 
@@ -132,7 +133,7 @@ ColourImage draw_floor_plans(const Mesh& mesh_world, std::span<const double> flo
         if (mask->pixels[p] != 0) drawing.pixels[p] = colour;
     const int x = kPlanMargin_px + i * (layout.width_px + kPlanMargin_px);
     std::array<char, 48> title{};
-    std::snprintf(title.data(), title.size(), "floor at %.2f m", rounded(floor_m, 2));
+    format_classic(title.data(), title.size(), "floor at %.2f m", rounded(floor_m, 2));
     draw_text(picture, title.data(), x, kPlanMargin_px + 16, 0.7, kPlanText);
     paste(drawing, x, kPlanMargin_px + kTitle_px, picture);
   }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/rounded.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 template <typename... Numbers>
 std::string format(const char* text, Numbers... numbers) {
   char line[256];
-  std::snprintf(line, sizeof line, text, numbers...);
+  format_classic(line, sizeof line, text, numbers...);
   return line;
 }
 

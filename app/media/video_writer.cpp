@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/sources/video/video_module.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -142,7 +143,7 @@ void VideoWriter::close() {
   std::error_code fault;
   std::filesystem::rename(s.partial, s.path, fault);
   if (fault)
-    throw Error(s.path.string() + ": cannot be written: " + fault.message() + "; the video is in " +
+    throw Error(s.path.string() + ": cannot be written: " + system_reason(fault) + "; the video is in " +
                 s.partial.string());
 }
 

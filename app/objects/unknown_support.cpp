@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "radar/exact/ray_hit.hpp"
 
 namespace roomradar {
@@ -82,13 +83,13 @@ std::string unknown_support_text(const VirtualObject& object, std::span<const Sc
   std::array<char, 160> text{};
   const std::optional<Eigen::Vector3d> from = viewpoint_of_support(object, scene, towards_world);
   if (from)
-    std::snprintf(
+    format_classic(
         text.data(), text.size(),
         " rests on the frontier of unknown space at %.2f %.2f %.2f m; to make that space known, scan "
         "it from about %.1f %.1f %.1f m",
         p.x(), p.y(), p.z(), from->x(), from->y(), from->z());
   else
-    std::snprintf(
+    format_classic(
         text.data(), text.size(),
         " rests on the frontier of unknown space at %.2f %.2f %.2f m, which is hidden from all sides", p.x(),
         p.y(), p.z());

@@ -13,6 +13,7 @@
 
 #include "app/page/page_template.hpp"
 #include "mapping/types/system/atomic_file.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -91,17 +92,17 @@ Json flat(const Points& points, std::size_t most, const PointOf& point_of_item) 
 
 Json json_of(const Hole& hole) {
   std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), "%s, %.2f m wide, %.2f m\u00b2",
-                std::string(to_string(hole.kind)).c_str(), hole.size_m, hole.area_m2);
+  format_classic(text.data(), text.size(), "%s, %.2f m wide, %.2f m\u00b2",
+                 std::string(to_string(hole.kind)).c_str(), hole.size_m, hole.area_m2);
   return {{"at_m", point_of(hole.position_world)}, {"size_m", rounded_m(hole.size_m)}, {"text", text.data()}};
 }
 
 Json json_of(const Change& change) {
   const Eigen::Vector3d size = change.box_world.sizes();
   std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), "%s: %.2f x %.2f x %.2f m, %.1f litres",
-                std::string(to_string(change.kind)).c_str(), size.x(), size.y(), size.z(),
-                1e3 * change.volume_m3);
+  format_classic(text.data(), text.size(), "%s: %.2f x %.2f x %.2f m, %.1f litres",
+                 std::string(to_string(change.kind)).c_str(), size.x(), size.y(), size.z(),
+                 1e3 * change.volume_m3);
   return {{"kind", std::string(to_string(change.kind))},
           {"at_m", point_of(change.position_world)},
           {"low_m", point_of(change.box_world.min())},

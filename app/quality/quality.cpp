@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 
@@ -44,8 +45,8 @@ bool is_within(const QualityField& field, int value) {
   std::string rule = words_of_choice(field.unit);
   if (rule == field.unit) {
     std::array<char, 64> range{};
-    std::snprintf(range.data(), range.size(), "between %.10g and %.10g%s", field.low, field.high,
-                  std::string_view(field.unit) == "M" ? " m" : "");
+    format_classic(range.data(), range.size(), "between %.10g and %.10g%s", field.low, field.high,
+                   std::string_view(field.unit) == "M" ? " m" : "");
     rule = range.data();
   }
   throw Error(std::string(field.name) + " = " + std::string(word) + ": must be " + rule);

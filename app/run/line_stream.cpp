@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 
@@ -22,11 +23,9 @@ namespace roomradar {
 namespace {
 
 Error cannot_be_written(const std::filesystem::path& path, int fault) {
-  if (path == "-")
-    return Error("standard output: cannot be written: " + std::generic_category().message(fault));
+  if (path == "-") return Error("standard output: cannot be written: " + system_reason(fault));
   const std::string known = why_not_writable(path);
-  return Error(path.string() +
-               ": cannot be written: " + (known.empty() ? std::generic_category().message(fault) : known));
+  return Error(path.string() + ": cannot be written: " + (known.empty() ? system_reason(fault) : known));
 }
 
 /// Returns a second descriptor of standard output, and directs standard output itself to standard error.

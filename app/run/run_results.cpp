@@ -9,13 +9,14 @@
 
 #include "app/cli/report.hpp"
 #include "app/objects/unknown_support.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 
 std::string sentence_of(const Departure& departure, const Session& session) {
   const Eigen::Vector3d& p = departure.position_world;
   std::array<char, 80> place{};
-  std::snprintf(place.data(), place.size(), " fell out of the map at %.2f %.2f %.2f m", p.x(), p.y(), p.z());
+  format_classic(place.data(), place.size(), " fell out of the map at %.2f %.2f %.2f m", p.x(), p.y(), p.z());
   const bool is_solid = session.unknown_is_solid();
   const char* const cure =
       session.config().scene.surfaces != SurfacePolicy::kMap

@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <locale>
 #include <sstream>
 #include <utility>
 
 #include "app/objects/virtual_object.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -118,7 +120,7 @@ std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<Virt
   if (use.meshed_px == 0) return why + "; nothing moved";
   const double percent = 100.0 * share_of(use.meshed_px, use.valid_px);
   std::array<char, 64> share{};
-  std::snprintf(share.data(), share.size(), "; %.*f %% of the depth moved", percent < 1.0 ? 2 : 0, percent);
+  format_classic(share.data(), share.size(), "; %.*f %% of the depth moved", percent < 1.0 ? 2 : 0, percent);
   why += share.data();
   for (const auto& object : objects)
     if (object->fine_cells > 0)
@@ -137,6 +139,7 @@ void FrameUseFile::write(std::int64_t frame, const FrameUse& use,
   std::string why = reasons_of(use, objects);
   std::replace(why.begin(), why.end(), '"', '\'');  // names of objects may contain quotes
   std::ostringstream line;
+  line.imbue(std::locale::classic());
   line << frame << ',' << use.room_triangles << ',' << use.views_drawn << ',' << use.room_drawn << ','
        << use.room_asked << ',' << use.valid_px << ',' << use.meshed_px << ',' << use.mesh_triangles << ','
        << use.cells.flat << ',' << use.cells.cut << ',' << use.cells.full << ",\"" << why << "\"\n";

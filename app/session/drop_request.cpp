@@ -9,6 +9,7 @@
 
 #include "app/physics/physics.hpp"
 #include "app/physics/placement/placement.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -78,9 +79,9 @@ bool stays_after_fall(const VirtualObject& object, const Eigen::Isometry3d& T_wo
 std::string note_of_height(double height_m, double requested_m) {
   if (height_m == requested_m) return {};
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                " is dropped from %.3g m, since it would topple or move away if dropped from %.3g m",
-                height_m, requested_m);
+  format_classic(text.data(), text.size(),
+                 " is dropped from %.3g m, since it would topple or move away if dropped from %.3g m",
+                 height_m, requested_m);
   return text.data();
 }
 
@@ -93,15 +94,15 @@ std::string reason_of(SupportStatus status, double footprint_radius_m) {
     case SupportStatus::kNotLevel:
       return "the map has no level surface in this view";
     case SupportStatus::kTooSmall:
-      std::snprintf(text.data(), text.size(),
-                    "it needs a free circle %.2f m across, and no level surface in this view has one",
-                    2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m));
+      format_classic(text.data(), text.size(),
+                     "it needs a free circle %.2f m across, and no level surface in this view has one",
+                     2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m));
       return text.data();
     case SupportStatus::kTooFar:
-      std::snprintf(text.data(), text.size(),
-                    "it needs a free level circle %.2f m across, and none is within %.0f cm of that point",
-                    2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m),
-                    100.0 * PlacementConfig{}.max_away_m);
+      format_classic(text.data(), text.size(),
+                     "it needs a free level circle %.2f m across, and none is within %.0f cm of that point",
+                     2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m),
+                     100.0 * PlacementConfig{}.max_away_m);
       return text.data();
     case SupportStatus::kBlocked:
       return "something is in the way above or beside every level surface that is large enough, or that "
@@ -120,7 +121,7 @@ void require_small_enough(const VirtualObject& object, const DropRequest& drop) 
       footprint_radius_m(object, drop.R_world_object.value_or(object.body.T_world_object.linear()));
   if (reach_m <= kMostFootprint_m) return;
   std::array<char, 320> text{};
-  std::snprintf(
+  format_classic(
       text.data(), text.size(),
       ": reaches %.3g m sideways from its middle, and only what reaches at most %.0f m is dropped in view. "
       "Make it smaller, in metres (--object FILE,size=0.2; add NAME FILE size 0.2), or say the place "

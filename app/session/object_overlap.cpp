@@ -11,6 +11,7 @@
 
 #include "app/physics/placement/free_pose.hpp"
 #include "app/physics/rigid_motion.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -50,7 +51,7 @@ std::string millimetres(double distance_m) { return std::to_string(std::lround(1
 /// Returns "X Y Z m", in the form that a script accepts.
 std::string coordinates(const Eigen::Vector3d& p) {
   std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "%.3f %.3f %.3f m", p.x(), p.y(), p.z());
+  format_classic(text.data(), text.size(), "%.3f %.3f %.3f m", p.x(), p.y(), p.z());
   return text.data();
 }
 

@@ -11,6 +11,7 @@
 #include "mapping/coverage/coverage.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -22,7 +23,7 @@ constexpr const char* kUnfinished = ".unfinished";
 
 std::string text_of(const char* form, auto... values) {
   char text[200];
-  std::snprintf(text, sizeof text, form, values...);
+  format_classic(text, sizeof text, form, values...);
   return text;
 }
 

@@ -10,6 +10,7 @@
 #include "app/start/map_list.hpp"
 #include "mapping/map/map_export.hpp"
 #include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -33,7 +34,8 @@ fs::path free_path(const fs::path& stem, const std::string& extension) {
 void move_folder(const fs::path& from, const fs::path& to) {
   std::error_code fault;
   fs::rename(from, to, fault);
-  if (fault) throw Error(from.string() + ": cannot be renamed to " + to.string() + ": " + fault.message());
+  if (fault)
+    throw Error(from.string() + ": cannot be renamed to " + to.string() + ": " + system_reason(fault));
 }
 
 /// Moves the folder aside first, so that an interruption leaves no half of a map under its name.
@@ -42,16 +44,16 @@ void remove_folder(const fs::path& folder) {
   move_folder(folder, aside);
   std::error_code fault;
   fs::remove_all(aside, fault);
-  if (fault) throw Error(aside.string() + ": is left of the deleted map: " + fault.message());
+  if (fault) throw Error(aside.string() + ": is left of the deleted map: " + system_reason(fault));
 }
 
 std::string sentence_of(const Change& change) {
   const Eigen::Vector3d &at = change.position_world, size = change.box_world.sizes();
   char text[200];
-  std::snprintf(text, sizeof text,
-                "%s: %.0f \u00D7 %.0f \u00D7 %.0f cm, %.1f litres, at x %.2f, y %.2f, z %.2f m",
-                change.kind == ChangeKind::kAppeared ? "Appeared" : "Vanished", 100.0 * size.x(),
-                100.0 * size.y(), 100.0 * size.z(), 1e3 * change.volume_m3, at.x(), at.y(), at.z());
+  format_classic(text, sizeof text,
+                 "%s: %.0f \u00D7 %.0f \u00D7 %.0f cm, %.1f litres, at x %.2f, y %.2f, z %.2f m",
+                 change.kind == ChangeKind::kAppeared ? "Appeared" : "Vanished", 100.0 * size.x(),
+                 100.0 * size.y(), 100.0 * size.z(), 1e3 * change.volume_m3, at.x(), at.y(), at.z());
   return text;
 }
 

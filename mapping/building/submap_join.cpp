@@ -12,6 +12,7 @@
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/localization/pose_hypothesis.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -179,9 +180,9 @@ std::string describe(const SubmapJoin& join) {
                         : join.status == JoinStatus::kContradicted
                             ? "refused, since surfaces contradict"
                             : "refused, since other parts look different";
-  std::snprintf(text.data(), text.size(),
-                "%s: %d keyframes agree, %d of %d others are recognised, %.0f %% of the surface agrees",
-                outcome, join.agreeing, join.recognised, join.expected, 100.0 * join.agreement);
+  format_classic(text.data(), text.size(),
+                 "%s: %d keyframes agree, %d of %d others are recognised, %.0f %% of the surface agrees",
+                 outcome, join.agreeing, join.recognised, join.expected, 100.0 * join.agreement);
   return text.data();
 }
 

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/system/rounded.hpp"
@@ -226,7 +227,7 @@ int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point pane
   line("Coverage", 0, 0.8);
   y += 26;
   char text[128];
-  std::snprintf(text, sizeof(text), "cells of %g mm", 1e3 * resolution_m);
+  format_classic(text, sizeof(text), "cells of %g mm", 1e3 * resolution_m);
   line(text, 0, 0.42, kFaint);
   y += 30;
   const auto entry = [&](const cv::Scalar& colour, const std::string& words) {
@@ -250,16 +251,16 @@ int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point pane
   for (std::size_t i = 0; i < std::min(holes.size(), kNumbered); ++i) {
     const Hole& hole = holes[i];
     draw_badge(picture, {panel.x + 11, y - 5}, std::to_string(i + 1), colour_of(hole.kind));
-    std::snprintf(text, sizeof(text), "%s, %.2f m2, %.1f m wide", std::string(to_string(hole.kind)).c_str(),
-                  hole.area_m2, hole.size_m);
+    format_classic(text, sizeof(text), "%s, %.2f m2, %.1f m wide", std::string(to_string(hole.kind)).c_str(),
+                   hole.area_m2, hole.size_m);
     line(text, 32, 0.43);
     y += 17;
     const Vector3d p = rounded(hole.position_world, 2);
-    std::snprintf(text, sizeof(text), "at %.2f, %.2f, %.2f", p.x(), p.y(), p.z());
+    format_classic(text, sizeof(text), "at %.2f, %.2f, %.2f", p.x(), p.y(), p.z());
     std::string where = text;
     if (hole.viewpoint_world) {
       const Vector3d s = rounded(*hole.viewpoint_world, 2);
-      std::snprintf(text, sizeof(text), "; look from %.2f, %.2f, %.2f", s.x(), s.y(), s.z());
+      format_classic(text, sizeof(text), "; look from %.2f, %.2f, %.2f", s.x(), s.y(), s.z());
       where += text;
     }
     line(where, 32, 0.38, kFaint);

@@ -8,6 +8,7 @@
 #include "mapping/coverage/frontier.hpp"
 #include "mapping/mesh/mesh_borders.hpp"
 #include "mapping/octree/static_map.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/rounded.hpp"
 
 namespace roomradar {
@@ -57,14 +58,14 @@ std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Fr
 std::string describe(const Hole& hole) {
   char text[512];  // room for five numbers of up to 42 digits, and words
   const Eigen::Vector3d p = rounded(hole.position_world, 2), look = rounded(hole.look_direction_world, 2);
-  int length = std::snprintf(
+  int length = format_classic(
       text, sizeof(text), "%s at (%.2f, %.2f, %.2f) m, %.2f m wide, %.2f m2; look along (%.2f, %.2f, %.2f)",
       std::string(to_string(hole.kind)).c_str(), p.x(), p.y(), p.z(), hole.size_m, hole.area_m2, look.x(),
       look.y(), look.z());
   std::string words(text, static_cast<std::size_t>(length));
   if (!hole.viewpoint_world) return words;
   const Eigen::Vector3d from = rounded(*hole.viewpoint_world, 2);
-  length = std::snprintf(text, sizeof(text), " from (%.2f, %.2f, %.2f)", from.x(), from.y(), from.z());
+  length = format_classic(text, sizeof(text), " from (%.2f, %.2f, %.2f)", from.x(), from.y(), from.z());
   return words.append(text, static_cast<std::size_t>(length));
 }
 

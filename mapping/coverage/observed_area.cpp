@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
@@ -37,8 +38,8 @@ void ObservedArea::add(const Frame& frame, const Eigen::Isometry3d& T_world_came
 
 std::string describe(const ObservedArea& seen) {
   char text[80];
-  std::snprintf(text, sizeof(text), "%.1f m2 seen, %.2f of it in the last second", seen.total_m2(),
-                seen.last_second_m2());
+  format_classic(text, sizeof(text), "%.1f m2 seen, %.2f of it in the last second", seen.total_m2(),
+                 seen.last_second_m2());
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/folder_entries.hpp"
 
@@ -43,7 +44,7 @@ void require_replaceable(const fs::path& folder) {
       refuse(folder, "exists and holds \"" + name +
                          "\", which is not part of a map; choose another name for the map");
   }
-  if (fault) refuse(folder, "cannot be listed: " + fault.message());
+  if (fault) refuse(folder, "cannot be listed: " + system_reason(fault));
   if (!empty && !fs::exists(folder / kMapInfoFile))
     refuse(folder, std::string("exists and has no ") + kMapInfoFile +
                        ", so it is not a map; choose another name for the map");

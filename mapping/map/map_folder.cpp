@@ -18,6 +18,7 @@
 #include "mapping/storage/atomic_folder.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/texture/surface_texture_file.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/process_memory.hpp"
@@ -42,7 +43,7 @@ std::optional<std::string> size_fault_of(const fs::path& path, const MapFile& ex
   if (!fs::exists(status)) return path.string() + ": is missing";
   if (!fs::is_regular_file(status)) return path.string() + ": is not a plain file";
   const std::uintmax_t bytes = fs::file_size(path, fault);
-  if (fault) return path.string() + ": cannot be read: " + fault.message();
+  if (fault) return path.string() + ": cannot be read: " + system_reason(fault);
   if (bytes != expected.bytes)
     return path.string() + ": has " + std::to_string(bytes) + " bytes, and " + kMapInfoFile + " says " +
            std::to_string(expected.bytes) +

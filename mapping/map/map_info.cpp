@@ -9,6 +9,7 @@
 
 #include "mapping/map/map_files.hpp"
 #include "mapping/types/pose_origin.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -16,7 +17,7 @@ namespace {
 
 std::string in_megabytes(std::uint64_t bytes) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f MB", static_cast<double>(bytes) / 1e6);
+  format_classic(text.data(), text.size(), "%.1f MB", static_cast<double>(bytes) / 1e6);
   return text.data();
 }
 
@@ -24,8 +25,8 @@ std::string extents(const Eigen::AlignedBox3d& box) {
   if (box.isEmpty()) return "nothing";
   const Eigen::Vector3d &low = box.min(), &high = box.max();
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "x %.2f..%.2f m, y %.2f..%.2f m, z %.2f..%.2f m", low.x(), high.x(),
-                low.y(), high.y(), low.z(), high.z());
+  format_classic(text.data(), text.size(), "x %.2f..%.2f m, y %.2f..%.2f m, z %.2f..%.2f m", low.x(),
+                 high.x(), low.y(), high.y(), low.z(), high.z());
   return text.data();
 }
 
@@ -69,7 +70,7 @@ std::string describe(const MapInfo& info) {
     text += std::string(name) + std::string(16 - std::string_view(name).size(), ' ') + value + "\n";
   };
   std::array<char, 32> resolution{};
-  std::snprintf(resolution.data(), resolution.size(), "%g m", info.resolution_m);
+  format_classic(resolution.data(), resolution.size(), "%g m", info.resolution_m);
   line("source", info.source);
   line("resolution", resolution.data());
   line("frames",

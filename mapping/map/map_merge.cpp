@@ -14,6 +14,7 @@
 #include "mapping/map/map_texture.hpp"
 #include "mapping/map/surface_points.hpp"
 #include "mapping/map/tsdf_interpolation.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 
@@ -204,7 +205,7 @@ void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map
   }
   if (farthest_m <= reach_m) return;
   std::array<char, 200> text{};
-  std::snprintf(
+  format_classic(
       text.data(), text.size(),
       ": reaches %.1f m from the merged map's origin, and at cells of %g m, the finer of the two, a "
       "map reaches %.1f m; scan that one with coarser cells",

@@ -10,6 +10,7 @@
 #include "mapping/localization/place_matching.hpp"
 #include "mapping/map/tsdf_interpolation.hpp"
 #include "mapping/types/linear_algebra.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -213,7 +214,7 @@ std::string describe(const Registration& registration) {
   std::array<char, 200> text{};
   switch (registration.status) {
     case RegistrationStatus::kRegistered:
-      std::snprintf(
+      format_classic(
           text.data(), text.size(),
           "%d views agree; %.0f %% of the surface is known to both, %.0f %% of that agrees, %.1f mm apart",
           registration.agreeing_views, 100.0 * registration.overlap, 100.0 * registration.agreement,
@@ -222,22 +223,22 @@ std::string describe(const Registration& registration) {
     case RegistrationStatus::kNoFeatures:
       return "one of them has no views with colour, so nothing can be recognised";
     case RegistrationStatus::kNotRecognised:
-      std::snprintf(text.data(), text.size(), "only %d views agree on the relative pose; more are needed",
-                    registration.agreeing_views);
+      format_classic(text.data(), text.size(), "only %d views agree on the relative pose; more are needed",
+                     registration.agreeing_views);
       break;
     case RegistrationStatus::kNoOverlap:
-      std::snprintf(text.data(), text.size(), "only %.0f %% of the surface is known to both",
-                    100.0 * registration.overlap);
+      format_classic(text.data(), text.size(), "only %.0f %% of the surface is known to both",
+                     100.0 * registration.overlap);
       break;
     case RegistrationStatus::kContradicted:
       if (registration.agreeing_views > 0)
-        std::snprintf(text.data(), text.size(),
-                      "%d views look alike, but only %.0f %% of the surface agrees; is it another room?",
-                      registration.agreeing_views, 100.0 * registration.agreement);
+        format_classic(text.data(), text.size(),
+                       "%d views look alike, but only %.0f %% of the surface agrees; is it another room?",
+                       registration.agreeing_views, 100.0 * registration.agreement);
       else
-        std::snprintf(text.data(), text.size(),
-                      "only %.0f %% of the surface agrees; was the room rearranged?",
-                      100.0 * registration.agreement);
+        format_classic(text.data(), text.size(),
+                       "only %.0f %% of the surface agrees; was the room rearranged?",
+                       100.0 * registration.agreement);
       break;
   }
   return text.data();

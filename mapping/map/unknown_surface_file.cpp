@@ -18,6 +18,7 @@
 
 #include "mapping/storage/binary_file.hpp"
 #include "mapping/storage/compressed_columns.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -44,7 +45,7 @@ CellGrid take_grid(BinaryReader& in) {
             std::to_string(grid.size.z()) + " cells");
   const bool is_empty = grid.size.isZero() && grid.cell_m == 0.0;
   if (!is_empty && (!(grid.cell_m > 0.0) || (grid.size.array() == 0).any()))
-    in.fail("a grid with cells of " + std::to_string(grid.cell_m) + " m");
+    in.fail("a grid with cells of " + format_fixed(grid.cell_m, 6) + " m");
   const Eigen::Array3d low_m = grid.first_cell.cast<double>().array() * grid.cell_m;
   const Eigen::Array3d high_m = low_m + grid.size.cast<double>().array() * grid.cell_m;
   if (!(low_m.abs() <= kMaxReach_m).all() || !(high_m.abs() <= kMaxReach_m).all())

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <locale>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -200,6 +201,7 @@ Header read_header(const std::filesystem::path& path, ByteReader& bytes) {
   std::string type;
   for (std::size_t line_number = 0; line_number < kMaxHeaderLines; ++line_number) {
     std::istringstream words(bytes.get_line());
+    words.imbue(std::locale::classic());
     std::string name;
     words >> name;
     if (name == "data") {

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/make_folder.hpp"
 
@@ -26,7 +27,7 @@ constexpr const char* kPartial = "partial";
 constexpr const char* kBefore = "before";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what, int reason) {
-  throw Error(path.string() + ": " + what + ": " + std::strerror(reason) +
+  throw Error(path.string() + ": " + what + ": " + system_reason(reason) +
               (reason == ENOSPC || reason == EDQUOT ? "; free some space and save again" : ""));
 }
 

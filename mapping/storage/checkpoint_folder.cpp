@@ -8,6 +8,7 @@
 
 #include "mapping/storage/atomic_folder.hpp"
 #include "mapping/storage/sha256.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/folder_entries.hpp"
@@ -179,7 +180,7 @@ void require_checkpoints_only(const fs::path& folder, std::string_view beside) {
         name != beside && !name.starts_with(kPrefix) && !is_litter(name))
       reject(folder, "holds \"" + name + "\", which is not part of an interrupted scan; move it away");
   }
-  if (fault) reject(folder, "cannot be listed: " + fault.message());
+  if (fault) reject(folder, "cannot be listed: " + system_reason(fault));
 }
 
 std::map<std::string, std::string> identity_of(const fs::path& folder) {

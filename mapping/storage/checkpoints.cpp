@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/make_folder.hpp"
 #include "mapping/types/system/version.hpp"
@@ -68,7 +69,7 @@ void Checkpoints::take_lock() {
   if (lock_ >= 0) return;
   const fs::path path = folder_ / kCheckpointLock;
   lock_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ < 0) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
+  if (lock_ < 0) fail(path, "cannot be opened: " + system_reason(errno));
   // The writer child of a killed process keeps the lock for a moment longer.
   for (int attempt = 0; attempt < 30; ++attempt) {
     if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <locale>
 #include <map>
 #include <sstream>
 #include <string>
@@ -62,6 +63,7 @@ std::vector<TimedPose> read_trajectory(const std::filesystem::path& path) {
   for (int line_number = 1; std::getline(file, line); ++line_number) {
     if (line.empty() || line[0] == '#') continue;
     std::istringstream words(line);
+    words.imbue(std::locale::classic());
     std::array<double, 8> v{};
     for (double& value : v) {
       if (!(words >> value) || !std::isfinite(value))
@@ -71,7 +73,7 @@ std::vector<TimedPose> read_trajectory(const std::filesystem::path& path) {
     const Eigen::Quaterniond q_xyzw(v[7], v[4], v[5], v[6]);
     if (std::abs(q_xyzw.norm() - 1.0) > 0.01)
       throw Error(path.string() + ":" + std::to_string(line_number) + ": the quaternion's length is " +
-                  std::to_string(q_xyzw.norm()) + ", not 1");
+                  format_fixed(q_xyzw.norm(), 6) + ", not 1");
     TimedPose pose;
     pose.frame_index = static_cast<std::int64_t>(trajectory.size());
     pose.stamp_s = v[0];

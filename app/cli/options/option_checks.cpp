@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdio>
 
+#include "mapping/types/system/classic_locale.hpp"
+
 namespace roomradar {
 
 CLI::Validator within(double low, double high, const std::string& unit) {
@@ -13,7 +15,7 @@ CLI::Validator within(double low, double high, const std::string& unit) {
         double value = 0.0;
         if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
         std::array<char, 80> rule{};
-        std::snprintf(rule.data(), rule.size(), "must be between %.10g and %.10g", low, high);
+        format_classic(rule.data(), rule.size(), "must be between %.10g and %.10g", low, high);
         return std::string(rule.data()) + " (" + unit + "), not " + text;
       },
       "", "within");

@@ -11,6 +11,7 @@
 #include "app/media/svg_plot.hpp"
 #include "mapping/types/codecs/png.hpp"
 #include "mapping/types/system/atomic_file.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -60,12 +61,13 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
   char line[400];
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const PolicyTotals& t = totals[i];
-    std::snprintf(line, sizeof line,
-                  "<tr><td>%s</td><td>%d (%.1f %%)</td><td>%d (%.1f %%)</td><td>%s</td><td>%s</td><td>%.1f "
-                  "ms</td><td>× %.2f</td></tr>\n",
-                  std::string(kFallthroughPolicies[i].name).c_str(), t.passed, 100.0 * t.passed / count,
-                  t.false_stops, 100.0 * t.false_stops / count, millimetres(t.contact_error_median_m).c_str(),
-                  millimetres(t.contact_error_p95_m).c_str(), t.frame_median_ms, t.cost_ratio);
+    format_classic(line, sizeof line,
+                   "<tr><td>%s</td><td>%d (%.1f %%)</td><td>%d (%.1f %%)</td><td>%s</td><td>%s</td><td>%.1f "
+                   "ms</td><td>× %.2f</td></tr>\n",
+                   std::string(kFallthroughPolicies[i].name).c_str(), t.passed, 100.0 * t.passed / count,
+                   t.false_stops, 100.0 * t.false_stops / count,
+                   millimetres(t.contact_error_median_m).c_str(), millimetres(t.contact_error_p95_m).c_str(),
+                   t.frame_median_ms, t.cost_ratio);
     html += line;
   }
   return named_cells(html) + "</table></div>\n";

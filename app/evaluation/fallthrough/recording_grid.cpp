@@ -11,6 +11,7 @@
 #include "app/media/canvas.hpp"
 #include "app/sim/room/room_mesh.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "radar/exact/cyber_radar.hpp"
 
 namespace roomradar {
@@ -184,9 +185,9 @@ std::string table_of(const Grid& grid) {
   char line[200];
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const GridTotals hidden = totals_of(grid, i, true), all = totals_of(grid, i, false);
-    std::snprintf(line, sizeof line, "%-12s %23d %8d %8d %27d %8d %8d %24d   ",
-                  std::string(kFallthroughPolicies[i].name).c_str(), hidden.cells, hidden.passed,
-                  hidden.false_stops, all.cells, all.passed, all.false_stops, all.false_stops_at_unknown);
+    format_classic(line, sizeof line, "%-12s %23d %8d %8d %27d %8d %8d %24d   ",
+                   std::string(kFallthroughPolicies[i].name).c_str(), hidden.cells, hidden.passed,
+                   hidden.false_stops, all.cells, all.passed, all.false_stops, all.false_stops_at_unknown);
     table += line;
     for (std::size_t kind = 0; kind < all.rested_on.size(); ++kind) {
       if (all.rested_on[kind] == 0) continue;

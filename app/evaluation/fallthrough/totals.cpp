@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mapping/types/system/atomic_file.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 
@@ -37,7 +38,7 @@ double percentile(std::vector<double> values, double part) {
 std::string millimetres(double metres) {
   if (!std::isfinite(metres)) return "-";
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f mm", 1e3 * metres);
+  format_classic(text.data(), text.size(), "%.1f mm", 1e3 * metres);
   return text.data();
 }
 
@@ -68,11 +69,11 @@ std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int s
       "median\n";
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const PolicyTotals& t = totals[i];
-    std::snprintf(line, sizeof line, "%-11s %8d (%5.1f %%) %19d (%5.1f %%)  %13s %13s  %10.1f ms x %.2f\n",
-                  std::string(kFallthroughPolicies[i].name).c_str(), t.passed, 100.0 * t.passed / scenarios,
-                  t.false_stops, 100.0 * t.false_stops / scenarios,
-                  millimetres(t.contact_error_median_m).c_str(), millimetres(t.contact_error_p95_m).c_str(),
-                  t.frame_median_ms, t.cost_ratio);
+    format_classic(line, sizeof line, "%-11s %8d (%5.1f %%) %19d (%5.1f %%)  %13s %13s  %10.1f ms x %.2f\n",
+                   std::string(kFallthroughPolicies[i].name).c_str(), t.passed, 100.0 * t.passed / scenarios,
+                   t.false_stops, 100.0 * t.false_stops / scenarios,
+                   millimetres(t.contact_error_median_m).c_str(), millimetres(t.contact_error_p95_m).c_str(),
+                   t.frame_median_ms, t.cost_ratio);
     table += line;
   }
   return table;
@@ -122,12 +123,12 @@ void write_csv(const std::vector<ScenarioRow>& rows, const std::filesystem::path
       file << row.number << ',' << row.room_title << ',' << to_string(row.occluder) << ','
            << (row.occluder_moves ? "yes" : "no") << ',' << to_string(row.shape) << ','
            << (row.is_drop ? "drop" : "push") << ',';
-      std::snprintf(numbers, sizeof numbers, "%.3f,%.5f", row.speed_m_s, row.true_travel_m);
+      format_classic(numbers, sizeof numbers, "%.3f,%.5f", row.speed_m_s, row.true_travel_m);
       file << numbers << ',' << kFallthroughPolicies[i].name << ',' << to_string(trial.verdict.outcome)
            << ',';
-      std::snprintf(numbers, sizeof numbers, "%.5f,%.5f", trial.travelled_m, trial.verdict.error_m);
+      format_classic(numbers, sizeof numbers, "%.5f,%.5f", trial.travelled_m, trial.verdict.error_m);
       file << numbers << ',' << to_string(trial.rested_on) << ',';
-      std::snprintf(numbers, sizeof numbers, "%.2f", trial.frame_ms);
+      format_classic(numbers, sizeof numbers, "%.2f", trial.frame_ms);
       file << numbers << '\n';
     }
   whole.commit();

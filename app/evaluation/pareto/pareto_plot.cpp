@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/media/svg_plot.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kWidth = 440.0, kHeight = 320.0, kLeft = 62.0, kTop = 14.0, kRi
 template <typename... Numbers>
 std::string format(const char* text, Numbers... numbers) {
   char line[320];
-  std::snprintf(line, sizeof line, text, numbers...);
+  format_classic(line, sizeof line, text, numbers...);
   return line;
 }
 

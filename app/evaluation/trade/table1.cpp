@@ -7,6 +7,7 @@
 #include "app/evaluation/fallthrough/totals.hpp"
 #include "app/evaluation/trade/run_facts.hpp"
 #include "app/objects/published_objects.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -57,22 +58,22 @@ std::string text_of(const Table1& table) {
       "  polygons     ms    fps    meshed | triangles  ms, median   95 %    fps  radar, ms  room drawn  "
       "meshed\n";
   for (const Table1Row& row : table.rows) {
-    std::snprintf(line, sizeof line,
-                  "%10d  %5.1f  %5.1f  %8d | %9zu  %10.2f  %5.2f  %5.0f  %9.3f  %10.0f  %6.0f\n",
-                  row.published_polygons, row.published_ms, 1e3 / row.published_ms, kPublishedTriangles,
-                  row.triangles, row.frame_median_ms, row.frame_p95_ms, 1e3 / row.frame_median_ms,
-                  row.radar_median_ms, row.static_triangles, row.dynamic_triangles);
+    format_classic(line, sizeof line,
+                   "%10d  %5.1f  %5.1f  %8d | %9zu  %10.2f  %5.2f  %5.0f  %9.3f  %10.0f  %6.0f\n",
+                   row.published_polygons, row.published_ms, 1e3 / row.published_ms, kPublishedTriangles,
+                   row.triangles, row.frame_median_ms, row.frame_p95_ms, 1e3 / row.frame_median_ms,
+                   row.radar_median_ms, row.static_triangles, row.dynamic_triangles);
     text += line;
   }
   const Table1Row &few = table.rows.front(), &many = table.rows.back();
-  std::snprintf(line, sizeof line, "most polygons over fewest: %.2f published, %.2f here\n",
-                many.published_ms / few.published_ms, many.frame_median_ms / few.frame_median_ms);
+  format_classic(line, sizeof line, "most polygons over fewest: %.2f published, %.2f here\n",
+                 many.published_ms / few.published_ms, many.frame_median_ms / few.frame_median_ms);
   text += line;
-  std::snprintf(line, sizeof line,
-                "contact error here: %s median, %s at 95 %%, %.0f %% through, of %d onto hidden surfaces "
-                "(none published)\n",
-                millimetres(table.contact_error_median_m).c_str(),
-                millimetres(table.contact_error_p95_m).c_str(), 1e2 * table.passed, table.contacts);
+  format_classic(line, sizeof line,
+                 "contact error here: %s median, %s at 95 %%, %.0f %% through, of %d onto hidden surfaces "
+                 "(none published)\n",
+                 millimetres(table.contact_error_median_m).c_str(),
+                 millimetres(table.contact_error_p95_m).c_str(), 1e2 * table.passed, table.contacts);
   return text + line + "frames of " + table.scene + ", " + table.renderer + "\n";
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/file_io.hpp"
 
 namespace roomradar {
@@ -13,7 +14,7 @@ namespace {
 std::string csv_number(double value) {
   if (!std::isfinite(value)) return {};
   char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
+  format_classic(text, sizeof text, "%.6g", value);
   return text;
 }
 

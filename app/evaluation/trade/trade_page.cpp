@@ -12,6 +12,7 @@
 #include "app/evaluation/trade/trade_csv.hpp"
 #include "app/media/svg_plot.hpp"
 #include "mapping/types/system/atomic_file.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -47,7 +48,7 @@ std::string page_number(double value) { return std::isfinite(value) ? readable_n
 std::string page_number(double value, const char* form) {
   if (!std::isfinite(value)) return "–";
   char text[40];
-  std::snprintf(text, sizeof text, form, value);
+  format_classic(text, sizeof text, form, value);
   return text;
 }
 

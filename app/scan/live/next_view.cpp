@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "mapping/types/system/classic_locale.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -177,7 +179,7 @@ std::string way_to(const NextView& next, const Isometry3d& T_world_camera, const
   std::string way;
   const auto add = [&](const char* form, double value) {
     char text[60];
-    std::snprintf(text, sizeof text, form, value);
+    format_classic(text, sizeof text, form, value);
     way += (way.empty() ? "" : ", ") + std::string(text);
   };
   const auto tens = [](double degrees) { return 10.0 * std::round(std::abs(degrees) / 10.0); };

@@ -3,9 +3,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 
@@ -63,9 +63,8 @@ double LineReader::whole_number(const char* wanted, double lowest, double highes
 }
 
 Eigen::Vector3d LineReader::vector(const char* wanted, double limit) {
-  std::ostringstream text;
-  text << wanted << ", each from -" << limit << " to " << limit;
-  const std::string wanted_each = text.str();
+  const std::string most = format_general(limit, 6);
+  const std::string wanted_each = std::string(wanted) + ", each from -" + most + " to " + most;
   Eigen::Vector3d value;
   for (int axis = 0; axis < 3; ++axis) value[axis] = number(wanted_each.c_str(), -limit, limit);
   return value;

@@ -9,13 +9,14 @@
 #include <cerrno>
 #include <cstring>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 
 RandomAccessFile::RandomAccessFile(const std::filesystem::path& path) : name_(path.string()) {
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe must not block
-  if (descriptor_ < 0) throw Error(name_ + ": cannot be opened: " + std::strerror(errno));
+  if (descriptor_ < 0) throw Error(name_ + ": cannot be opened: " + system_reason(errno));
   struct stat status = {};
   if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
     ::close(descriptor_);
@@ -35,7 +36,7 @@ std::string RandomAccessFile::read(std::uint64_t offset, std::uint64_t count) co
     const ssize_t got =
         ::pread(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw Error(name_ + ": cannot be read: " + std::strerror(errno));
+    if (got < 0) throw Error(name_ + ": cannot be read: " + system_reason(errno));
     if (got == 0) throw Error(name_ + ": became shorter while it was read");
     done += static_cast<std::size_t>(got);
   }

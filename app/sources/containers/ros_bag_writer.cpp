@@ -10,6 +10,7 @@
 #include "app/sources/containers/ros_bag_format.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -43,7 +44,7 @@ std::uint64_t sortable(std::uint64_t time) { return time << 32U | time >> 32U; }
 
 std::uint64_t ros_time(double stamp_s) {
   if (!(stamp_s >= 0.0 && stamp_s < 4294967295.0))
-    throw Error("the stamp " + std::to_string(stamp_s) +
+    throw Error("the stamp " + format_fixed(stamp_s, 6) +
                 " s cannot be stored in a bag: must be 0 to 4294967295 s");
   auto seconds = static_cast<std::uint64_t>(stamp_s);
   auto nanoseconds = static_cast<std::uint64_t>(std::llround((stamp_s - static_cast<double>(seconds)) * 1e9));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -14,6 +15,7 @@
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -88,8 +90,8 @@ double time_s(const Json& object, const char* name, double least_s, const std::s
   constexpr double kMost_s = 0.1;
   const double value_s = json_number(object, name, where);
   if (!(value_s >= least_s && value_s <= kMost_s))
-    throw Error(where + ": " + name + " = " + std::to_string(value_s) + ": must be " +
-                std::to_string(least_s) + " to " + std::to_string(kMost_s) + " s");
+    throw Error(where + ": " + name + " = " + format_fixed(value_s, 6) + ": must be " +
+                format_fixed(least_s, 6) + " to " + format_fixed(kMost_s, 6) + " s");
   return value_s;
 }
 
@@ -209,6 +211,7 @@ Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_p
   if (std::abs(camera.cx_px - width_px / 2.0) > width_px / 5.0 ||
       std::abs(camera.cy_px - height_px / 2.0) > height_px / 5.0) {
     std::ostringstream message;
+    message.imbue(std::locale::classic());
     message << name << ": the principal point (" << camera.cx_px << ", " << camera.cy_px
             << ") fits images of about " << std::lround(2 * camera.cx_px) << " x "
             << std::lround(2 * camera.cy_px) << ", but the depth images are " << width_px << " x "

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -52,14 +53,15 @@ void remove_abandoned(const fs::path& parent) {
 ScratchFolder::ScratchFolder(fs::path parent) {
   std::error_code fault;
   if (parent.empty()) parent = fs::temp_directory_path(fault);
-  if (fault) throw Error("there is no folder for temporary files; set TMPDIR to one: " + fault.message());
+  if (fault)
+    throw Error("there is no folder for temporary files; set TMPDIR to one: " + system_reason(fault));
   remove_abandoned(parent);
   // Before the new folder is locked, another process may take it for abandoned, lock it and remove it.
   constexpr int kTries = 10;
   for (int i = 0; i < kTries; ++i) {
     std::string pattern = (parent / (std::string(kScratchPrefix) + "XXXXXX")).string();
     if (!mkdtemp(pattern.data()))
-      throw Error(parent.string() + ": no temporary folder can be made there: " + std::strerror(errno));
+      throw Error(parent.string() + ": no temporary folder can be made there: " + system_reason(errno));
     locked_ = lock_scratch(pattern);
     const bool is_taken = locked_ < 0 && errno == EWOULDBLOCK;
     if (!is_taken && fs::exists(pattern, fault)) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/sources/kinect/kinect_pairing.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -24,7 +25,7 @@ double seconds_since(Clock::time_point start) {
 
 std::string with_tenths(double s) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", s);
+  format_classic(text, sizeof text, "%.1f s", s);
   return text;
 }
 

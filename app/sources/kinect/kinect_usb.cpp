@@ -9,6 +9,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "mapping/types/system/classic_locale.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -40,7 +42,7 @@ std::string three_digits(const std::string& text) {
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (fault != std::errc{} || end != text.data() + text.size() || number < 1 || number > 999) return {};
   char digits[8];
-  std::snprintf(digits, sizeof digits, "%03d", number);
+  format_classic(digits, sizeof digits, "%03d", number);
   return digits;
 }
 

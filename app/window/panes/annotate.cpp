@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/objects/unknown_support.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -40,7 +41,7 @@ std::string what_it_does(const ShownObject& object) {
   if (object.stuck) return "stuck in a surface";
   if (object.asleep) return "at rest" + std::string(support_words(object.rests_on));
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "moves at %.1f m/s", object.velocity_world_mps.norm());
+  format_classic(text.data(), text.size(), "moves at %.1f m/s", object.velocity_world_mps.norm());
   return text.data();
 }
 
@@ -123,7 +124,7 @@ void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindo
     draw.AddCircleFilled(*touch, look::px(4.5F), look::kBad);
     draw.AddCircle(*touch, look::px(8.0F), look::kBad, 0, look::px(1.5F));
     std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), "contact after %.1f mm", 1e3 * radar.contact.contact_distance_m);
+    format_classic(text.data(), text.size(), "contact after %.1f mm", 1e3 * radar.contact.contact_distance_m);
     draw_label(draw, {touch->x + look::px(13.0F), touch->y - look::px(7.0F)}, text.data(), look::kText,
                fonts);
   }

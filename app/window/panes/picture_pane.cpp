@@ -7,6 +7,7 @@
 
 #include "app/window/link/player.hpp"
 #include "app/window/panes/annotate.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -28,7 +29,7 @@ void draw_position(ImDrawList& draw, const Area& image, const Eigen::Vector3d& p
 
 std::string position_words(const Eigen::Vector3d& p_world) {
   std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "%.3f %.3f %.3f", p_world.x(), p_world.y(), p_world.z());
+  format_classic(text.data(), text.size(), "%.3f %.3f %.3f", p_world.x(), p_world.y(), p_world.z());
   return text.data();
 }
 
@@ -54,8 +55,8 @@ void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Font
     if (is_here) turn(shown);
     mark_chosen(*draw, shown, image, scale, fonts);
     std::array<char, 96> text{};
-    std::snprintf(text.data(), text.size(), "frame %lld   %.1f s", static_cast<long long>(shown.source_frame),
-                  shown.run_time_s);
+    format_classic(text.data(), text.size(), "frame %lld   %.1f s",
+                   static_cast<long long>(shown.source_frame), shown.run_time_s);
     look::note(*draw, {image.x + look::px(10.0F), image.y + look::px(8.0F)}, text.data(), look::kText, fonts);
     if (is_here && shown.pointed_world) draw_position(*draw, image, *shown.pointed_world, fonts);
   }

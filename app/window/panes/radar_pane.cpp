@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/window/panes/colour_map.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -26,7 +27,7 @@ void colour(const Image<float>& image, float low_m, float high_m, const IsThere&
 
 std::string in_mm(float value_m, bool is_there) {
   std::array<char, 24> text{};
-  std::snprintf(text.data(), text.size(), "%.1f mm", 1e3 * static_cast<double>(value_m));
+  format_classic(text.data(), text.size(), "%.1f mm", 1e3 * static_cast<double>(value_m));
   return is_there ? text.data() : "-";
 }
 
@@ -78,8 +79,8 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
   const Eigen::Vector3d& u = radar.direction_world;
   ImGui::SameLine();
   std::array<char, 120> line{};
-  std::snprintf(line.data(), line.size(), "  along %.2f %.2f %.2f   d = %.2f m   %d x %d px", u.x(), u.y(),
-                u.z(), pictures.volume.depth_m, pictures.volume.width_px, pictures.volume.height_px);
+  format_classic(line.data(), line.size(), "  along %.2f %.2f %.2f   d = %.2f m   %d x %d px", u.x(), u.y(),
+                 u.z(), pictures.volume.depth_m, pictures.volume.width_px, pictures.volume.height_px);
   ImGui::TextUnformatted(line.data());
 
   const ImVec2 from = ImGui::GetCursorScreenPos();

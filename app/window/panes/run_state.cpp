@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <string>
 
+#include "mapping/types/system/classic_locale.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -44,10 +46,10 @@ void draw_frame_time(const Area& area, bool has_two_rows, const TimingPane& timi
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const float frame_ms = timing.frame_ms();
   std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.1f ms   %.0f fps", static_cast<double>(frame_ms), frames_per_s);
+  format_classic(text.data(), text.size(), "%.1f ms   %.0f fps", static_cast<double>(frame_ms), frames_per_s);
   if (speed != 1.0)
-    std::snprintf(text.data(), text.size(), "%.1f ms   %.0f fps   x%g", static_cast<double>(frame_ms),
-                  frames_per_s, speed);
+    format_classic(text.data(), text.size(), "%.1f ms   %.0f fps   x%g", static_cast<double>(frame_ms),
+                   frames_per_s, speed);
   const float left = area.width - look::px(182.0F), top = area.y + look::px(has_two_rows ? 50.0F : 10.0F),
               width = look::px(168.0F);
   draw->AddText(fonts.small, fonts.small->FontSize, {left, top}, look::kText, text.data());

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/window/panes/annotate.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 
 namespace roomradar {
 namespace {
@@ -145,7 +146,7 @@ void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
   ImGui::PushFont(fonts.small);
   const auto row = [](const char* name, const char* format, auto... values) {
     std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), format, values...);
+    format_classic(text.data(), text.size(), format, values...);
     ImGui::TextDisabled("%s", name);
     ImGui::SameLine(look::px(130.0F));
     ImGui::TextUnformatted(text.data());

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "mapping/types/system/classic_locale.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -80,7 +82,7 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
   } lines[] = {{goal_ms(), IM_COL32(96, 200, 120, 200)}, {budget_ms_, IM_COL32(240, 178, 74, 200)}};
   std::array<char, 32> number{};
   for (const auto& line : lines) {
-    std::snprintf(number.data(), number.size(), "%.3g ms", line.ms);
+    format_classic(number.data(), number.size(), "%.3g ms", line.ms);
     const float y = y_of(static_cast<float>(line.ms));
     draw->AddLine({from.x, y}, {from.x + width, y}, line.colour, look::px(1.0F));
     look::note(*draw, {from.x + look::px(5.0F), y - look::px(16.0F)}, number.data(), line.colour, fonts);
@@ -102,7 +104,7 @@ void TimingPane::draw_legend(const Area& area, float median_ms, const look::Font
                           colour, look::px(2.0F));
     draw->AddText(fonts.small, fonts.small->FontSize, {area.x + look::px(14.0F), y},
                   is_stage ? look::kText : look::kDim, name);
-    std::snprintf(number.data(), number.size(), "%.1f", static_cast<double>(ms));
+    format_classic(number.data(), number.size(), "%.1f", static_cast<double>(ms));
     const float wide = ImGui::CalcTextSize(number.data()).x;
     draw->AddText(fonts.small, fonts.small->FontSize, {area.x + area.width - wide - look::px(2.0F), y},
                   is_stage ? look::kText : look::kDim, number.data());

@@ -11,6 +11,8 @@
 #include <optional>
 #include <string_view>
 
+#include "mapping/types/system/classic_locale.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -20,7 +22,7 @@ constexpr double kWorthSaying_s = 3600.0;  // the time left is shown if it is le
 
 std::string text_of(const char* form, auto... values) {
   char text[160];
-  std::snprintf(text, sizeof text, form, values...);
+  format_classic(text, sizeof text, form, values...);
   return text;
 }
 

@@ -14,6 +14,7 @@
 #include "app/window/start/action_bar.hpp"
 #include "app/window/start/start_lists.hpp"
 #include "mapping/map/map_files.hpp"
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -26,7 +27,7 @@ bool leaves(StartAction action) {
 }
 
 void set_name(StartDialog& dialog, const std::string& name) {
-  std::snprintf(dialog.name.data(), dialog.name.size(), "%s", name.c_str());
+  format_classic(dialog.name.data(), dialog.name.size(), "%s", name.c_str());
 }
 
 }  // namespace

@@ -8,9 +8,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <locale>
 #include <string>
 #include <system_error>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 
@@ -58,8 +60,9 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
   if (is_plain && !goes_on) partial_ += ".partial-" + std::to_string(::getpid());
   if (goes_on) std::fflush(nullptr);
   errno = 0;
+  stream_.imbue(std::locale::classic());  // not that of the host program: numbers are written to it
   stream_.open(partial_, std::ios::binary | (goes_on ? std::ios::app : std::ios::trunc));
-  if (!stream_) fail(target, std::strerror(errno));
+  if (!stream_) fail(target, system_reason(errno));
 }
 
 AtomicFile::~AtomicFile() {
@@ -72,15 +75,15 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::commit() {
   if (stream_) errno = 0;  // else a write has failed, and set it
   stream_.close();
-  if (!stream_) fail(target_, errno != 0 ? std::strerror(errno) : "not all of it was taken");
+  if (!stream_) fail(target_, errno != 0 ? system_reason(errno) : "not all of it was taken");
   if (stream_of_process_ >= 0)
     ::lseek(stream_of_process_, 0, SEEK_END);  // stdout keeps a separate file
                                                // offset
   if (partial_ == target_) return;
   std::error_code fault;
-  if (fs::exists(target_, fault) && !reaches_disk(partial_)) fail(target_, std::strerror(errno));
+  if (fs::exists(target_, fault) && !reaches_disk(partial_)) fail(target_, system_reason(errno));
   fs::rename(partial_, target_, fault);
-  if (fault) fail(target_, fault.message());
+  if (fault) fail(target_, system_reason(fault));
   partial_ = target_;
 }
 

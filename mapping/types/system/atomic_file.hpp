@@ -19,6 +19,7 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// Returns the binary stream to which callers write.
+  /// Writes in the classic locale.
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
   /// Renames the partial file to `target` atomically. An existing file is replaced only after the new one is

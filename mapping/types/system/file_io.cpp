@@ -7,6 +7,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -18,11 +19,11 @@ std::string read_bytes(const fs::path& path, std::string_view what, std::uintmax
   const fs::file_status status = fs::status(path, fault);
   if (status.type() == fs::file_type::not_found)
     throw Error(path.string() + ": is missing; expected " + std::string(what));
-  if (!fs::status_known(status)) throw Error(path.string() + ": cannot be read: " + fault.message());
+  if (!fs::status_known(status)) throw Error(path.string() + ": cannot be read: " + system_reason(fault));
   if (!fs::is_regular_file(status))
     throw Error(path.string() + ": is not a regular file; expected " + std::string(what));
   const std::uintmax_t size = fs::file_size(path, fault);
-  if (fault) throw Error(path.string() + ": cannot be read: " + fault.message());
+  if (fault) throw Error(path.string() + ": cannot be read: " + system_reason(fault));
   if (size > max_bytes)
     throw Error(path.string() + ": has " + std::to_string(size) + " bytes, too many for " +
                 std::string(what));
@@ -46,7 +47,7 @@ void write_parts(const fs::path& path, std::initializer_list<std::string_view> p
   std::error_code ignored;
   if (was_opened && fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
   if (const std::string known = why_not_writable(path); known.empty() && why != 0)
-    throw Error(path.string() + ": cannot be written: " + std::generic_category().message(why));
+    throw Error(path.string() + ": cannot be written: " + system_reason(why));
   require_written(file, path);
 }
 
@@ -65,7 +66,7 @@ std::string why_not_writable(const fs::path& path) {
   const fs::path& opened = fs::exists(path, fault) ? path : folder;
   if (::access(opened.c_str(), W_OK) != 0)
     return "you may not write " + std::string(opened == path ? "it" : "in its folder") + " (" +
-           std::generic_category().message(errno) + ")";
+           system_reason(errno) + ")";
   return {};
 }
 

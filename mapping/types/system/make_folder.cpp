@@ -3,6 +3,7 @@
 
 #include <system_error>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -15,7 +16,7 @@ void make_folder(const std::filesystem::path& folder) {
   fs::path above = folder.has_parent_path() ? folder.parent_path() : ".";
   while (!fs::exists(above, unused) && above.has_parent_path() && above != above.parent_path())
     above = above.parent_path();
-  std::string reason = fault.message();
+  std::string reason = system_reason(fault);
   const bool is_folder = fs::is_directory(above, unused);
   if (fault == std::errc::no_such_file_or_directory && is_folder)
     reason = above.string() + " cannot hold files; choose another place";

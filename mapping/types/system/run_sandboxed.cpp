@@ -11,14 +11,17 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <clocale>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <locale>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -98,6 +101,8 @@ std::size_t taken_bytes() {
                            std::size_t max_bytes, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // otherwise an orphan would never be ended
   if (::getppid() != parent) _exit(1);
+  std::setlocale(LC_ALL, "C");  // libraries that read numbers would otherwise use the host program's locale
+  std::locale::global(std::locale::classic());
   for (const int number : {SIGINT, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) std::signal(number, SIG_DFL);
   const int nowhere = ::open("/dev/null", O_WRONLY);  // discards output of `work`
   dup2(nowhere, STDOUT_FILENO);
@@ -129,7 +134,7 @@ std::string run_sandboxed(const std::function<std::string()>& work, const std::s
                           unsigned most_s, std::size_t max_bytes) {
   const auto fail = [&](const std::string& reason) { throw Error(complaint + " (" + reason + ")"); };
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) fail(std::string("no pipe can be made: ") + std::strerror(errno));
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) fail("no pipe can be made: " + system_reason(errno));
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0) {
@@ -145,7 +150,7 @@ std::string run_sandboxed(const std::function<std::string()>& work, const std::s
   if (!read) ::kill(child, SIGKILL);
   std::string answer = std::move(read).value_or(std::string{});
   ::close(ends[0]);
-  if (child < 0) fail(std::string("no process can be started: ") + std::strerror(fork_fault));
+  if (child < 0) fail("no process can be started: " + system_reason(fork_fault));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
