@@ -17,6 +17,7 @@
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/mesh/scene_mesh.hpp"
 #include "mapping/types/codecs/png.hpp"
+#include "mapping/types/system/file_io.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -934,6 +935,13 @@ TEST_F(Gltf, AFilterWithoutBlendingIsKeptInCopiesAlso) {
   EXPECT_TRUE(model.notes.empty());
   write_model_copy(model, path("a.model"));
   EXPECT_EQ(read_model(path("a.model")).textures, model.textures);
+  // A copy of the time before filters ends without the last byte, which tells whether texture 0 is pixelated.
+  std::string copy = read_bytes(path("a.model"), "a copy");
+  ASSERT_EQ(copy.find("roomradar model 2\n"), 0U);
+  copy.replace(16, 1, "1").pop_back();
+  const Model older = read_model(write(copy, "b.model"));
+  EXPECT_FALSE(older.textures.at(0).is_pixelated);
+  EXPECT_EQ(older.mesh.vertices, model.mesh.vertices);
 }
 
 TEST_F(Gltf, DiffuseColourOfSpecularGlossinessIsDrawn) {

@@ -284,6 +284,20 @@ TEST_F(Models, HolesOfATextureAreNotDrawn) {
   EXPECT_FALSE(is_shade_of(through, test::kBlue)) << "the back is seen: " << words_of(through);
 }
 
+TEST_F(Models, APixelatedTextureHasSharpEdges) {
+  Model model = crate();
+  ColourImage& image = model.textures[0].colour;
+  image.resize(2, 2);
+  image.pixels = {test::kRed, test::kGreen, test::kBlue, test::kYellow};
+  for (const bool is_pixelated : {true, false}) {
+    model.textures[0].is_pixelated = is_pixelated;
+    const ObjectLayer layer = drawn_from_front(model);
+    const Rgb left = colour_at(layer, 0.45, 0.25), right = colour_at(layer, 0.55, 0.25);
+    EXPECT_EQ(is_shade_of(left, test::kRed), is_pixelated) << words_of(left);
+    EXPECT_EQ(is_shade_of(right, test::kGreen), is_pixelated) << words_of(right);
+  }
+}
+
 TEST_F(Models, AModelFarFromItsOriginGetsItsMiddleAsOrigin) {
   Mesh mesh = crate().mesh;
   mesh.origin = {1000.0, 0.0, 2.0};
