@@ -69,7 +69,9 @@ void put_origin_on_floor(Submap& submap) {
 }  // namespace
 
 int run(const TrackStep& step) {
-  const std::unique_ptr<FrameSource> source = open_source(step.source, {});
+  SourceOptions options;
+  options.questions = Questions::kDepth;
+  const std::unique_ptr<FrameSource> source = open_source(step.source, {}, {}, options);
   PrescanConfig config;
   config.poses = step.poses;
   StageTimes times;

@@ -14,8 +14,8 @@
 #include "app/sources/kinect/openni_source.hpp"
 #include "app/sources/recordings/cached_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
-#include "app/sources/recordings/foreign_recording.hpp"
 #include "app/sources/recordings/read_ahead.hpp"
+#include "app/sources/recordings/recording_kinds.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -78,8 +78,8 @@ std::filesystem::path calibration_for(const std::string& source, const std::file
   if (!chosen.empty()) return chosen;
   const std::filesystem::path in_folder = std::filesystem::path(source) / "calibration.json";
   // Recordings of other programs bring their own calibration, some in a file of that name.
-  return std::filesystem::exists(in_folder) && foreign_kind(source).empty() ? in_folder
-                                                                            : std::filesystem::path{};
+  return std::filesystem::exists(in_folder) && !is_foreign_recording(source) ? in_folder
+                                                                             : std::filesystem::path{};
 }
 
 bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen) {

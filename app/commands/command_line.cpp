@@ -20,6 +20,7 @@
 #include "app/cli/session_folder.hpp"
 #include "app/cli/usage_fault.hpp"
 #include "app/commands/calibrate_command.hpp"
+#include "app/commands/check_command.hpp"
 #include "app/commands/doctor_command.hpp"
 #include "app/commands/fallthrough_command.hpp"
 #include "app/commands/farm_command.hpp"
@@ -178,6 +179,11 @@ void add_commands(CLI::App& app, std::function<int()>& work) {
       "serve maps over HTTP until Ctrl-C:\n"
       "GET /maps, /maps/NAME, /maps/NAME/tileset.json and tiles; POST /maps/NAME/locate or /locate with a\n"
       "depth and a colour image answers with the camera's pose; `roomradar help http` has the formats",
+      work);
+  add_command<CheckOptions>(
+      app, "check",
+      "examine a recording in a few seconds: kind, times, unit, cameras, poses, and whether its depth\n"
+      "agrees with them; exit status 1 if there is something to correct or to state",
       work);
   add_command<RecordOptions>(app, "record", "write a source's frames as a recording", work);
   add_command<CalibrateOptions>(

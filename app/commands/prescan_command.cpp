@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/cli/apply_scan_quality.hpp"
+#include "app/cli/input_lines.hpp"
 #include "app/cli/interrupt.hpp"
 #include "app/cli/report.hpp"
 #include "app/evaluation/held_out.hpp"
@@ -66,6 +67,7 @@ nlohmann::json settings_of(const PrescanOptions& options) {
   if (options.max_memory_mb > 0.0) settings["max_memory_mb"] = options.max_memory_mb;
   if (!options.calibration.empty()) settings["calibration"] = options.calibration;
   if (options.frames) settings["frames"] = {options.frames->first, options.frames->last};
+  add_to(settings, options.input);
   return settings;
 }
 
@@ -181,6 +183,8 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   PrescanConfig config = prescan_config_of(options);
   ScanStart start = start_scan(options);
   if (start.is_done) return report_held_already(options, channel, report);
+  InputLines lines(*start.input, start.source ? start.source->name() : options.source);
+  lines.say();
   const Interrupt interrupt;
   if (!start.is_live) Interrupt::say(kStopsWithoutMap);
   const bool extends = start.map.has_value();
@@ -205,6 +209,8 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
     write_report(report, options.report);
     fail_to_extend(options, keep_frames);
   }
+  lines.say();
+  report.results["input"] = to_json(start.input->decisions());
   or_say_what_is_kept(start, [&] { report.times.timed("save", [&] { writer.commit(scanned.map); }); });
   report.results["ready_after_s"] = report.seconds() - last_frame_s;
 

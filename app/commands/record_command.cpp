@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/cli/input_lines.hpp"
 #include "app/cli/interrupt.hpp"
 #include "app/cli/open_source.hpp"
 #include "app/cli/progress.hpp"
@@ -32,12 +33,15 @@ ReadResult take_over(FrameSource& source, RecordingWriter& writer, const std::st
 
 int run(const RecordOptions& options) {
   require_contents_outside_maps(options.folder);
-  SourceOptions source_options;
+  SourceOptions source_options = source_options_of(options.input);
+  source_options.input = std::make_shared<InputReport>();
   source_options.keep_all = true;
   const Interrupt interrupt;
   const std::unique_ptr<FrameSource> source =
       ended_by_interrupt(open_source(options.source, options.frames, options.calibration, source_options));
   const bool is_live = !source->rewind();
+  InputLines lines(*source_options.input, source->name());
+  lines.say();
   RecordingWriter writer(options.folder, options.format,
                          gives_calibrated_frames(options.source, options.calibration));
   std::int64_t skipped = 0;

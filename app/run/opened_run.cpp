@@ -123,7 +123,14 @@ std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
   const RunOptions& options = run.options;
   if (options.poses == PoseOrigin::kRecorded)
     require_recorded_world(run.map.info, options.map, options.source);
-  std::unique_ptr<FrameSource> opened = open_source(options.source, options.frames, options.calibration);
+  SourceOptions source_options = source_options_of(options.input);
+  // Poses that are not used need not be compared with depth, which takes time before the first picture.
+  if (options.poses == PoseOrigin::kRecorded) source_options.questions = Questions::kDepth;
+  source_options.input = run.input;
+  std::unique_ptr<FrameSource> opened =
+      open_source(options.source, options.frames, options.calibration, source_options);
+  run.input_lines.emplace(*run.input, opened->name());
+  run.input_lines->say();
   run.is_live = !opened->rewind();  // frame_count() would not tell: with --frames a device has one too
   if (is_session_folder(options.source)) {
     run.check.emplace(options.source);

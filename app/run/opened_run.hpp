@@ -17,6 +17,7 @@
 #include "app/session/session.hpp"
 #include "app/sources/recordings/playback_source.hpp"
 #include "app/window/link/play_host.hpp"
+#include "app/cli/input_lines.hpp"
 #include "mapping/map/map_folder.hpp"
 
 namespace roomradar {
@@ -38,6 +39,9 @@ struct OpenedRun {
   /// Last frame to process; unset if the run ends with the source or with a quit event.
   std::optional<std::int64_t> last_frame;
   std::optional<Interrupt> interrupt;
+  /// Decisions about the recording.
+  std::shared_ptr<InputReport> input = std::make_shared<InputReport>();
+  std::optional<InputLines> input_lines;
   /// Frame source. Ends at the source's end or on Ctrl-C.
   std::unique_ptr<FrameSource> source;
   /// The part of `source` that executes camera commands such as hold and rewind. Owned by `source`.

@@ -86,9 +86,11 @@ bool holds(const MapInfo& map, const FrameSource& source) {
 /// stored frames to resume from.
 void open_or_say(const PrescanOptions& options, const fs::path& folder, ScanStart& start) {
   if (SpooledSource::has_end(folder / kSpool)) return;
-  SourceOptions source_options;
+  SourceOptions source_options = source_options_of(options.input);
   source_options.keep_all = true;
   source_options.cache_simulated = true;
+  source_options.questions = Questions::kDepth;
+  source_options.input = start.input;
   try {
     start.source = open_source(options.source, options.frames, options.calibration, source_options);
   } catch (const Error& fault) {
@@ -136,6 +138,7 @@ std::map<std::string, std::string> identity_for(const PrescanOptions& options, c
       {"hold-out", std::to_string(options.hold_out)},
       {"max-fused", std::to_string(options.max_fused)},
       {"calibration", calibration.empty() ? "none" : sha256_of_file(calibration)},
+      {"input", words_of(options.input)},
       {"into", into}};
   if (recording) identity["length"] = std::to_string(recording->frame_count().value_or(-1));
   return identity;

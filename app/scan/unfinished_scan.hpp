@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/cli/options/prescan_options.hpp"
+#include "app/sources/formats/input_report.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/storage/checkpoints.hpp"
 #include "mapping/types/frame_source.hpp"
@@ -15,6 +16,8 @@ struct ScanStart {
   std::unique_ptr<Checkpoints> checkpoints;  ///< null: no checkpoints are written
   /// Frame source that can rewind. A live source is cached on disk (`spool`), and ends on Ctrl-C.
   std::unique_ptr<FrameSource> source;
+  /// Decisions about the recording.
+  std::shared_ptr<InputReport> input = std::make_shared<InputReport>();
   bool is_live = false;  ///< true: the source continues until Ctrl-C, unless limited by --frames
   /// Cache folder for a live source's frames, in the same folder as the checkpoints. Empty: not cached.
   std::filesystem::path spool;

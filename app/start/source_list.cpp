@@ -8,8 +8,7 @@
 #include "app/sim/sensor/sim_options.hpp"
 #include "app/sources/kinect/fakenect_replay.hpp"
 #include "app/sources/kinect/kinect_usb.hpp"
-#include "app/sources/recordings/foreign_recording.hpp"
-#include "app/sources/recordings/recording_index.hpp"
+#include "app/sources/recordings/recording_kinds.hpp"
 #include "app/start/subfolders.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -38,9 +37,8 @@ SourceEntry describe_recording(const fs::path& folder) {
     return entry;
   }
   try {
-    const auto foreign = index_foreign(folder);
-    entry.detail = foreign ? foreign_kind(folder) + ", " + frames_text(foreign->frames.size())
-                           : "recording, " + frames_text(index_recording(folder).frames.size());
+    const RecordingFacts facts = read_facts(folder);
+    entry.detail = facts.kind + ", " + frames_text(facts.frames.size());
   } catch (const std::exception& error) {
     entry.detail = "cannot be read";
     entry.fault = error.what();
@@ -79,7 +77,7 @@ SourceEntry describe_kinect(std::size_t number, const KinectOnUsb& kinect) {
 void add_recordings_in(const fs::path& folder, std::vector<SourceEntry>& entries) {
   std::vector<fs::path> candidates = subfolders(folder);
   for (fs::path& file : files_in_folder(folder))
-    if (!foreign_kind(file).empty()) candidates.push_back(std::move(file));
+    if (!recording_kind(file).empty()) candidates.push_back(std::move(file));
   for (const fs::path& each : candidates) {
     SourceEntry entry = describe_recording(each);
     if (entry.fault.empty()) entries.push_back(std::move(entry));

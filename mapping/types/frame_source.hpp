@@ -29,8 +29,8 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
 
-  /// Fills `frame`, reusing its allocations. Returns kSkipped for a single unreadable frame. Throws Error if
-  /// the source cannot continue (device gone, disk error, or ten unreadable frames in a row).
+  /// Fills `frame`, reusing its allocations. Returns kSkipped for a single unreadable frame; a recording may
+  /// have any number of them. Throws Error if the source cannot continue (device gone or silent).
   virtual ReadResult next(Frame& frame) = 0;
 
   /// Goes back to the first frame and returns true. Returns false if the source cannot rewind (a live

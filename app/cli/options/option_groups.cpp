@@ -33,6 +33,7 @@ std::vector<CommandHelp> command_helps() {
       {"prescan",
        {{"Everyday options", {"--map", "--window", "--resume", "--preset", "--report", "--trajectory"}},
         {"Source and window", {"--frames", "--calibration", "--poses", "--ui-scale", "--lost-signal"}},
+        {"What the recording does not state", {"--depth-unit", "--camera", "--poses-convention", "--stamps"}},
         {"World", {"--up"}},
         {"Accuracy, time and memory",
          {"--resolution", "--deviation", "--tracking-px", "--fuse-every", "--max-fused", "--texture",
@@ -43,6 +44,7 @@ std::vector<CommandHelp> command_helps() {
       {"run",
        {{"Everyday options", {"--map", "--window", "--object", "--script", "--video", "--report"}},
         {"Source and window", {"--frames", "--calibration", "--poses", "--at-end", "--ui-scale"}},
+        {"What the recording does not state", {"--depth-unit", "--camera", "--poses-convention", "--stamps"}},
         {"Objects", {"--object-size", "--object-up"}},
         {"What objects touch", {"--surfaces", "--unknown", "--commit-changes", "--save-map"}},
         {"Files written",
@@ -54,6 +56,10 @@ std::vector<CommandHelp> command_helps() {
           "--object-error", "--soft-edges", "--shadows", "--shadow-every", "--picture-every"}}},
        "  roomradar run kinect:0 --map maps/kitchen --window\n"
        "  roomradar run RECORDING --map maps/kitchen --object chair.glb --video ar.mp4 --report run.json\n"},
+      {"check",
+       {{"Options", {"--json"}},
+        {"What the recording does not state", {"--depth-unit", "--camera", "--poses-convention", "--stamps"}}},
+       "  roomradar check recordings/kitchen\n  roomradar check phone.bag --json | jq .input\n"},
       {"map info",
        {{"Options", {"--json"}}},
        "  roomradar map info maps/kitchen\n  roomradar map info maps/kitchen --json | jq .surfaces\n"},
@@ -81,7 +87,8 @@ std::vector<CommandHelp> command_helps() {
        "  hall: recordings/hall\n"
        "  stairs: recordings/stairs\n"},
       {"record",
-       {{"Options", {"--format", "--frames", "--calibration"}}},
+       {{"Options", {"--format", "--frames", "--calibration"}},
+        {"What the recording does not state", {"--depth-unit", "--camera", "--poses-convention", "--stamps"}}},
        "  roomradar record kinect:0 recordings/kitchen\n"
        "  roomradar record 'sim:table?frames=100' recordings/table --format 7scenes\n"},
       {"simulate",

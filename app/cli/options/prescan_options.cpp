@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdio>
 
+#include "app/cli/options/input_options.hpp"
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/quality_options.hpp"
 #include "app/cli/options/shared_options.hpp"
@@ -48,6 +49,7 @@ void add_options(CLI::App& command, PrescanOptions& options) {
                    "(default: tracked)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
+  add_input_options(command, options.input);
   command
       .add_option_function<std::string>(
           "--up", [&options](const std::string& text) { options.up = parse_up(text); },

@@ -6,6 +6,7 @@
 
 #include "app/objects/unknown_support.hpp"
 #include "app/quality/quality.hpp"
+#include "app/cli/options/input_options.hpp"
 #include "app/sources/formats/frame_range.hpp"
 #include "mapping/fusion_selection.hpp"
 #include "mapping/odometry/up_direction.hpp"
@@ -42,6 +43,8 @@ struct PrescanOptions {
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().
   std::string calibration;
+  /// What the user states about the recording.
+  InputOptions input;
   /// Up direction of the map; unset: estimated from gravity or, without gravity, from level surfaces.
   std::optional<GivenUp> up;
   /// N > 0: every Nth frame is not fused into the map, but used to evaluate it.

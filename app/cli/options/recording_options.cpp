@@ -14,6 +14,7 @@ void add_options(CLI::App& command, RecordOptions& options) {
       ->required();
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
+  add_input_options(command, options.input);
   add_format_option(command, options.format);
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/cli/options/input_options.hpp"
 #include "app/sources/formats/frame_range.hpp"
 #include "app/sources/recordings/recording_writer.hpp"
 
@@ -23,6 +24,8 @@ struct RecordOptions {
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().
   std::string calibration;
+  /// What the user states about the recording.
+  InputOptions input;
   RecordingFormat format = RecordingFormat::kTum;
 };
 

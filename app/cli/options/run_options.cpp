@@ -25,6 +25,7 @@ void add_input_options(CLI::App& command, RunOptions& options) {
                    "(default: tracked)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
+  add_input_options(command, options.input);
 }
 
 void add_world_options(CLI::App& command, RunOptions& options) {

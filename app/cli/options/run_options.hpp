@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/options/input_options.hpp"
 #include "app/cli/options/object_options.hpp"
 #include "app/quality/quality.hpp"
 #include "app/sources/formats/frame_range.hpp"
@@ -30,6 +31,8 @@ struct RunOptions {
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().
   std::string calibration;
+  /// What the user states about the recording.
+  InputOptions input;
   /// Objects as given on the command line.
   ObjectOptions given_objects;
   /// Objects of a run without a script, from given_objects.

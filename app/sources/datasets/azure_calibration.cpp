@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "app/sources/datasets/indexed_source.hpp"
+#include "app/sources/datasets/recording_facts.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
 #include "mapping/types/system/error.hpp"

@@ -81,7 +81,7 @@ void decode_colour_block(const std::string& bytes, const std::string& code, Imag
 
 }  // namespace
 
-IndexedRecording index_azure_recording(const std::filesystem::path& path) {
+RecordingFacts index_azure_recording(const std::filesystem::path& path) {
   const auto file = std::make_shared<const RandomAccessFile>(path);
   const std::string where = file->name();
   const MatroskaIndex index = index_matroska(*file);
@@ -104,39 +104,38 @@ IndexedRecording index_azure_recording(const std::filesystem::path& path) {
       read_azure_calibration(file->read(attachment->offset, attachment->size), depth_size,
                              colour ? &colour_size : nullptr, where + ", calibration.json");
 
-  IndexedRecording recording{.name = std::filesystem::canonical(path).string(),
-                             .rig = calibration.rig,
-                             .depth_lens = calibration.depth_lens,
-                             .colour_lens = calibration.colour_lens};
-  const auto accelerations =
-      imu ? accelerations_of(*file, blocks_of(index, *imu)) : std::vector<StampedAcceleration>();
+  RecordingFacts facts{.name = std::filesystem::canonical(path).string(),
+                       .rig = calibration.rig,
+                       .depth_lens = calibration.depth_lens,
+                       .colour_lens = calibration.colour_lens};
+  facts.camera_source = "its calibration.json";
+  facts.unit_source = "millimetres, by k4arecorder's format";
+  facts.acceleration_track = std::make_shared<std::vector<StampedAcceleration>>(
+      imu ? accelerations_of(*file, blocks_of(index, *imu)) : std::vector<StampedAcceleration>());
+  if (!facts.acceleration_track->empty()) facts.gravity_source = "its accelerometer";
   const auto depth_blocks = blocks_of(index, *depth);
-  for (const MatroskaBlock& block : depth_blocks) {
-    IndexedFrame frame{.stamp_s = block.stamp_s};
-    if (const auto down = down_at(accelerations, block.stamp_s, kGravityWithin_s))
-      frame.down_camera = calibration.R_depth_accelerometer * *down;
-    recording.frames.push_back(std::move(frame));
-  }
-  std::vector<std::optional<std::size_t>> colour_of(depth_blocks.size());
+  for (const MatroskaBlock& block : depth_blocks) facts.frames.push_back({.time = {.stamp_s = block.stamp_s}});
   std::vector<MatroskaBlock> colour_blocks;
-  if (colour) {
-    colour_blocks = blocks_of(index, *colour);
-    std::vector<double> stamps_s;
-    for (const MatroskaBlock& block : colour_blocks) stamps_s.push_back(block.stamp_s);
-    colour_of = pair_colours(stamps_s, kPairWithin_s, recording.frames);
-  }
+  if (colour) colour_blocks = blocks_of(index, *colour);
+  for (const MatroskaBlock& block : colour_blocks) facts.colours.push_back({.stamp_s = block.stamp_s});
 
-  recording.read_depth = [=](std::size_t frame, DepthImage& image) {
+  facts.read_depth = [=](std::size_t frame, double unit_m, DepthImage& image) {
     const MatroskaBlock& block = depth_blocks[frame];
     convert_depth(file->read(block.offset, block.size), {depth_size.width_px, depth_size.height_px},
-                  DepthPixels::kUint16BigEndian, 0.001, where, image);
+                  DepthPixels::kUint16BigEndian, unit_m, where, image);
   };
   const std::string code = colour ? four_characters_of(*colour) : "";
-  recording.read_colour = [=](std::size_t frame, ColourImage& image) {
-    const MatroskaBlock& block = colour_blocks[*colour_of[frame]];
+  facts.read_colour = [=](std::size_t colour_image, ColourImage& image) {
+    const MatroskaBlock& block = colour_blocks[colour_image];
     decode_colour_block(file->read(block.offset, block.size), code, colour_size, where, image);
   };
-  return recording;
+  facts.read_down = [track = facts.acceleration_track, R = calibration.R_depth_accelerometer](
+                        std::size_t, double stamp_s) -> std::optional<Eigen::Vector3d> {
+    const auto down = down_at(*track, stamp_s, kGravityWithin_s);
+    if (!down) return std::nullopt;
+    return Eigen::Vector3d(R * *down);
+  };
+  return facts;
 }
 
 }  // namespace roomradar

@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "app/sources/datasets/indexed_source.hpp"
+#include "app/sources/datasets/recording_facts.hpp"
 
 namespace roomradar {
 
@@ -10,6 +10,6 @@ namespace roomradar {
 /// or BGRA; optional) and IMU (optional), and the attachment calibration.json. Depth and colour images each
 /// have their own intrinsics and lens distortion. Gravity comes from the accelerometer.
 /// @throws Error naming the file if it is damaged, has no depth track, or has an unusable calibration
-IndexedRecording index_azure_recording(const std::filesystem::path& path);
+RecordingFacts index_azure_recording(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -39,7 +39,7 @@ bool is_klg(const std::filesystem::path& path) {
   return path.extension() == ".klg" && std::filesystem::is_regular_file(path, ignored);
 }
 
-IndexedRecording index_klg(const std::filesystem::path& path) {
+RecordingFacts index_klg(const std::filesystem::path& path) {
   const auto file = std::make_shared<const RandomAccessFile>(path);
   const std::string where = file->name();
   constexpr std::uint64_t kFrameHead_bytes = 16;
@@ -48,9 +48,8 @@ IndexedRecording index_klg(const std::filesystem::path& path) {
   const auto count = count_reader.number<std::int32_t>();
   if (count < 0) throw Error(where + ": is damaged: it states " + std::to_string(count) + " frames");
 
-  IndexedRecording recording{.name = std::filesystem::canonical(path).string()};
+  RecordingFacts facts{.name = std::filesystem::canonical(path).string()};
   std::vector<KlgFrame> places;
-  std::vector<double> stamps_s;
   std::uint64_t at = 4;
   for (std::int32_t i = 0; i < count && file->has(at, kFrameHead_bytes); ++i) {
     const std::string head = file->read(at, kFrameHead_bytes);
@@ -63,26 +62,33 @@ IndexedRecording index_klg(const std::filesystem::path& path) {
                          static_cast<std::uint64_t>(colour_bytes)};
     if (!file->has(place.depth_offset, place.depth_bytes + place.colour_bytes)) break;
     at = place.depth_offset + place.depth_bytes + place.colour_bytes;
-    recording.frames.push_back({.has_colour = colour_bytes > 0});
-    stamps_s.push_back(1e-6 * static_cast<double>(stamp_us));
+    facts.frames.push_back({.time = {.stamp_s = 1e-6 * static_cast<double>(stamp_us)}});
+    if (colour_bytes > 0) facts.frames.back().colour = places.size();
     places.push_back(place);
   }
-  set_stamps(stamps_s, recording.frames);
+  if (static_cast<std::size_t>(count) > places.size())
+    facts.notes.push_back({"images",
+                           "the file is cut short: it states " + std::to_string(count) + " frames and holds " +
+                               std::to_string(places.size()),
+                           count - static_cast<std::int64_t>(places.size()), "", true});
 
   constexpr Intrinsics kElasticFusion{640, 480, 528.0, 528.0, 320.0, 240.0};
   const ImageSize size = klg_size(*file, places);
-  recording.rig.depth_camera = scaled_to_depth(kElasticFusion, size, where);
-  recording.rig.colour_camera = recording.rig.depth_camera;
+  facts.rig.depth_camera = scaled_to_depth(kElasticFusion, size, where);
+  facts.rig.colour_camera = facts.rig.depth_camera;
+  facts.camera_origin = Origin::kAssumed;
+  facts.camera_source = "ElasticFusion (528 px at a width of 640)";
+  facts.is_depth_registered = true;
   const RawLayout layout{size.width_px, size.height_px};
   const auto raw_bytes = std::uint64_t{2} * static_cast<std::uint64_t>(size.width_px) *
                          static_cast<std::uint64_t>(size.height_px);
-  recording.read_depth = [=](std::size_t frame, DepthImage& depth_m) {
+  facts.read_depth = [=](std::size_t frame, double unit_m, DepthImage& depth_m) {
     std::string bytes = file->read(places[frame].depth_offset, places[frame].depth_bytes);
     if (bytes.size() != raw_bytes)
       bytes = decompress(Compression::kZlib, bytes, raw_bytes, where + ": a depth image");
-    convert_depth(bytes, layout, DepthPixels::kUint16, 0.001, where, depth_m);
+    convert_depth(bytes, layout, DepthPixels::kUint16, unit_m, where, depth_m);
   };
-  recording.read_colour = [=](std::size_t frame, ColourImage& image) {
+  facts.read_colour = [=](std::size_t frame, ColourImage& image) {
     const KlgFrame& place = places[frame];
     const std::string bytes = file->read(place.depth_offset + place.depth_bytes, place.colour_bytes);
     if (is_jpeg(bytes))
@@ -90,7 +96,7 @@ IndexedRecording index_klg(const std::filesystem::path& path) {
     else
       convert_colour(bytes, layout, ColourPixels::kRgb8, where, image);
   };
-  return recording;
+  return facts;
 }
 
 }  // namespace roomradar

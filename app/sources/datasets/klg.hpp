@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "app/sources/datasets/indexed_source.hpp"
+#include "app/sources/datasets/recording_facts.hpp"
 
 namespace roomradar {
 
@@ -14,6 +14,6 @@ namespace roomradar {
 /// registered to colour. The file contains no intrinsics. Like ElasticFusion, this reader assumes a focal
 /// length of 528 px at a width of 640 px. A truncated file is read up to its last complete frame.
 /// @throws Error naming the file if it is damaged
-IndexedRecording index_klg(const std::filesystem::path& path);
+RecordingFacts index_klg(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -3,45 +3,71 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
-#include "app/sources/datasets/indexed_source.hpp"
+#include "app/sources/datasets/recording_facts.hpp"
 #include "app/sources/formats/image_header.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 
 namespace roomradar {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Returns the number that a file's name begins with, as in 000012 or 0000012-000000400403, or else ends with,
+/// as in depth_000012; nullopt if there is none.
+std::optional<std::int64_t> number_in(const std::string& stem) {
+  constexpr std::string_view kDigits = "0123456789";
+  const std::size_t begin_end = stem.find_first_not_of(kDigits);
+  if (begin_end != 0) return parse_whole_number(std::string_view(stem).substr(0, begin_end));
+  const std::size_t before = stem.find_last_not_of(kDigits);
+  return parse_whole_number(std::string_view(stem).substr(before + 1));
+}
+
+}  // namespace
+
 std::map<std::int64_t, fs::path> numbered_files(const fs::path& folder,
                                                 std::initializer_list<std::string_view> extensions) {
   std::map<std::int64_t, fs::path> files;
   if (!fs::is_directory(folder)) return files;
+  const std::vector<fs::path> entries = entries_of(folder);
   for (const std::string_view extension : extensions)
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      const auto number = parse_whole_number(entry.path().stem().string());
-      if (entry.path().extension() == extension && number && *number >= 0)
-        files.try_emplace(*number, entry.path());
+    for (const fs::path& file : entries) {
+      const auto number = number_in(file.stem().string());
+      if (file.extension() == extension && number && *number >= 0) files.try_emplace(*number, file);
     }
   return files;
 }
 
-ImageSize size_of_first_png(const std::vector<fs::path>& files, const fs::path& where) {
-  constexpr std::size_t kTried = 10;
+ImageSize size_of_images(const std::vector<fs::path>& files, const fs::path& where) {
+  constexpr std::size_t kSampled = 9;
   constexpr std::uintmax_t kMaxImage_bytes = 1U << 30U;
   std::string first_fault;
-  for (std::size_t i = 0; i < std::min(files.size(), kTried); ++i) {
+  std::map<std::pair<int, int>, int> votes;
+  const auto read = [&](std::size_t i) {
     try {
       const std::string bytes = read_bytes(files[i], "an image", kMaxImage_bytes);
       const ImageHeader header = read_image_header(bytes, files[i].string());
-      return {header.width_px, header.height_px};
+      ++votes[{header.width_px, header.height_px}];
     } catch (const Error& fault) {
       if (first_fault.empty()) first_fault = fault.what();
     }
-  }
+  };
+  const std::size_t sampled = std::min(files.size(), kSampled);
+  for (std::size_t k = 0; k < sampled; ++k) read(k * files.size() / sampled);
+  for (std::size_t i = 0; votes.empty() && i < files.size(); ++i) read(i);
   if (files.empty()) throw Error(where.string() + ": contains no depth images");
-  throw Error(where.string() + ": none of its first frames can be read, the first because " + first_fault);
+  if (votes.empty())
+    throw Error(where.string() + ": none of its " + std::to_string(files.size()) +
+                " images can be read, the first because " + first_fault);
+  const auto most = std::max_element(votes.begin(), votes.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return {most->first.first, most->first.second};
 }
 
 Intrinsics scaled_to_depth(const Intrinsics& colour, ImageSize depth, const std::string& where) {

@@ -13,16 +13,15 @@
 
 namespace roomradar {
 
-/// Returns the files in `folder` whose name is a number >= 0, with one of the extensions, by number. Of
-/// several files with the same number, returns the file whose extension is first in the list. Returns an
+/// Returns the files in `folder` whose name begins or ends with a number, with one of the extensions, by
+/// number: 12.png, 0000012-000000400403.png, depth_12.png. Of several files with the same number, returns the file whose extension is first in the list. Returns an
 /// empty map if the folder does not exist.
 std::map<std::int64_t, std::filesystem::path> numbered_files(
     const std::filesystem::path& folder, std::initializer_list<std::string_view> extensions);
 
-/// Returns the image size in the first readable header among the first ten files. Throws Error naming `where`
-/// if none is readable.
-ImageSize size_of_first_png(const std::vector<std::filesystem::path>& files,
-                            const std::filesystem::path& where);
+/// Returns the size that most of nine images have, which are spread over the list. If none of these can be
+/// read, that of the first that can. Throws Error naming `where` if there is none.
+ImageSize size_of_images(const std::vector<std::filesystem::path>& files, const std::filesystem::path& where);
 
 /// Returns the intrinsics of depth that is registered to colour: those of the colour camera, scaled to the
 /// size `depth`. Throws Error naming `where` if the aspect ratios of depth and colour differ.

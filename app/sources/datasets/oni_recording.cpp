@@ -1,4 +1,4 @@
-// oni_recording.cpp: nodes of a .oni file as depth and colour.
+// oni_facts.cpp: nodes of a .oni file as depth and colour.
 #include "app/sources/datasets/oni_recording.hpp"
 
 #include <algorithm>
@@ -61,9 +61,12 @@ void mirror(Image<Pixel>& image) {
   for (int y = 0; y < image.height; ++y) std::reverse(image.row(y), image.row(y) + image.width);
 }
 
-void decode_oni_depth(const std::string& bytes, const OniNode& node, ImageSize size, const std::string& where,
-                      DepthImage& depth_m) {
-  const double unit_m = integer_of(node, "oniPixelFormat") == kOniDepth100um ? 0.0001 : 0.001;
+double oni_depth_unit_m(const OniNode& node) {
+  return integer_of(node, "oniPixelFormat") == kOniDepth100um ? 0.0001 : 0.001;
+}
+
+void decode_oni_depth(const std::string& bytes, const OniNode& node, ImageSize size, double unit_m,
+                      const std::string& where, DepthImage& depth_m) {
   const RawLayout layout{size.width_px, size.height_px};
   if (node.codec == "NONE") return convert_depth(bytes, layout, DepthPixels::kUint16, unit_m, where, depth_m);
   const auto pixels = static_cast<std::size_t>(size.width_px) * static_cast<std::size_t>(size.height_px);
@@ -88,7 +91,7 @@ void decode_oni_colour(const std::string& bytes, const OniNode& node, ImageSize 
 
 }  // namespace
 
-IndexedRecording index_oni_recording(const std::filesystem::path& path) {
+RecordingFacts index_oni_recording(const std::filesystem::path& path) {
   const auto file = std::make_shared<const RandomAccessFile>(path);
   const std::string where = file->name();
   const auto nodes = std::make_shared<const OniNodes>(index_oni(*file));
@@ -97,33 +100,38 @@ IndexedRecording index_oni_recording(const std::filesystem::path& path) {
   if (depth->codec != "16zT" && depth->codec != "16zP" && depth->codec != "NONE")
     throw Error(where + ": its depth is compressed by '" + depth->codec + "', which is not read");
 
-  IndexedRecording recording{.name = std::filesystem::canonical(path).string()};
+  RecordingFacts facts{.name = std::filesystem::canonical(path).string()};
   const ImageSize depth_size = oni_size(*depth, where);
   const ImageSize colour_size = colour ? oni_size(*colour, where) : ImageSize{};
   const auto seconds = [](const OniFrame& frame) { return 1e-6 * static_cast<double>(frame.stamp_us); };
-  for (const OniFrame& frame : depth->frames) recording.frames.push_back({.stamp_s = seconds(frame)});
-  recording.rig.depth_camera = openni_camera(depth_size, stated_fov_rad(*depth));
-  std::vector<std::optional<std::size_t>> colour_of;
+  for (const OniFrame& frame : depth->frames) facts.frames.push_back({.time = {.stamp_s = seconds(frame)}});
+  facts.rig.depth_camera = openni_camera(depth_size, stated_fov_rad(*depth));
+  const bool states_camera = stated_fov_rad(*depth) > 0.0;
+  facts.camera_origin = states_camera ? Origin::kRecording : Origin::kAssumed;
+  facts.camera_source = states_camera ? "its field of view" : "a PrimeSense";
+  facts.is_depth_registered = integer_of(*depth, "RegistrationType") != 0;
+  facts.depth_unit_m = oni_depth_unit_m(*depth);
+  facts.unit_origin = Origin::kRecording;
+  facts.unit_source = "its pixel format";
   if (colour) {
-    recording.rig.colour_camera = openni_camera(colour_size, stated_fov_rad(*colour));
-    if (integer_of(*depth, "RegistrationType") == 0)
-      recording.rig.T_colour_depth.translation().x() = -kPrimeSenseBaseline_m;
-    std::vector<double> stamps_s;
-    for (const OniFrame& frame : colour->frames) stamps_s.push_back(seconds(frame));
-    colour_of = pair_colours(stamps_s, kPairWithin_s, recording.frames);
+    facts.rig.colour_camera = openni_camera(colour_size, stated_fov_rad(*colour));
+    if (!facts.is_depth_registered)
+      facts.rig.T_colour_depth.translation().x() = -kPrimeSenseBaseline_m;
+    for (const OniFrame& frame : colour->frames) facts.colours.push_back({.stamp_s = seconds(frame)});
   }
-  recording.read_depth = [=](std::size_t frame, DepthImage& depth_m) {
+  facts.read_depth = [=](std::size_t frame, double unit_m, DepthImage& depth_m) {
     const OniFrame& at = depth->frames[frame];
-    decode_oni_depth(file->read(at.offset, at.bytes), *depth, depth_size, where + ": a depth image", depth_m);
+    decode_oni_depth(file->read(at.offset, at.bytes), *depth, depth_size, unit_m, where + ": a depth image",
+                     depth_m);
     if (integer_of(*depth, "xnMirror") != 0) mirror(depth_m);
   };
-  recording.read_colour = [=](std::size_t frame, ColourImage& image) {
-    const OniFrame& at = colour->frames[*colour_of[frame]];
+  facts.read_colour = [=](std::size_t frame, ColourImage& image) {
+    const OniFrame& at = colour->frames[frame];
     decode_oni_colour(file->read(at.offset, at.bytes), *colour, colour_size, where + ": a colour image",
                       image);
     if (integer_of(*colour, "xnMirror") != 0) mirror(image);
   };
-  return recording;
+  return facts;
 }
 
 }  // namespace roomradar

@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "app/sources/datasets/indexed_source.hpp"
+#include "app/sources/datasets/recording_facts.hpp"
 
 namespace roomradar {
 
@@ -11,6 +11,6 @@ namespace roomradar {
 /// if the file has none. If depth is not registered to colour, a baseline of 2.5 cm is assumed. Mirrored
 /// images are mirrored back.
 /// @throws Error naming the file if it is damaged, contains no depth, or its depth has another codec
-IndexedRecording index_oni_recording(const std::filesystem::path& path);
+RecordingFacts index_oni_recording(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "app/sources/containers/exr_depth.hpp"
 #include "app/sources/datasets/arkit_axes.hpp"
@@ -31,20 +33,21 @@ int size_px(const Json& metadata, const char* name, const std::string& where) {
   return static_cast<int>(value);
 }
 
-/// Returns the numbers of an array; throws Error if it is not an array of `count` numbers.
-std::vector<double> listed_numbers(const Json& array, std::size_t count, const std::string& where) {
-  if (!array.is_array() || array.size() != count)
-    throw Error(where + ": must be a list of " + std::to_string(count) + " numbers");
+/// Returns the numbers of an array; nullopt if it is not an array of `count` numbers.
+std::optional<std::vector<double>> listed_numbers(const Json& array, std::size_t count) {
+  if (!array.is_array() || array.size() != count) return std::nullopt;
   std::vector<double> values;
   for (const Json& each : array) {
-    if (!each.is_number()) throw Error(where + ": '" + each.dump().substr(0, 40) + "' is not a number");
+    if (!each.is_number()) return std::nullopt;
     values.push_back(each.get<double>());
   }
   return values;
 }
 
 Intrinsics colour_camera_of(const Json& metadata, const std::string& where) {
-  const std::vector<double> K = listed_numbers(json_field(metadata, "K", where), 9, where + ", K");
+  const auto listed = listed_numbers(json_field(metadata, "K", where), 9);
+  if (!listed) throw Error(where + ", K: must be a list of 9 numbers");
+  const std::vector<double>& K = *listed;
   const Intrinsics camera{
       size_px(metadata, "w", where), size_px(metadata, "h", where), K[0], K[4], K[6], K[7]};
   require_valid(camera, (where + ", K").c_str());
@@ -58,7 +61,7 @@ bool is_record3d(const fs::path& folder) {
   return fs::is_regular_file(folder / "metadata", ignored) && fs::is_directory(folder / "depth", ignored);
 }
 
-IndexedRecording index_record3d(const fs::path& folder) {
+RecordingFacts index_record3d(const fs::path& folder) {
   const std::string where = (folder / "metadata").string();
   const Json metadata =
       Json::parse(read_bytes(folder / "metadata", "Record3D's metadata", kMaxMetadata_bytes), nullptr,
@@ -66,54 +69,55 @@ IndexedRecording index_record3d(const fs::path& folder) {
   if (metadata.is_discarded() || !metadata.is_object())
     throw Error(where + ": is not JSON; is it cut short?");
 
-  IndexedRecording recording{.name = fs::canonical(folder).string()};
+  RecordingFacts facts{.name = fs::canonical(folder).string()};
   const Intrinsics colour = colour_camera_of(metadata, where);
-  recording.rig.colour_camera = colour;
+  facts.rig.colour_camera = colour;
   const int depth_width = size_px(metadata, "dw", where), depth_height = size_px(metadata, "dh", where);
-  recording.rig.depth_noise = kPhoneLidarNoise;
-  recording.rig.depth_camera = scaled_to_depth(colour, {depth_width, depth_height}, where);
+  facts.rig.depth_noise = kPhoneLidarNoise;
+  facts.rig.depth_camera = scaled_to_depth(colour, {depth_width, depth_height}, where);
+  facts.camera_source = "K in metadata";
+  facts.is_depth_registered = true;
+  facts.depth_unit_m = 1.0;
+  facts.unit_source = "metres, by Record3D's format";
+  set_arkit_axes(facts, /*camera_is_opengl=*/true);
 
-  const Json& poses = json_field(metadata, "poses", where);
-  const Json stamps = metadata.value("frameTimestamps", Json::array());
+  const Json poses = metadata.value("poses", Json());
+  const Json stamps = metadata.value("frameTimestamps", Json());
   const double fps = metadata.contains("fps") ? json_number(metadata, "fps", where) : 30.0;
-  if (!poses.is_array() || !stamps.is_array())
+  if (!(poses.is_array() || poses.is_null()) || !(stamps.is_array() || stamps.is_null()))
     throw Error(where + ": poses and frameTimestamps must be lists");
   if (!(fps > 0.0)) throw Error(where + ": fps must be > 0");
+  facts.has_no_clock = stamps.empty() && !metadata.contains("fps");
 
   std::vector<fs::path> depth_paths, colour_paths;
   for (const auto& [number, file] : numbered_files(folder / "depth", {".exr"})) {
     const auto at = static_cast<std::size_t>(number);
-    const std::string item = "[" + std::to_string(number) + "]";
-    IndexedFrame frame{.stamp_s = static_cast<double>(number) / fps};
-    if (!stamps.empty()) {
-      if (at >= stamps.size() || !stamps[at].is_number())
-        frame.fault = where + ": frameTimestamps" + item + " is missing or not a number";
-      else
-        frame.stamp_s = stamps[at].get<double>();
-    }
-    if (at >= poses.size()) {
-      frame.fault = where + ": poses" + item + " is missing";
-    } else {
-      const std::vector<double> p = listed_numbers(poses[at], 7, where + ", poses" + item);
-      if (const auto T_arkit = rigid_pose({p[4], p[5], p[6]}, {p[0], p[1], p[2], p[3]})) {
-        frame.T_world_camera = world_from_arkit(*T_arkit);
-        frame.down_camera = down_in_camera(*frame.T_world_camera);
-      }
+    StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / fps}};
+    if (!stamps.empty())
+      frame.time.stamp_s = at < stamps.size() && stamps[at].is_number() ? stamps[at].get<double>() : kNoStamp;
+    if (!poses.empty()) {
+      const auto p = at < poses.size() ? listed_numbers(poses[at], 7) : std::nullopt;
+      if (p) frame.T_world_camera = rigid_pose({(*p)[4], (*p)[5], (*p)[6]}, {(*p)[0], (*p)[1], (*p)[2], (*p)[3]});
+      if (!frame.T_world_camera)
+        frame.pose_fault = at >= poses.size() ? "is missing in metadata"
+                           : p                ? "is no rigid transform"
+                                              : "is not a list of 7 numbers";
     }
     const fs::path image = folder / "rgb" / (std::to_string(number) + ".jpg");
-    frame.has_colour = fs::exists(image);
+    if (fs::exists(image)) frame.colour = colour_paths.size();
     depth_paths.push_back(file);
     colour_paths.push_back(image);
-    recording.frames.push_back(std::move(frame));
+    facts.frames.push_back(std::move(frame));
   }
-  recording.read_depth = [depth_paths](std::size_t frame, DepthImage& depth_m) {
+  facts.read_depth = [depth_paths](std::size_t frame, double unit_m, DepthImage& depth_m) {
     const fs::path& file = depth_paths[frame];
     decode_exr_depth(read_bytes(file, "an EXR image", kMaxExr_bytes), file.string(), depth_m);
+    scale_depth(unit_m, depth_m);
   };
-  recording.read_colour = [colour_paths](std::size_t frame, ColourImage& image) {
-    read_colour_file(colour_paths[frame], image);
+  facts.read_colour = [colour_paths](std::size_t colour_image, ColourImage& image) {
+    read_colour_file(colour_paths[colour_image], image);
   };
-  return recording;
+  return facts;
 }
 
 }  // namespace roomradar

@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "app/sources/datasets/indexed_source.hpp"
+#include "app/sources/datasets/recording_facts.hpp"
 
 namespace roomradar {
 
@@ -15,10 +15,11 @@ namespace roomradar {
 ///                 poses: qx qy qz qw x y z (m) per frame; frameTimestamps (s) per frame
 ///   depth/N.exr   depth of frame N, m;  rgb/N.jpg: its colour image
 /// N has no leading zeros. Without frameTimestamps, stamps are N / fps, with 30 as the default of fps.
-/// `poses` may be longer than the number of frames. The recorded camera frame has y up and z backwards, and
-/// the recorded world frame has y up. Both are converted to roomradar's axes. Depth is registered to the
+/// `poses` may be longer or shorter than the number of frames, absent, or null where tracking was lost. The
+/// recorded camera frame has y up and z backwards, and the recorded world frame has y up. Both are converted
+/// to roomradar's axes. Depth is registered to the
 /// colour camera. Gravity follows from the poses, since ARKit aligns its world frame with gravity.
 /// @throws Error naming the file if the metadata are damaged or do not fit the images
-IndexedRecording index_record3d(const std::filesystem::path& folder);
+RecordingFacts index_record3d(const std::filesystem::path& folder);
 
 }  // namespace roomradar

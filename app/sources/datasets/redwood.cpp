@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -15,6 +16,7 @@
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 
 namespace roomradar {
 namespace {
@@ -22,17 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxTrajectory_bytes = 1U << 30U;
-constexpr double kFrameRate_hz = 30.0;
 
 /// Returns the first file, by name, that ends in `ending`; empty if there is none.
 fs::path file_ending(const fs::path& folder, std::string_view ending) {
-  std::error_code fault;
-  fs::path found;
-  for (fs::directory_iterator each(folder, fault), end; !fault && each != end; each.increment(fault)) {
-    const std::string name = each->path().filename().string();
-    if (name.ends_with(ending) && (found.empty() || each->path() < found)) found = each->path();
-  }
-  return found;
+  std::error_code ignored;
+  for (const fs::path& file : entries_of(folder, ignored))
+    if (file.filename().string().ends_with(ending)) return file;
+  return {};
 }
 
 fs::path intrinsics_file(const fs::path& folder) {
@@ -66,32 +64,82 @@ void for_each_numbers(const fs::path& path, const Use& use) {
   }
 }
 
-/// Returns the poses of a .log file in its order; nullopt where an entry is not finite.
-std::vector<std::optional<Eigen::Isometry3d>> read_log(const fs::path& path) {
-  std::vector<std::optional<Eigen::Isometry3d>> poses;
+/// A pose of a .log file. Its heading's first number is the frame's.
+struct LoggedPose {
+  std::int64_t frame = 0;
+  std::optional<Eigen::Isometry3d> T_world_camera;  ///< unset: tracking was lost
+};
+
+/// Returns the poses of a .log file. A heading that is not a number >= 0 counts on from the heading before.
+/// The file is read up to the first line that is not as it must be, which is noted. Counts poses that are no
+/// rigid transform.
+std::vector<LoggedPose> read_log(const fs::path& path, RecordingFacts& facts) {
+  std::vector<LoggedPose> poses;
   Eigen::Matrix4d matrix;
   int row = -1;  // of the matrix; -1: its heading
-  for_each_numbers(path, [&](const std::vector<double>& numbers, const std::string& where) {
+  std::int64_t frame = -1;
+  const auto read_line = [&](const std::vector<double>& numbers, const std::string& where) {
     const std::size_t count = row < 0 ? 3 : 4;
     if (numbers.size() != count)
       throw Error(where + ": has " + std::to_string(numbers.size()) + " numbers; must be " +
                   (row < 0 ? "the 3 integers before a pose" : "4, a row of a pose"));
-    if (row >= 0) matrix.row(row) = Eigen::Map<const Eigen::RowVector4d>(numbers.data());
+    if (row >= 0)
+      matrix.row(row) = Eigen::Map<const Eigen::RowVector4d>(numbers.data());
+    else
+      frame = numbers[0] >= 0 && numbers[0] < 1e9 ? static_cast<std::int64_t>(numbers[0]) : frame + 1;
     if (++row < 4) return;
     row = -1;
-    if (!matrix.allFinite()) {
-      poses.emplace_back();
-      return;
-    }
-    const auto T = rigid_transform(matrix.topRows<3>());
-    if (!T) throw Error(where + ": the pose that ends here is not a rigid transform");
-    poses.emplace_back(T);
-  });
-  if (row >= 0) throw Error(path.string() + ": ends within a pose; is it cut short?");
+    poses.push_back({frame, rigid_transform(matrix.topRows<3>())});
+    if (!poses.back().T_world_camera) ++facts.lost_track_poses;
+  };
+  std::string fault;
+  try {
+    for_each_numbers(path, read_line);
+    if (row >= 0) fault = path.string() + ": ends within a pose; is it cut short?";
+  } catch (const Error& error) {
+    fault = error.what();
+  }
+  if (!fault.empty())
+    facts.notes.push_back({"poses", std::to_string(poses.size()) + " poses are read, up to a fault: " + fault,
+                           static_cast<std::int64_t>(poses.size()), "", true});
   return poses;
 }
 
-Intrinsics read_open3d_intrinsics(const fs::path& path) {
+/// Returns true if the file's first lines are a heading of three integers and a row of four numbers.
+bool is_trajectory_log(const fs::path& path) {
+  constexpr std::size_t kHead_bytes = 4096;
+  std::ifstream file(path, std::ios::binary);
+  std::string head(kHead_bytes, '\0');
+  file.read(head.data(), kHead_bytes);
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  std::istringstream lines(head);
+  std::size_t row = 0;
+  for (std::string line; row < 2 && std::getline(lines, line);) {
+    const auto words = split_words(line);
+    if (words.empty() || words[0].starts_with('#')) continue;
+    if (words.size() != 3 + row ||
+        !std::all_of(words.begin(), words.end(), [](std::string_view word) { return parse_number(word).has_value(); }))
+      return false;
+    ++row;
+  }
+  return row == 2;
+}
+
+/// Returns the first file *.log, by name, that contains a trajectory; empty if there is none.
+fs::path trajectory_log(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::path& file : entries_of(folder, ignored))
+    if (file.extension() == ".log" && is_trajectory_log(file)) return file;
+  return {};
+}
+
+/// Camera, and the units of depth per metre, of Open3D's intrinsic.json.
+struct Open3dIntrinsics {
+  Intrinsics camera;
+  std::optional<double> depth_scale;
+};
+
+Open3dIntrinsics read_open3d_intrinsics(const fs::path& path) {
   const std::string where = path.string();
   const auto root = nlohmann::json::parse(read_json_text(path), nullptr, /*allow_exceptions=*/false);
   if (root.is_discarded()) throw Error(where + ": is not JSON; is it cut short?");
@@ -105,46 +153,56 @@ Intrinsics read_open3d_intrinsics(const fs::path& path) {
   const Intrinsics camera{static_cast<int>(width), static_cast<int>(height), matrix[0].get<double>(),
                           matrix[4].get<double>(), matrix[6].get<double>(),  matrix[7].get<double>()};
   require_valid(camera, where.c_str());
-  return camera;
+  Open3dIntrinsics intrinsics{camera, std::nullopt};
+  if (root.contains("depth_scale")) {
+    intrinsics.depth_scale = json_number(root, "depth_scale", where);
+    if (!(*intrinsics.depth_scale > 0.0 && *intrinsics.depth_scale <= 1e7))
+      throw Error(where + ": depth_scale must be above 0, such as 1000 for millimetres");
+  }
+  return intrinsics;
 }
 
-/// Makes the recording of registered images without poses. `numbers` receives the number of each frame.
-IndexedRecording registered_images(const fs::path& folder, const fs::path& colour_folder,
-                                   DepthEncoding encoding, std::vector<std::int64_t>& numbers) {
-  IndexedRecording recording{.name = fs::canonical(folder).string()};
+/// States registered images without cameras and poses. `numbers` receives the number of each frame.
+RecordingFacts registered_images(const fs::path& folder, const fs::path& colour_folder, DepthEncoding encoding,
+                                 std::vector<std::int64_t>& numbers) {
+  RecordingFacts facts{.name = fs::canonical(folder).string()};
   const auto colours = numbered_files(colour_folder, {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
   for (const auto& [number, path] : numbered_files(folder / "depth", {".png"})) {
     const auto colour = colours.find(number);
-    recording.frames.push_back(
-        {.stamp_s = static_cast<double>(number) / kFrameRate_hz, .has_colour = colour != colours.end()});
+    facts.frames.push_back({.time = {.stamp_s = static_cast<double>(number) / kNominalRate_hz}});
+    if (colour != colours.end()) {
+      facts.frames.back().colour = colour_paths.size();
+      colour_paths.push_back(colour->second);
+    }
     depth_paths.push_back(path);
-    colour_paths.push_back(colour == colours.end() ? fs::path{} : colour->second);
     numbers.push_back(number);
   }
-  const ImageSize size = size_of_first_png(depth_paths, folder);
-  recording.rig.depth_camera = {size.width_px, size.height_px, 0, 0, 0, 0};
-  recording.read_depth = [depth_paths, encoding](std::size_t frame, DepthImage& depth_m) {
-    read_depth_file(depth_paths[frame], encoding, depth_m);
-  };
-  recording.read_colour = [colour_paths](std::size_t frame, ColourImage& image) {
-    read_colour_file(colour_paths[frame], image);
-  };
-  std::erase(colour_paths, fs::path{});
+  facts.has_no_clock = true;
+  facts.is_depth_registered = true;
+  facts.depth_unit_m = depth_unit_m(encoding);
+  const ImageSize size = size_of_images(depth_paths, folder);
+  facts.rig.depth_camera = {size.width_px, size.height_px, 0, 0, 0, 0};
   if (!colour_paths.empty()) {
-    const ImageSize colour_size = size_of_first_png(colour_paths, folder);
-    recording.rig.colour_camera = {colour_size.width_px, colour_size.height_px, 0, 0, 0, 0};
+    const ImageSize colour_size = size_of_images(colour_paths, folder);
+    facts.rig.colour_camera = {colour_size.width_px, colour_size.height_px, 0, 0, 0, 0};
   }
-  return recording;
+  facts.read_depth = [depth_paths, encoding](std::size_t frame, double unit_m, DepthImage& depth_m) {
+    read_depth_file(depth_paths[frame], encoding, unit_m, depth_m);
+  };
+  facts.read_colour = [colour_paths](std::size_t colour, ColourImage& image) {
+    read_colour_file(colour_paths[colour], image);
+  };
+  return facts;
 }
 
 /// Sets both cameras to `camera`, scaled to the images.
-void set_registered_camera(IndexedRecording& recording, const Intrinsics& camera) {
+void set_registered_camera(RecordingFacts& facts, const Intrinsics& camera) {
   const auto fit = [&](Intrinsics& to) {
-    to = scaled_to_depth(camera, {to.width_px, to.height_px}, recording.name);
+    to = scaled_to_depth(camera, {to.width_px, to.height_px}, facts.name);
   };
-  fit(recording.rig.depth_camera);
-  if (recording.rig.colour_camera) fit(*recording.rig.colour_camera);
+  fit(facts.rig.depth_camera);
+  if (facts.rig.colour_camera) fit(*facts.rig.colour_camera);
 }
 
 }  // namespace
@@ -152,22 +210,51 @@ void set_registered_camera(IndexedRecording& recording, const Intrinsics& camera
 bool is_redwood(const fs::path& folder) {
   std::error_code ignored;
   return fs::is_directory(folder / "depth", ignored) && !colour_images(folder).empty() &&
-         (!file_ending(folder, ".log").empty() || !intrinsics_file(folder).empty());
+         (!trajectory_log(folder).empty() || !intrinsics_file(folder).empty());
 }
 
-IndexedRecording index_redwood(const fs::path& folder) {
+RecordingFacts index_redwood(const fs::path& folder) {
   constexpr Intrinsics kPrimeSense{640, 480, 525.0, 525.0, 319.5, 239.5};
   std::vector<std::int64_t> numbers;
-  IndexedRecording recording =
+  RecordingFacts facts =
       registered_images(folder, colour_images(folder), DepthEncoding::kMillimetres, numbers);
-  const fs::path intrinsics = intrinsics_file(folder);
-  set_registered_camera(recording, intrinsics.empty() ? kPrimeSense : read_open3d_intrinsics(intrinsics));
-  const fs::path log = file_ending(folder, ".log");
-  if (log.empty()) return recording;
-  const auto poses = read_log(log);
-  for (std::size_t i = 0; i < std::min(poses.size(), recording.frames.size()); ++i)
-    recording.frames[i].T_world_camera = poses[i];
-  return recording;
+  const fs::path file = intrinsics_file(folder);
+  if (file.empty()) {
+    set_registered_camera(facts, kPrimeSense);
+    facts.camera_origin = Origin::kAssumed;
+    facts.camera_source = "a PrimeSense, as Redwood's recordings have it,";
+  } else {
+    const Open3dIntrinsics intrinsics = read_open3d_intrinsics(file);
+    set_registered_camera(facts, intrinsics.camera);
+    facts.camera_source = file.filename().string();
+    if (intrinsics.depth_scale) {
+      facts.depth_unit_m = 1.0 / *intrinsics.depth_scale;
+      facts.unit_origin = Origin::kRecording;
+      facts.unit_source = "depth_scale in " + file.filename().string();
+    }
+  }
+  const fs::path log = trajectory_log(folder);
+  if (log.empty()) return facts;
+  // The frame's number is that of its file, or its place among the files if these do not count from 0.
+  const bool counts_files = !numbers.empty() && numbers.front() > 0;
+  std::size_t without_image = 0;
+  const auto poses = read_log(log, facts);
+  for (const LoggedPose& pose : poses) {
+    const auto place = counts_files ? (pose.frame < static_cast<std::int64_t>(numbers.size())
+                                           ? numbers.begin() + static_cast<std::ptrdiff_t>(pose.frame)
+                                           : numbers.end())
+                                    : std::lower_bound(numbers.begin(), numbers.end(), pose.frame);
+    if (place == numbers.end() || (!counts_files && *place != pose.frame))
+      ++without_image;
+    else
+      facts.frames[static_cast<std::size_t>(place - numbers.begin())].T_world_camera = pose.T_world_camera;
+  }
+  if (without_image > 0)
+    facts.notes.push_back({"poses",
+                           std::to_string(without_image) + " poses of " + log.filename().string() +
+                               " are of frames without a depth image; they are left out",
+                           static_cast<std::int64_t>(without_image)});
+  return facts;
 }
 
 bool is_icl_nuim(const fs::path& folder) {
@@ -176,11 +263,13 @@ bool is_icl_nuim(const fs::path& folder) {
          !file_ending(folder, ".gt.freiburg").empty();
 }
 
-IndexedRecording index_icl_nuim(const fs::path& folder) {
+RecordingFacts index_icl_nuim(const fs::path& folder) {
   constexpr Intrinsics kIclNuim{640, 480, 481.2, 480.0, 319.5, 239.5};
   std::vector<std::int64_t> numbers;
-  IndexedRecording recording = registered_images(folder, folder / "rgb", DepthEncoding::kTum, numbers);
-  set_registered_camera(recording, kIclNuim);
+  RecordingFacts facts = registered_images(folder, folder / "rgb", DepthEncoding::kTum, numbers);
+  set_registered_camera(facts, kIclNuim);
+  facts.camera_origin = Origin::kFormat;
+  facts.camera_source = "the rendered camera of ICL-NUIM";
   std::map<double, std::optional<Eigen::Isometry3d>> poses;
   for_each_numbers(file_ending(folder, ".gt.freiburg"),
                    [&](const std::vector<double>& row, const std::string& where) {
@@ -193,10 +282,13 @@ IndexedRecording index_icl_nuim(const fs::path& folder) {
   mirror.linear().diagonal() << 1, -1, 1;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto pose = poses.find(static_cast<double>(numbers[i]));
-    if (pose != poses.end() && pose->second)
-      recording.frames[i].T_world_camera = mirror * *pose->second * mirror;
+    if (pose == poses.end()) continue;
+    if (pose->second)
+      facts.frames[i].T_world_camera = mirror * *pose->second * mirror;
+    else
+      facts.frames[i].pose_fault = "is no rigid transform";
   }
-  return recording;
+  return facts;
 }
 
 }  // namespace roomradar

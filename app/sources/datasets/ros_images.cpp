@@ -8,7 +8,6 @@
 #include <map>
 
 #include "app/sources/containers/rvl_depth.hpp"
-#include "app/sources/datasets/indexed_source.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/raw_pixels.hpp"
 #include "mapping/types/system/error.hpp"
@@ -68,6 +67,7 @@ std::optional<Candidate> candidate_of(const MessageLog& log, std::uint32_t topic
     if (is_image) {
       const RosImage image = read_image(message(log, bytes, topic));
       candidate.is_depth = is_depth_encoding(image.encoding);
+      candidate.stream.is_float = image.encoding == "32FC1";
       if (!candidate.is_depth && !colour_pixels_of(image.encoding)) return std::nullopt;
       candidate.stream.frame_id = image.header.frame_id;
       candidate.stream.width_px = static_cast<int>(std::min(image.width, 100'000U));
@@ -76,6 +76,7 @@ std::optional<Candidate> candidate_of(const MessageLog& log, std::uint32_t topic
       const RosCompressedImage image = read_compressed_image(message(log, bytes, topic));
       candidate.is_depth = image.format.find(kCompressedDepth) != std::string::npos;
       candidate.stream.frame_id = image.header.frame_id;
+      candidate.stream.is_float = candidate.is_depth && image.format.starts_with("32FC1");
       if (candidate.is_depth) {
         DepthImage depth_m;
         decode_ros_depth(log, candidate.stream, candidate.stream.messages.front(), 0.001, depth_m);
@@ -94,7 +95,8 @@ std::optional<Candidate> candidate_of(const MessageLog& log, std::uint32_t topic
   candidate.score = is_image ? 1 : 0;
   if (candidate.is_depth) {
     if (names(name, {"depth"})) candidate.score += 8;
-    if (names(name, {"aligned", "registered"})) candidate.score -= 2;
+    candidate.stream.is_registered = names(name, {"aligned", "registered"});
+    if (candidate.stream.is_registered) candidate.score += 2;
     if (names(name, {"infra", "/ir"})) candidate.score -= 16;
   } else {
     if (names(name, {"color", "colour", "rgb"})) candidate.score += 8;
@@ -164,7 +166,7 @@ std::vector<Candidate> candidates_of(const MessageLog& log) {
   for (const Candidate& candidate : candidates) {
     const RosStream& stream = candidate.stream;
     if (candidate.is_depth)
-      throw Error(log.name + ": contains no camera_info of " + size_text(stream.width_px, stream.height_px) +
+      throw Error(log.name + ": contains no camera_info of " + std::to_string(stream.width_px) + " x " + std::to_string(stream.height_px) +
                   " for its depth images on " + log.topics[stream.topic].name + "; record that topic too");
   }
   std::string topics;
@@ -186,6 +188,7 @@ void decode_compressed_depth(const RosCompressedImage& image, const RosStream& s
   std::memcpy(&b, image.data.data() + 8, sizeof b);
   const std::string_view packed = image.data.substr(kHead_bytes);
   const bool is_float = image.format.starts_with("32FC1");
+  const double float_unit_m = stream.is_float ? unit_m : 1.0;
   if (is_float) unit_m = 1.0;
   if (image.format.find("compressedDepth rvl") != std::string::npos) {
     Image<std::uint16_t> units;
@@ -194,7 +197,9 @@ void decode_compressed_depth(const RosCompressedImage& image, const RosStream& s
   } else {
     decode_depth_png(packed, static_cast<float>(1.0 / unit_m), where, depth_m);
   }
-  if (is_float) convert_inverse_depth(a, b, depth_m);
+  if (!is_float) return;
+  convert_inverse_depth(a, b, depth_m);
+  scale_depth(float_unit_m, depth_m);
 }
 
 RawLayout layout_of(const RosImage& image) {
@@ -207,17 +212,21 @@ RawLayout layout_of(const RosImage& image) {
 
 RosStreams find_streams(const MessageLog& log) {
   std::optional<RosStream> depth, colour;
+  std::vector<std::string> others;
   std::vector<Candidate> candidates = candidates_of(log);
   for (Candidate& candidate : candidates) {
     std::optional<RosStream>& wanted = candidate.is_depth ? depth : colour;
     const bool is_colour_of_infrared = !candidate.is_depth && candidate.score < 0;
-    if (!wanted && !is_colour_of_infrared && set_camera(log, candidate.stream)) wanted = candidate.stream;
+    if (!wanted && !is_colour_of_infrared && set_camera(log, candidate.stream))
+      wanted = candidate.stream;
+    else if (candidate.is_depth)
+      others.push_back(log.topics[candidate.stream.topic].name);
   }
   if (!depth) fail_without_depth(log, candidates);
-  return {std::move(*depth), std::move(colour)};
+  return {std::move(*depth), std::move(colour), std::move(others)};
 }
 
-double depth_unit_m(const MessageLog& log, const RosStream& depth) {
+std::optional<double> stated_depth_unit_m(const MessageLog& log, const RosStream& depth) {
   const std::string& name = log.topics[depth.topic].name;
   for (const MessageEntry& entry : log.messages) {
     const MessageTopic& topic = log.topics[entry.topic];
@@ -232,7 +241,7 @@ double depth_unit_m(const MessageLog& log, const RosStream& depth) {
     }
     break;
   }
-  return 0.001;
+  return std::nullopt;
 }
 
 void decode_ros_depth(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,
@@ -246,7 +255,7 @@ void decode_ros_depth(const MessageLog& log, const RosStream& stream, const Mess
     throw Error(from.where + ": its encoding is '" + image.encoding.substr(0, 40) + "', not depth");
   if (image.encoding == "32FC1") {
     if (image.is_big_endian) throw Error(from.where + ": its floats are big-endian, which is not read");
-    return convert_depth(image.data, layout_of(image), DepthPixels::kFloat32, 1.0, from.where, depth_m);
+    return convert_depth(image.data, layout_of(image), DepthPixels::kFloat32, stream.is_float ? unit_m : 1.0, from.where, depth_m);
   }
   convert_depth(image.data, layout_of(image),
                 image.is_big_endian ? DepthPixels::kUint16BigEndian : DepthPixels::kUint16, unit_m,

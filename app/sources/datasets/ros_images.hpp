@@ -17,6 +17,8 @@ namespace roomradar {
 struct RosStream {
   std::uint32_t topic = 0;
   bool is_compressed = false;
+  bool is_float = false;       ///< depth in 32FC1, m
+  bool is_registered = false;  ///< depth that its topic's name calls aligned or registered to colour
   std::string frame_id{};  ///< coordinate frame of the camera
   int width_px = 0, height_px = 0;
   Intrinsics camera{};
@@ -27,18 +29,19 @@ struct RosStream {
 struct RosStreams {
   RosStream depth;
   std::optional<RosStream> colour;  ///< unset: no colour topic has a camera_info
+  std::vector<std::string> other_depth{};  ///< names of further topics of depth images
 };
 
 /// Returns a topic of depth images (16UC1, mono16, 32FC1 or compressedDepth) and, if there is one, a topic of
-/// colour images. Of several depth topics, prefers one that is not registered to colour.
+/// colour images. Of several depth topics, prefers one that is registered to colour.
 /// @throws Error naming the topics that were found if there is no depth topic, or the depth topic has no
 ///         camera_info
 RosStreams find_streams(const MessageLog& log);
 
-/// Returns the length of a unit of 16 bit depth, m: from the option Depth Units of a RealSense, else 0.001.
-double depth_unit_m(const MessageLog& log, const RosStream& depth);
+/// Returns the length of a unit of 16 bit depth, m, that the option Depth Units of a RealSense states.
+std::optional<double> stated_depth_unit_m(const MessageLog& log, const RosStream& depth);
 
-/// Decode a message of the stream. Throw Error if it is damaged or its encoding is not supported.
+/// Decode a message of the stream. `unit_m` is the length of a unit of the stored depth, 1 for 32FC1. Throw Error if it is damaged or its encoding is not supported.
 void decode_ros_depth(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,
                       double unit_m, DepthImage& depth_m);
 void decode_ros_colour(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,

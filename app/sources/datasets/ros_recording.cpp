@@ -29,30 +29,22 @@ std::optional<double> header_stamp_s(const MessageLog& log, const MessageEntry& 
   }
 }
 
-/// Returns the stamps of messages with a header, and their difference to the time of reception in offset_s.
-std::vector<double> stamps_of(const MessageLog& log, const std::vector<MessageEntry>& entries,
-                              double& offset_s) {
+/// Returns the times of messages with a header, by reception. Reading all headers of a compressed file takes
+/// too long: there, a stamp is the time of reception plus the median difference of the first five.
+std::vector<StatedTime> times_of(const MessageLog& log, const std::vector<MessageEntry>& entries) {
   constexpr std::size_t kSamples = 5;
   std::vector<double> offsets_s;
   for (std::size_t i = 0; i < std::min(entries.size(), kSamples); ++i)
-    if (const auto stamp_s = header_stamp_s(log, entries[i]))
+    if (const auto stamp_s = header_stamp_s(log, entries[i]); stamp_s && *stamp_s != 0.0)
       offsets_s.push_back(*stamp_s - entries[i].stamp_s);
   std::sort(offsets_s.begin(), offsets_s.end());
-  offset_s = offsets_s.empty() ? 0.0 : offsets_s[offsets_s.size() / 2];
-  std::vector<double> stamps_s;
+  const double offset_s = offsets_s.empty() ? kNoStamp : offsets_s[offsets_s.size() / 2];
+  std::vector<StatedTime> times;
   for (const MessageEntry& entry : entries) {
     const auto stamp_s = log.reads_starts ? header_stamp_s(log, entry) : std::nullopt;
-    stamps_s.push_back(stamp_s.value_or(entry.stamp_s + offset_s));
+    times.push_back({stamp_s.value_or(entry.stamp_s + offset_s), entry.stamp_s});
   }
-  return stamps_s;
-}
-
-/// Sorts messages and their stamps by stamp.
-void sort_both(std::vector<MessageEntry>& entries, std::vector<double>& stamps_s) {
-  std::vector<std::pair<double, MessageEntry>> both;
-  for (std::size_t i = 0; i < entries.size(); ++i) both.emplace_back(stamps_s[i], entries[i]);
-  std::stable_sort(both.begin(), both.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < both.size(); ++i) std::tie(stamps_s[i], entries[i]) = both[i];
+  return times;
 }
 
 /// Returns the extrinsics that a RealSense states for a stream such as /device_0/sensor_1/Color_0: a
@@ -151,78 +143,87 @@ std::vector<MessageEntry> exact_poses(const MessageLog& log) {
 }
 
 /// Returns the pose whose time of reception is that of the depth image.
-std::optional<Eigen::Isometry3d> exact_pose_at(const MessageLog& log, const std::vector<MessageEntry>& poses,
-                                               double received_s) {
+StatedPose exact_pose_at(const MessageLog& log, const std::vector<MessageEntry>& poses, double received_s) {
   const auto entry = std::lower_bound(poses.begin(), poses.end(), received_s,
                                       [](const MessageEntry& each, double s) { return each.stamp_s < s; });
-  if (entry == poses.end() || entry->stamp_s != received_s) return std::nullopt;
+  if (entry == poses.end() || entry->stamp_s != received_s) return {};
   const std::string bytes = log.read(*entry);
   const std::vector<double> m = read_numbers({log.encoding, bytes, log.name + ": a pose"});
-  if (m.size() != 16) throw Error(log.name + ": a pose has " + std::to_string(m.size()) + " numbers, not 16");
+  if (m.size() != 16) return {{}, "has " + std::to_string(m.size()) + " numbers, not 16"};
   Eigen::Isometry3d T_world_camera;
   T_world_camera.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
   if (!nearest_rotation(T_world_camera.linear()) || !T_world_camera.matrix().allFinite())
-    throw Error(log.name + ": a pose is not a rigid transform");
-  return T_world_camera;
+    return {{}, "is no rigid transform"};
+  return {T_world_camera};
 }
 
 }  // namespace
 
-IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& log) {
-  auto [depth, colour] = find_streams(*log);
+RecordingFacts index_ros_recording(const std::shared_ptr<const MessageLog>& log) {
+  auto [depth, colour, other_depth] = find_streams(*log);
   const auto transforms = std::make_shared<const RosTransforms>(*log);
   const Sensor depth_sensor{log->topics[depth.topic].name, depth.frame_id};
 
-  IndexedRecording recording{.name = log->name, .depth_lens = depth.lens};
-  recording.rig.depth_camera = depth.camera;
-  if (depth_sensor.topic.starts_with("/device_")) recording.rig.depth_noise = kRealSenseNoise;
-  double depth_offset_s = 0.0, colour_offset_s = 0.0;
-  std::vector<double> depth_s = stamps_of(*log, depth.messages, depth_offset_s);
-  sort_both(depth.messages, depth_s);
-  std::vector<double> colour_s;
+  RecordingFacts facts{.name = log->name, .depth_lens = depth.lens};
+  facts.rig.depth_camera = depth.camera;
+  facts.camera_source = "its camera_info";
+  if (depth_sensor.topic.starts_with("/device_")) facts.rig.depth_noise = kRealSenseNoise;
+  for (const StatedTime& time : times_of(*log, depth.messages)) facts.frames.push_back({.time = time});
   if (colour) {
-    recording.rig.colour_camera = colour->camera;
-    recording.colour_lens = colour->lens;
-    const auto T_colour_depth =
-        T_between(*log, *transforms, {log->topics[colour->topic].name, colour->frame_id}, depth_sensor);
-    if (T_colour_depth) recording.rig.T_colour_depth = *T_colour_depth;
-    colour_s = stamps_of(*log, colour->messages, colour_offset_s);
-    sort_both(colour->messages, colour_s);
-    // Some devices stamp depth and colour by different clocks.
-    if (!depth_s.empty() && (colour_s.back() < depth_s.front() || colour_s.front() > depth_s.back()))
-      for (double& stamp_s : colour_s) stamp_s += depth_offset_s - colour_offset_s;
+    const Sensor colour_sensor{log->topics[colour->topic].name, colour->frame_id};
+    facts.rig.colour_camera = colour->camera;
+    facts.colour_lens = colour->lens;
+    facts.is_depth_registered = depth.is_registered;
+    if (const auto T_colour_depth = T_between(*log, *transforms, colour_sensor, depth_sensor))
+      facts.rig.T_colour_depth = *T_colour_depth;
+    else if (!depth.is_registered)
+      facts.colour_pose_origin = Origin::kAssumed;
+    facts.colours = times_of(*log, colour->messages);
   }
-  for (const double stamp_s : depth_s) recording.frames.push_back({.stamp_s = stamp_s});
-  const auto colour_of = pair_colours(colour_s, kPairWithin_s, recording.frames);
+  if (!other_depth.empty())
+    facts.notes.push_back({"images",
+                           "of " + std::to_string(other_depth.size() + 1) + " topics with depth, " +
+                               depth_sensor.topic + " is used" +
+                               (depth.is_registered ? ", which is registered to colour" : "") + "; not " +
+                               other_depth.front() + (other_depth.size() > 1 ? ", ..." : ""),
+                           static_cast<std::int64_t>(other_depth.size())});
 
-  const double unit_m = depth_unit_m(*log, depth);
-  recording.read_depth = [log, depth = depth, unit_m](std::size_t frame, DepthImage& depth_m) {
+  facts.depth_unit_m = depth.is_float ? 1.0 : 0.001;
+  facts.unit_source = depth.is_float ? "metres, by 32FC1" : "millimetres, by 16UC1";
+  if (const auto unit_m = stated_depth_unit_m(*log, depth); unit_m && !depth.is_float) {
+    facts.depth_unit_m = *unit_m;
+    facts.unit_origin = Origin::kRecording;
+    facts.unit_source = "its option Depth Units";
+  }
+  facts.read_depth = [log, depth = depth](std::size_t frame, double unit_m, DepthImage& depth_m) {
     decode_ros_depth(*log, depth, depth.messages[frame], unit_m, depth_m);
   };
   if (colour)
-    recording.read_colour = [log, colour = *colour, colour_of](std::size_t frame, ColourImage& image) {
-      decode_ros_colour(*log, colour, colour.messages[*colour_of[frame]], image);
+    facts.read_colour = [log, colour = *colour](std::size_t image, ColourImage& pixels) {
+      decode_ros_colour(*log, colour, colour.messages[image], pixels);
     };
   if (const auto poses = exact_poses(*log); !poses.empty())
-    recording.read_pose = [log, poses, messages = depth.messages](std::size_t frame) {
+    facts.read_pose = [log, poses, messages = depth.messages](std::size_t frame, double) {
       return exact_pose_at(*log, poses, messages[frame].stamp_s);
     };
   else if (transforms->moves(depth.frame_id))
-    recording.read_pose = [log, transforms, id = depth.frame_id, depth_s](std::size_t frame) {
-      return transforms->T_root_frame(id, depth_s[frame]);
+    facts.read_pose = [log, transforms, id = depth.frame_id](std::size_t, double stamp_s) {
+      return StatedPose{transforms->T_root_frame(id, stamp_s)};
     };
-  if (const auto gravity = find_gravity(*log, *transforms, depth_sensor))
-    recording.read_down = [log, gravity = *gravity, depth_s](std::size_t frame) {
-      return gravity_at(*log, gravity, depth_s[frame]);
+  if (const auto gravity = find_gravity(*log, *transforms, depth_sensor)) {
+    facts.gravity_source = "its accelerometer";
+    facts.read_down = [log, gravity = *gravity](std::size_t, double stamp_s) {
+      return gravity_at(*log, gravity, stamp_s);
     };
-  return recording;
+  }
+  return facts;
 }
 
-IndexedRecording index_ros1_bag(const std::filesystem::path& path) {
+RecordingFacts index_ros1_bag(const std::filesystem::path& path) {
   return index_ros_recording(std::make_shared<const MessageLog>(open_ros_bag(path)));
 }
 
-IndexedRecording index_ros2_bag(const std::filesystem::path& path) {
+RecordingFacts index_ros2_bag(const std::filesystem::path& path) {
   return index_ros_recording(std::make_shared<const MessageLog>(open_ros2_bag(path)));
 }
 

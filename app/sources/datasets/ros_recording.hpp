@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "app/sources/containers/message_log.hpp"
-#include "app/sources/datasets/indexed_source.hpp"
+#include "app/sources/datasets/recording_facts.hpp"
 
 namespace roomradar {
 
@@ -16,13 +16,13 @@ inline constexpr const char* kPoseTopic = "/roomradar/T_world_camera";
 /// comes from an IMU with known extrinsics to the depth camera (from tf or a RealSense's topics). Stamps are
 /// those of the message headers, except in compressed files, where reading all headers takes too long. There,
 /// a stamp is the message's time of reception plus the median of (header stamp - time of reception) over the
-/// first five messages.
+/// first five messages. Times of reception are stated beside the stamps.
 /// @throws Error naming the file and its topics if it contains no depth images or no camera_info
-IndexedRecording index_ros_recording(const std::shared_ptr<const MessageLog>& log);
+RecordingFacts index_ros_recording(const std::shared_ptr<const MessageLog>& log);
 
 /// Opens a bag of ROS 1.
-IndexedRecording index_ros1_bag(const std::filesystem::path& path);
+RecordingFacts index_ros1_bag(const std::filesystem::path& path);
 /// Opens a bag of ROS 2.
-IndexedRecording index_ros2_bag(const std::filesystem::path& path);
+RecordingFacts index_ros2_bag(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -1,9 +1,14 @@
 // rtabmap.cpp: reads the database's tables, and RTAB-Map's binary format of cameras.
 #include "app/sources/datasets/rtabmap.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstring>
+#include <map>
 #include <memory>
+#include <vector>
 
+#include "app/sources/containers/decompress.hpp"
 #include "app/sources/containers/rvl_depth.hpp"
 #include "app/sources/containers/sqlite_file.hpp"
 #include "app/sources/datasets/numbered_files.hpp"
@@ -63,6 +68,7 @@ RtabmapCamera read_camera(std::string_view bytes, const std::string& where) {
   return result;
 }
 
+constexpr double kUnit_m = 0.001;
 constexpr std::string_view kRvlSignature = "DEPTHRVL", kInverseSignature = "DEPTHINV";
 
 /// Depth image of a node. Its signatures are of RTAB-Map, corelib/src/Compression.cpp, compressImage():
@@ -101,10 +107,13 @@ ImageSize depth_image_size(const std::string& bytes, const std::string& where) {
   return {size.width_px, size.height_px};
 }
 
-void decode_rtabmap_depth(const std::string& bytes, ImageSize size, const std::string& where,
+void decode_rtabmap_depth(const std::string& bytes, ImageSize size, double unit_m, const std::string& where,
                           DepthImage& depth_m) {
   const RtabmapDepth depth = parse_depth(bytes, where);
-  const double unit_m = depth.is_inverse ? 1.0 : 0.001;
+  const bool is_float = depth.is_inverse || (!depth.is_rvl && read_image_header(depth.image, where).channels == 4);
+  // Floats are metres, and units 1 mm by the format: another unit scales both.
+  const double factor = unit_m / kUnit_m;
+  if (depth.is_inverse) unit_m = 1.0;
   if (depth.is_rvl) {
     Image<std::uint16_t> units;
     decode_rvl(depth.image, {size.width_px, size.height_px}, where, units);
@@ -115,6 +124,104 @@ void decode_rtabmap_depth(const std::string& bytes, ImageSize size, const std::s
     decode_depth_png(depth.image, static_cast<float>(1.0 / unit_m), where, depth_m);
   }
   if (depth.is_inverse) convert_inverse_depth(depth.a, depth.b, depth_m);
+  if (is_float) scale_depth(factor, depth_m);
+}
+
+/// A node with a depth image: its session, and its pose by the odometry of that session.
+struct NodePose {
+  std::int64_t id = 0;
+  std::int64_t session = 0;
+  std::optional<Eigen::Isometry3d> T_odometry_robot{};
+};
+
+/// Returns the values of a matrix that RTAB-Map compressed: a zlib stream, then rows, columns and OpenCV's type
+/// as 32 bit integers. Empty if it is absent, damaged or of another type.
+/// Source: RTAB-Map, corelib/src/Compression.cpp, compressData2() and uncompressData().
+template <typename Value>
+std::vector<Value> uncompressed_matrix(const std::string& bytes, std::int32_t type, const std::string& where) {
+  constexpr std::size_t kTail_bytes = 12;
+  std::array<std::int32_t, 3> tail{};
+  if (bytes.size() < kTail_bytes) return {};
+  std::memcpy(tail.data(), bytes.data() + bytes.size() - kTail_bytes, kTail_bytes);
+  if (tail[0] < 1 || tail[1] < 1 || tail[2] != type) return {};
+  const std::uint64_t size = sizeof(Value) * static_cast<std::uint64_t>(tail[0]) * static_cast<std::uint64_t>(tail[1]);
+  try {
+    const std::string raw = decompress(Compression::kZlib,
+                                       std::string_view(bytes).substr(0, bytes.size() - kTail_bytes), size, where);
+    std::vector<Value> values(raw.size() / sizeof(Value));
+    std::memcpy(values.data(), raw.data(), values.size() * sizeof(Value));
+    return values;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// Returns the poses that RTAB-Map's optimisation of the whole graph gave, by node; empty if it was not saved.
+std::map<std::int64_t, Eigen::Isometry3d> optimised_poses(const SqliteFile& database) {
+  constexpr std::int32_t kInt32 = 4, kFloat32 = 5;  // OpenCV's CV_32S and CV_32F
+  std::map<std::int64_t, Eigen::Isometry3d> poses;
+  if (!database.has_tables({"Admin"}) || !database.has_column("Admin", "opt_poses") ||
+      !database.has_column("Admin", "opt_ids"))
+    return poses;
+  std::string id_bytes, pose_bytes;
+  database.query("SELECT opt_ids, opt_poses FROM Admin", {}, [&](const SqliteRow& row) {
+    id_bytes = row.bytes(0);
+    pose_bytes = row.bytes(1);
+  });
+  const std::string where = database.name() + ": the optimised poses";
+  const auto ids = uncompressed_matrix<std::int32_t>(id_bytes, kInt32, where);
+  const auto values = uncompressed_matrix<float>(pose_bytes, kFloat32, where);
+  if (values.size() != 12 * ids.size()) return poses;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    std::array<float, 12> m{};
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(12 * i), 12, m.begin());
+    if (const auto T = transform_of(m)) poses.emplace(ids[i], *T);
+  }
+  return poses;
+}
+
+/// Sets the poses of the frames: those of the optimised graph. A node that is not in the graph gets its odometry
+/// pose, moved like the nearest node of its session that is. Without an optimised graph, odometry poses of one
+/// session only: each session has a world frame of its own.
+void set_poses(const SqliteFile& database, const std::vector<NodePose>& nodes, RecordingFacts& facts) {
+  const std::map<std::int64_t, Eigen::Isometry3d> optimised = optimised_poses(database);
+  std::map<std::int64_t, std::size_t> frames_of_session;
+  for (const NodePose& node : nodes) ++frames_of_session[node.session];
+  const auto longest =
+      std::max_element(frames_of_session.begin(), frames_of_session.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; })
+          ->first;
+  std::map<std::int64_t, Eigen::Isometry3d> T_world_odometry;  // by session, of the last node in the graph
+  for (const NodePose& node : nodes)
+    if (const auto T = optimised.find(node.id); T != optimised.end() && node.T_odometry_robot)
+      T_world_odometry.try_emplace(node.session, T->second * node.T_odometry_robot->inverse());
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const NodePose& node = nodes[i];
+    StatedFrame& frame = facts.frames[i];
+    const auto T = optimised.find(node.id);
+    if (T != optimised.end() && node.T_odometry_robot)
+      T_world_odometry[node.session] = T->second * node.T_odometry_robot->inverse();
+    const auto moved = T_world_odometry.find(node.session);
+    if (T != optimised.end())
+      frame.T_world_camera = T->second;
+    else if (node.T_odometry_robot && moved != T_world_odometry.end())
+      frame.T_world_camera = moved->second * *node.T_odometry_robot;
+    else if (node.T_odometry_robot && optimised.empty() && node.session == longest)
+      frame.T_world_camera = node.T_odometry_robot;
+    else if (node.T_odometry_robot)
+      ++without;
+    else
+      frame.pose_fault = "is no rigid transform";
+  }
+  if (frames_of_session.size() > 1)
+    facts.notes.push_back(
+        {"poses",
+         "the database holds " + std::to_string(frames_of_session.size()) + " sessions, each with a world frame of its own; " +
+             (optimised.empty() ? "it has no optimised poses that join them, so "
+                                : "the optimised poses join them" + std::string(without > 0 ? ", but " : "")) +
+             (without > 0 ? std::to_string(without) + " frames are used without a pose" : ""),
+         static_cast<std::int64_t>(without), "", without > 0});
 }
 
 }  // namespace
@@ -128,35 +235,38 @@ bool is_rtabmap(const std::filesystem::path& path) {
   }
 }
 
-IndexedRecording index_rtabmap(const std::filesystem::path& path) {
+RecordingFacts index_rtabmap(const std::filesystem::path& path) {
   const auto database = std::make_shared<const SqliteFile>(path);
   const std::string where = database->name();
   if (!database->has_column("Data", "calibration") || !database->has_column("Node", "stamp"))
     throw Error(where + ": is of an RTAB-Map before 0.18; open it once in a newer one, which converts it");
 
-  IndexedRecording recording{.name = std::filesystem::canonical(path).string()};
+  RecordingFacts facts{.name = std::filesystem::canonical(path).string()};
   std::vector<std::int64_t> rows;
-  std::vector<double> stamps_s;
+  std::vector<NodePose> nodes;
+  // The oldest databases have one session only.
+  const std::string session = database->has_column("Node", "map_id") ? "Node.map_id" : "0 * Node.id";
   database->query(
-      "SELECT Data.rowid, Node.stamp, Node.pose, length(Data.image) FROM Node JOIN Data ON Node.id = Data.id "
-      "WHERE length(Data.depth) > 0 ORDER BY Node.stamp, Node.id",
+      "SELECT Data.rowid, Node.stamp, Node.pose, length(Data.image), Node.id, " + session +
+          " FROM Node JOIN Data ON Node.id = Data.id WHERE length(Data.depth) > 0 ORDER BY " + session +
+          ", Node.stamp, Node.id",
       {}, [&](const SqliteRow& row) {
+        if (row.integer(3) > 0) facts.frames.push_back({.time = {row.number(1)}, .colour = rows.size()});
+        else facts.frames.push_back({.time = {row.number(1)}});
         rows.push_back(row.integer(0));
-        stamps_s.push_back(row.number(1));
-        recording.frames.push_back(
-            {.has_colour = row.integer(3) > 0, .T_world_camera = pose_in(row.bytes(2))});
+        nodes.push_back({row.integer(4), row.integer(5), pose_in(row.bytes(2))});
       });
   if (rows.empty()) throw Error(where + ": contains no node with a depth image");
-  set_stamps(stamps_s, recording.frames);
+  set_poses(*database, nodes, facts);
 
   const auto read = [database](const char* column, std::int64_t row) {
     return database->read_up_to("Data", column, row, std::uint64_t{1} << 29U);
   };
   RtabmapCamera camera = read_camera(read("calibration", rows.front()), where);
-  for (IndexedFrame& frame : recording.frames)
+  for (StatedFrame& frame : facts.frames)
     if (frame.T_world_camera) frame.T_world_camera = *frame.T_world_camera * camera.T_robot_camera;
   const ImageSize depth_size = depth_image_size(read("depth", rows.front()), where + ": a depth image");
-  const bool has_colour = recording.frames.front().has_colour;
+  const bool has_colour = facts.frames.front().colour.has_value();
   const ImageSize colour_size =
       has_colour ? image_size(read("image", rows.front()), where + ": a colour image") : depth_size;
   if (camera.camera.width_px <= 0) {  // some drivers leave it out
@@ -164,19 +274,22 @@ IndexedRecording index_rtabmap(const std::filesystem::path& path) {
     camera.camera.height_px = colour_size.height_px;
   }
   require_valid(camera.camera, (where + ", camera").c_str());
-  recording.rig.depth_camera = scaled_to_depth(camera.camera, depth_size, where);
-  recording.depth_lens = camera.lens;
+  facts.rig.depth_camera = scaled_to_depth(camera.camera, depth_size, where);
+  facts.depth_lens = camera.lens;
+  facts.camera_source = "its table Data";
+  facts.is_depth_registered = true;
+  facts.depth_unit_m = kUnit_m;
   if (has_colour) {
-    recording.rig.colour_camera = scaled_to_depth(camera.camera, colour_size, where);
-    recording.colour_lens = camera.lens;
+    facts.rig.colour_camera = scaled_to_depth(camera.camera, colour_size, where);
+    facts.colour_lens = camera.lens;
   }
-  recording.read_depth = [read, rows, depth_size, where](std::size_t frame, DepthImage& depth_m) {
-    decode_rtabmap_depth(read("depth", rows[frame]), depth_size, where + ": a depth image", depth_m);
+  facts.read_depth = [read, rows, depth_size, where](std::size_t frame, double unit_m, DepthImage& depth_m) {
+    decode_rtabmap_depth(read("depth", rows[frame]), depth_size, unit_m, where + ": a depth image", depth_m);
   };
-  recording.read_colour = [read, rows, where](std::size_t frame, ColourImage& image) {
+  facts.read_colour = [read, rows, where](std::size_t frame, ColourImage& image) {
     decode_colour(read("image", rows[frame]), where + ": a colour image", image);
   };
-  return recording;
+  return facts;
 }
 
 }  // namespace roomradar

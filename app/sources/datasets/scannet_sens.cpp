@@ -1,6 +1,7 @@
 // scannet_sens.cpp: lists the frames by adding up their sizes.
 #include "app/sources/datasets/scannet_sens.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -42,10 +43,9 @@ struct SensFrame {
 /// Reads the heads of at most `count` frames from the offset `at` on, up to the last whole frame. Adds them
 /// to `frames`, and returns where their images are.
 std::vector<SensFrame> read_frames(const RandomAccessFile& file, const std::string& where, std::uint64_t at,
-                                   std::uint64_t count, std::vector<IndexedFrame>& frames) {
+                                   std::uint64_t count, std::vector<StatedFrame>& frames) {
   constexpr std::uint64_t kFrameHead_bytes = sizeof(Matrix4) + 4 * 8;
   std::vector<SensFrame> places;
-  std::vector<double> stamps_s;
   for (std::uint64_t i = 0; i < count && file.has(at, kFrameHead_bytes); ++i) {
     const std::string bytes = file.read(at, kFrameHead_bytes);
     ByteReader frame_reader(bytes, where);
@@ -58,11 +58,11 @@ std::vector<SensFrame> read_frames(const RandomAccessFile& file, const std::stri
         !file.has(place.colour_offset + place.colour_bytes, place.depth_bytes))
       break;
     at = place.colour_offset + place.colour_bytes + place.depth_bytes;
-    frames.push_back({.has_colour = place.colour_bytes > 0, .T_world_camera = transform_of(pose)});
-    stamps_s.push_back(1e-6 * static_cast<double>(stamp_us));
+    frames.push_back({.time = {.stamp_s = 1e-6 * static_cast<double>(stamp_us)}, .T_world_camera = transform_of(pose)});
+    if (place.colour_bytes > 0) frames.back().colour = places.size();
+    if (!frames.back().T_world_camera) frames.back().pose_fault = "is no rigid transform";
     places.push_back(place);
   }
-  set_stamps(stamps_s, frames);
   return places;
 }
 
@@ -72,7 +72,7 @@ bool is_scannet_sens(const std::filesystem::path& path) {
   return path.extension() == ".sens" && begins_with(path, std::string_view("\x04\0\0\0", 4));
 }
 
-IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
+RecordingFacts index_scannet_sens(const std::filesystem::path& path) {
   const auto file = std::make_shared<const RandomAccessFile>(path);
   const std::string where = file->name();
   constexpr std::uint64_t kFixed_bytes = 4 * sizeof(Matrix4) + 2 * 4 + 4 * 4 + 4 + 8;
@@ -98,18 +98,27 @@ IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
   if (!(units_per_m > 0.0 && std::isfinite(units_per_m)))
     throw Error(where + ": is damaged: its depth's units per m are not > 0");
 
-  IndexedRecording recording{.name = std::filesystem::canonical(path).string()};
-  recording.rig.depth_camera = sens_camera(depth_matrix, sizes[2], sizes[3], where);
-  if (sizes[0] > 0) recording.rig.colour_camera = sens_camera(colour_matrix, sizes[0], sizes[1], where);
+  RecordingFacts facts{.name = std::filesystem::canonical(path).string()};
+  facts.rig.depth_camera = sens_camera(depth_matrix, sizes[2], sizes[3], where);
+  if (sizes[0] > 0) facts.rig.colour_camera = sens_camera(colour_matrix, sizes[0], sizes[1], where);
   const auto T_device_colour = transform_of(colour_pose), T_device_depth = transform_of(depth_pose);
   if (T_device_colour && T_device_depth)
-    recording.rig.T_colour_depth = T_device_colour->inverse() * *T_device_depth;
+    facts.rig.T_colour_depth = T_device_colour->inverse() * *T_device_depth;
 
   const std::vector<SensFrame> places =
-      read_frames(*file, where, 12 + name_bytes + kFixed_bytes, count, recording.frames);
+      read_frames(*file, where, 12 + name_bytes + kFixed_bytes, count, facts.frames);
 
-  const RawLayout depth_layout{recording.rig.depth_camera.width_px, recording.rig.depth_camera.height_px};
-  recording.read_depth = [=](std::size_t frame, DepthImage& depth_m) {
+  if (count > places.size())
+    facts.notes.push_back({"images",
+                           "the file is cut short: it states " + std::to_string(count) + " frames and holds " +
+                               std::to_string(places.size()),
+                           static_cast<std::int64_t>(std::min<std::uint64_t>(count, 1U << 30U) - places.size()), "", true});
+  facts.camera_source = "its header";
+  facts.depth_unit_m = 1.0 / units_per_m;
+  facts.unit_origin = Origin::kRecording;
+  facts.unit_source = "its header";
+  const RawLayout depth_layout{facts.rig.depth_camera.width_px, facts.rig.depth_camera.height_px};
+  facts.read_depth = [=](std::size_t frame, double unit_m, DepthImage& depth_m) {
     const SensFrame& place = places[frame];
     std::string bytes = file->read(place.colour_offset + place.colour_bytes, place.depth_bytes);
     if (depth_kind == SensDepth::kZlib)
@@ -117,17 +126,17 @@ IndexedRecording index_scannet_sens(const std::filesystem::path& path) {
                          std::uint64_t{2} * static_cast<std::uint64_t>(depth_layout.width_px) *
                              static_cast<std::uint64_t>(depth_layout.height_px),
                          where + ": a depth image");
-    convert_depth(bytes, depth_layout, DepthPixels::kUint16, 1.0 / units_per_m, where, depth_m);
+    convert_depth(bytes, depth_layout, DepthPixels::kUint16, unit_m, where, depth_m);
   };
   const RawLayout colour_layout{static_cast<int>(sizes[0] & 0xFFFFU), static_cast<int>(sizes[1] & 0xFFFFU)};
-  recording.read_colour = [=](std::size_t frame, ColourImage& image) {
+  facts.read_colour = [=](std::size_t frame, ColourImage& image) {
     const std::string bytes = file->read(places[frame].colour_offset, places[frame].colour_bytes);
     if (colour_kind == SensColour::kRaw)
       convert_colour(bytes, colour_layout, ColourPixels::kRgb8, where, image);
     else
       decode_colour(bytes, where + ": a colour image", image);
   };
-  return recording;
+  return facts;
 }
 
 }  // namespace roomradar

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -24,37 +26,45 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxCsv_bytes = 1U << 30U;
 
-/// Calls use(numbers, where) per line with at least `count` numbers. A first line without numbers is a
-/// heading.
+/// Calls use(numbers) per line with at least `count` numbers. A first line without numbers is a heading.
+/// @return the number of other lines, such as one that was being written when the app ended
 template <typename Use>
-void for_each_row(const fs::path& path, std::size_t count, const Use& use) {
+std::size_t for_each_row(const fs::path& path, std::size_t count, const Use& use) {
   std::istringstream lines(read_bytes(path, "a list of numbers", kMaxCsv_bytes));
-  int line_number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    const std::string where = path.string() + ", line " + std::to_string(++line_number);
+  std::size_t bad = 0;
+  bool is_first = true;
+  for (std::string line; std::getline(lines, line); is_first = false) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::vector<double> numbers;
-    for (const std::string_view word : split_words(line)) {
+    const auto words = split_words(line);
+    for (const std::string_view word : words) {
       const auto number = parse_number(word);
-      if (!number && line_number == 1 && numbers.empty()) break;
-      if (!number) throw Error(where + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
+      if (!number) break;
       numbers.push_back(*number);
     }
-    if (numbers.empty()) continue;
-    if (numbers.size() < count)
-      throw Error(where + ": has " + std::to_string(numbers.size()) + " numbers; must have " +
-                  std::to_string(count));
-    use(numbers, where);
+    if (words.empty() || (is_first && numbers.empty())) continue;
+    if (numbers.size() < words.size() || numbers.size() < count)
+      ++bad;
+    else
+      use(numbers);
   }
+  return bad;
 }
 
-Intrinsics camera_matrix_of(const fs::path& path, int width_px, int height_px) {
+/// Reads the 3 x 3 matrix of the video. Without a video, its size is assumed to be the app's 1920 x 1440, or of
+/// the aspect ratio of depth and twice as wide as the principal point's x, if that is far from 960.
+Intrinsics camera_matrix_of(const fs::path& path, std::optional<ImageSize> video, ImageSize depth) {
   std::vector<double> m;
-  for_each_row(path, 3, [&](const std::vector<double>& row, const std::string&) {
+  (void)for_each_row(path, 3, [&](const std::vector<double>& row) {
     m.insert(m.end(), row.begin(), row.begin() + 3);
   });
   if (m.size() != 9) throw Error(path.string() + ": must be a 3 x 3 matrix");
-  const Intrinsics camera{width_px, height_px, m[0], m[4], m[2], m[5]};
+  constexpr ImageSize kUsual{1920, 1440};
+  const int twice_px = static_cast<int>(std::lround(2.0 * std::clamp(m[2], 1.0, 8000.0)));
+  const ImageSize size = video                                                ? *video
+                         : std::abs(twice_px - kUsual.width_px) < 200         ? kUsual
+                                                                              : ImageSize{twice_px, twice_px * depth.height_px / depth.width_px};
+  const Intrinsics camera{size.width_px, size.height_px, m[0], m[4], m[2], m[5]};
   require_valid(camera, path.string().c_str());
   return camera;
 }
@@ -65,16 +75,14 @@ struct Odometry {
 };
 
 /// Returns the rows of odometry.csv by frame.
-std::map<std::int64_t, Odometry> odometry_of(const fs::path& path) {
+/// @param[out] bad  number of lines that are not a row
+std::map<std::int64_t, Odometry> odometry_of(const fs::path& path, std::size_t& bad) {
   constexpr double kMostFrames = 1e9;
   std::map<std::int64_t, Odometry> rows;
-  for_each_row(path, 9, [&](const std::vector<double>& row, const std::string& where) {
-    if (!(row[1] >= 0 && row[1] < kMostFrames && row[1] == std::floor(row[1])))
-      throw Error(where + ": the second number must be that of a frame");
-    Odometry odometry{row[0], std::nullopt};
-    if (const auto T = rigid_pose({row[2], row[3], row[4]}, {row[5], row[6], row[7], row[8]}))
-      odometry.T_world_camera = world_from_arkit_world(*T);
-    rows[static_cast<std::int64_t>(row[1])] = odometry;
+  bad = for_each_row(path, 9, [&](const std::vector<double>& row) {
+    if (!(row[1] >= 0 && row[1] < kMostFrames && row[1] == std::floor(row[1]))) return;
+    rows[static_cast<std::int64_t>(row[1])] = {
+        row[0], rigid_pose({row[2], row[3], row[4]}, {row[5], row[6], row[7], row[8]})};
   });
   return rows;
 }
@@ -97,46 +105,72 @@ bool is_stray_scanner(const fs::path& folder) {
          fs::is_directory(folder / "depth", ignored);
 }
 
-IndexedRecording index_stray_scanner(const fs::path& folder) {
-  const auto video = std::make_shared<VideoFile>(folder / "rgb.mp4");
-  IndexedRecording recording{.name = fs::canonical(folder).string()};
-  const Intrinsics colour =
-      camera_matrix_of(folder / "camera_matrix.csv", video->width_px(), video->height_px());
-  recording.rig.colour_camera = colour;
-  recording.rig.depth_noise = kPhoneLidarNoise;
+RecordingFacts index_stray_scanner(const fs::path& folder) {
+  RecordingFacts facts{.name = fs::canonical(folder).string()};
+  std::shared_ptr<VideoFile> video;
+  try {
+    video = std::make_shared<VideoFile>(folder / "rgb.mp4");
+  } catch (const Error& fault) {
+    const bool is_missing = !fs::exists(folder / "rgb.mp4");
+    facts.notes.push_back({"images",
+                           is_missing ? "rgb.mp4 is missing; depth is used without colour"
+                                      : "rgb.mp4 cannot be read, depth is used without colour: " + std::string(fault.what()),
+                           0, "", !is_missing});
+  }
+  facts.rig.depth_noise = kPhoneLidarNoise;
+  facts.camera_source = "camera_matrix.csv";
+  facts.is_depth_registered = true;
+  facts.unit_source = "millimetres, by Stray Scanner's format";
+  facts.stamps_have_no_unit = true;
+  set_arkit_axes(facts, /*camera_is_opengl=*/false);
 
-  const std::map<std::int64_t, Odometry> odometry = odometry_of(folder / "odometry.csv");
-  const auto files = numbered_files(folder / "depth", {".png"});
+  std::size_t bad_lines = 0;
+  const std::map<std::int64_t, Odometry> odometry = odometry_of(folder / "odometry.csv", bad_lines);
+  if (bad_lines > 0)
+    facts.notes.push_back({"poses",
+                           std::to_string(bad_lines) + " lines of odometry.csv are cut short or not numbers; they are left out",
+                           static_cast<std::int64_t>(bad_lines)});
   std::vector<fs::path> paths;
   std::vector<std::size_t> numbers;
-  for (const auto& [number, path] : files) {
-    IndexedFrame frame{.has_colour = true};
-    const auto row = odometry.find(number);
-    if (row == odometry.end()) {
-      frame.fault = path.string() + ": odometry.csv has no line for its frame";
-    } else {
-      frame.stamp_s = row->second.stamp_s;
+  std::size_t without_row = 0;
+  for (const auto& [number, path] : numbered_files(folder / "depth", {".png"})) {
+    StatedFrame frame;
+    if (video) frame.colour = numbers.size();
+    if (const auto row = odometry.find(number); row != odometry.end()) {
+      frame.time.stamp_s = row->second.stamp_s;
       frame.T_world_camera = row->second.T_world_camera;
-      if (frame.T_world_camera) frame.down_camera = down_in_camera(*frame.T_world_camera);
+      if (!frame.T_world_camera) frame.pose_fault = "is no rigid transform";
+    } else {
+      ++without_row;
     }
-    recording.frames.push_back(std::move(frame));
+    facts.frames.push_back(std::move(frame));
     paths.push_back(path);
     numbers.push_back(static_cast<std::size_t>(number));
   }
-  recording.rig.depth_camera = scaled_to_depth(colour, size_of_first_png(paths, folder), folder.string());
-  recording.read_depth = [paths, folder](std::size_t frame, DepthImage& depth_m) {
+  if (without_row > 0)
+    facts.notes.push_back({"poses",
+                           std::to_string(without_row) + " depth images have no line in odometry.csv; they are used "
+                                                         "without a pose",
+                           static_cast<std::int64_t>(without_row)});
+  const ImageSize depth_size = size_of_images(paths, folder);
+  std::optional<ImageSize> video_size;
+  if (video) video_size = ImageSize{video->width_px(), video->height_px()};
+  const Intrinsics colour = camera_matrix_of(folder / "camera_matrix.csv", video_size, depth_size);
+  if (video) facts.rig.colour_camera = colour;
+  facts.rig.depth_camera = scaled_to_depth(colour, depth_size, folder.string());
+  facts.read_depth = [paths, folder](std::size_t frame, double unit_m, DepthImage& depth_m) {
     const fs::path confidence_path = folder / "confidence" / paths[frame].filename();
-    read_depth_file(paths[frame], DepthEncoding::kMillimetres, depth_m);
+    read_depth_file(paths[frame], DepthEncoding::kMillimetres, unit_m, depth_m);
     if (!fs::exists(confidence_path)) return;
     Image<std::uint8_t> confidence;
     const std::string name = confidence_path.string();
     decode_grey_png(read_bytes(confidence_path, "an image", kMaxCsv_bytes), name, confidence);
     remove_unsure(confidence, name, depth_m);
   };
-  recording.read_colour = [video, numbers](std::size_t frame, ColourImage& image) {
+  facts.read_colour = [video, numbers](std::size_t frame, ColourImage& image) {
     video->read(numbers[frame], image);
   };
-  return recording;
+  return facts;
 }
 
 }  // namespace roomradar

@@ -55,6 +55,13 @@ Image<std::uint16_t> decode_16_bit_png(std::string_view bytes, const std::string
   return image;
 }
 
+/// Returns the number of units in a metre. A number that is almost whole is rounded: dividing by a whole number
+/// gives the float nearest to the depth.
+float units_per_m(double unit_m) {
+  const double units = 1.0 / unit_m, whole = std::round(units);
+  return static_cast<float>(std::abs(units - whole) < 1e-3 ? whole : units);
+}
+
 /// Converts units to m; `invalid` is no measurement.
 void convert(const Image<std::uint16_t>& image, float units_per_m, int invalid, DepthImage& depth_m) {
   depth_m.resize(image.width, image.height);
@@ -83,10 +90,26 @@ void read_kinect_raw(const std::filesystem::path& path, DepthImage& depth_m) {
 }  // namespace
 
 void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, DepthImage& depth_m) {
-  if (encoding == DepthEncoding::kKinectRaw) return read_kinect_raw(path, depth_m);
+  read_depth_file(path, encoding, depth_unit_m(encoding), depth_m);
+}
+
+void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, double unit_m,
+                     DepthImage& depth_m) {
+  if (encoding == DepthEncoding::kKinectRaw) {
+    read_kinect_raw(path, depth_m);
+    return scale_depth(unit_m, depth_m);
+  }
   const Image<std::uint16_t> image = decode_16_bit_png(read_image_bytes(path), path.string());
-  const bool is_tum = encoding == DepthEncoding::kTum;
-  convert(image, is_tum ? 5000.0F : 1000.0F, is_tum ? 0 : 65535, depth_m);
+  convert(image, units_per_m(unit_m), encoding == DepthEncoding::kTum ? 0 : 65535, depth_m);
+}
+
+double depth_unit_m(DepthEncoding encoding) {
+  return encoding == DepthEncoding::kTum ? 1.0 / 5000.0 : encoding == DepthEncoding::kKinectRaw ? 1.0 : 0.001;
+}
+
+void scale_depth(double factor, DepthImage& depth_m) {
+  if (factor == 1.0) return;
+  for (float& depth : depth_m.pixels) depth = static_cast<float>(depth * factor);
 }
 
 void decode_depth_png(std::string_view bytes, float units_per_m, const std::string& name,

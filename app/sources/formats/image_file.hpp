@@ -22,6 +22,14 @@ enum class DepthEncoding {
 /// Reads a depth image and converts it to metres; 0: invalid. Throws Error with the file's name if the file
 /// is missing, truncated, of another type, or cannot be decoded.
 void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, DepthImage& depth_m);
+/// As above, with another length of a unit of the stored depth. For kKinectRaw, whose depth is a disparity,
+/// unit_m is the length of a metre.
+void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, double unit_m,
+                     DepthImage& depth_m);
+/// Returns the length of a unit of the encoding, m; 1 for kKinectRaw.
+double depth_unit_m(DepthEncoding encoding);
+/// Multiplies each depth, for files that hold metres by their format, but another unit by their user's word.
+void scale_depth(double factor, DepthImage& depth_m);
 
 /// Reads a colour or grey image (PNG, JPEG or PPM). Throws Error as read_depth_file() does.
 void read_colour_file(const std::filesystem::path& path, ColourImage& colour);

@@ -2,7 +2,6 @@
 #include "app/sources/formats/nominal_rig.hpp"
 
 #include <cmath>
-#include <string>
 
 #include "mapping/types/system/error.hpp"
 
@@ -82,7 +81,10 @@ CameraRig figures(NominalRig kind) {
   throw Error("nominal_rig: no such kind of recording");
 }
 
-Intrinsics fitted(const Intrinsics& camera, ImageSize size) {
+
+}  // namespace
+
+Intrinsics fitted_to(const Intrinsics& camera, ImageSize size) {
   const double factor = static_cast<double>(size.width_px) / camera.width_px;
   Intrinsics result = scaled(camera, factor);
   result.cy_px += (size.height_px - camera.height_px * factor) / 2;
@@ -90,19 +92,6 @@ Intrinsics fitted(const Intrinsics& camera, ImageSize size) {
   result.height_px = size.height_px;
   return result;
 }
-
-std::string text_of(ImageSize size) {
-  return std::to_string(size.width_px) + " x " + std::to_string(size.height_px);
-}
-
-void require_fit(const Intrinsics& camera, ImageSize images, const char* which, const std::string& where) {
-  const ImageSize size{camera.width_px, camera.height_px};
-  if (size == images) return;
-  throw Error(where + ": the " + which + " camera's intrinsics are for images of " + text_of(size) +
-              ", but the recording's are " + text_of(images) + "; give intrinsics for " + text_of(images));
-}
-
-}  // namespace
 
 Intrinsics openni_camera(ImageSize size, double stated_fov_rad) {
   constexpr double kPrimeSenseFov_rad = 1.0226;
@@ -113,48 +102,28 @@ Intrinsics openni_camera(ImageSize size, double stated_fov_rad) {
 
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour) {
   CameraRig rig = figures(kind);
-  rig.depth_camera = fitted(rig.depth_camera, depth);
+  rig.depth_camera = fitted_to(rig.depth_camera, depth);
   if (colour)
-    rig.colour_camera = fitted(*rig.colour_camera, *colour);
+    rig.colour_camera = fitted_to(*rig.colour_camera, *colour);
   else
     rig.colour_camera.reset();
   return rig;
 }
 
-CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
-                           const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
-                           std::optional<ImageSize> colour) {
-  const auto camera_file = folder / "camera.json";
-  const auto matrix_file = folder / "camera-intrinsics.txt";
-  const bool has_camera_file = !folder.empty() && std::filesystem::exists(camera_file);
-
-  bool depth_is_given = false;
-  CameraRig rig = has_camera_file ? read_camera_file(camera_file) : nominal_rig(kind, depth, colour);
-  if (has_camera_file) require_fit(rig.depth_camera, depth, "depth", camera_file.string());
-  if (chosen_depth) {
-    require_valid(*chosen_depth, "the depth intrinsics that were given");
-    require_fit(*chosen_depth, depth, "depth", folder.empty() ? "the device" : folder.string());
-    rig.depth_camera = *chosen_depth;
-    depth_is_given = true;
-  } else if (!has_camera_file && !folder.empty() && std::filesystem::exists(matrix_file)) {
-    rig.depth_camera = read_intrinsics_matrix(matrix_file, depth.width_px, depth.height_px);
-    depth_is_given = true;
+const char* nominal_name(NominalRig kind) {
+  switch (kind) {
+    case NominalRig::kSevenScenes:
+      return "the Kinect v1 of the 7-Scenes dataset";
+    case NominalRig::kTum:
+      return "a Kinect v1 with registered depth";
+    case NominalRig::kBonn:
+      return "the Xtion of the BONN dataset";
+    case NominalRig::kNumbered:
+      return "one particular camera";
+    case NominalRig::kKinect:
+      return "a Kinect v1";
   }
-
-  if (!colour) {
-    rig.colour_camera.reset();
-    return rig;
-  }
-  // A user who gives depth intrinsics for a numbered folder, but none for colour, has aligned images.
-  const bool is_registered = has_camera_file ? !rig.colour_camera
-                                             : kind == NominalRig::kTum || kind == NominalRig::kBonn ||
-                                                   (kind == NominalRig::kNumbered && depth_is_given);
-  if (is_registered) {
-    rig.colour_camera = fitted(rig.depth_camera, *colour);
-    rig.T_colour_depth.setIdentity();
-  }
-  require_fit(*rig.colour_camera, *colour, "colour", camera_file.string());
-  return rig;
+  return "an unknown device";
 }
 
 }  // namespace roomradar

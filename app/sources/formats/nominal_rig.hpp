@@ -1,6 +1,5 @@
 // nominal_rig.hpp: default cameras for recordings that do not contain their intrinsics, and noise of sensors.
 #pragma once
-#include <filesystem>
 #include <optional>
 
 #include "app/sources/formats/camera_rig.hpp"
@@ -58,14 +57,11 @@ Intrinsics openni_camera(ImageSize size, double stated_fov_rad);
 /// be cropped at top and bottom.
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour);
 
-/// Returns the cameras of the recording in `folder`. Depth intrinsics are the first of these that exists:
-/// `chosen_depth`, the folder's camera.json, its camera-intrinsics.txt, nominal_rig(). The colour camera is
-/// that of camera.json, or else of nominal_rig(). The colour camera equals the depth camera for kTum and
-/// kBonn, and for a camera.json without colour. It also does for kNumbered if the depth intrinsics are from
-/// the caller or a file: depth is then assumed to be registered to colour. Throws Error if intrinsics are
-/// invalid, or if their size differs from the images'. The message then contains both sizes and a remedy.
-CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
-                           const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
-                           std::optional<ImageSize> colour);
+/// Returns the camera scaled to images of another width. If the aspect ratio differs, equal numbers of rows
+/// are assumed to be cropped at top and bottom.
+Intrinsics fitted_to(const Intrinsics& camera, ImageSize size);
+
+/// Returns whose cameras nominal_rig() returns, for messages: "the Kinect v1 of 7-Scenes".
+const char* nominal_name(NominalRig kind);
 
 }  // namespace roomradar

@@ -6,7 +6,6 @@
 #include <system_error>
 #include <vector>
 
-#include "app/sources/recordings/recording_index_fakenect.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -57,7 +56,6 @@ ScratchFolder folder_of_links(const fs::path& folder, const std::vector<std::str
 }  // namespace
 
 FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
-  index_fakenect(folder);  // throws if the list is unusable
   std::ifstream list(folder / "INDEX.txt");
   std::vector<std::string> sound;
   bool all_sound = true;

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "app/sources/decisions/camera_choice.hpp"
 #include "app/sources/formats/kinect_units.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/kinect/fakenect_replay.hpp"
@@ -39,7 +40,12 @@ std::vector<float> metres_of(KinectDepth depth, const std::optional<KinectConsta
 
 CameraRig rig_of(KinectDepth depth, const std::optional<KinectConstants>& constants,
                  const std::filesystem::path& recording, const SourceOptions& options) {
-  CameraRig rig = rig_of_recording(recording, NominalRig::kKinect, options.depth_camera, kSize, kSize);
+  RecordingFacts facts{.name = recording.empty() ? "the Kinect" : recording.string()};
+  facts.rig = nominal_rig(NominalRig::kKinect, kSize, kSize);
+  facts.camera_origin = Origin::kAssumed;
+  InputReport ignored;  // the device's own constants follow
+  choose_cameras(facts, recording, options, ignored);
+  CameraRig rig = facts.rig;
   if (constants)
     if (const auto fitted = fit_kinect_rig(constants->seen_by_both, rig)) rig = *fitted;
   if (depth == KinectDepth::kRegistered) {

@@ -8,22 +8,13 @@
 
 namespace roomradar {
 
-/// Opens a recording (folder or file) and recognises its format by its content. The formats that
-/// index_foreign() opens are listed in app/sources/README.md. All other formats are folders:
-///   fakenect      INDEX.txt with d-*.pgm (raw 11 bit), r-*.ppm, a-*.dump (accelerometer)
-///   TUM RGB-D     depth.txt, rgb.txt; optional groundtruth.txt, accelerometer.txt
-///   7-Scenes      frame-XXXXXX.depth.png, .color.jpg, .color.png or .color.none (empty: no colour),
-///                 optional .pose.txt
-///   numbered      depth/NNNNN.png (mm), optional color/NNNNN.jpg or .png
-/// Intrinsics are read from the folder's camera.json (camera_rig.hpp). If it does not exist, they are read
-/// from camera-intrinsics.txt (3 x 3 matrix of the depth camera). If neither file exists, the format's
-/// published values are scaled to the images' width.
+/// Opens a recording (folder or file) and recognises its kind by its content. app/sources/README.md lists the
+/// kinds. decide() chooses cameras, times, unit and poses, and reports each decision to `options.input`.
 ///
-/// Image files are read on demand. next() reports unreadable frames as FrameSource describes. The source can
-/// rewind and seek, and knows its number of frames.
-/// @throws Error if the folder is absent, empty or in none of these formats (the message lists them). Also
-///         throws if one of its lists is unusable, none of its first ten frames is readable, or the
-///         intrinsics do not match the images
+/// Image files are read on demand. next() skips frames whose depth cannot be read, as FrameSource describes.
+/// The source can rewind and seek, and knows its number of frames.
+/// @throws Error if the recording is absent, empty or of no known kind (the message lists them), if none of its
+///         depth images can be read, or if the intrinsics do not match the images
 std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder,
                                          const SourceOptions& options = {});
 

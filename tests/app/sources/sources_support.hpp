@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "app/sources/formats/source_options.hpp"
 #include "mapping/types/frame_source.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -78,6 +80,18 @@ inline ReadAll read_all(FrameSource& source) {
     else
       all.faults.push_back(result.fault);
   }
+}
+
+/// Reads a whole recording, and returns all decisions about it as lines.
+template <typename Open>
+std::string decisions_about(const Open& open, ReadAll* all = nullptr) {
+  SourceOptions options;
+  options.input = std::make_shared<InputReport>();
+  ReadAll read = read_all(*open(options));
+  if (all) *all = std::move(read);
+  std::string lines;
+  for (const InputDecision& decision : options.input->decisions()) lines += line_of(decision) + "\n";
+  return lines;
 }
 
 inline bool contains(const std::string& text, const std::string& part) {

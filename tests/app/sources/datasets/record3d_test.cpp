@@ -157,7 +157,26 @@ TEST(Record3d, SaysWhatIsWrongWithTheMetadata) {
       contains(message_of("\"dh\":8", "\"dh\":3"), "which does not have the aspect ratio of the colour"));
   EXPECT_TRUE(contains(message_of("\"w\":12,", ""), "'w' is missing"));
   EXPECT_TRUE(contains(message_of("0.75]}", "0.75"), "is it cut short?"));
-  EXPECT_TRUE(contains(message_of("[0,0,0,1,1,2,3]", "[0,0]"), "poses[0]: must be a list of 7 numbers"));
+}
+
+TEST(Record3d, AFrameWithoutAPoseKeepsItsDepth) {
+  for (const char* pose : {"[0,0]", "null", "\"lost\""}) {
+    const TemporaryFolder folder;
+    std::string metadata = kMetadata;
+    const std::string from = "[0,0,0,1,1,2,3]";
+    write_export(folder.path(), metadata.replace(metadata.find(from), from.size(), pose));
+    test::ReadAll all;
+    const std::string said = test::decisions_about(
+        [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+    ASSERT_EQ(all.frames.size(), 3U) << pose;
+    EXPECT_FALSE(all.frames[0].T_world_camera);
+    EXPECT_TRUE(contains(said, "recorded poses are lost")) << said;
+  }
+  const TemporaryFolder folder;
+  std::string metadata = kMetadata;
+  const std::size_t begin = metadata.find("\"poses\""), end = metadata.find("]]", begin);
+  write_export(folder.path(), metadata.replace(begin, end + 2 - begin, "\"poses\":null"));
+  EXPECT_EQ(read_all(*open_folder(folder.path())).frames.size(), 3U);
 }
 
 TEST(Record3d, SkipsAFrameWhoseImageIsDamaged) {

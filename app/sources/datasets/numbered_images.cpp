@@ -1,0 +1,130 @@
+// numbered_images.cpp: images, poses and matrices by the number in their names.
+#include "app/sources/datasets/numbered_images.hpp"
+
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/sources/datasets/numbered_files.hpp"
+#include "app/sources/datasets/seven_scenes.hpp"
+#include "app/sources/formats/image_file.hpp"
+#include "app/sources/formats/nominal_rig.hpp"
+#include "app/sources/formats/parse_numbers.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Returns the first of these folders that exists; empty if there is none.
+fs::path first_folder(const fs::path& folder, std::initializer_list<const char*> names) {
+  std::error_code ignored;
+  for (const char* name : names)
+    if (fs::is_directory(folder / name, ignored)) return folder / name;
+  return {};
+}
+
+/// Reads the camera of a 4 x 4 or 3 x 3 matrix. Throws Error naming the file if it is none.
+Intrinsics read_camera_matrix(const fs::path& path, ImageSize size) {
+  constexpr std::uintmax_t kMax_bytes = 1U << 16U;
+  const std::string name = path.string();
+  std::vector<double> m;
+  std::istringstream lines(read_bytes(path, "a camera matrix", kMax_bytes));
+  for (std::string line; std::getline(lines, line);)
+    for (const std::string_view word : split_words(line)) {
+      const auto value = parse_number(word);
+      if (!value) throw Error(name + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
+      m.push_back(*value);
+    }
+  if (m.size() != 16 && m.size() != 9)
+    throw Error(name + ": has " + std::to_string(m.size()) + " numbers; must be a 4 x 4 matrix");
+  const std::size_t columns = m.size() == 16 ? 4 : 3;
+  const Intrinsics camera{size.width_px, size.height_px, m[0], m[columns + 1], m[2], m[columns + 2]};
+  require_valid(camera, name.c_str());
+  return camera;
+}
+
+/// Sets the cameras that a folder intrinsic of ScanNet's export states.
+void read_scannet_cameras(const fs::path& intrinsic, ImageSize depth, std::optional<ImageSize> colour,
+                          RecordingFacts& facts) {
+  facts.rig.depth_camera = read_camera_matrix(intrinsic / "intrinsic_depth.txt", depth);
+  facts.camera_origin = Origin::kRecording;
+  facts.camera_source = "intrinsic/intrinsic_depth.txt";
+  if (!colour) return;
+  const fs::path colour_file = intrinsic / "intrinsic_color.txt";
+  facts.rig.colour_camera =
+      fs::exists(colour_file) ? read_camera_matrix(colour_file, *colour) : fitted_to(facts.rig.depth_camera, *colour);
+  facts.rig.T_colour_depth.setIdentity();
+  const StatedPose T_device_colour = read_pose_file(intrinsic / "extrinsic_color.txt");
+  const StatedPose T_device_depth = read_pose_file(intrinsic / "extrinsic_depth.txt");
+  if (T_device_colour.T_world_camera && T_device_depth.T_world_camera)
+    facts.rig.T_colour_depth = T_device_colour.T_world_camera->inverse() * *T_device_depth.T_world_camera;
+  else
+    facts.colour_pose_origin = Origin::kAssumed;
+}
+
+}  // namespace
+
+bool is_numbered_images(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_directory(folder / "depth", ignored);
+}
+
+RecordingFacts index_numbered_images(const fs::path& folder) {
+  RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
+  const auto colour_files = numbered_files(first_folder(folder, {"color", "colour", "rgb", "image"}),
+                                           {".jpg", ".jpeg", ".png"});
+  const auto pose_files = numbered_files(first_folder(folder, {"pose", "poses"}), {".txt"});
+  std::vector<fs::path> depths, colours;
+  std::vector<std::string> poses;
+  std::int64_t without_colour = 0, first_without_colour = -1;
+  for (const auto& [number, file] : numbered_files(folder / "depth", {".png"})) {
+    StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / kNominalRate_hz}};
+    if (const auto colour = colour_files.find(number); colour != colour_files.end()) {
+      frame.colour = colours.size();
+      colours.push_back(colour->second);
+    } else if (without_colour++ == 0) {
+      first_without_colour = number;
+    }
+    const auto pose = pose_files.find(number);
+    poses.push_back(pose == pose_files.end() ? "" : pose->second.string());
+    depths.push_back(file);
+    facts.frames.push_back(std::move(frame));
+  }
+  if (facts.frames.empty()) return facts;
+  if (!colours.empty() && without_colour > 0)
+    facts.notes.push_back({"images",
+                           "the colour image of " + std::to_string(without_colour) + " of " +
+                               std::to_string(depths.size()) + " frames is missing, the first: number " +
+                               std::to_string(first_without_colour) + "; these frames are used without",
+                           without_colour});
+
+  const ImageSize size = size_of_images(depths, folder);
+  std::optional<ImageSize> colour_size;
+  if (!colours.empty()) colour_size = size_of_images(colours, folder);
+  facts.rig = nominal_rig(NominalRig::kNumbered, size, colour_size);
+  facts.camera_origin = Origin::kAssumed;
+  facts.camera_source = nominal_name(NominalRig::kNumbered);
+  facts.is_registered_if_given = true;
+  facts.unit_source = "millimetres, as most folders of numbered images have it";
+  facts.unit_origin = Origin::kAssumed;
+  if (fs::exists(folder / "intrinsic" / "intrinsic_depth.txt"))
+    read_scannet_cameras(folder / "intrinsic", size, colour_size, facts);
+  facts.read_depth = [depths](std::size_t frame, double unit_m, DepthImage& depth_m) {
+    read_depth_file(depths[frame], DepthEncoding::kMillimetres, unit_m, depth_m);
+  };
+  facts.read_colour = [colours](std::size_t colour, ColourImage& image) {
+    read_colour_file(colours[colour], image);
+  };
+  if (!pose_files.empty())
+    facts.read_pose = [poses](std::size_t frame, double) {
+      return poses[frame].empty() ? StatedPose{} : read_pose_file(poses[frame]);
+    };
+  return facts;
+}
+
+}  // namespace roomradar

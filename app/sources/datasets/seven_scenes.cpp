@@ -1,0 +1,149 @@
+// seven_scenes.cpp: lists frame-XXXXXX.* and reads pose files.
+#include "app/sources/datasets/seven_scenes.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/sources/datasets/numbered_files.hpp"
+#include "app/sources/formats/image_file.hpp"
+#include "app/sources/formats/nominal_rig.hpp"
+#include "app/sources/formats/parse_numbers.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxPose_bytes = 1U << 16U;
+
+/// Files of one frame; paths are strings, which take less memory. Empty: there is none.
+struct FrameFiles {
+  std::string depth, colour, pose;
+};
+
+const std::regex& seven_scenes_name() {
+  static const std::regex pattern(
+      R"(frame-(\d{1,9})\.(depth\.png|color\.png|color\.jpe?g|color\.none|pose\.txt))");
+  return pattern;
+}
+
+std::vector<fs::path> as_paths(const std::vector<std::string>& files) { return {files.begin(), files.end()}; }
+
+}  // namespace
+
+bool is_seven_scenes(const fs::path& folder) {
+  std::error_code ignored;
+  const std::vector<fs::path> entries = entries_of(folder, ignored);
+  return std::any_of(entries.begin(), entries.end(), [](const fs::path& file) {
+    return std::regex_match(file.filename().string(), seven_scenes_name());
+  });
+}
+
+RecordingFacts index_seven_scenes(const fs::path& folder) {
+  std::map<std::int64_t, FrameFiles> by_number;
+  for (const fs::path& file : entries_of(folder)) {  // sorted: of a jpg and a png, the same is chosen everywhere
+    const std::string name = file.filename().string();
+    std::smatch match;
+    if (!std::regex_match(name, match, seven_scenes_name())) continue;
+    FrameFiles& frame = by_number[std::stoll(match[1])];
+    const std::string kind = match[2];
+    std::string& slot = kind.starts_with("depth")   ? frame.depth
+                        : kind.starts_with("color") ? frame.colour
+                                                    : frame.pose;
+    if (slot.empty()) slot = file.string();
+  }
+
+  RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
+  const auto files = std::make_shared<std::vector<FrameFiles>>();
+  std::vector<std::string> depths, colours;
+  std::int64_t without_colour = 0, without_pose = 0, first_without_colour = -1, first_without_pose = -1;
+  for (const auto& [number, frame] : by_number) {
+    StatedFrame stated{.time = {.stamp_s = static_cast<double>(number) / kNominalRate_hz}};
+    if (frame.depth.empty())
+      stated.fault = folder.string() + ": the depth image of number " + std::to_string(number) + " is missing";
+    else
+      depths.push_back(frame.depth);
+    if (!frame.colour.empty() && !frame.colour.ends_with(".none")) {
+      stated.colour = files->size();
+      colours.push_back(frame.colour);
+    }
+    if (frame.colour.empty() && without_colour++ == 0) first_without_colour = number;
+    if (frame.pose.empty() && without_pose++ == 0) first_without_pose = number;
+    facts.frames.push_back(std::move(stated));
+    files->push_back(frame);
+  }
+  const auto count = static_cast<std::int64_t>(files->size());
+  const auto note_missing = [&](const char* topic, const char* what, std::int64_t missing, std::int64_t first) {
+    if (missing > 0 && missing < count)
+      facts.notes.push_back({topic,
+                             "the " + std::string(what) + " of " + std::to_string(missing) + " of " +
+                                 std::to_string(count) + " frames is missing, the first: number " +
+                                 std::to_string(first) + "; these frames are used without",
+                             missing});
+  };
+  note_missing("images", "colour image", without_colour, first_without_colour);
+  note_missing("poses", "pose", without_pose, first_without_pose);
+  if (depths.empty()) throw Error(facts.name + ": contains no depth images");
+
+  const ImageSize size = size_of_images(as_paths(depths), folder);
+  std::optional<ImageSize> colour_size;
+  if (!colours.empty()) colour_size = size_of_images(as_paths(colours), folder);
+  facts.rig = nominal_rig(NominalRig::kSevenScenes, size, colour_size);
+  facts.camera_origin = Origin::kAssumed;
+  facts.camera_source = nominal_name(NominalRig::kSevenScenes);
+  facts.depth_unit_m = depth_unit_m(DepthEncoding::kMillimetres);
+  facts.unit_source = "millimetres, by the 7-Scenes format";
+  facts.read_depth = [files](std::size_t frame, double unit_m, DepthImage& depth_m) {
+    read_depth_file((*files)[frame].depth, DepthEncoding::kMillimetres, unit_m, depth_m);
+  };
+  facts.read_colour = [files](std::size_t frame, ColourImage& image) {
+    read_colour_file((*files)[frame].colour, image);
+  };
+  if (without_pose < count)
+    facts.read_pose = [files](std::size_t frame, double) {
+      const std::string& file = (*files)[frame].pose;
+      return file.empty() ? StatedPose{} : read_pose_file(file);
+    };
+  return facts;
+}
+
+StatedPose read_pose_file(const fs::path& path) {
+  const std::string name = path.string();
+  std::vector<double> m;
+  try {
+    std::istringstream file(read_bytes(path, "a 4 x 4 pose", kMaxPose_bytes));
+    for (std::string line; std::getline(file, line);)
+      for (const std::string_view word : split_words(line)) {
+        const auto value = parse_number(word);
+        if (!value) return {{}, name + ": '" + std::string(word.substr(0, 40)) + "' is not a number"};
+        if (m.size() == 16) return {{}, name + ": has more than 16 numbers; must be a 4 x 4 pose"};
+        m.push_back(*value);
+      }
+  } catch (const Error& fault) {
+    return {{}, fault.what()};
+  }
+  if (m.size() == 12) m.insert(m.end(), {0.0, 0.0, 0.0, 1.0});
+  if (m.size() != 16)
+    return {{}, name + ": has " + std::to_string(m.size()) + " numbers; must be a 4 x 4 pose; is it cut short?"};
+  Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
+  const Eigen::RowVector4d last(0, 0, 0, 1);
+  const auto ends_as_pose = [&](const Eigen::RowVector4d& row) { return row.isApprox(last, 1e-6); };
+  const bool is_transposed =
+      matrix.allFinite() && !ends_as_pose(matrix.row(3)) && ends_as_pose(matrix.col(3).transpose());
+  if (is_transposed) matrix.transposeInPlace();
+  const auto T = matrix.allFinite() && ends_as_pose(matrix.row(3)) ? rigid_transform(matrix.topRows<3>())
+                                                                    : std::nullopt;
+  if (!T)
+    return {{}, name + ": is not a rigid pose: a rotation, a shift in metres, and 0 0 0 1 below"};
+  return {T, {}, is_transposed};
+}
+
+}  // namespace roomradar
