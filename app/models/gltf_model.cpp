@@ -113,8 +113,8 @@ void name_the_rest(const GltfObject& material, NotDrawn& not_drawn) {
       name("unlit in the file, and drawn in the light of the room");
     else if (extension == "KHR_materials_pbrSpecularGlossiness")
       name("drawn by the diffuse colour alone, without specular colour and gloss");
-    else if (extension.starts_with("KHR_materials_"))
-      name("drawn without " + extension.substr(0, 60));
+    else if (extension.starts_with("KHR_materials_") && is_known_gltf_extension(extension))
+      name("drawn without " + extension);
   }
 }
 
@@ -161,7 +161,11 @@ class Builder {
   std::set<std::size_t> used_;                           // materials
   std::map<std::size_t, std::int32_t> texture_indices_;  // in model_.textures, by material
 
-  void note(const std::string& sentence) { model_.notes.push_back(path_.string() + ": " + sentence); }
+  void note(std::string sentence) {
+    std::replace_if(  // names in the file may hold what a terminal obeys
+        sentence.begin(), sentence.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+    model_.notes.push_back(path_.string() + ": " + sentence);
+  }
 
   [[noreturn]] void fail_without_triangles() const {
     std::string fault = "contains no triangles with an area; must be a surface mesh";
@@ -201,11 +205,11 @@ class Builder {
     const GltfObject of = document_.element("textures", base.texture->texture);
     const std::optional<std::size_t> index = image_of(of);
     if (!index) {
-      const auto extensions = of.object("extensions");
-      const std::vector<std::string> names = extensions ? extensions->keys() : std::vector<std::string>{};
-      not_drawn_.add("texture", (names.empty() ? std::string("without an image")
-                                               : "in the format of " + names.front().substr(0, 60)) +
-                                    " and not drawn; the material's colour is drawn instead");
+      std::string format = "without a known image format";
+      if (const auto extensions = of.object("extensions"))
+        for (const std::string& name : extensions->keys())
+          if (is_known_gltf_extension(name)) format = "in the format of " + name;
+      not_drawn_.add("texture", format + " and not drawn; the material's colour is drawn instead");
       return kNoTexture;
     }
     const GltfObject image = document_.element("images", *index);
@@ -301,8 +305,8 @@ class Builder {
       not_drawn_.add("variant of materials", "not offered; the default is drawn",
                      variants->size_of("variants"));
     for (const std::string& sentence : not_drawn_.sentences()) note(sentence);
-    for (const std::string& extension : document_.unknown_extensions())
-      note("the glTF extension " + extension + " is unknown; what it adds is not drawn");
+    if (const std::string unknown = document_.unknown_extensions(); !unknown.empty())
+      note("the glTF extension " + unknown + " is unknown; what it adds is not drawn");
   }
 };
 

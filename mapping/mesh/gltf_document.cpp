@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <utility>
 
 #include "mapping/mesh/assimp_import.hpp"
@@ -22,7 +23,6 @@ constexpr std::uintmax_t kMaxPartBytes = 512U << 20U;
 constexpr std::uint64_t kMaxMemoryBytes = std::uint64_t{1} << 30U;
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
-/// Extensions that are drawn, that do not change what is drawn, or that are named where they are used.
 constexpr auto kKnownExtensions = std::to_array<std::string_view>({
     // Drawn.
     "EXT_mesh_gpu_instancing",
@@ -62,17 +62,27 @@ constexpr auto kKnownExtensions = std::to_array<std::string_view>({
     "KHR_xmp_json_ld",
 });
 
-bool is_known(const std::string& extension) {
-  return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), extension) != kKnownExtensions.end();
+/// Returns a text with words of the file for a message: without control characters.
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+  return text;
 }
 
 /// Returns a name from the file for a message: without control characters, and not too long.
-std::string shown(std::string name) {
+std::string shown(const std::string& name) {
   constexpr std::size_t kMost = 100;
-  if (name.size() > kMost) name = name.substr(0, kMost) + "...";
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
-  return name;
+  return printable(name.size() > kMost ? name.substr(0, kMost) + "..." : name);
+}
+
+/// Returns "A, B and 3 more".
+std::string listed(const std::set<std::string>& names) {
+  constexpr std::size_t kMost = 5;
+  std::string list;
+  std::size_t count = 0;
+  for (const std::string& name : names)
+    if (++count <= kMost) list += (list.empty() ? "" : ", ") + shown(name);
+  return count > kMost ? list + " and " + std::to_string(count - kMost) + " more" : list;
 }
 
 std::string percent_decoded(std::string_view uri) {
@@ -171,13 +181,18 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 
 }  // namespace
 
+bool is_known_gltf_extension(std::string_view name) {
+  return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end();
+}
+
 GltfObject::GltfObject(const std::filesystem::path& file, const nlohmann::json& json, std::string where)
     : file_(&file), json_(&json), where_(std::move(where)) {
   if (!json.is_object()) fail("is not an object");
 }
 
 void GltfObject::fail(const std::string& fault) const {
-  fail_for_file(*file_, "its " + (where_.empty() ? "JSON" : where_) + " " + fault + "; is it damaged?");
+  fail_for_file(*file_,
+                "its " + (where_.empty() ? "JSON" : where_) + " " + printable(fault) + "; is it damaged?");
 }
 
 const nlohmann::json* GltfObject::list(const char* key) const {
@@ -351,26 +366,24 @@ void GltfDocument::require_readable() const {
     if (version != "2.0" && !(version.starts_with("2.") && std::string_view(key) == "version"))
       fail("is glTF " + shown(version) + "; convert it to glTF 2.0, for example with Blender");
   }
-  std::string unknown;
-  for (const std::string& extension : root().texts("extensionsRequired"))
-    if (!is_known(extension)) unknown += (unknown.empty() ? "" : ", ") + shown(extension);
+  const std::set<std::string> unknown = unknown_of("extensionsRequired");
   if (!unknown.empty())
-    fail("requires the glTF extension " + unknown +
+    fail("requires the glTF extension " + listed(unknown) +
          ", which is not supported; export the model without this extension");
 }
 
 GltfObject GltfDocument::element(const char* list, std::size_t index) const {
-  GltfObject found = root().element(list, index);
-  return found;
+  return root().element(list, index);
 }
 
-std::vector<std::string> GltfDocument::unknown_extensions() const {
-  std::vector<std::string> unknown;
-  for (const std::string& extension : root().texts("extensionsUsed"))
-    if (!is_known(extension) && std::find(unknown.begin(), unknown.end(), shown(extension)) == unknown.end())
-      unknown.push_back(shown(extension));
+std::set<std::string> GltfDocument::unknown_of(const char* list) const {
+  std::set<std::string> unknown;
+  for (const std::string& extension : root().texts(list))
+    if (!is_known_gltf_extension(extension)) unknown.insert(extension);
   return unknown;
 }
+
+std::string GltfDocument::unknown_extensions() const { return listed(unknown_of("extensionsUsed")); }
 
 void GltfDocument::require_memory(std::uint64_t bytes) {
   memory_bytes_ += std::min(bytes, kMaxMemoryBytes + 1);

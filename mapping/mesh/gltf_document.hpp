@@ -6,11 +6,16 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace roomradar {
+
+/// Returns true for a glTF extension that is drawn, that does not change what is drawn, or that is named
+/// where it is used.
+bool is_known_gltf_extension(std::string_view name);
 
 /// A JSON object of a glTF file, such as an accessor. Each function throws Error naming the file, the object
 /// and the key if the value is of another kind.
@@ -68,8 +73,8 @@ class GltfDocument {
   [[nodiscard]] std::size_t count(const char* list) const { return root().size_of(list); }
   /// Returns an element of one of the file's lists, such as "meshes". Throws Error if it is not there.
   [[nodiscard]] GltfObject element(const char* list, std::size_t index) const;
-  /// Extensions in use that are unknown, though not required.
-  [[nodiscard]] std::vector<std::string> unknown_extensions() const;
+  /// Returns the names of unknown extensions that are used, though not required; empty if there are none.
+  [[nodiscard]] std::string unknown_extensions() const;
 
   /// Returns the bytes of a buffer view, decompressed if EXT_meshopt_compression holds them.
   std::string_view view(std::size_t index);
@@ -92,6 +97,7 @@ class GltfDocument {
 
   void read();
   void require_readable() const;
+  [[nodiscard]] std::set<std::string> unknown_of(const char* list) const;
   std::string_view buffer(std::size_t index);
   std::string_view range(const GltfObject& of, std::uint64_t size_bytes);
   std::string decompress(const GltfObject& packed);

@@ -1003,9 +1003,30 @@ TEST_F(Gltf, AnUnknownExtensionIsNamedAndRefusedIfRequired) {
   EXPECT_EQ(note_of(read(file)), "the glTF extension VENDOR_something is unknown; what it adds is not drawn");
   file.root["extensionsRequired"] = {"VENDOR_something", "KHR_lights_punctual", "EXT_other"};
   const std::string refused = refusal(file);
-  EXPECT_NE(refused.find("requires the glTF extension VENDOR_something, EXT_other, which is not supported"),
+  EXPECT_NE(refused.find("requires the glTF extension EXT_other, VENDOR_something, which is not supported"),
             std::string::npos)
       << refused;
+}
+
+TEST_F(Gltf, NamesOfTheFileCannotFillOrSteerATerminal) {
+  GltfWriter file = flag();
+  for (int i = 0; i < 1000; ++i) {
+    const std::string name = "KHR_materials_\x1b[31m" + std::to_string(i);
+    file.root["extensionsUsed"].push_back(name);
+    file.root["materials"][0]["extensions"][name] = Json::object();
+  }
+  file.root["extensionsUsed"].push_back(std::string(5000, 'x'));
+  file.root["images"][0] = {{"uri", "\x1b[31m" + std::string(5000, 'x')}};
+  const Model model = read(file);
+  ASSERT_EQ(model.notes.size(), 2U);
+  for (const std::string& note : model.notes) {
+    EXPECT_LT(note.size(), 1000U) << note;
+    EXPECT_EQ(note.find('\x1b'), std::string::npos) << note;
+  }
+  EXPECT_NE(model.notes[1].find("and 996 more is unknown"), std::string::npos) << model.notes[1];
+  file.root["extensionsRequired"] = file.root["extensionsUsed"];
+  EXPECT_LT(refusal(file).size(), 1000U);
+  EXPECT_EQ(refusal(file).find('\x1b'), std::string::npos);
 }
 
 // Files.
