@@ -34,6 +34,8 @@ class FrameRangeSource final : public FrameSource {
     for (int passed_over = 0; position_ <= last_; ++passed_over) {
       if (passed_over == kMostPassedOver) return {ReadStatus::kSkipped, {}, true};
       ReadResult result = source_->next(frame);
+      // A device that ends early, by Ctrl-C or because it is gone, has given what there is.
+      if (result.status == ReadStatus::kEnd && position_ > first_) return result;
       if (result.status == ReadStatus::kEnd) fail_outside(*source_, first_, last_, position_);
       if (result.waiting) return result;
       // Frames of a live device count by index, which includes dropped frames. Frames of its recording keep

@@ -21,8 +21,9 @@ FrameRange parse_frame_range(std::string_view text, std::string_view of = "frame
 /// Returns a source that delivers only the frames `first` to `last` of `source`, with their original indices
 /// and stamps. Unreadable frames are counted, too. Does not read ahead, so sources of unknown length are
 /// accepted.
-/// @throws Error unless 0 <= first <= last, or if the range exceeds the recording. If the recording's length
-///         is unknown, next() throws that error at the recording's end.
+/// A source of unknown length, such as a device, may end within the range; then the range ends there.
+/// @throws Error unless 0 <= first <= last, or if the range exceeds the recording. If the source's length is
+///         unknown and it ends before the range begins, next() throws that error.
 std::unique_ptr<FrameSource> limit_frames(std::unique_ptr<FrameSource> source, std::int64_t first,
                                           std::int64_t last);
 

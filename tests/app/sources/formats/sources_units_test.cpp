@@ -250,10 +250,18 @@ TEST(FrameRange, WhoeverReadsCanStopBeforeItsFirstFrame) {
   EXPECT_EQ(frame.index, 40);
 }
 
+TEST(FrameRange, EndsWithADeviceThatEndsEarly) {
+  const auto source = limit_frames(std::make_unique<MadeSource>(10, false), 8, 30);
+  const auto all = read_all(*source);
+  ASSERT_EQ(all.frames.size(), 2U);
+  EXPECT_EQ(all.frames.back().index, 9);
+  EXPECT_TRUE(all.faults.empty());
+}
+
 TEST(FrameRange, OutsideTheRecordingNamesItsLength) {
   EXPECT_TRUE(
       contains(error_of([] { limit_frames(std::make_unique<MadeSource>(10, true), 5, 10); }), "10 frames"));
-  const auto source = limit_frames(std::make_unique<MadeSource>(10, false), 8, 10);
+  const auto source = limit_frames(std::make_unique<MadeSource>(10, false), 10, 12);
   EXPECT_TRUE(contains(error_of([&] { (void)read_all(*source); }), "10 frames"));
   EXPECT_FALSE(error_of([] { limit_frames(std::make_unique<MadeSource>(10, true), 5, 4); }).empty());
   EXPECT_FALSE(error_of([] { limit_frames(std::make_unique<MadeSource>(10, true), -1, 4); }).empty());
