@@ -22,17 +22,24 @@ constexpr const char* kEndsWithWhatItHas =
 std::atomic<const char*> said = kEndsWithWhatItHas;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
+std::atomic<const char*> said_when_ended = "";
+
+void print(const char* sentence) {
+  const std::string_view text(sentence);
+  static_cast<void>(::write(STDERR_FILENO, text.data(), text.size()) + 1);
+}
+
 /// Calls only functions that are allowed in a signal handler.
 void on_interrupt(int signal) {
   if (asked != kNothing) {
+    print(said_when_ended);
     std::signal(signal, SIG_DFL);
     std::raise(signal);
     return;
   }
   asked = kToEnd;
   const int errno_before = errno;
-  const std::string_view sentence(said);
-  static_cast<void>(::write(STDERR_FILENO, sentence.data(), sentence.size()) + 1);
+  print(said);
   errno = errno_before;
 }
 
@@ -59,12 +66,15 @@ class EndedByInterrupt final : public FrameSource {
 Interrupt::Interrupt() {
   asked = kNothing;
   said = kEndsWithWhatItHas;
+  said_when_ended = "";
   std::signal(SIGINT, on_interrupt);
 }
 
 Interrupt::~Interrupt() { std::signal(SIGINT, SIG_DFL); }
 
 void Interrupt::say(const char* sentence) { said = sentence; }
+
+void Interrupt::say_when_ended(const char* sentence) { said_when_ended = sentence; }
 
 bool Interrupt::take() {
   int to_end = kToEnd;

@@ -18,6 +18,9 @@ class Interrupt {
   /// Replaces the message that Ctrl-C prints. The default message says that no more frames are read and that
   /// the work is completed with the frames read so far. `sentence` must remain valid and end with a newline.
   static void say(const char* sentence);
+  /// Sets what the second Ctrl-C prints before it ends the process; "": nothing. `sentence` must remain
+  /// valid.
+  static void say_when_ended(const char* sentence);
   /// Returns true once if Ctrl-C was pressed. Later calls return false.
   static bool take();
   /// Returns true if Ctrl-C was pressed and take() has not been called since.

@@ -90,12 +90,16 @@ std::string help_on(CLI::App& app, const std::vector<std::string>& words) {
 
 /// Adds the command that run(Options) executes.
 /// @param work  receives that call when the command was parsed; must outlive the parsing
+/// @param line  the words of the command line, for options that have a member `line`; null: not given
 template <typename Options>
-CLI::App* add_command(CLI::App& app, const char* name, const char* description, std::function<int()>& work) {
+CLI::App* add_command(CLI::App& app, const char* name, const char* description, std::function<int()>& work,
+                      const std::vector<std::string>* line = nullptr) {
   CLI::App* command = app.add_subcommand(name, description);
   const auto options = std::make_shared<Options>();
   add_options(*command, *options);
-  command->callback([command, options, &work] {
+  command->callback([command, options, &work, line] {
+    if constexpr (requires { options->line; })
+      if (line != nullptr) options->line = *line;
     if constexpr (requires { complete_options(*command, *options); }) complete_options(*command, *options);
     work = [options] { return run(*options); };
   });
@@ -158,13 +162,13 @@ void add_measuring_commands(CLI::App& app, std::function<int()>& work) {
       ->group(kMeasure);
 }
 
-void add_commands(CLI::App& app, std::function<int()>& work) {
+void add_commands(CLI::App& app, std::function<int()>& work, const std::vector<std::string>& line) {
   add_command<StartOptions>(
       app, "start",
       "choose sources and maps in a window, scan and play there; also: roomradar alone,\n"
       "or roomradar NAME with the name of a map or a recording",
       work);
-  add_command<PrescanOptions>(app, "prescan", "scan a room and save it as a map", work);
+  add_command<PrescanOptions>(app, "prescan", "scan a room and save it as a map", work, &line);
   add_command<RunOptions>(app, "run", "run augmented reality in a saved map", work);
   add_map_commands(app, work);
   add_command<BuildingOptions>(
@@ -219,7 +223,8 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
       "roomradar");
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
-  add_commands(app, work);
+  const std::vector<std::string> line(argv, argv + argc);
+  add_commands(app, work, line);
   app.add_flag_callback("--manual",
                         [&app] {
                           std::fputs(manual_page(app).c_str(), stdout);

@@ -110,8 +110,8 @@ PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, S
       // On a terminal the progress line has no line end.
       std::fprintf(stderr, "%sroomradar: %s\n", isatty(STDERR_FILENO) != 0 ? "\n" : "", sentence.c_str());
     });
-  ScanProgress progress(options.map, start, config, window);
-  PrescanResult scanned = or_say_what_is_kept(start, [&] {
+  ScanProgress progress(options, start, config, window);
+  PrescanResult scanned = or_say_what_is_kept(options, start, [&] {
     const auto show = [&](const std::string& stage, const std::string& note) {
       if (is_tracking(stage)) last_frame_s = report.seconds();
       progress.show(stage, note);
@@ -187,6 +187,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   lines.say();
   const Interrupt interrupt;
   if (!start.is_live) Interrupt::say(kStopsWithoutMap);
+  if (start.checkpoints) say_at_once_how_to_resume(options);
   const bool extends = start.map.has_value();
   if (extends) keep_settings_of_map(options, *start.map, config, report);
   announce_memory(*start.source, config, report);
@@ -211,9 +212,10 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   }
   lines.say();
   report.results["input"] = to_json(start.input->decisions());
-  or_say_what_is_kept(start, [&] { report.times.timed("save", [&] { writer.commit(scanned.map); }); });
+  or_say_what_is_kept(options, start, [&] { report.times.timed("save", [&] { writer.commit(scanned.map); }); });
   report.results["ready_after_s"] = report.seconds() - last_frame_s;
 
+  Interrupt::say_when_ended("");  // the map is saved
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, poses_of_scan(scanned));
   const HeldOut held_out = score_map(options, *start.source, scanned, report);
   if (start.checkpoints) finish(*start.checkpoints, keep_frames);

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "app/cli/options/shared_options.hpp"
+#include "app/cli/shell_line.hpp"
 #include "app/commands/command_line.hpp"
 #include "app/start/start_state.hpp"
 #include "app/window/start/start_window.hpp"
@@ -26,12 +27,8 @@ struct CommandResult {
 /// Runs the command of a choice as if it had been typed.
 int run_as_typed(const std::vector<std::string>& words) {
   std::vector<const char*> arguments = {"roomradar"};
-  std::string line = "roomradar";
-  for (const std::string& word : words) {
-    arguments.push_back(word.c_str());
-    line += " " + word;
-  }
-  std::fprintf(stderr, "%s\n", line.c_str());
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  std::fprintf(stderr, "roomradar %s\n", shell_line(words).c_str());
   const ParsedCommand command = parse_command_line(static_cast<int>(arguments.size()), arguments.data());
   return command.work ? command.work() : command.exit_status;
 }

@@ -16,17 +16,20 @@ struct StoppedByUser : Error {
   using Error::Error;
 };
 
-/// Throws StoppedByUser, with advice on how to continue.
-/// @param checkpoints  may be null
-[[noreturn]] void stop(const std::string& map, Checkpoints* checkpoints);
+/// Sets what a second Ctrl-C prints before it ends the process: the command that continues the scan.
+void say_at_once_how_to_resume(const PrescanOptions& options);
 
-/// Throws Error with the fault and, if the scan can be resumed, advice on how to continue.
-[[noreturn]] void fail(const std::string& fault, const ScanStart& start);
+/// Throws StoppedByUser, with the command that continues the scan.
+/// @param checkpoints  may be null
+[[noreturn]] void stop(const PrescanOptions& options, Checkpoints* checkpoints);
+
+/// Throws Error with the fault and, if the scan can be resumed, the command that continues it.
+[[noreturn]] void fail(const PrescanOptions& options, const std::string& fault, const ScanStart& start);
 
 /// Calls act(), which scans or saves. Converts exceptions of act() to errors that state whether the scan can
 /// be resumed. Deletes the checkpoints of a discarded scan.
 template <typename Act>
-auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
+auto or_say_what_is_kept(const PrescanOptions& options, const ScanStart& start, const Act& act) {
   try {
     return act();
   } catch (const StoppedByUser&) {
@@ -35,9 +38,9 @@ auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
     if (start.checkpoints) start.checkpoints->remove();
     throw;
   } catch (const std::bad_alloc&) {
-    fail("memory ran out; close other programs, or give --max-memory", start);
+    fail(options, "memory ran out; close other programs, or give --max-memory", start);
   } catch (const std::exception& error) {  // also those of libraries
-    fail(error.what(), start);
+    fail(options, error.what(), start);
   }
 }
 

@@ -42,7 +42,7 @@ void ScanProgress::show(const std::string& stage, const std::string& note) {
   progress_->step(is_again && fused_ > 0 ? note + ", of at most " + std::to_string(fused_) : note);
   if (!is_tracking(stage)) show_in_window(stage_);
   const bool ends_by_itself = start_.is_live && is_tracking(stage);
-  if (is_stopping_) stop(map_, start_.checkpoints.get());
+  if (is_stopping_) stop(options_, start_.checkpoints.get());
   is_stopping_ = !ends_by_itself && Interrupt::take();
   if (is_stopping_ && start_.checkpoints) start_.checkpoints->write_soon();
 }

@@ -30,11 +30,10 @@ struct ScanWindow {
 
 class ScanProgress {
  public:
-  /// @param map  name of the map, for messages
   /// All arguments must outlive this object.
-  ScanProgress(const std::string& map, const ScanStart& start, const PrescanConfig& config,
+  ScanProgress(const PrescanOptions& options, const ScanStart& start, const PrescanConfig& config,
                ScanWindow& window)
-      : map_(map), start_(start), config_(config), window_(window) {}
+      : options_(options), start_(start), config_(config), window_(window) {}
 
   /// Shows progress. Call after each frame of a stage. The first call after Ctrl-C requests a checkpoint of
   /// the frames read so far; the next call throws StoppedByUser. While a live source is tracked, ignores
@@ -42,7 +41,7 @@ class ScanProgress {
   void show(const std::string& stage, const std::string& note);
 
  private:
-  const std::string& map_;
+  const PrescanOptions& options_;
   const ScanStart& start_;
   const PrescanConfig& config_;
   ScanWindow& window_;

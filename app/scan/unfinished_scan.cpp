@@ -11,6 +11,7 @@
 
 #include "app/cli/interrupt.hpp"
 #include "app/cli/open_source.hpp"
+#include "app/scan/command_to_resume.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
 #include "mapping/scan_memory.hpp"
 #include "mapping/storage/sha256.hpp"
@@ -32,14 +33,15 @@ fs::path unfinished_beside(const fs::path& map) {
 
 bool is_unfinished(const fs::path& folder) { return fs::exists(folder / "work.json"); }
 
-void require_no_live_scan(const fs::path& folder) {
+void require_no_live_scan(const PrescanOptions& options, const fs::path& folder) {
   if (!SpooledSource::has_frames(folder / kSpool)) return;
   if (is_unfinished(folder))
     Checkpoints(folder, {}, 0.0).ensure_folder();  // throws if another process works
                                                    // on it
-  throw Error(
-      folder.string() +
-      ": holds an interrupted live scan; continue it with --resume, or delete the folder to start again");
+  throw Error(folder.string() +
+              ": holds an interrupted live scan; continue it with --resume, or delete the folder to start "
+              "again:\n  " +
+              command_to_resume(options));
 }
 
 /// Throws Error if the cap is too low to begin the scan at all.
@@ -163,7 +165,7 @@ ScanStart start_scan(const PrescanOptions& options) {
   const fs::path folder = unfinished_beside(map);
   require_checkpoints_only(folder, kSpool);
   require_checkpoints_only(done_beside(folder), kSpool);
-  if (!options.resume) require_no_live_scan(folder);
+  if (!options.resume) require_no_live_scan(options, folder);
   const bool extend = is_to_extend(options.resume, folder, map);
   std::error_code ignored;
   fs::remove_all(done_beside(folder), ignored);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/objects/unknown_support.hpp"
 #include "app/quality/quality.hpp"
@@ -25,6 +26,8 @@ struct LostSignal {
 };
 
 struct PrescanOptions {
+  /// The command line as given, with the program's name. Empty: the program begins this scan by itself.
+  std::vector<std::string> line;
   /// Source of the frames, in the form that open_source() accepts.
   std::string source;
   /// Map folder to write.

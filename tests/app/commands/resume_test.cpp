@@ -84,11 +84,31 @@ class ResumeTest : public ::testing::Test {
     kill(child, SIGKILL);
     return test::status_of(child) == 128 + SIGKILL;
   }
+  [[nodiscard]] fs::path temporary_folder() const { return temporary_.path(); }
+  /// Returns the words of the last command that said() names, as a shell splits them.
+  [[nodiscard]] std::vector<std::string> words_of_named_command() const {
+    const std::string text = said();
+    const std::size_t at = text.rfind("\n  roomradar ");
+    if (at == std::string::npos) return {};
+    const std::string line = text.substr(at + 3, text.find('\n', at + 1) - at - 3);
+    FILE* shell = popen(("printf '%s\\n' " + line).c_str(), "r");
+    std::vector<std::string> words(1);
+    for (int c = fgetc(shell); c != EOF; c = fgetc(shell)) {
+      if (c == '\n')
+        words.emplace_back();
+      else
+        words.back() += static_cast<char>(c);
+    }
+    pclose(shell);
+    words.pop_back();
+    return words;
+  }
   /// Number of the newest checkpoint, 0 if there is none.
-  [[nodiscard]] int newest() const {
+  [[nodiscard]] int newest() const { return newest(map()); }
+  [[nodiscard]] static int newest(const fs::path& map) {
     int number = 0;
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(unfinished(), ignored)) {
+    for (const auto& entry : fs::directory_iterator(map.string() + ".unfinished", ignored)) {
       const std::string name = entry.path().filename().string();
       if (name.starts_with("checkpoint-")) number = std::max(number, std::stoi(name.substr(11)));
     }
@@ -257,6 +277,60 @@ TEST_F(ResumeTest, CtrlCEndsItInWordsAndItGoesOnFromThere) {
   EXPECT_GT(newest(), 0);
   EXPECT_EQ(run(scan(map(), true)), 0) << said();
   EXPECT_EQ(run({"map", "verify", map()}), 0) << said();
+}
+
+TEST_F(ResumeTest, TheCommandThatIsNamedContinuesTheScan) {
+  const fs::path map = temporary_folder() / "it's a $map", whole = temporary_folder() / "whole";
+  const auto words = [](const fs::path& to) {
+    return std::vector<std::string>{"prescan",
+                                    "sim:table?frames=100&width=128",
+                                    "--resolution=0.04",
+                                    "--map",
+                                    to,
+                                    "--poses",
+                                    "recorded",
+                                    "--frames",
+                                    "0:79",
+                                    "--up",
+                                    "0,0,1",
+                                    "--hold-out",
+                                    "9",
+                                    "--texture",
+                                    "off",
+                                    "--checkpoint-every",
+                                    "0.01"};
+  };
+  const pid_t child = start(words(map));
+  while (newest(map) == 0 && waitpid(child, nullptr, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  kill(child, SIGINT);
+  ASSERT_EQ(test::status_of(child), 1) << said();
+  const std::vector<std::string> named = words_of_named_command();
+  ASSERT_GT(named.size(), 2U) << said();
+  EXPECT_EQ(named.front(), "roomradar");
+  EXPECT_EQ(named.back(), "--resume");
+  ASSERT_EQ(run({named.begin() + 1, named.end()}), 0) << said();
+  ASSERT_EQ(run(words(whole)), 0) << said();
+  expect_very_same_map(map, whole);
+}
+
+TEST_F(ResumeTest, ASecondCtrlCNamesTheCommandToo) {
+  const pid_t child =
+      start({"prescan", "sim:table?frames=400&width=640", "--map", map(), "--resolution", "0.02"});
+  while (newest() == 0 && waitpid(child, nullptr, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  kill(child, SIGSTOP);  // both arrive before the next frame is over
+  kill(child, SIGINT);
+  kill(child, SIGCONT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  kill(child, SIGINT);
+  const int status = test::status_of(child);
+  if (status == 1) GTEST_SKIP() << "the scan had ended by the first one";
+  EXPECT_EQ(status, 128 + SIGINT);
+  EXPECT_NE(said().find("ended at once"), std::string::npos) << said();
+  const std::vector<std::string> named = words_of_named_command();
+  ASSERT_GT(named.size(), 2U) << said();
+  EXPECT_EQ(named.back(), "--resume");
 }
 
 TEST_F(ResumeTest, CtrlCBeforeTheFirstCheckpointKeepsTheFramesSoFar) {
