@@ -16,12 +16,13 @@ enum class ModelOrigin {
 };
 
 /// Reads a .glb, .gltf, .obj, .ply, .stl or .dae file in a sandbox. Reads geometry, normals, vertex colours,
-/// material colours and base-colour textures. Skinned meshes are read in their rest pose.
+/// material colours and base-colour textures. Skinned meshes are read in their rest pose. Reads no file
+/// outside of the model's folder.
 ///
 /// In the result, +z is up and coordinates are in metres. glTF prescribes metres, and a .dae file states its
 /// unit. Numbers in the other formats are taken as metres. With ModelOrigin::kNear, an origin farther from
 /// the model than its longest side is moved to the model's centre, and a note is added. Model::notes names
-/// textures that cannot be read.
+/// textures that cannot be read, and what of a glTF file is not drawn (read_gltf_model()).
 ///
 /// @param up  axis of the file that points up; unset: y for .glb, .gltf and .obj, z for .ply and .stl, and
 ///            the axis that a .dae states (y if none)

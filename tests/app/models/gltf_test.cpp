@@ -684,6 +684,31 @@ TEST_F(Gltf, EachModeAndFilterOfMeshoptIsDecompressed) {
   }
 }
 
+TEST_F(Gltf, TheOctahedralFilterOfMeshoptGivesNormals) {
+  for (const int component : {kInt8, kInt16}) {
+    GltfWriter file;
+    std::vector<float> normals;
+    for (int i = 0; i < 4; ++i) normals.insert(normals.end(), {0.48F, 0.6F, 0.64F, 0.0F});
+    const std::size_t stride = component == kInt8 ? 4 : 8;
+    std::string filtered(4 * stride, '\0');
+    meshopt_encodeFilterOct(filtered.data(), 4, stride, component == kInt8 ? 8 : 16, normals.data());
+    const std::size_t view =
+        add_packed_view(file, packed_vertices(filtered, 4, stride), 4, stride, "ATTRIBUTES", "OCTAHEDRAL");
+    const std::size_t n = file.add("accessors", {{"bufferView", view},
+                                                 {"componentType", component},
+                                                 {"count", 4},
+                                                 {"type", "VEC3"},
+                                                 {"normalized", true}});
+    GltfWriter whole = flag(file, {{"NORMAL", n}});
+    add_fallback_buffer(whole);
+    const Model model = read(whole);
+    ASSERT_EQ(model.mesh.normals.size(), 4U);
+    for (const Eigen::Vector3f& normal : model.mesh.normals)
+      EXPECT_LT((normal - Eigen::Vector3f(0.48F, -0.64F, 0.6F)).norm(), component == kInt8 ? 0.02F : 2e-4F)
+          << normal.transpose();
+  }
+}
+
 TEST_F(Gltf, TheQuaternionFilterOfMeshoptTurnsInstances) {
   GltfWriter file;
   const std::vector<float> turns = {0, 0, 0, 1, 0, 0, 1, 0};  // none, half about z
