@@ -1,5 +1,9 @@
 """Maps and scans: those of the command line, byte for byte."""
 import json
+import locale
+import os
+import shutil
+import subprocess
 import unittest
 
 import numpy as np
@@ -38,6 +42,34 @@ class Scans(unittest.TestCase):
                                 ("progress", {"progress": 3}), ("fuse_every", {"fuse_every": 0})):
             with self.assertRaisesRegex((rr.Error, ValueError, TypeError), words):
                 rr.prescan("sim:table?frames=2&width=160", **settings)
+
+
+class HostLocale(unittest.TestCase):
+    def setUp(self):
+        folder = support.temporary_folder()
+        made = shutil.which("localedef") and subprocess.run(
+            ["localedef", "-i", "de_DE", "-f", "UTF-8", folder / "de_DE.UTF-8"], capture_output=True).returncode == 0
+        if not made:
+            self.skipTest("the package locales is missing")
+        os.environ["LOCPATH"] = str(folder)
+        locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+        self.addCleanup(locale.setlocale, locale.LC_ALL, "C")
+
+    def test_a_german_python_scans_the_same_map_and_hears_the_same_words(self):
+        self.assertEqual(locale.str(1.5), "1,5")
+        spec = "sim:table?frames=25&width=160&seed=3&noise=0.5"
+        scan, _ = support.compare_scan(self, spec, [spec, "--resolution", "0.03"], resolution_m=0.03)
+        folder = support.temporary_folder()
+        scan.map.save(folder / "map")
+        for name in ("a.ply", "a.obj", "a.stl", "a.glb", "a.ot", "a.bt"):
+            rr.export_map(folder / "map", folder / name)
+            support.command("map", "export", folder / "map", folder / ("of-command-" + name))
+        for name in ("a.ply", "a.stl", "a.glb", "a.ot", "a.bt"):
+            self.assertEqual((folder / name).read_bytes(), (folder / ("of-command-" + name)).read_bytes(), name)
+        with self.assertRaisesRegex(rr.Error, "No such file|there is no"):
+            rr.open_map(folder / "none")
+        with self.assertRaisesRegex((rr.Error, ValueError), r"1234\.5"):
+            rr.prescan("sim:table?frames=2&width=160", resolution_m=1234.5)
 
 
 class Maps(unittest.TestCase):
