@@ -35,8 +35,10 @@ bool is_depth_encoding(const std::string& encoding) {
   return encoding == "16UC1" || encoding == "mono16" || encoding == "32FC1";
 }
 
+/// Of ASCII, whatever the locale.
 std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   return text;
 }
 
