@@ -170,16 +170,17 @@ Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size
 }
 
 NamedFile find_texture(const std::filesystem::path& model, const std::string& name) {
-  NamedFile first;
+  constexpr std::string_view kMissing = "is missing";
+  std::string fault;
   for (const std::string& spelling : {name, plain_name(name)}) {
     const std::filesystem::path path = spelling;
     for (const std::filesystem::path& candidate : {path, path.filename()}) {
       NamedFile found = file_in_folder_of(model, candidate);
       if (found.fault.empty()) return found;
-      if (first.fault.empty()) first = std::move(found);
+      if (fault.empty() || fault == kMissing) fault = std::move(found.fault);
     }
   }
-  return first;
+  return {{}, fault};
 }
 
 Texture read_texture(const std::filesystem::path& path, std::size_t max_pixels) {

@@ -27,7 +27,7 @@ Texture texture_of_bgra(std::string_view bytes, int width, int height, std::size
 /// Looks up an image that a model file names, within the model's folder. The name is searched relative to
 /// this folder. Then its last component is searched in it, since many files contain paths of their author's
 /// machine. If neither exists, repeats the search without "file://", with percent encoding (%20) decoded, and
-/// with backslashes replaced by slashes. The fault is that of the first search.
+/// with backslashes replaced by slashes. The fault is that of the first file that is not just missing.
 NamedFile find_texture(const std::filesystem::path& model, const std::string& name);
 
 /// @throws Error as decode_texture(), also for a file above 64 MiB

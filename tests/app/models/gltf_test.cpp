@@ -1137,8 +1137,9 @@ TEST_F(Gltf, AModelReadsNothingOutsideOfItsFolder) {
     EXPECT_NE(note_of(model).find("its material file " + std::string(library)), std::string::npos);
     EXPECT_NE(note_of(model).find("is not read"), std::string::npos) << note_of(model);
   }
-  for (const std::string& image : {std::string("../outside.png"), path("outside.png").string(),
-                                   std::string("link.png"), std::string("pipe")}) {
+  for (const std::string& image :
+       {std::string("../outside.png"), path("outside.png").string(), "file://" + path("outside.png").string(),
+        std::string("link.png"), std::string("pipe")}) {
     write("newmtl m\nKd 1 0 0\nmap_Kd " + image + "\n", "model/a.mtl");
     const Model model = read_model(write("mtllib a.mtl\n" + shape, "model/a.obj"));
     EXPECT_FALSE(model.is_textured()) << image;
