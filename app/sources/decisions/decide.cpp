@@ -168,10 +168,45 @@ void report_lost_poses(const RecordingFacts& facts, InputReport& report) {
   }
   if (lost > 0)
     report.add({"poses",
-                std::to_string(lost) + " recorded poses are lost or no rigid transform; their frames are used "
-                                       "without a pose" +
+                std::to_string(lost) + (lost == 1 ? " recorded pose is lost or no rigid transform; its frame is"
+                                  : " recorded poses are lost or no rigid transform; their frames are") +
+                    " used without a pose" +
                     (first.empty() ? "" : " (" + first + ")"),
                 static_cast<std::int64_t>(lost)});
+}
+
+/// Reports a gap in the images that is longer than any pause: the clock may have been set.
+void report_gap(const DecidedRecording& recording) {
+  constexpr double kLongest_s = 120.0;
+  double longest_s = 0.0;
+  std::size_t after = 0;
+  for (std::size_t i = 1; i < recording.frames.size(); ++i) {
+    const double step_s = recording.frames[i].stamp_s - recording.frames[i - 1].stamp_s;
+    if (step_s > longest_s) longest_s = step_s, after = i - 1;
+  }
+  if (longest_s > kLongest_s)
+    recording.report->add({"time",
+                           "there is no image for " + format_readable(longest_s, 3) + " s after frame " +
+                               std::to_string(after) + "; was the clock set?",
+                           1, "--stamps"});
+}
+
+/// Advises on recordings whose frames are so far apart that tracking may lose the camera.
+void advise_on_rate(const DecidedRecording& recording) {
+  constexpr double kLeastRate_hz = 4.0;
+  if (!recording.evidence || recording.evidence->is_camera_still) return;
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < recording.frames.size(); ++i)
+    steps_s.push_back(recording.frames[i].stamp_s - recording.frames[i - 1].stamp_s);
+  if (steps_s.size() < 4) return;
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  if (!(*middle * kLeastRate_hz > 1.0)) return;
+  const bool has_poses = recording.evidence->pose_disagreement && recording.poses_are_used;
+  recording.report->add({"time",
+                         "frames are " + format_readable(*middle, 2) + " s apart, so tracking may lose the camera" +
+                             (has_poses ? "; the recorded poses agree with the depth and can be used instead" : ""),
+                         0, has_poses ? "--poses recorded" : "", true});
 }
 
 }  // namespace
@@ -198,6 +233,9 @@ DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folde
   if (convention) recording.pose_convention = *convention;
   require_a_readable_image(recording);
   if (options.questions == Questions::kDepth) question_depth(recording, convention.has_value());
+
+  report_gap(recording);
+  advise_on_rate(recording);
 
   if (!options.input)
     for (const InputDecision& decision : report.decisions())

@@ -31,6 +31,7 @@ struct DepthEvidence {
   std::optional<double> noise_ratio{};  ///< standard deviation between neighbours / that of the sensor's model
   std::size_t posed_pairs = 0;          ///< number of compared pairs of frames that have poses
   std::optional<double> pose_disagreement{};  ///< DepthDifference of these pairs; unset: fewer than 3
+  std::optional<double> far_pose_disagreement{};  ///< the same of pairs farther apart
   double pose_difference_m = 0.0;
   bool poses_disagree = false;
   std::optional<double> still_difference{};  ///< the same, if the camera does not move

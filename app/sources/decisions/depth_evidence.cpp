@@ -17,9 +17,9 @@ namespace roomradar {
 namespace {
 
 constexpr std::size_t kPlaces = 14;              // of the recording at which frames are compared
-constexpr std::array<std::size_t, 6> kApart = {1, 2, 4, 8, 16, 32};  // frames
-constexpr double kAgrees = 0.72, kDisagrees = 0.78;  // see DepthDifference::disagreement
-constexpr double kClearlyBetter = 0.12;
+constexpr std::array<std::size_t, 8> kApart = {1, 2, 4, 8, 16, 32, 64, 128};  // frames
+// See DepthDifference::disagreement.
+constexpr double kSurelyAgrees = 0.30, kAgrees = 0.72, kDisagrees = 0.75, kFarDisagrees = 0.80, kDoubtful = 0.70, kClearlyBetter = 0.07;
 
 Intrinsics with_focal(const Intrinsics& camera, double factor) {
   Intrinsics changed = camera;
@@ -69,8 +69,67 @@ double median_of(std::vector<double>& values) {
 /// A frame that was read for the comparison.
 struct Sample {
   DepthImage depth_m;
-  std::optional<Eigen::Isometry3d> stated{};  ///< pose as stated
+  /// Brightness at every second pixel of every second row of the depth image, 0..1; -1: unknown. Empty: there is
+  /// no colour image.
+  Image<float> brightness{};
 };
+
+/// Returns the brightness of the colour image at the points of the depth image.
+Image<float> brightness_of(const DepthImage& depth_m, const Intrinsics& camera, const ColourImage& colour,
+                           const Intrinsics& colour_camera, const Eigen::Isometry3d& T_colour_depth) {
+  Image<float> brightness(depth_m.width / 2, depth_m.height / 2, -1.0F);
+  // Colour images are often finer than depth: the mean over a depth pixel.
+  const int half = std::clamp(colour.width / std::max(depth_m.width, 1), 1, 4);
+  for (int y = 0; y < brightness.height; ++y)
+    for (int x = 0; x < brightness.width; ++x) {
+      const float z = depth_m.at(2 * x, 2 * y);
+      if (!(z > 0.0F)) continue;
+      const Eigen::Vector3d p = T_colour_depth * back_project(camera, 2.0 * x, 2.0 * y, z);
+      if (!(p.z() > 0.01)) continue;
+      const Eigen::Vector2d uv = project(colour_camera, p);
+      if (!(uv.x() >= half && uv.y() >= half && uv.x() < colour.width - half - 1 && uv.y() < colour.height - half - 1))
+        continue;
+      const int u = static_cast<int>(std::lround(uv.x())), v = static_cast<int>(std::lround(uv.y()));
+      int sum = 0, count = 0;
+      for (int dv = -half; dv <= half; dv += half)
+        for (int du = -half; du <= half; du += half, ++count) {
+          const Rgb& pixel = colour.at(u + du, v + dv);
+          sum += pixel.r + 2 * pixel.g + pixel.b;
+        }
+      brightness.at(x, y) = static_cast<float>(sum) / (1020.0F * static_cast<float>(count));
+    }
+  return brightness;
+}
+
+/// Returns 1 - the correlation of brightness between the points of `from` and the pixels of `to` where they are
+/// seen; nullopt if too few points are seen in both, or a surface without texture.
+std::optional<double> brightness_disagreement(const Sample& from, const Sample& to, const Intrinsics& camera,
+                                              const Eigen::Isometry3d& T_to_from) {
+  constexpr double kPoints = 3000.0, kLeastContrast = 0.02;
+  constexpr double kLeastPoints = 200.0;
+  if (from.brightness.pixels.empty() || to.brightness.pixels.empty()) return std::nullopt;
+  const int step =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(from.brightness.pixels.size()) / kPoints)));
+  double n = 0, sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0, sum_ab = 0;
+  for (int y = step / 2; y < from.brightness.height; y += step)
+    for (int x = step / 2; x < from.brightness.width; x += step) {
+      const double a = static_cast<double>(from.brightness.at(x, y));
+      if (a < 0.0) continue;
+      const Eigen::Vector3d p =
+          T_to_from * back_project(camera, 2.0 * x, 2.0 * y, static_cast<double>(from.depth_m.at(2 * x, 2 * y)));
+      if (!(p.z() > 1e-3)) continue;
+      const Eigen::Vector2d uv = 0.5 * project(camera, p);
+      if (!(uv.x() > 0.0 && uv.y() > 0.0 && uv.x() < to.brightness.width - 1 && uv.y() < to.brightness.height - 1)) continue;
+      const double b = static_cast<double>(
+          to.brightness.at(static_cast<int>(std::lround(uv.x())), static_cast<int>(std::lround(uv.y()))));
+      if (b < 0.0) continue;
+      n += 1.0, sum_a += a, sum_b += b, sum_aa += a * a, sum_bb += b * b, sum_ab += a * b;
+    }
+  if (n < kLeastPoints) return std::nullopt;
+  const double var_a = sum_aa / n - sum_a * sum_a / (n * n), var_b = sum_bb / n - sum_b * sum_b / (n * n);
+  if (!(var_a > kLeastContrast * kLeastContrast && var_b > kLeastContrast * kLeastContrast)) return std::nullopt;
+  return 1.0 - (sum_ab / n - sum_a * sum_b / (n * n)) / std::sqrt(var_a * var_b);
+}
 
 /// Two frames that overlap.
 struct Pair {
@@ -97,6 +156,7 @@ class Samples {
       try {
         read_depth(recording_, position, sample.depth_m);
         if (correction_) correction_->correct(sample.depth_m);
+        read_brightness(position, sample);
         place->second = std::move(sample);
       } catch (const Error&) {  // counted when the frame's turn comes
       }
@@ -106,19 +166,40 @@ class Samples {
   [[nodiscard]] const Intrinsics& camera() const { return camera_; }
 
  private:
+  /// Leaves the brightness empty if there is no colour image, or it cannot be read.
+  void read_brightness(std::size_t position, Sample& sample) {
+    const RecordingFacts& facts = recording_.facts;
+    const auto& colour = recording_.frames[position].colour;
+    if (!colour || !facts.rig.colour_camera) return;
+    try {
+      facts.read_colour(*colour, colour_);
+      const Intrinsics& camera = *facts.rig.colour_camera;
+      if (colour_.width == camera.width_px && colour_.height == camera.height_px)
+        sample.brightness = brightness_of(sample.depth_m, camera_, colour_, camera, facts.rig.T_colour_depth);
+    } catch (const Error&) {  // counted when the frame's turn comes
+    }
+  }
+
   const DecidedRecording& recording_;
   Intrinsics camera_;
+  ColourImage colour_;  // scratch
   std::optional<LensCorrection> correction_;
   std::map<std::size_t, std::optional<Sample>> samples_;
 };
 
-/// Returns pairs of frames between which the camera has moved, by the poses, but not too far. Without poses,
-/// frames four apart.
-std::vector<Pair> choose_pairs(std::size_t frames, const PoseOf& pose_of_position) {
-  constexpr double kTurn_rad = 0.1, kShift_m = 0.12;
+/// Motion of the camera between the frames of a pair, relative to one that leaves about two thirds of the view.
+double motion_of(const Eigen::Isometry3d& T_a_b) {
+  constexpr double kTurn_rad = 0.3, kShift_m = 0.4;
+  return Eigen::AngleAxisd(T_a_b.linear()).angle() / kTurn_rad + T_a_b.translation().norm() / kShift_m;
+}
+
+/// Returns pairs of frames between which the camera has moved by `least_motion` or more, see motion_of(), by the
+/// poses. Takes the frames nearest in time. Without poses, frames four apart.
+std::vector<Pair> choose_pairs(std::size_t frames, std::size_t places, double least_motion, const PoseOf& pose_of_position) {
+  constexpr double kMostMotion = 1.8;
   std::vector<Pair> pairs;
-  for (std::size_t k = 0; k < kPlaces && frames > 1; ++k) {
-    const std::size_t a = k * (frames - 1) / kPlaces;
+  for (std::size_t k = 0; k < places && frames > 1; ++k) {
+    const std::size_t a = k * (frames - 1) / places;
     const auto T_world_a = pose_of_position(a);
     std::optional<Pair> best;
     for (const std::size_t apart : kApart) {
@@ -129,11 +210,43 @@ std::vector<Pair> choose_pairs(std::size_t frames, const PoseOf& pose_of_positio
         if (!T_world_a && apart <= 4) best = Pair{a, b};
         continue;
       }
+      const double motion = motion_of(T_world_a->inverse() * *T_world_b);
+      if (motion > kMostMotion && best) break;
       best = Pair{a, b};
-      const Eigen::Isometry3d T_a_b = T_world_a->inverse() * *T_world_b;
-      if (Eigen::AngleAxisd(T_a_b.linear()).angle() > kTurn_rad || T_a_b.translation().norm() > kShift_m) break;
+      if (motion >= least_motion) break;
     }
     if (best && (pairs.empty() || pairs.back().a != best->a)) pairs.push_back(*best);
+  }
+  return pairs;
+}
+
+/// Returns up to eight pairs of frames, not necessarily near in time, between which the camera has moved sideways
+/// but hardly turned. They tell the scale of a camera that mostly turns.
+std::vector<Pair> choose_shifted_pairs(std::size_t frames, const PoseOf& pose_of_position) {
+  constexpr std::size_t kTried = 40, kMost = 8, kMostApart = 300;
+  constexpr double kMostTurn_rad = 0.25, kLeastShift_m = 0.1, kMostShift_m = 0.5;
+  std::vector<std::pair<double, Pair>> found;  // by shift
+  const std::size_t tried = std::min(kTried, frames);
+  for (std::size_t i = 0; i < tried; ++i)
+    for (std::size_t j = i + 1; j < tried; ++j) {
+      const Pair pair{i * frames / tried, j * frames / tried};
+      if (pair.b - pair.a > kMostApart) break;
+      const auto T_world_a = pose_of_position(pair.a), T_world_b = pose_of_position(pair.b);
+      if (!T_world_a || !T_world_b) continue;
+      const Eigen::Isometry3d T_a_b = T_world_a->inverse() * *T_world_b;
+      const double shift_m = T_a_b.translation().norm();
+      if (shift_m > kLeastShift_m && shift_m < kMostShift_m &&
+          Eigen::AngleAxisd(T_a_b.linear()).angle() < kMostTurn_rad)
+        found.emplace_back(shift_m, pair);
+    }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Pair> pairs;
+  for (const auto& [shift_m, pair] : found) {
+    const bool is_near_another = std::any_of(pairs.begin(), pairs.end(), [&, p = pair](const Pair& other) {
+      return other.a == p.a || other.b == p.b;
+    });
+    if (!is_near_another) pairs.push_back(pair);
+    if (pairs.size() == kMost) break;
   }
   return pairs;
 }
@@ -215,7 +328,7 @@ void measure_noise(const std::vector<Pair>& pairs, Samples& samples, const Depth
   if (count >= 200) evidence.noise_ratio = std::sqrt(sum / static_cast<double>(count));
 }
 
-std::string unit_option(double unit_m) { return "--depth-unit " + format_general(unit_m, 4); }
+std::string unit_option(double unit_m) { return "--depth-unit " + format_readable(unit_m, 3); }
 
 /// Questions a unit that the depths alone contradict. Returns true if it did.
 bool question_range(const DecidedRecording& recording, const DepthEvidence& evidence) {
@@ -234,16 +347,12 @@ bool question_range(const DecidedRecording& recording, const DepthEvidence& evid
   constexpr double kFull = 0.4;  // of the pixels
   const bool is_fifth = std::abs(unit_m - 0.0002) < 1e-9;
   const bool is_phone = facts.rig.depth_noise == kPhoneLidarNoise, is_flight = facts.rig.depth_noise == kTimeOfFlightNoise;
-  // People hold a phone close to things; other sensors measure nothing there.
-  if (evidence.measured_part > kFull && evidence.median_depth_m < (is_phone ? 0.12 : 0.3))
-    return ask("half of a full image is nearer than " + format_readable(evidence.median_depth_m, 2) + " m",
-               is_fifth ? 0.001 : unit_m * (evidence.median_depth_m < 0.06 ? 10.0 : 5.0));
-  if (is_flight && evidence.measured_part > 0.2 && evidence.near_depth_m < 0.18)
-    return ask("depths down to " + format_readable(evidence.near_depth_m, 2) +
-                   " m are nearer than such a sensor measures",
-               unit_m * 5.0);
   const bool is_kinect = facts.rig.depth_noise == DepthNoise{} &&
                          (facts.camera_origin == Origin::kAssumed || facts.camera_source.ends_with("camera.json"));
+  // People hold a phone close to things; other sensors measure nothing there.
+  if (evidence.measured_part > kFull && evidence.median_depth_m < (is_phone ? 0.12 : is_kinect || is_flight ? 0.45 : 0.3))
+    return ask("half of a full image is nearer than " + format_readable(evidence.median_depth_m, 2) + " m",
+               is_fifth ? 0.001 : unit_m * (evidence.median_depth_m < 0.06 ? 10.0 : 5.0));
   const double most_m = is_kinect ? 10.5 : is_phone ? 9.0 : is_flight ? 12.0 : 60.0;
   if (evidence.far_depth_m > most_m)
     return ask("a tenth of all depths is beyond " + format_readable(evidence.far_depth_m, 2) +
@@ -254,68 +363,141 @@ bool question_range(const DecidedRecording& recording, const DepthEvidence& evid
 
 // ---- poses ----
 
-/// Returns conventions under which poses of this recording may have been written.
-std::vector<PoseConvention> conventions_to_try(const RecordingFacts& facts) {
-  std::vector<PoseConvention> tried;
+/// Mean disagreement in brightness over all pairs whose frames have poses; nullopt: none has texture.
+std::optional<double> mean_brightness_disagreement(const std::vector<Pair>& pairs, Samples& samples,
+                                                   const PoseOf& pose_of_position, double depth_factor,
+                                                   double focal_factor) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  const Intrinsics camera = with_focal(samples.camera(), focal_factor);
+  for (const Pair& pair : pairs) {
+    const Sample *a = samples.at(pair.a), *b = samples.at(pair.b);
+    const auto T_world_a = pose_of_position(pair.a), T_world_b = pose_of_position(pair.b);
+    if (!a || !b || !T_world_a || !T_world_b) continue;
+    Eigen::Isometry3d T_b_a = T_world_b->inverse() * *T_world_a;
+    T_b_a.translation() /= depth_factor;
+    if (const auto one = brightness_disagreement(*a, *b, camera, T_b_a)) sum += *one, ++count;
+  }
+  if (count * 2 < pairs.size()) return std::nullopt;
+  return sum / static_cast<double>(count);
+}
+
+/// What may be wrong with a recording that has poses.
+struct Hypothesis {
+  PoseConvention convention{};
+  double depth_factor = 1.0;  ///< times which depth is right
+  double focal_factor = 1.0;  ///< times which the focal length is right
+  double near = 1.0, far = 1.0;  ///< DepthDifference::disagreement over near and far pairs
+  double brightness = 0.0;       ///< mean_brightness_disagreement() over far pairs; 0 if there is no texture
+  double median_m = 0.0;         ///< DepthDifference::median_m over near pairs
+  [[nodiscard]] double both() const { return 0.5 * (near + far + brightness); }
+};
+
+/// Returns the hypotheses other than that all is right.
+std::vector<Hypothesis> hypotheses_of(const RecordingFacts& facts, const PoseConvention& now) {
+  std::vector<Hypothesis> tried;
+  const auto add = [&](const PoseConvention& convention) {
+    if (convention != now) tried.push_back({.convention = convention});
+  };
   for (const double unit_m : {1.0, 0.001, 0.01})
     for (const bool is_inverse : {false, true})
       for (const bool is_opengl : {false, true})
-        for (const bool is_wxyz : {false, true}) {
-          if (is_wxyz && !facts.pose_track) continue;  // matrices have no order of a quaternion's numbers
-          const PoseConvention convention{is_inverse, is_opengl, is_wxyz, unit_m, 0};
-          if (convention != PoseConvention{}) tried.push_back(convention);
-        }
+        for (const bool is_wxyz : {false, true})
+          if (!is_wxyz || facts.pose_track)  // matrices have no order of a quaternion's numbers
+            add({is_inverse, is_opengl, is_wxyz, unit_m, 0});
   if (!facts.pose_track && !facts.has_pose_times)
-    for (const int later_by : {-1, 1}) tried.push_back({.later_by = later_by});
+    for (const int later_by : {-1, 1, -2, 2, -3, 3, -4, 4, -6, 6, -8, 8, -10, 10}) add({.later_by = later_by});
+  for (const double factor : {0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 0.7, 1.4, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0})
+    tried.push_back({.convention = now, .depth_factor = factor});
+  for (const double factor : {0.6, 0.7, 0.77, 0.85, 1.15, 1.3, 1.4, 1.6})
+    tried.push_back({.convention = now, .focal_factor = factor});
   return tried;
 }
 
-void question_poses(DecidedRecording& recording, const std::vector<Pair>& pairs, Samples& samples,
+void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const Hypothesis& best,
+                     const Intrinsics& camera, bool is_convention_given) {
+  DepthEvidence& evidence = *recording.evidence;
+  InputReport& report = *recording.report;
+  if (best.depth_factor != 1.0) {
+    const double unit_m = recording.depth_unit_m * best.depth_factor;
+    report.add({"unit",
+                "depth agrees with the recorded poses if it is multiplied by about " +
+                    format_readable(best.depth_factor, 2) + "; is the unit of depth " + format_readable(unit_m, 3) +
+                    " m, or that of the poses another one?",
+                0, unit_option(unit_m), true});
+  } else if (best.focal_factor != 1.0) {
+    report.add({"camera",
+                "depth of nearby frames agrees better with a focal length of about " +
+                    format_readable(best.focal_factor * camera.fx_px, 2) + " px than with " +
+                    format_readable(camera.fx_px, 4) + " px (" + recording.facts.camera_source + ")",
+                0, "--camera FILE", true});
+  } else {
+    const std::string found = "depth of nearby frames differs by " + mm_text(now.median_m) +
+                              " under the recorded poses, but by " + mm_text(best.median_m) + " if they are " +
+                              describe(best.convention);
+    if (is_convention_given) {
+      report.add({"poses", found + "; they are used as stated", 0, "--poses-convention " + to_string(best.convention), true});
+      return;
+    }
+    recording.pose_convention = best.convention;
+    evidence.pose_disagreement = best.near;
+    evidence.pose_difference_m = best.median_m;
+    report.add({"poses", found + ", which is assumed", 0, "--poses-convention stated", true});
+  }
+}
+
+/// Finds what explains best how the depth of nearby frames differs: the recording as it is, or a hypothesis.
+void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_pairs, Samples& samples,
                     bool is_convention_given) {
   DepthEvidence& evidence = *recording.evidence;
   std::map<std::pair<std::size_t, int>, std::optional<Eigen::Isometry3d>> poses;  // as stated
-  const auto stated_at = [&](std::size_t position, int later_by) {
-    const auto [place, is_new] = poses.try_emplace({position, later_by});
-    if (is_new) place->second = stated_pose_of(recording, position, later_by);
-    return place->second;
-  };
   const auto under = [&](const PoseConvention& convention) -> PoseOf {
-    return [&stated_at, &recording, convention](std::size_t position) -> std::optional<Eigen::Isometry3d> {
-      const auto stated = stated_at(position, convention.later_by);
-      if (!stated) return std::nullopt;
-      return in_world(recording.facts, *stated, convention);
+    return [&poses, &recording, convention](std::size_t position) -> std::optional<Eigen::Isometry3d> {
+      const auto [place, is_new] = poses.try_emplace({position, convention.later_by});
+      if (is_new) place->second = stated_pose_of(recording, position, convention.later_by);
+      if (!place->second) return std::nullopt;
+      return in_world(recording.facts, *place->second, convention);
     };
   };
-  const DepthDifference now = mean_difference(pairs, samples, under(recording.pose_convention));
-  evidence.pose_disagreement = now.disagreement;
+  const auto measure = [&](Hypothesis& hypothesis, const std::vector<Pair>& far_pairs) {
+    const PoseOf pose = under(hypothesis.convention);
+    const DepthDifference near = mean_difference(near_pairs, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor);
+    hypothesis.near = near.disagreement;
+    hypothesis.median_m = near.median_m;
+    hypothesis.far =
+        mean_difference(far_pairs, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor).disagreement;
+    hypothesis.brightness = mean_brightness_disagreement(far_pairs, samples, pose, hypothesis.depth_factor,
+                                                         hypothesis.focal_factor)
+                                .value_or(0.0);
+  };
+  Hypothesis now{.convention = recording.pose_convention};
+  // By poses in millimetres all frames are far apart, so the far pairs of each unit are its own.
+  const auto far_pairs_of = [&](const PoseConvention& convention) {
+    std::vector<Pair> chosen = choose_pairs(recording.frames.size(), kPlaces, 0.8, under(convention));
+    for (const Pair& pair : choose_shifted_pairs(recording.frames.size(), under(convention))) chosen.push_back(pair);
+    return chosen;
+  };
+  const std::vector<Pair> far_pairs = far_pairs_of(now.convention);
+  measure(now, far_pairs);
+  evidence.pose_disagreement = now.near;
+  evidence.far_pose_disagreement = now.far;
   evidence.pose_difference_m = now.median_m;
-  PoseConvention best = recording.pose_convention;
-  DepthDifference best_difference = now;
-  for (const PoseConvention& convention : conventions_to_try(recording.facts)) {
-    const DepthDifference difference = mean_difference(pairs, samples, under(convention));
-    // A shift by one frame changes little; a turn of the axes changes everything.
-    const double margin = convention.later_by != 0 ? 0.06 : 0.15;
-    if (difference.disagreement < now.disagreement - margin &&
-        difference.disagreement < best_difference.disagreement) {
-      best = convention;
-      best_difference = difference;
-    }
+  if (now.near < kSurelyAgrees && now.far < kSurelyAgrees) return;
+
+  Hypothesis best = now;
+  for (Hypothesis& hypothesis : hypotheses_of(recording.facts, now.convention)) {
+    measure(hypothesis, hypothesis.convention.unit_m == now.convention.unit_m ? far_pairs
+                                                                              : far_pairs_of(hypothesis.convention));
+    if (hypothesis.both() < now.both() - kClearlyBetter && hypothesis.both() < best.both()) best = hypothesis;
   }
-  const bool is_better = best != recording.pose_convention && best_difference.disagreement < kAgrees;
-  if (is_better && (now.disagreement > kDisagrees || best.later_by != 0)) {
-    const std::string found = "depth of nearby frames differs by " + mm_text(now.median_m) + " under the recorded poses, but by " +
-                              mm_text(best_difference.median_m) + " if they are " + describe(best);
-    if (is_convention_given) {
-      recording.report->add({"poses", found + "; they are used as stated", 0, "--poses-convention " + to_string(best), true});
-    } else {
-      recording.pose_convention = best;
-      evidence.pose_disagreement = best_difference.disagreement;
-      evidence.pose_difference_m = best_difference.median_m;
-      recording.report->add({"poses", found + ", which is assumed", 0, "--poses-convention stated", true});
-    }
-    return;
-  }
-  if (now.disagreement > kDisagrees) {
+  if (best.both() < now.both() && best.near < kAgrees)
+    return adopt_or_advise(recording, now, best, samples.camera(), is_convention_given);
+  if (now.near <= kDisagrees && now.far <= kFarDisagrees && now.far > kDoubtful)
+    recording.report->add({"poses",
+                           "depth of frames some way apart differs more than usual under the recorded poses, by " +
+                               mm_text(now.median_m) + " between near ones; they are used",
+                           0, "--poses tracked", true});
+  if (now.near > kDisagrees || now.far > kFarDisagrees) {
     evidence.poses_disagree = true;
     recording.poses_are_used = is_convention_given;
     recording.report->add(
@@ -323,42 +505,85 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& pairs,
          "depth of nearby frames differs by " + mm_text(now.median_m) +
              " under the recorded poses, and agrees under no convention that is tried" +
              (is_convention_given ? "; they are used as stated" : "; the poses are not used"),
-         0, "--poses-convention", true});
+         0, "--poses-convention stated", true});
   }
 }
 
-/// Questions unit and focal length by the recorded poses.
-void question_scale(DecidedRecording& recording, const std::vector<Pair>& pairs, Samples& samples,
-                    bool is_unit_questioned) {
-  const PoseOf pose_at_position = [&](std::size_t position) { return pose_of(recording, position); };
-  const double now = recording.evidence->pose_disagreement.value_or(1.0);
-  double best_factor = 1.0, best = now;
-  for (const double factor : {0.1, 0.2, 0.25, 0.4, 0.5, 0.7, 1.4, 2.0, 2.5, 4.0, 5.0, 10.0}) {
-    const double difference = mean_difference(pairs, samples, pose_at_position, factor).disagreement;
-    if (difference < best) best = difference, best_factor = factor;
+// ---- without poses ----
+
+/// Registers two depth images. Returns nullopt if they cannot be.
+std::optional<Eigen::Isometry3d> register_depth(const DepthImage& from, const DepthImage& to, const Intrinsics& camera,
+                                                const DepthNoise& noise, const Eigen::Isometry3d& T_to_from_guess) {
+  constexpr ViewConfig kViews{.finest_width_px = 160, .levels = 2, .min_depth_m = 0.05F, .max_depth_m = 8.0F};
+  ViewPyramid from_pyramid, to_pyramid;
+  make_pyramid(from, camera, kViews, from_pyramid, noise);
+  make_pyramid(to, camera, kViews, to_pyramid, noise);
+  TargetView target;
+  SourcePoints points;
+  make_target_view(to_pyramid, Eigen::Isometry3d::Identity(), kViews, target);
+  make_source_points(from_pyramid, points, {}, 1);
+  const AlignConfig config{.coarsest_level = 1, .finest_level = 0, .iterations = 10, .intensity_sigma = 0.0F};
+  const Tracking tracking = align(points, target, T_to_from_guess, config);
+  if (!has_pose(tracking)) return std::nullopt;
+  return tracking.T_world_camera;
+}
+
+/// Registers frames some steps apart, each time from twice the motion before. Returns the mean disagreement of
+/// depth and brightness, twice the mean of the two; nullopt if too few frames can be registered.
+std::optional<double> disagreement_when_registered(const std::vector<std::size_t>& places, Samples& samples,
+                                                   const DepthNoise& noise, double focal_factor) {
+  constexpr std::array<std::size_t, 3> kSteps = {3, 6, 12};
+  const Intrinsics camera = with_focal(samples.camera(), focal_factor);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const std::size_t place : places) {
+    const Sample* a = samples.at(place);
+    if (!a) continue;
+    Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();
+    std::optional<double> last;
+    for (const std::size_t step : kSteps) {
+      const Sample* b = samples.at(place + step);
+      const auto T = b ? register_depth(a->depth_m, b->depth_m, camera, noise, T_b_a) : std::nullopt;
+      if (!T) {
+        if (b) last = std::nullopt;
+        break;
+      }
+      last = depth_difference(a->depth_m, b->depth_m, camera, *T).disagreement +
+             brightness_disagreement(*a, *b, camera, *T).value_or(0.0);
+      T_b_a = *T * *T;
+    }
+    if (!last) last = 1.0;
+    sum += *last;
+    ++count;
   }
-  if (best_factor != 1.0 && best < now - kClearlyBetter && best < kAgrees) {
-    recording.report->add({"unit",
-                           "depth agrees with the recorded poses if it is multiplied by about " +
-                               format_general(best_factor, 2) + "; is the unit of depth " +
-                               format_general(recording.depth_unit_m * best_factor, 3) +
-                               " m, or that of the poses another one?",
-                           0, unit_option(recording.depth_unit_m * best_factor), !is_unit_questioned});
-    return;
+  if (count < 3) return std::nullopt;
+  return sum / static_cast<double>(count);
+}
+
+/// Questions the focal length of a recording without poses: under a wrong one, depth images of a camera that turns
+/// cannot be registered well.
+void question_focal(const DecidedRecording& recording, Samples& samples) {
+  constexpr std::size_t kPlacesRegistered = 8, kLongest = 12;
+  constexpr double kBetter = 0.10;
+  const std::size_t frames = recording.frames.size();
+  if (frames < 3 * kLongest || recording.evidence->is_camera_still) return;
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < kPlacesRegistered; ++k)
+    places.push_back(k * (frames - 1 - kLongest) / (kPlacesRegistered - 1));
+  const DepthNoise& noise = recording.facts.rig.depth_noise;
+  const auto now = disagreement_when_registered(places, samples, noise, 1.0);
+  if (!now) return;
+  double best = *now, best_factor = 1.0;
+  for (const double factor : {0.7, 0.77, 0.87, 1.15, 1.3, 1.43}) {
+    const auto disagreement = disagreement_when_registered(places, samples, noise, factor);
+    if (disagreement && *disagreement < best) best = *disagreement, best_factor = factor;
   }
-  best_factor = 1.0;
-  best = now;
-  for (const double factor : {0.6, 0.7, 0.8, 0.9, 1.1, 1.2, 1.3, 1.4}) {
-    const double difference = mean_difference(pairs, samples, pose_at_position, 1.0, factor).disagreement;
-    if (difference < best) best = difference, best_factor = factor;
-  }
-  if (best_factor != 1.0 && best < now - kClearlyBetter && best < kAgrees)
-    recording.report->add(
-        {"camera",
-         "depth of nearby frames agrees better with a focal length of about " +
-             format_general(best_factor * samples.camera().fx_px, 2) + " px than with " +
-             format_general(samples.camera().fx_px, 4) + " px (" + recording.facts.camera_source + ")",
-         0, "--camera FILE", true});
+  if (best_factor == 1.0 || best > *now - kBetter) return;
+  recording.report->add({"camera",
+                         "depth of nearby frames agrees better with a focal length of about " +
+                             format_readable(best_factor * samples.camera().fx_px, 2) + " px than with " +
+                             format_readable(samples.camera().fx_px, 4) + " px (" + recording.facts.camera_source + ")",
+                         0, "--camera FILE", true});
 }
 
 }  // namespace
@@ -383,13 +608,14 @@ void question_depth(DecidedRecording& recording, bool is_convention_given) {
   Samples samples(recording);
   const std::size_t frames = recording.frames.size();
   const PoseOf pose_at_position = [&](std::size_t position) { return pose_of(recording, position); };
-  const std::vector<Pair> pairs = choose_pairs(frames, pose_at_position);
+  const std::vector<Pair> pairs = choose_pairs(frames, kPlaces, 0.35, pose_at_position);
 
   measure_depth_range(pairs, samples, evidence);
   measure_noise(pairs, samples, recording.facts.rig.depth_noise, evidence);
   std::vector<Pair> far_pairs;
+  constexpr std::size_t kSecondApart = 32;
   for (const Pair& pair : pairs)
-    if (pair.a + kApart.back() < frames) far_pairs.push_back({pair.a, pair.a + kApart.back()});
+    if (pair.a + kSecondApart < frames) far_pairs.push_back({pair.a, pair.a + kSecondApart});
   if (!far_pairs.empty()) {
     evidence.still_difference =
         mean_difference(far_pairs, samples, [](std::size_t) { return Eigen::Isometry3d::Identity(); }).disagreement;
@@ -402,8 +628,9 @@ void question_depth(DecidedRecording& recording, bool is_convention_given) {
   });
   evidence.posed_pairs = static_cast<std::size_t>(posed);
   if (posed >= 3) {
-    question_poses(recording, pairs, samples, is_convention_given);
-    if (recording.poses_are_used) question_scale(recording, pairs, samples, is_questioned);
+    if (!is_questioned) question_poses(recording, pairs, samples, is_convention_given);
+  } else if (!is_questioned) {
+    question_focal(recording, samples);
   }
 }
 

@@ -38,8 +38,9 @@ std::optional<double> period_of(std::span<const double> stamps) {
   return median_of(std::move(steps));
 }
 
-std::string images_text(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " of the " + what;
+/// Returns "1 depth image has" or "3 depth images have".
+std::string images_have(std::size_t count, const std::string& what) {
+  return count == 1 ? "1 " + what.substr(0, what.size() - 1) + " has" : std::to_string(count) + " " + what + " have";
 }
 
 /// The list while it is being repaired.
@@ -194,8 +195,8 @@ void repair_by_reception(Stamps& stamps) {
     stamps.say(replaced, "the " + stamps.rules.what +
                              " have no time stamps; their times of reception are used");
   else if (replaced > 0)
-    stamps.say(replaced, images_text(replaced, stamps.rules.what) +
-                             " have no usable time stamp; their times of reception are used");
+    stamps.say(replaced, images_have(replaced, stamps.rules.what) +
+                             " no usable time stamp; their times of reception are used");
   if (moved > 0)
     stamps.say(moved, "the clock of the " + stamps.rules.what + " was set " +
                           (largest_step_s < 0 ? "back" : "forward") + " by " +
@@ -232,7 +233,7 @@ void remove_absurd(Stamps& stamps) {
       absurd.push_back(i);
   for (const std::size_t i : absurd) stamps.s[i] = kNoStamp;
   if (!absurd.empty())
-    stamps.say(absurd.size(), images_text(absurd.size(), stamps.rules.what) + " have a stamp far from all others");
+    stamps.say(absurd.size(), images_have(absurd.size(), stamps.rules.what) + " a stamp far from all others");
 }
 
 /// Splits the list where its stamps decrease. Moves later parts if the clock was set back there, which is
@@ -265,7 +266,7 @@ void undo_clock_changes(Stamps& stamps) {
   }
   if (begins.size() == 1) {
     if (swapped > 0)
-      stamps.say(swapped, images_text(swapped, stamps.rules.what) + " are listed before an earlier one; sorted");
+      stamps.say(swapped, images_have(swapped, stamps.rules.what) + " been listed before an earlier one; sorted");
     return;
   }
   const bool is_shuffled = begins.size() > 3 && stated.size() < 8 * begins.size();
@@ -336,10 +337,10 @@ void interpolate(Stamps& stamps) {
     begin = end;
   }
   if (found > 0)
-    stamps.say(found, images_text(found, stamps.rules.what) +
-                          " have no usable time stamp; their times are interpolated between their neighbours");
+    stamps.say(found, images_have(found, stamps.rules.what) +
+                          " no usable time stamp; their times are interpolated between their neighbours");
   if (lost > 0)
-    stamps.say(lost, images_text(lost, stamps.rules.what) + " have no usable time stamp and are left out", true);
+    stamps.say(lost, images_have(lost, stamps.rules.what) + " no usable time stamp and are left out", true);
 }
 
 /// Spreads equal stamps evenly up to the next stamp.
@@ -362,8 +363,8 @@ void spread_equal(Stamps& stamps) {
     begin = end;
   }
   if (spread > 0)
-    stamps.say(spread, images_text(spread, stamps.rules.what) +
-                           " have the stamp of another one; equal stamps are spread evenly up to the next");
+    stamps.say(spread, images_have(spread, stamps.rules.what) +
+                           " the stamp of another one; equal stamps are spread evenly up to the next");
 }
 
 template <typename Stamped>
