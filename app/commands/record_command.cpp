@@ -63,6 +63,7 @@ int run(const RecordOptions& options) {
     }
   }
   writer.close();
+  lines.say();
   if (writer.frames_written() == 0) throw Error(options.source + ": there is no readable frame");
   std::printf("%s: %lld frames written as %s, %lld skipped\n", options.folder.c_str(),
               static_cast<long long>(writer.frames_written()), std::string(to_string(options.format)).c_str(),

@@ -90,6 +90,8 @@ int play(OpenedRun& run) {
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped.count;
   run.report.results = results_of(totals, *run.session);
+  if (run.input_lines) run.input_lines->say();
+  run.report.results["input"] = to_json(run.input->decisions());
   if (run.stream) run.report.results["stream_lines_dropped"] = run.stream->lines().dropped();
   if (run.budget) run.report.results["budget"] = run.budget->report();
   if (run.check) run.report.results["replay"] = report_replay(*run.check);

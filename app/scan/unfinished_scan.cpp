@@ -140,8 +140,8 @@ std::map<std::string, std::string> identity_for(const PrescanOptions& options, c
       {"hold-out", std::to_string(options.hold_out)},
       {"max-fused", std::to_string(options.max_fused)},
       {"calibration", calibration.empty() ? "none" : sha256_of_file(calibration)},
-      {"input", words_of(options.input)},
       {"into", into}};
+  if (const std::string words = words_of(options.input); !words.empty()) identity["input"] = words;
   if (recording) identity["length"] = std::to_string(recording->frame_count().value_or(-1));
   return identity;
 }
