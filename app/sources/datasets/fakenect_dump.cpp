@@ -2,6 +2,7 @@
 #include "app/sources/datasets/fakenect_dump.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -24,27 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Such as d-1313283822.781270-3018607296.pgm: kind, the recorder's time of day, the device's stamp.
-struct IndexLine {
-  char kind = 0;
-  std::uint32_t ticks = 0;
-};
-
-std::optional<IndexLine> parse_index_line(std::string_view line) {
-  const std::size_t dot = line.rfind('.');
-  const std::size_t dash = line.rfind('-', dot);
-  if (line.size() < 2 || line[1] != '-' || std::string_view("dra").find(line[0]) == std::string_view::npos)
-    return {};
-  if (dot == std::string_view::npos || dash == std::string_view::npos ||
-      line.find('/') != std::string_view::npos)
-    return {};
-  const std::string_view extension = line[0] == 'd' ? ".pgm" : line[0] == 'r' ? ".ppm" : ".dump";
-  if (line.substr(dot) != extension) return {};
-  const auto ticks = parse_whole_number(line.substr(dash + 1, dot - dash - 1));
-  if (!ticks || *ticks < 0 || *ticks > UINT32_MAX) return {};
-  return IndexLine{line[0], static_cast<std::uint32_t>(*ticks)};
-}
-
 /// Reads gravity from a dump of freenect_raw_tilt_state, which starts with three 16 bit counts and has 12
 /// bytes. A dump that is missing or of another size changes nothing, as in fakenect's replay, so both give
 /// the same frames.
@@ -59,6 +39,20 @@ void read_tilt_state(const fs::path& path, std::optional<Eigen::Vector3d>& down_
 }
 
 }  // namespace
+
+std::optional<FakenectLine> parse_fakenect_line(std::string_view line) {
+  const std::size_t dot = line.rfind('.');
+  const std::size_t dash = line.rfind('-', dot);
+  if (line.size() < 2 || line[1] != '-' || std::string_view("dra").find(line[0]) == std::string_view::npos)
+    return {};
+  if (dot == std::string_view::npos || dash == std::string_view::npos || dash < 2) return {};
+  const std::string_view extension = line[0] == 'd' ? ".pgm" : line[0] == 'r' ? ".ppm" : ".dump";
+  if (line.substr(dot) != extension) return {};
+  const auto time_s = parse_number(line.substr(2, dash - 2));
+  const auto ticks = parse_whole_number(line.substr(dash + 1, dot - dash - 1));
+  if (!time_s || !std::isfinite(*time_s) || !ticks || *ticks < 0 || *ticks > UINT32_MAX) return {};
+  return FakenectLine{line[0], static_cast<std::uint32_t>(*ticks)};
+}
 
 bool is_fakenect_dump(const fs::path& folder) {
   std::error_code ignored;
@@ -91,7 +85,7 @@ RecordingFacts index_fakenect_dump(const fs::path& folder) {
     ++line_number;
     if (line.ends_with('\r')) line.pop_back();
     if (line.empty()) continue;
-    const auto parsed = parse_index_line(line);
+    const auto parsed = parse_fakenect_line(line);
     if (!parsed) {
       if (bad_lines++ == 0)
         first_bad = "line " + std::to_string(line_number) + ": '" + line.substr(0, 60) +

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <vector>
 
+#include "app/sources/datasets/fakenect_dump.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -66,10 +67,15 @@ FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
       all_sound = false;  // fakenect takes an empty line as the end
       continue;
     }
-    const bool is_depth = line[0] == 'd';
-    const std::string fault = fault_of(folder / line, is_depth         ? kDepthBytes
-                                                      : line[0] == 'r' ? kColourBytes
-                                                                       : 0);
+    const auto parsed = parse_fakenect_line(line);
+    if (!parsed) {
+      all_sound = false;  // fakenect opens any name, and waits for any time
+      continue;
+    }
+    const bool is_depth = parsed->kind == 'd';
+    const std::string fault = fault_of(folder / line, is_depth             ? kDepthBytes
+                                                      : parsed->kind == 'r' ? kColourBytes
+                                                                            : 0);
     if (fault.empty()) sound.push_back(line);
     all_sound = all_sound && fault.empty();
     if (is_depth && !fault.empty())

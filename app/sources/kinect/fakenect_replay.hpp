@@ -19,8 +19,8 @@ inline constexpr const char* kFakenectPath = "FAKENECT_PATH";
 std::optional<std::filesystem::path> replayed_folder();
 
 /// Protects the process from broken files. fakenect reads past the end of a truncated image, and exits if a
-/// file is missing. While a FakenectReplay exists, a recording with broken files is replayed from a temporary
-/// folder of links to the intact files.
+/// file is missing. While a FakenectReplay exists, a recording with broken files, or with lines of INDEX.txt of
+/// another form, is replayed from a temporary folder of links to the intact files.
 class FakenectReplay {
  public:
   /// Throws Error if INDEX.txt cannot be read or lists no intact depth image.

@@ -165,7 +165,7 @@ TEST(Redwood, GivesThePosesOfItsLog) {
                                                    log.substr(log.find("4 4 5")));
   write_text(folder.path() / "capture.log", "2024-05-01 12:00:00 capture started\n");
   fs::remove(folder.path() / "depth" / "5.png");
-  EXPECT_TRUE(contains(said(read), "1 recorded poses are lost"));
+  EXPECT_TRUE(contains(said(read), "1 recorded pose is lost"));
   ASSERT_EQ(read.frames.size(), 11U);
   EXPECT_FALSE(read.frames[3].T_world_camera);
   EXPECT_NEAR(read.frames[4].T_world_camera->translation().x(), 4.0, 1e-12);
