@@ -19,7 +19,8 @@ namespace {
 
 /// Counts over frames that are spread over the recording.
 struct SampledFrames {
-  std::size_t frames = 0, unreadable = 0, with_pose = 0, with_colour = 0, unreadable_colour = 0, with_gravity = 0;
+  std::size_t frames = 0, unreadable = 0, with_pose = 0, with_colour = 0, unreadable_colour = 0,
+              with_gravity = 0;
   std::string first_fault, first_colour_fault;
 };
 
@@ -77,12 +78,14 @@ Timing timing_of(const DecidedRecording& recording) {
     if (last) {
       steps_s.push_back(frame.stamp_s - last->stamp_s);
       timing.length_s += steps_s.back();
-      if (steps_s.back() > timing.longest_gap_s) timing.longest_gap_s = steps_s.back(), timing.gap_after = i - 1;
+      if (steps_s.back() > timing.longest_gap_s)
+        timing.longest_gap_s = steps_s.back(), timing.gap_after = i - 1;
     }
     last = &frame;
   }
   if (steps_s.empty()) return timing;
-  std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2), steps_s.end());
+  std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2),
+                   steps_s.end());
   const double period_s = steps_s[steps_s.size() / 2];
   timing.rate_hz = period_s > 0.0 ? 1.0 / period_s : 0.0;
   timing.gaps = static_cast<std::size_t>(std::count_if(
@@ -112,11 +115,13 @@ nlohmann::json json_of(const Intrinsics& camera) {
 }
 
 std::string camera_text(const Intrinsics& camera) {
-  return size_text(camera.width_px, camera.height_px) + ", focal length " + format_readable(camera.fx_px, 4) + " px";
+  return size_text(camera.width_px, camera.height_px) + ", focal length " + format_readable(camera.fx_px, 4) +
+         " px";
 }
 
 std::string percent(std::size_t part, std::size_t of) {
-  return of == 0 ? "0 %" : format_fixed(100.0 * static_cast<double>(part) / static_cast<double>(of), 0) + " %";
+  return of == 0 ? "0 %"
+                 : format_fixed(100.0 * static_cast<double>(part) / static_cast<double>(of), 0) + " %";
 }
 
 /// Returns what `prescan` would do with the recording, in a sentence.
@@ -150,15 +155,24 @@ nlohmann::json json_of(const DecidedRecording& recording, const SampledFrames& s
       {"depth_camera", json_of(facts.rig.depth_camera)},
       {"cameras_origin", name_of(facts.camera_origin)},
       {"cameras_source", facts.camera_source},
-      {"colour_part", sampled.frames ? static_cast<double>(sampled.with_colour) / static_cast<double>(sampled.frames) : 0.0},
-      {"pose_part", sampled.frames ? static_cast<double>(sampled.with_pose) / static_cast<double>(sampled.frames) : 0.0},
+      {"colour_part",
+       sampled.frames ? static_cast<double>(sampled.with_colour) / static_cast<double>(sampled.frames) : 0.0},
+      {"pose_part",
+       sampled.frames ? static_cast<double>(sampled.with_pose) / static_cast<double>(sampled.frames) : 0.0},
       {"poses_convention", to_string(recording.pose_convention)},
-      {"poses_agree", evidence.posed_pairs >= 3 ? nlohmann::json(!evidence.poses_disagree) : nlohmann::json()},
-      {"pose_difference_mm", evidence.pose_disagreement ? nlohmann::json(1000.0 * evidence.pose_difference_m) : nlohmann::json()},
-      {"pose_disagreement", evidence.pose_disagreement ? nlohmann::json(*evidence.pose_disagreement) : nlohmann::json()},
-      {"gravity_part", sampled.frames ? static_cast<double>(sampled.with_gravity) / static_cast<double>(sampled.frames) : 0.0},
-      {"camera_is_still", evidence.still_difference ? nlohmann::json(evidence.is_camera_still) : nlohmann::json()},
-      {"still_disagreement", evidence.still_difference ? nlohmann::json(*evidence.still_difference) : nlohmann::json()},
+      {"poses_agree",
+       evidence.posed_pairs >= 3 ? nlohmann::json(!evidence.poses_disagree) : nlohmann::json()},
+      {"pose_difference_mm",
+       evidence.pose_disagreement ? nlohmann::json(1000.0 * evidence.pose_difference_m) : nlohmann::json()},
+      {"pose_disagreement",
+       evidence.pose_disagreement ? nlohmann::json(*evidence.pose_disagreement) : nlohmann::json()},
+      {"gravity_part", sampled.frames
+                           ? static_cast<double>(sampled.with_gravity) / static_cast<double>(sampled.frames)
+                           : 0.0},
+      {"camera_is_still",
+       evidence.still_difference ? nlohmann::json(evidence.is_camera_still) : nlohmann::json()},
+      {"still_disagreement",
+       evidence.still_difference ? nlohmann::json(*evidence.still_difference) : nlohmann::json()},
       {"noise_ratio", evidence.noise_ratio ? nlohmann::json(*evidence.noise_ratio) : nlohmann::json()},
       {"prescan", prescan_text(recording, sampled)},
       {"input", to_json(decisions)}};
@@ -170,37 +184,44 @@ void print(const DecidedRecording& recording, const SampledFrames& sampled, cons
            const std::vector<InputDecision>& decisions) {
   const RecordingFacts& facts = recording.facts;
   const DepthEvidence& evidence = *recording.evidence;
-  const auto line = [](const char* name, const std::string& text) { std::printf("%-10s %s\n", name, text.c_str()); };
+  const auto line = [](const char* name, const std::string& text) {
+    std::printf("%-10s %s\n", name, text.c_str());
+  };
   std::printf("%s: %s\n", facts.name.c_str(), facts.kind.c_str());
-  line("frames", std::to_string(recording.frames.size()) + ", " + percent(sampled.with_colour, sampled.frames) + " with colour");
+  line("frames", std::to_string(recording.frames.size()) + ", " +
+                     percent(sampled.with_colour, sampled.frames) + " with colour");
   line("time", format_readable(timing.length_s, 4) + " s, " + format_readable(timing.rate_hz, 3) +
                    " frames per second, longest gap " + format_readable(timing.longest_gap_s, 3) + " s" +
                    (timing.gaps > 0 ? " after frame " + std::to_string(timing.gap_after) : ""));
-  line("depth", "unit " + format_general(recording.depth_unit_m, 4) + " m (" +
-                    (facts.unit_source.empty() ? std::string(name_of(facts.unit_origin)) : facts.unit_source) + "); " +
-                    format_fixed(100.0 * evidence.measured_part, 0) + " % of the pixels measured, half of them nearer than " +
-                    format_fixed(evidence.median_depth_m, 2) + " m, a tenth beyond " +
-                    format_fixed(evidence.far_depth_m, 2) + " m");
-  line("cameras", "depth " + camera_text(facts.rig.depth_camera) +
-                      (facts.rig.colour_camera ? "; colour " + camera_text(*facts.rig.colour_camera) : "; no colour") +
-                      " (" + (facts.camera_origin == Origin::kAssumed ? "assumed: " : "") + facts.camera_source + ")");
+  line("depth",
+       "unit " + format_general(recording.depth_unit_m, 4) + " m (" +
+           (facts.unit_source.empty() ? std::string(name_of(facts.unit_origin)) : facts.unit_source) + "); " +
+           format_fixed(100.0 * evidence.measured_part, 0) +
+           " % of the pixels measured, half of them nearer than " + format_fixed(evidence.median_depth_m, 2) +
+           " m, a tenth beyond " + format_fixed(evidence.far_depth_m, 2) + " m");
+  line("cameras",
+       "depth " + camera_text(facts.rig.depth_camera) +
+           (facts.rig.colour_camera ? "; colour " + camera_text(*facts.rig.colour_camera) : "; no colour") +
+           " (" + (facts.camera_origin == Origin::kAssumed ? "assumed: " : "") + facts.camera_source + ")");
   if (sampled.with_pose == 0)
     line("poses", "none");
   else
-    line("poses", percent(sampled.with_pose, sampled.frames) + " of the frames" +
-                      (evidence.pose_disagreement
-                           ? "; depth of nearby frames differs by " +
-                                 format_readable(1000.0 * evidence.pose_difference_m, 2) + " mm under them, which " +
-                                 (evidence.poses_disagree ? "cannot be right" : "agrees")
-                           : "; too few to compare with depth"));
+    line("poses",
+         percent(sampled.with_pose, sampled.frames) + " of the frames" +
+             (evidence.pose_disagreement
+                  ? "; depth of nearby frames differs by " +
+                        format_readable(1000.0 * evidence.pose_difference_m, 2) + " mm under them, which " +
+                        (evidence.poses_disagree ? "cannot be right" : "agrees")
+                  : "; too few to compare with depth"));
   line("gravity", sampled.with_gravity == 0 ? "not recorded"
-                                            : percent(sampled.with_gravity, sampled.frames) + " of the frames, from " +
-                                                  facts.gravity_source);
+                                            : percent(sampled.with_gravity, sampled.frames) +
+                                                  " of the frames, from " + facts.gravity_source);
   if (evidence.still_difference) line("camera", evidence.is_camera_still ? "stands still" : "moves");
   if (evidence.noise_ratio)
     line("noise", format_fixed(*evidence.noise_ratio, 2) + " times that of the sensor's model");
   line("prescan", prescan_text(recording, sampled));
-  for (const InputDecision& decision : decisions) line(decision.is_advice ? "advice" : "note", line_of(decision));
+  for (const InputDecision& decision : decisions)
+    line(decision.is_advice ? "advice" : "note", line_of(decision));
 }
 
 }  // namespace
@@ -213,12 +234,14 @@ int run(const CheckOptions& options) {
   const SampledFrames sampled = sample(recording);
   std::vector<InputDecision> decisions = source_options.input->decisions();
   if (sampled.unreadable > 0)
-    decisions.push_back({"images",
-                         percent(sampled.unreadable, sampled.frames) + " of " + std::to_string(sampled.frames) +
-                             " depth images that were tried cannot be read, the first: " + sampled.first_fault,
-                         static_cast<std::int64_t>(sampled.unreadable), "", true});
+    decisions.push_back(
+        {"images",
+         percent(sampled.unreadable, sampled.frames) + " of " + std::to_string(sampled.frames) +
+             " depth images that were tried cannot be read, the first: " + sampled.first_fault,
+         static_cast<std::int64_t>(sampled.unreadable), "", true});
   if (sampled.unreadable_colour > 0)
-    decisions.push_back({"images", "some colour images cannot be read, the first: " + sampled.first_colour_fault,
+    decisions.push_back({"images",
+                         "some colour images cannot be read, the first: " + sampled.first_colour_fault,
                          static_cast<std::int64_t>(sampled.unreadable_colour), "", true});
   const Timing timing = timing_of(recording);
   if (options.json)
@@ -227,8 +250,8 @@ int run(const CheckOptions& options) {
                             .c_str());
   else
     print(recording, sampled, timing, decisions);
-  const bool has_advice =
-      std::any_of(decisions.begin(), decisions.end(), [](const InputDecision& each) { return each.is_advice; });
+  const bool has_advice = std::any_of(decisions.begin(), decisions.end(),
+                                      [](const InputDecision& each) { return each.is_advice; });
   return has_advice ? 1 : 0;
 }
 

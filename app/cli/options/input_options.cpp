@@ -12,8 +12,9 @@ namespace {
 
 const std::map<std::string, StampChoice>& stamp_words() {
   static const std::map<std::string, StampChoice> words = {
-      {"auto", StampChoice::kAuto},       {"reception", StampChoice::kReception}, {"index", StampChoice::kIndex},
-      {"s", StampChoice::kSeconds},       {"ms", StampChoice::kMilliseconds},     {"us", StampChoice::kMicroseconds},
+      {"auto", StampChoice::kAuto},       {"reception", StampChoice::kReception},
+      {"index", StampChoice::kIndex},     {"s", StampChoice::kSeconds},
+      {"ms", StampChoice::kMilliseconds}, {"us", StampChoice::kMicroseconds},
       {"ns", StampChoice::kNanoseconds}};
   return words;
 }
@@ -29,9 +30,10 @@ void add_input_options(CLI::App& command, InputOptions& options) {
       ->check(within(1e-7, 1000.0, "metres"))
       ->type_name("M");
   command
-      .add_option("--camera", options.camera,
-                  "cameras of the recording: a camera.json, or a text file with the 3 x 3 matrix of the depth\n"
-                  "camera (default: as the recording states)")
+      .add_option(
+          "--camera", options.camera,
+          "cameras of the recording: a camera.json, or a text file with the 3 x 3 matrix of the depth\n"
+          "camera (default: as the recording states)")
       ->type_name("FILE");
   command
       .add_option_function<std::string>(
@@ -39,18 +41,20 @@ void add_input_options(CLI::App& command, InputOptions& options) {
           [&options](const std::string& text) {
             options.poses_convention = parse_pose_convention(text);
             if (!options.poses_convention)
-              throw CLI::ValidationError("--poses-convention " + text +
-                                         ": must be stated, or a list of inverse, opengl, wxyz, mm, cm, as in "
-                                         "inverse,opengl");
+              throw CLI::ValidationError(
+                  "--poses-convention " + text +
+                  ": must be stated, or a list of inverse, opengl, wxyz, mm, cm, as in "
+                  "inverse,opengl");
           },
           "convention of the recorded poses: stated (that of the format), or a list of inverse (world to\n"
           "camera), opengl (camera with y up, z backwards), wxyz (order of quaternions), mm, cm\n"
           "(default: the one under which the depth of nearby frames agrees)")
       ->type_name("LIST");
-  add_choice<StampChoice>(command, "--stamps", options.stamps, stamp_words(),
-                          "times of the recorded images: their stamps, repaired where they cannot be right (auto);\n"
-                          "times of reception; image numbers at 30 per second (index); or stamps in this unit\n"
-                          "(default: auto)");
+  add_choice<StampChoice>(
+      command, "--stamps", options.stamps, stamp_words(),
+      "times of the recorded images: their stamps, repaired where they cannot be right (auto);\n"
+      "times of reception; image numbers at 30 per second (index); or stamps in this unit\n"
+      "(default: auto)");
 }
 
 SourceOptions source_options_of(const InputOptions& options) {

@@ -18,8 +18,8 @@ struct FakenectLine {
   std::uint32_t ticks = 0;  ///< the device's stamp
 };
 
-/// Returns nullopt for a line that is not of the form d-TIME-STAMP.pgm, r-TIME-STAMP.ppm or a-TIME-STAMP.dump,
-/// with the recorder's time of day in s.
+/// Returns nullopt for a line that is not of the form d-TIME-STAMP.pgm, r-TIME-STAMP.ppm or
+/// a-TIME-STAMP.dump, with the recorder's time of day in s.
 std::optional<FakenectLine> parse_fakenect_line(std::string_view line);
 
 /// States the frames of a folder that libfreenect recorded: INDEX.txt lists d-*.pgm (raw 11 bit depth),

@@ -68,8 +68,8 @@ RecordingFacts index_klg(const std::filesystem::path& path) {
   }
   if (static_cast<std::size_t>(count) > places.size())
     facts.notes.push_back({"images",
-                           "the file is cut short: it states " + std::to_string(count) + " frames and holds " +
-                               std::to_string(places.size()),
+                           "the file is cut short: it states " + std::to_string(count) +
+                               " frames and holds " + std::to_string(places.size()),
                            count - static_cast<std::int64_t>(places.size()), "", true});
 
   constexpr Intrinsics kElasticFusion{640, 480, 528.0, 528.0, 320.0, 240.0};

@@ -14,6 +14,7 @@
 #include "app/sources/formats/parse_numbers.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -28,8 +29,10 @@ fs::path first_folder(const fs::path& folder, std::initializer_list<const char*>
   return {};
 }
 
-/// Reads the camera of a 4 x 4 or 3 x 3 matrix. Throws Error naming the file if it is none.
-Intrinsics read_camera_matrix(const fs::path& path, ImageSize size) {
+/// Reads the camera of a 4 x 4 or 3 x 3 matrix. The matrix states no size: if its principal point is far from
+/// the middle of the images, they were scaled after the export, and the camera is scaled likewise, which is
+/// noted. Throws Error naming the file if it is none.
+Intrinsics read_camera_matrix(const fs::path& path, ImageSize size, RecordingFacts& facts) {
   constexpr std::uintmax_t kMax_bytes = 1U << 16U;
   const std::string name = path.string();
   std::vector<double> m;
@@ -43,7 +46,18 @@ Intrinsics read_camera_matrix(const fs::path& path, ImageSize size) {
   if (m.size() != 16 && m.size() != 9)
     throw Error(name + ": has " + std::to_string(m.size()) + " numbers; must be a 4 x 4 matrix");
   const std::size_t columns = m.size() == 16 ? 4 : 3;
-  const Intrinsics camera{size.width_px, size.height_px, m[0], m[columns + 1], m[2], m[columns + 2]};
+  Intrinsics camera{size.width_px, size.height_px, m[0], m[columns + 1], m[2], m[columns + 2]};
+  const double width_px = 2.0 * camera.cx_px, height_px = 2.0 * camera.cy_px;  // of images with it in the middle
+  const auto differs = [](double stated, int is) { return stated < 0.6 * is || stated > 1.4 * is; };
+  if (differs(width_px, size.width_px) && differs(height_px, size.height_px) && width_px >= 2 && height_px >= 2) {
+    const double x = (size.width_px - 1) / width_px, y = (size.height_px - 1) / height_px;
+    camera = {size.width_px, size.height_px, x * camera.fx_px, y * camera.fy_px, x * camera.cx_px, y * camera.cy_px};
+    facts.notes.push_back({"camera",
+                           path.filename().string() + " is of images of about " + format_readable(width_px + 1, 4) +
+                               " x " + format_readable(height_px + 1, 4) + ", but they are " +
+                               size_text(size.width_px, size.height_px) + "; it is scaled to them",
+                           0, "--camera FILE", true});
+  }
   require_valid(camera, name.c_str());
   return camera;
 }
@@ -51,13 +65,13 @@ Intrinsics read_camera_matrix(const fs::path& path, ImageSize size) {
 /// Sets the cameras that a folder intrinsic of ScanNet's export states.
 void read_scannet_cameras(const fs::path& intrinsic, ImageSize depth, std::optional<ImageSize> colour,
                           RecordingFacts& facts) {
-  facts.rig.depth_camera = read_camera_matrix(intrinsic / "intrinsic_depth.txt", depth);
+  facts.rig.depth_camera = read_camera_matrix(intrinsic / "intrinsic_depth.txt", depth, facts);
   facts.camera_origin = Origin::kRecording;
   facts.camera_source = "intrinsic/intrinsic_depth.txt";
   if (!colour) return;
   const fs::path colour_file = intrinsic / "intrinsic_color.txt";
-  facts.rig.colour_camera =
-      fs::exists(colour_file) ? read_camera_matrix(colour_file, *colour) : fitted_to(facts.rig.depth_camera, *colour);
+  facts.rig.colour_camera = fs::exists(colour_file) ? read_camera_matrix(colour_file, *colour, facts)
+                                                    : fitted_to(facts.rig.depth_camera, *colour);
   facts.rig.T_colour_depth.setIdentity();
   const StatedPose T_device_colour = read_pose_file(intrinsic / "extrinsic_color.txt");
   const StatedPose T_device_depth = read_pose_file(intrinsic / "extrinsic_depth.txt");
@@ -76,8 +90,8 @@ bool is_numbered_images(const fs::path& folder) {
 
 RecordingFacts index_numbered_images(const fs::path& folder) {
   RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
-  const auto colour_files = numbered_files(first_folder(folder, {"color", "colour", "rgb", "image"}),
-                                           {".jpg", ".jpeg", ".png"});
+  const auto colour_files =
+      numbered_files(first_folder(folder, {"color", "colour", "rgb", "image"}), {".jpg", ".jpeg", ".png"});
   const auto pose_files = numbered_files(first_folder(folder, {"pose", "poses"}), {".txt"});
   std::vector<fs::path> depths, colours;
   std::vector<std::string> poses;

@@ -115,8 +115,7 @@ RecordingFacts index_oni_recording(const std::filesystem::path& path) {
   facts.unit_source = "its pixel format";
   if (colour) {
     facts.rig.colour_camera = openni_camera(colour_size, stated_fov_rad(*colour));
-    if (!facts.is_depth_registered)
-      facts.rig.T_colour_depth.translation().x() = -kPrimeSenseBaseline_m;
+    if (!facts.is_depth_registered) facts.rig.T_colour_depth.translation().x() = -kPrimeSenseBaseline_m;
     for (const OniFrame& frame : colour->frames) facts.colours.push_back({.stamp_s = seconds(frame)});
   }
   facts.read_depth = [=](std::size_t frame, double unit_m, DepthImage& depth_m) {

@@ -54,17 +54,42 @@ Intrinsics colour_camera_of(const Json& metadata, const std::string& where) {
   return camera;
 }
 
+/// Returns the file metadata, or metadata.json as other versions name it; empty if there is neither.
+fs::path metadata_file(const fs::path& folder) {
+  std::error_code ignored;
+  for (const char* name : {"metadata", "metadata.json"})
+    if (fs::is_regular_file(folder / name, ignored)) return folder / name;
+  return {};
+}
+
+/// True for a file *.r3d, or its content, which are not exports.
+bool is_unexported(const fs::path& path) {
+  std::error_code ignored;
+  return path.extension() == ".r3d" ||
+         (fs::is_regular_file(path / "metadata", ignored) && fs::is_directory(path / "rgbd", ignored) &&
+          !fs::is_directory(path / "depth", ignored));
+}
+
 }  // namespace
 
 bool is_record3d(const fs::path& folder) {
   std::error_code ignored;
-  return fs::is_regular_file(folder / "metadata", ignored) && fs::is_directory(folder / "depth", ignored);
+  if (is_unexported(folder)) return true;
+  const fs::path metadata = metadata_file(folder);
+  return !metadata.empty() && fs::is_directory(folder / "depth", ignored) &&
+         (metadata.extension().empty() || !numbered_files(folder / "depth", {".exr"}).empty());
 }
 
 RecordingFacts index_record3d(const fs::path& folder) {
-  const std::string where = (folder / "metadata").string();
+  const fs::path metadata_path = metadata_file(folder);
+  const std::string where = metadata_path.string();
+  if (is_unexported(folder))
+    throw Error(
+        folder.string() +
+        ": is in Record3D's own form (.r3d, rgbd/N.depth), which is not read; export the recording in the "
+        "app as \"EXR + RGB\"");
   const Json metadata =
-      Json::parse(read_bytes(folder / "metadata", "Record3D's metadata", kMaxMetadata_bytes), nullptr,
+      Json::parse(read_bytes(metadata_path, "Record3D's metadata", kMaxMetadata_bytes), nullptr,
                   /*allow_exceptions=*/false);
   if (metadata.is_discarded() || !metadata.is_object())
     throw Error(where + ": is not JSON; is it cut short?");
@@ -75,7 +100,7 @@ RecordingFacts index_record3d(const fs::path& folder) {
   const int depth_width = size_px(metadata, "dw", where), depth_height = size_px(metadata, "dh", where);
   facts.rig.depth_noise = kPhoneLidarNoise;
   facts.rig.depth_camera = scaled_to_depth(colour, {depth_width, depth_height}, where);
-  facts.camera_source = "K in metadata";
+  facts.camera_source = "K in " + metadata_path.filename().string();
   facts.is_depth_registered = true;
   facts.depth_unit_m = 1.0;
   facts.unit_source = "metres, by Record3D's format";
@@ -97,7 +122,8 @@ RecordingFacts index_record3d(const fs::path& folder) {
       frame.time.stamp_s = at < stamps.size() && stamps[at].is_number() ? stamps[at].get<double>() : kNoStamp;
     if (!poses.empty()) {
       const auto p = at < poses.size() ? listed_numbers(poses[at], 7) : std::nullopt;
-      if (p) frame.T_world_camera = rigid_pose({(*p)[4], (*p)[5], (*p)[6]}, {(*p)[0], (*p)[1], (*p)[2], (*p)[3]});
+      if (p)
+        frame.T_world_camera = rigid_pose({(*p)[4], (*p)[5], (*p)[6]}, {(*p)[0], (*p)[1], (*p)[2], (*p)[3]});
       if (!frame.T_world_camera)
         frame.pose_fault = at >= poses.size() ? "is missing in metadata"
                            : p                ? "is no rigid transform"

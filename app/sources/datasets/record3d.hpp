@@ -6,12 +6,14 @@
 
 namespace roomradar {
 
-/// Returns true if `folder` contains the file `metadata` and the folder `depth`, as an export by Record3D
-/// does.
+/// Returns true if `folder` contains the file metadata or metadata.json, and the folder `depth`, as an export
+/// by Record3D does. Also for Record3D's own form, a file .r3d or a folder `rgbd`, which index_record3d()
+/// refuses.
 [[nodiscard]] bool is_record3d(const std::filesystem::path& folder);
 
 /// Lists the frames of an export by Record3D ("EXR + RGB"):
-///   metadata      JSON: w, h: colour size; dw, dh: depth size, px; K: intrinsics at w x h, column-major;
+///   metadata      or metadata.json: w, h: colour size; dw, dh: depth size, px; K: intrinsics at w x h,
+///   column-major;
 ///                 poses: qx qy qz qw x y z (m) per frame; frameTimestamps (s) per frame
 ///   depth/N.exr   depth of frame N, m;  rgb/N.jpg: its colour image
 /// N has no leading zeros. Without frameTimestamps, stamps are N / fps, with 30 as the default of fps.

@@ -50,7 +50,7 @@ struct StatedFrame {
 /// A pose that was looked up for a frame.
 struct StatedPose {
   std::optional<Eigen::Isometry3d> T_world_camera{};
-  std::string fault{};        ///< as StatedFrame::pose_fault
+  std::string fault{};          ///< as StatedFrame::pose_fault
   bool was_transposed = false;  ///< the matrix was stored column by column, and was transposed
 };
 
@@ -95,8 +95,8 @@ struct RecordingFacts {
   RationalLens depth_lens{}, colour_lens{};
   Origin camera_origin = Origin::kRecording;
   std::string camera_source{};  ///< where the cameras are stated, or whose they are if they are assumed
-  bool is_colour_camera_assumed = false;  ///< only the depth camera is stated
-  std::string colour_camera_source{};     ///< whose colour camera is assumed
+  bool is_colour_camera_assumed = false;           ///< only the depth camera is stated
+  std::string colour_camera_source{};              ///< whose colour camera is assumed
   Origin colour_pose_origin = Origin::kRecording;  ///< of rig.T_colour_depth
   /// True: depth images are registered to the colour camera. Cameras that are given for depth only then are
   /// those of colour, too.
@@ -117,7 +117,8 @@ struct RecordingFacts {
   std::function<void(std::size_t frame, double unit_m, DepthImage&)> read_depth{};
   /// Reads a colour image. Throws Error.
   std::function<void(std::size_t colour, ColourImage&)> read_colour{};
-  /// If set, called instead of reading StatedFrame::T_world_camera. `stamp_s` is the frame's time by decide().
+  /// If set, called instead of reading StatedFrame::T_world_camera. `stamp_s` is the frame's time by
+  /// decide().
   std::function<StatedPose(std::size_t frame, double stamp_s)> read_pose{};
   /// If set, called instead of reading StatedFrame::down_camera.
   std::function<std::optional<Eigen::Vector3d>(std::size_t frame, double stamp_s)> read_down{};

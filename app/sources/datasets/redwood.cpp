@@ -117,8 +117,9 @@ bool is_trajectory_log(const fs::path& path) {
   for (std::string line; row < 2 && std::getline(lines, line);) {
     const auto words = split_words(line);
     if (words.empty() || words[0].starts_with('#')) continue;
-    if (words.size() != 3 + row ||
-        !std::all_of(words.begin(), words.end(), [](std::string_view word) { return parse_number(word).has_value(); }))
+    if (words.size() != 3 + row || !std::all_of(words.begin(), words.end(), [](std::string_view word) {
+          return parse_number(word).has_value();
+        }))
       return false;
     ++row;
   }
@@ -133,10 +134,12 @@ fs::path trajectory_log(const fs::path& folder) {
   return {};
 }
 
-/// Camera, and the units of depth per metre, of Open3D's intrinsic.json.
+/// Open3D's intrinsic.json: camera, units of depth per metre, and images per second.
+/// Source: Open3D, RGBDVideoMetadata::ConvertToJsonValue(), written by RGBDVideoReader::SaveFrames().
 struct Open3dIntrinsics {
   Intrinsics camera;
   std::optional<double> depth_scale;
+  std::optional<double> fps;
 };
 
 Open3dIntrinsics read_open3d_intrinsics(const fs::path& path) {
@@ -153,18 +156,22 @@ Open3dIntrinsics read_open3d_intrinsics(const fs::path& path) {
   const Intrinsics camera{static_cast<int>(width), static_cast<int>(height), matrix[0].get<double>(),
                           matrix[4].get<double>(), matrix[6].get<double>(),  matrix[7].get<double>()};
   require_valid(camera, where.c_str());
-  Open3dIntrinsics intrinsics{camera, std::nullopt};
+  Open3dIntrinsics intrinsics{camera, std::nullopt, std::nullopt};
   if (root.contains("depth_scale")) {
     intrinsics.depth_scale = json_number(root, "depth_scale", where);
     if (!(*intrinsics.depth_scale > 0.0 && *intrinsics.depth_scale <= 1e7))
       throw Error(where + ": depth_scale must be above 0, such as 1000 for millimetres");
   }
+  if (root.contains("fps")) {
+    const double fps = json_number(root, "fps", where);
+    if (fps >= 1.0 && fps <= 1000.0) intrinsics.fps = fps;
+  }
   return intrinsics;
 }
 
 /// States registered images without cameras and poses. `numbers` receives the number of each frame.
-RecordingFacts registered_images(const fs::path& folder, const fs::path& colour_folder, DepthEncoding encoding,
-                                 std::vector<std::int64_t>& numbers) {
+RecordingFacts registered_images(const fs::path& folder, const fs::path& colour_folder,
+                                 DepthEncoding encoding, std::vector<std::int64_t>& numbers) {
   RecordingFacts facts{.name = fs::canonical(folder).string()};
   const auto colours = numbered_files(colour_folder, {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
@@ -227,6 +234,11 @@ RecordingFacts index_redwood(const fs::path& folder) {
     const Open3dIntrinsics intrinsics = read_open3d_intrinsics(file);
     set_registered_camera(facts, intrinsics.camera);
     facts.camera_source = file.filename().string();
+    if (intrinsics.fps) {
+      facts.has_no_clock = false;
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        facts.frames[i].time.stamp_s = static_cast<double>(numbers[i]) / *intrinsics.fps;
+    }
     if (intrinsics.depth_scale) {
       facts.depth_unit_m = 1.0 / *intrinsics.depth_scale;
       facts.unit_origin = Origin::kRecording;

@@ -110,7 +110,8 @@ ImageSize depth_image_size(const std::string& bytes, const std::string& where) {
 void decode_rtabmap_depth(const std::string& bytes, ImageSize size, double unit_m, const std::string& where,
                           DepthImage& depth_m) {
   const RtabmapDepth depth = parse_depth(bytes, where);
-  const bool is_float = depth.is_inverse || (!depth.is_rvl && read_image_header(depth.image, where).channels == 4);
+  const bool is_float =
+      depth.is_inverse || (!depth.is_rvl && read_image_header(depth.image, where).channels == 4);
   // Floats are metres, and units 1 mm by the format: another unit scales both.
   const double factor = unit_m / kUnit_m;
   if (depth.is_inverse) unit_m = 1.0;
@@ -134,20 +135,22 @@ struct NodePose {
   std::optional<Eigen::Isometry3d> T_odometry_robot{};
 };
 
-/// Returns the values of a matrix that RTAB-Map compressed: a zlib stream, then rows, columns and OpenCV's type
-/// as 32 bit integers. Empty if it is absent, damaged or of another type.
-/// Source: RTAB-Map, corelib/src/Compression.cpp, compressData2() and uncompressData().
+/// Returns the values of a matrix that RTAB-Map compressed: a zlib stream, then rows, columns and OpenCV's
+/// type as 32 bit integers. Empty if it is absent, damaged or of another type. Source: RTAB-Map,
+/// corelib/src/Compression.cpp, compressData2() and uncompressData().
 template <typename Value>
-std::vector<Value> uncompressed_matrix(const std::string& bytes, std::int32_t type, const std::string& where) {
+std::vector<Value> uncompressed_matrix(const std::string& bytes, std::int32_t type,
+                                       const std::string& where) {
   constexpr std::size_t kTail_bytes = 12;
   std::array<std::int32_t, 3> tail{};
   if (bytes.size() < kTail_bytes) return {};
   std::memcpy(tail.data(), bytes.data() + bytes.size() - kTail_bytes, kTail_bytes);
   if (tail[0] < 1 || tail[1] < 1 || tail[2] != type) return {};
-  const std::uint64_t size = sizeof(Value) * static_cast<std::uint64_t>(tail[0]) * static_cast<std::uint64_t>(tail[1]);
+  const std::uint64_t size =
+      sizeof(Value) * static_cast<std::uint64_t>(tail[0]) * static_cast<std::uint64_t>(tail[1]);
   try {
-    const std::string raw = decompress(Compression::kZlib,
-                                       std::string_view(bytes).substr(0, bytes.size() - kTail_bytes), size, where);
+    const std::string raw = decompress(
+        Compression::kZlib, std::string_view(bytes).substr(0, bytes.size() - kTail_bytes), size, where);
     std::vector<Value> values(raw.size() / sizeof(Value));
     std::memcpy(values.data(), raw.data(), values.size() * sizeof(Value));
     return values;
@@ -156,7 +159,8 @@ std::vector<Value> uncompressed_matrix(const std::string& bytes, std::int32_t ty
   }
 }
 
-/// Returns the poses that RTAB-Map's optimisation of the whole graph gave, by node; empty if it was not saved.
+/// Returns the poses that RTAB-Map's optimisation of the whole graph gave, by node; empty if it was not
+/// saved.
 std::map<std::int64_t, Eigen::Isometry3d> optimised_poses(const SqliteFile& database) {
   constexpr std::int32_t kInt32 = 4, kFloat32 = 5;  // OpenCV's CV_32S and CV_32F
   std::map<std::int64_t, Eigen::Isometry3d> poses;
@@ -180,17 +184,17 @@ std::map<std::int64_t, Eigen::Isometry3d> optimised_poses(const SqliteFile& data
   return poses;
 }
 
-/// Sets the poses of the frames: those of the optimised graph. A node that is not in the graph gets its odometry
-/// pose, moved like the nearest node of its session that is. Without an optimised graph, odometry poses of one
-/// session only: each session has a world frame of its own.
+/// Sets the poses of the frames: those of the optimised graph. A node that is not in the graph gets its
+/// odometry pose, moved like the nearest node of its session that is. Without an optimised graph, odometry
+/// poses of one session only: each session has a world frame of its own.
 void set_poses(const SqliteFile& database, const std::vector<NodePose>& nodes, RecordingFacts& facts) {
   const std::map<std::int64_t, Eigen::Isometry3d> optimised = optimised_poses(database);
   std::map<std::int64_t, std::size_t> frames_of_session;
   for (const NodePose& node : nodes) ++frames_of_session[node.session];
   const auto longest =
-      std::max_element(frames_of_session.begin(), frames_of_session.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; })
-          ->first;
+      std::max_element(frames_of_session.begin(), frames_of_session.end(), [](const auto& a, const auto& b) {
+        return a.second < b.second;
+      })->first;
   std::map<std::int64_t, Eigen::Isometry3d> T_world_odometry;  // by session, of the last node in the graph
   for (const NodePose& node : nodes)
     if (const auto T = optimised.find(node.id); T != optimised.end() && node.T_odometry_robot)
@@ -217,9 +221,11 @@ void set_poses(const SqliteFile& database, const std::vector<NodePose>& nodes, R
   if (frames_of_session.size() > 1)
     facts.notes.push_back(
         {"poses",
-         "the database holds " + std::to_string(frames_of_session.size()) + " sessions, each with a world frame of its own; " +
-             (optimised.empty() ? "it has no optimised poses that join them, so "
-                                : "the optimised poses join them" + std::string(without > 0 ? ", but " : "")) +
+         "the database holds " + std::to_string(frames_of_session.size()) +
+             " sessions, each with a world frame of its own; " +
+             (optimised.empty()
+                  ? "it has no optimised poses that join them, so "
+                  : "the optimised poses join them" + std::string(without > 0 ? ", but " : "")) +
              (without > 0 ? std::to_string(without) + " frames are used without a pose" : ""),
          static_cast<std::int64_t>(without), "", without > 0});
 }
@@ -246,16 +252,17 @@ RecordingFacts index_rtabmap(const std::filesystem::path& path) {
   std::vector<NodePose> nodes;
   // The oldest databases have one session only.
   const std::string session = database->has_column("Node", "map_id") ? "Node.map_id" : "0 * Node.id";
-  database->query(
-      "SELECT Data.rowid, Node.stamp, Node.pose, length(Data.image), Node.id, " + session +
-          " FROM Node JOIN Data ON Node.id = Data.id WHERE length(Data.depth) > 0 ORDER BY " + session +
-          ", Node.stamp, Node.id",
-      {}, [&](const SqliteRow& row) {
-        if (row.integer(3) > 0) facts.frames.push_back({.time = {row.number(1)}, .colour = rows.size()});
-        else facts.frames.push_back({.time = {row.number(1)}});
-        rows.push_back(row.integer(0));
-        nodes.push_back({row.integer(4), row.integer(5), pose_in(row.bytes(2))});
-      });
+  database->query("SELECT Data.rowid, Node.stamp, Node.pose, length(Data.image), Node.id, " + session +
+                      " FROM Node JOIN Data ON Node.id = Data.id WHERE length(Data.depth) > 0 ORDER BY " +
+                      session + ", Node.stamp, Node.id",
+                  {}, [&](const SqliteRow& row) {
+                    if (row.integer(3) > 0)
+                      facts.frames.push_back({.time = {row.number(1)}, .colour = rows.size()});
+                    else
+                      facts.frames.push_back({.time = {row.number(1)}});
+                    rows.push_back(row.integer(0));
+                    nodes.push_back({row.integer(4), row.integer(5), pose_in(row.bytes(2))});
+                  });
   if (rows.empty()) throw Error(where + ": contains no node with a depth image");
   set_poses(*database, nodes, facts);
 

@@ -58,7 +58,8 @@ std::vector<SensFrame> read_frames(const RandomAccessFile& file, const std::stri
         !file.has(place.colour_offset + place.colour_bytes, place.depth_bytes))
       break;
     at = place.colour_offset + place.colour_bytes + place.depth_bytes;
-    frames.push_back({.time = {.stamp_s = 1e-6 * static_cast<double>(stamp_us)}, .T_world_camera = transform_of(pose)});
+    frames.push_back(
+        {.time = {.stamp_s = 1e-6 * static_cast<double>(stamp_us)}, .T_world_camera = transform_of(pose)});
     if (place.colour_bytes > 0) frames.back().colour = places.size();
     if (!frames.back().T_world_camera) frames.back().pose_fault = "is no rigid transform";
     places.push_back(place);
@@ -109,10 +110,11 @@ RecordingFacts index_scannet_sens(const std::filesystem::path& path) {
       read_frames(*file, where, 12 + name_bytes + kFixed_bytes, count, facts.frames);
 
   if (count > places.size())
-    facts.notes.push_back({"images",
-                           "the file is cut short: it states " + std::to_string(count) + " frames and holds " +
-                               std::to_string(places.size()),
-                           static_cast<std::int64_t>(std::min<std::uint64_t>(count, 1U << 30U) - places.size()), "", true});
+    facts.notes.push_back(
+        {"images",
+         "the file is cut short: it states " + std::to_string(count) + " frames and holds " +
+             std::to_string(places.size()),
+         static_cast<std::int64_t>(std::min<std::uint64_t>(count, 1U << 30U) - places.size()), "", true});
   facts.camera_source = "its header";
   facts.depth_unit_m = 1.0 / units_per_m;
   facts.unit_origin = Origin::kRecording;

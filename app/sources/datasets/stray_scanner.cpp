@@ -51,19 +51,19 @@ std::size_t for_each_row(const fs::path& path, std::size_t count, const Use& use
   return bad;
 }
 
-/// Reads the 3 x 3 matrix of the video. Without a video, its size is assumed to be the app's 1920 x 1440, or of
-/// the aspect ratio of depth and twice as wide as the principal point's x, if that is far from 960.
+/// Reads the 3 x 3 matrix of the video. Without a video, its size is assumed to be the app's 1920 x 1440, or
+/// of the aspect ratio of depth and twice as wide as the principal point's x, if that is far from 960.
 Intrinsics camera_matrix_of(const fs::path& path, std::optional<ImageSize> video, ImageSize depth) {
   std::vector<double> m;
-  (void)for_each_row(path, 3, [&](const std::vector<double>& row) {
-    m.insert(m.end(), row.begin(), row.begin() + 3);
-  });
+  (void)for_each_row(
+      path, 3, [&](const std::vector<double>& row) { m.insert(m.end(), row.begin(), row.begin() + 3); });
   if (m.size() != 9) throw Error(path.string() + ": must be a 3 x 3 matrix");
   constexpr ImageSize kUsual{1920, 1440};
   const int twice_px = static_cast<int>(std::lround(2.0 * std::clamp(m[2], 1.0, 8000.0)));
-  const ImageSize size = video                                                ? *video
-                         : std::abs(twice_px - kUsual.width_px) < 200         ? kUsual
-                                                                              : ImageSize{twice_px, twice_px * depth.height_px / depth.width_px};
+  const ImageSize size = video ? *video
+                         : std::abs(twice_px - kUsual.width_px) < 200
+                             ? kUsual
+                             : ImageSize{twice_px, twice_px * depth.height_px / depth.width_px};
   const Intrinsics camera{size.width_px, size.height_px, m[0], m[4], m[2], m[5]};
   require_valid(camera, path.string().c_str());
   return camera;
@@ -112,10 +112,11 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
     video = std::make_shared<VideoFile>(folder / "rgb.mp4");
   } catch (const Error& fault) {
     const bool is_missing = !fs::exists(folder / "rgb.mp4");
-    facts.notes.push_back({"images",
-                           is_missing ? "rgb.mp4 is missing; depth is used without colour"
-                                      : "rgb.mp4 cannot be read, depth is used without colour: " + std::string(fault.what()),
-                           0, "", !is_missing});
+    facts.notes.push_back(
+        {"images",
+         is_missing ? "rgb.mp4 is missing; depth is used without colour"
+                    : "rgb.mp4 cannot be read, depth is used without colour: " + std::string(fault.what()),
+         0, "", !is_missing});
   }
   facts.rig.depth_noise = kPhoneLidarNoise;
   facts.camera_source = "camera_matrix.csv";
@@ -127,9 +128,10 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
   std::size_t bad_lines = 0;
   const std::map<std::int64_t, Odometry> odometry = odometry_of(folder / "odometry.csv", bad_lines);
   if (bad_lines > 0)
-    facts.notes.push_back({"poses",
-                           std::to_string(bad_lines) + " lines of odometry.csv are cut short or not numbers; they are left out",
-                           static_cast<std::int64_t>(bad_lines)});
+    facts.notes.push_back(
+        {"poses",
+         std::to_string(bad_lines) + " lines of odometry.csv are cut short or not numbers; they are left out",
+         static_cast<std::int64_t>(bad_lines)});
   std::vector<fs::path> paths;
   std::vector<std::size_t> numbers;
   std::size_t without_row = 0;
@@ -149,8 +151,9 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
   }
   if (without_row > 0)
     facts.notes.push_back({"poses",
-                           std::to_string(without_row) + " depth images have no line in odometry.csv; they are used "
-                                                         "without a pose",
+                           std::to_string(without_row) +
+                               " depth images have no line in odometry.csv; they are used "
+                               "without a pose",
                            static_cast<std::int64_t>(without_row)});
   const ImageSize depth_size = size_of_images(paths, folder);
   std::optional<ImageSize> video_size;

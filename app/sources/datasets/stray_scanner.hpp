@@ -17,8 +17,8 @@ namespace roomradar {
 ///   odometry.csv           timestamp (s), frame, x, y, z (m), qx, qy, qz, qw: camera to world
 ///
 /// The recorded camera's axes are roomradar's. The recorded world frame has y up and is converted to z up.
-/// Gravity follows from the poses, since ARKit aligns its world frame with gravity. imu.csv is not read. Lines
-/// of odometry.csv that are cut short are left out. Depth images without a line have no pose.
+/// Gravity follows from the poses, since ARKit aligns its world frame with gravity. imu.csv is not read.
+/// Lines of odometry.csv that are cut short are left out. Depth images without a line have no pose.
 /// @throws Error naming the file if camera_matrix.csv is not a 3 x 3 matrix, or no depth image can be read
 RecordingFacts index_stray_scanner(const std::filesystem::path& folder);
 

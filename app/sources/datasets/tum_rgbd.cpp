@@ -77,7 +77,8 @@ std::vector<ListedImage> read_image_list(const fs::path& folder, const char* nam
     const std::size_t file_begin = std::min(line.find_first_not_of(" \t", stamp_end), line.size());
     const std::size_t file_end = line.find_last_not_of(" \t\r") + 1;
     const fs::path file =
-        fs::path(file_begin < file_end ? line.substr(file_begin, file_end - file_begin) : "").lexically_normal();
+        fs::path(file_begin < file_end ? line.substr(file_begin, file_end - file_begin) : "")
+            .lexically_normal();
     if (file.empty() || file == ".") return bad.add(where + ": must be a stamp and a file name");
     if (file.is_absolute() || *file.begin() == "..")
       return bad.add(where + ": the file must lie in the recording's folder");
@@ -89,8 +90,8 @@ std::vector<ListedImage> read_image_list(const fs::path& folder, const char* nam
   bad.report("images", name, facts);
   if (bad_stamps.count > 0)
     facts.notes.push_back({"time",
-                           std::to_string(bad_stamps.count) + " stamps of " + name + " are no numbers, the first: " +
-                               bad_stamps.first,
+                           std::to_string(bad_stamps.count) + " stamps of " + name +
+                               " are no numbers, the first: " + bad_stamps.first,
                            static_cast<std::int64_t>(bad_stamps.count)});
   return images;
 }
@@ -112,7 +113,8 @@ std::vector<std::vector<double>> read_rows(const fs::path& folder, const char* n
       row.push_back(*value);
     }
     if (row.size() != count)
-      return bad.add(where + ": has " + std::to_string(row.size()) + " numbers instead of " + std::to_string(count));
+      return bad.add(where + ": has " + std::to_string(row.size()) + " numbers instead of " +
+                     std::to_string(count));
     if (std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
       rows.push_back(std::move(row));
   });
@@ -121,14 +123,16 @@ std::vector<std::vector<double>> read_rows(const fs::path& folder, const char* n
 }
 
 /// Returns the direction of gravity by the reading nearest in time.
-std::optional<Eigen::Vector3d> gravity_near(double stamp_s, const std::vector<StampedAcceleration>& readings) {
+std::optional<Eigen::Vector3d> gravity_near(double stamp_s,
+                                            const std::vector<StampedAcceleration>& readings) {
   const auto after = std::lower_bound(readings.begin(), readings.end(), stamp_s,
                                       [](const auto& reading, double s) { return reading.stamp_s < s; });
   auto nearest = after;
   if (after != readings.begin() &&
       (after == readings.end() || stamp_s - (after - 1)->stamp_s < after->stamp_s - stamp_s))
     nearest = after - 1;
-  if (nearest == readings.end() || std::abs(nearest->stamp_s - stamp_s) > kGravityWithin_s) return std::nullopt;
+  if (nearest == readings.end() || std::abs(nearest->stamp_s - stamp_s) > kGravityWithin_s)
+    return std::nullopt;
   return down_from_acceleration(nearest->acceleration_m_s2 / kStandardGravity_m_s2);
 }
 
@@ -154,7 +158,8 @@ RecordingFacts index_tum_rgbd(const fs::path& folder) {
                 ": is missing, although there is a folder rgb; it lists the colour images");
 
   RecordingFacts facts{.name = fs::canonical(folder).string(), .stamps_have_no_unit = true};
-  const auto depth = std::make_shared<const std::vector<ListedImage>>(read_image_list(folder, "depth.txt", facts));
+  const auto depth =
+      std::make_shared<const std::vector<ListedImage>>(read_image_list(folder, "depth.txt", facts));
   const auto colours = std::make_shared<const std::vector<ListedImage>>(
       has_colour ? read_image_list(folder, "rgb.txt", facts) : std::vector<ListedImage>());
   for (const ListedImage& image : *depth) facts.frames.push_back({.time = {.stamp_s = image.stamp}});

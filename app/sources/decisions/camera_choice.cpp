@@ -28,8 +28,9 @@ fs::path camera_json(const fs::path& folder, const SourceOptions& options) {
   if (!options.camera_file.empty())
     return options.camera_file.extension() == ".json" ? options.camera_file : fs::path{};
   std::error_code ignored;
-  return fs::is_directory(folder, ignored) && fs::exists(folder / "camera.json", ignored) ? folder / "camera.json"
-                                                                                          : fs::path{};
+  return fs::is_directory(folder, ignored) && fs::exists(folder / "camera.json", ignored)
+             ? folder / "camera.json"
+             : fs::path{};
 }
 
 /// Returns the file with the 3 x 3 matrix of the depth camera; empty if there is none.
@@ -49,22 +50,24 @@ void set_origin(RecordingFacts& facts, Origin origin, const std::string& source)
 void report_assumed(const RecordingFacts& facts, InputReport& report) {
   const Intrinsics& camera = facts.rig.depth_camera;
   if (facts.camera_origin == Origin::kAssumed)
-    report.add({"camera",
-                "no camera is stated; that of " + facts.camera_source + " is assumed: focal length " +
-                    format_readable(camera.fx_px, 4) + " px at " + size_text(camera.width_px, camera.height_px) +
-                    ". State another in a file camera.json or camera-intrinsics.txt in the folder, or by the option",
-                0, "--camera FILE", facts.is_registered_if_given && !facts.is_depth_registered});
+    report.add(
+        {"camera",
+         "no camera is stated; that of " + facts.camera_source + " is assumed: focal length " +
+             format_readable(camera.fx_px, 4) + " px at " + size_text(camera.width_px, camera.height_px) +
+             ". State another in a file camera.json or camera-intrinsics.txt in the folder, or by the option",
+         0, "--camera FILE", facts.is_registered_if_given && !facts.is_depth_registered});
   else if (facts.rig.colour_camera && facts.is_colour_camera_assumed)
     report.add({"camera",
                 "the colour camera is not stated; that of " + facts.colour_camera_source +
-                    " is assumed, with a focal length of " + format_readable(facts.rig.colour_camera->fx_px, 4) +
-                    " px. camera.json can state it",
+                    " is assumed, with a focal length of " +
+                    format_readable(facts.rig.colour_camera->fx_px, 4) + " px. camera.json can state it",
                 0, "--camera FILE"});
   else if (facts.rig.colour_camera && facts.colour_pose_origin == Origin::kAssumed)
-    report.add({"camera",
-                "the place of the colour camera beside the depth camera is not stated; the same place is assumed, "
-                "so colours may be shifted by some pixels",
-                0, "--camera FILE", true});
+    report.add(
+        {"camera",
+         "the place of the colour camera beside the depth camera is not stated; the same place is assumed, "
+         "so colours may be shifted by some pixels",
+         0, "--camera FILE", true});
 }
 
 }  // namespace
@@ -132,8 +135,9 @@ StatedInput read_stated_input(const fs::path& folder, const SourceOptions& optio
     const auto& word = root["poses_convention"];
     if (word.is_string()) stated.pose_convention = parse_pose_convention(word.get<std::string>());
     if (!stated.pose_convention)
-      throw Error(where + ": poses_convention must be \"stated\", or of the words inverse, opengl, wxyz, mm, cm, "
-                          "separated by commas");
+      throw Error(where +
+                  ": poses_convention must be \"stated\", or of the words inverse, opengl, wxyz, mm, cm, "
+                  "separated by commas");
   }
   return stated;
 }

@@ -25,7 +25,8 @@ std::vector<DecidedFrame> frames_by_time(const RecordingFacts& facts, const std:
     if (std::isfinite(stamps_s[i])) last_s = stamps_s[i];
     order.emplace_back(last_s, i);
   }
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<DecidedFrame> frames;
   frames.reserve(order.size());
   for (const auto& [stamp_s, i] : order) {
@@ -44,7 +45,8 @@ void pair_colours(const RecordingFacts& facts, const std::vector<double>& colour
   std::vector<std::size_t> colours(colour_s.size());
   std::iota(colours.begin(), colours.end(), 0U);
   std::erase_if(colours, [&](std::size_t i) { return !std::isfinite(colour_s[i]); });
-  std::stable_sort(colours.begin(), colours.end(), [&](std::size_t a, std::size_t b) { return colour_s[a] < colour_s[b]; });
+  std::stable_sort(colours.begin(), colours.end(),
+                   [&](std::size_t a, std::size_t b) { return colour_s[a] < colour_s[b]; });
   StampPairing pairing({.tolerance_s = facts.pair_within_s, .colours_kept = kColoursWithoutDepth});
   const auto take_pairs = [&] {
     while (const auto pair = pairing.take()) {
@@ -72,8 +74,8 @@ void pair_colours(const RecordingFacts& facts, const std::vector<double>& colour
   take_pairs();
 }
 
-/// Moves the times of colour images by a constant if their clock is not that of depth: if the two lists do not
-/// overlap in time.
+/// Moves the times of colour images by a constant if their clock is not that of depth: if the two lists do
+/// not overlap in time.
 void align_colour_clock(const RepairedStamps& depth, RepairedStamps& colour, InputReport& report) {
   const auto range = [](const std::vector<double>& stamps_s) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -87,7 +89,8 @@ void align_colour_clock(const RepairedStamps& depth, RepairedStamps& colour, Inp
   if (colour_last >= depth_first && colour_first <= depth_last) return;
   const double shift_s = depth.header_offset_s - colour.header_offset_s;
   if (shift_s == 0.0) {
-    report.add({"time", "no colour image was taken while depth was recorded, by their stamps; colour is not used",
+    report.add({"time",
+                "no colour image was taken while depth was recorded, by their stamps; colour is not used",
                 static_cast<std::int64_t>(colour.stamps_s.size()), "--stamps", true});
     return;
   }
@@ -163,15 +166,16 @@ void report_lost_poses(const RecordingFacts& facts, InputReport& report) {
   std::string first;
   for (std::size_t i = 0; i < facts.frames.size(); ++i) {
     if (facts.frames[i].pose_fault.empty()) continue;
-    if (first.empty()) first = "the first at image " + std::to_string(i) + ", which " + facts.frames[i].pose_fault;
+    if (first.empty())
+      first = "the first at image " + std::to_string(i) + ", which " + facts.frames[i].pose_fault;
     ++lost;
   }
   if (lost > 0)
     report.add({"poses",
-                std::to_string(lost) + (lost == 1 ? " recorded pose is lost or no rigid transform; its frame is"
-                                  : " recorded poses are lost or no rigid transform; their frames are") +
-                    " used without a pose" +
-                    (first.empty() ? "" : " (" + first + ")"),
+                std::to_string(lost) +
+                    (lost == 1 ? " recorded pose is lost or no rigid transform; its frame is"
+                               : " recorded poses are lost or no rigid transform; their frames are") +
+                    " used without a pose" + (first.empty() ? "" : " (" + first + ")"),
                 static_cast<std::int64_t>(lost)});
 }
 
@@ -203,15 +207,17 @@ void advise_on_rate(const DecidedRecording& recording) {
   std::nth_element(steps_s.begin(), middle, steps_s.end());
   if (!(*middle * kLeastRate_hz > 1.0)) return;
   const bool has_poses = recording.evidence->pose_disagreement && recording.poses_are_used;
-  recording.report->add({"time",
-                         "frames are " + format_readable(*middle, 2) + " s apart, so tracking may lose the camera" +
-                             (has_poses ? "; the recorded poses agree with the depth and can be used instead" : ""),
-                         0, has_poses ? "--poses recorded" : "", true});
+  recording.report->add(
+      {"time",
+       "frames are " + format_readable(*middle, 2) + " s apart, so tracking may lose the camera" +
+           (has_poses ? "; the recorded poses agree with the depth and can be used instead" : ""),
+       0, has_poses ? "--poses recorded" : "", true});
 }
 
 }  // namespace
 
-DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folder, const SourceOptions& options) {
+DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folder,
+                        const SourceOptions& options) {
   DecidedRecording recording;
   recording.report = options.input ? options.input : std::make_shared<InputReport>();
   InputReport& report = *recording.report;
@@ -252,11 +258,12 @@ std::optional<Eigen::Isometry3d> stated_pose_of(const DecidedRecording& recordin
   if (!facts.read_pose) return facts.frames[decided.stated].T_world_camera;
   const StatedPose read = facts.read_pose(decided.stated, decided.stamp_s);
   if (!read.fault.empty())
-    recording.report->count("poses",
-                            "% recorded poses are lost or no rigid transform; their frames are used without a pose",
-                            at, read.fault);
+    recording.report->count(
+        "poses", "% recorded poses are lost or no rigid transform; their frames are used without a pose", at,
+        read.fault);
   if (read.was_transposed)
-    recording.report->count("poses", "% recorded poses are stored column by column; they are transposed", at, "");
+    recording.report->count("poses", "% recorded poses are stored column by column; they are transposed", at,
+                            "");
   return read.T_world_camera;
 }
 

@@ -25,12 +25,13 @@ struct DecidedFrame {
 
 /// What the depth of some frames shows, see question_depth().
 struct DepthEvidence {
-  double measured_part = 0.0;   ///< fraction of the pixels with depth
-  double median_depth_m = 0.0;  ///< of the pixels with depth
+  double measured_part = 0.0;                    ///< fraction of the pixels with depth
+  double median_depth_m = 0.0;                   ///< of the pixels with depth
   double near_depth_m = 0.0, far_depth_m = 0.0;  ///< 5th and 90th percentile
-  std::optional<double> noise_ratio{};  ///< standard deviation between neighbours / that of the sensor's model
-  std::size_t posed_pairs = 0;          ///< number of compared pairs of frames that have poses
-  std::optional<double> pose_disagreement{};  ///< DepthDifference of these pairs; unset: fewer than 3
+  std::optional<double>
+      noise_ratio{};            ///< standard deviation between neighbours / that of the sensor's model
+  std::size_t posed_pairs = 0;  ///< number of compared pairs of frames that have poses
+  std::optional<double> pose_disagreement{};      ///< DepthDifference of these pairs; unset: fewer than 3
   std::optional<double> far_pose_disagreement{};  ///< the same of pairs farther apart
   double pose_difference_m = 0.0;
   bool poses_disagree = false;
@@ -39,32 +40,34 @@ struct DepthEvidence {
 };
 
 struct DecidedRecording {
-  RecordingFacts facts{};  ///< with the cameras that were chosen
+  RecordingFacts facts{};              ///< with the cameras that were chosen
   std::vector<DecidedFrame> frames{};  ///< stamps of frames without a fault increase
   double depth_unit_m = 0.001;
   PoseConvention pose_convention{};
   bool poses_are_used = true;  ///< false: depth disagrees under the poses, so pose_of() returns none
   std::optional<DepthEvidence> evidence{};  ///< unset: Questions::kNone
-  std::shared_ptr<InputReport> report{};  ///< never null
+  std::shared_ptr<InputReport> report{};    ///< never null
 };
 
 /// Decides, for a recording of any kind:
-/// - time: repair_stamps() for depth and colour images; pairs of depth and colour by time; order of the frames
+/// - time: repair_stamps() for depth and colour images; pairs of depth and colour by time; order of the
+/// frames
 /// - cameras: `options`, else camera.json in the recording's folder, else the recording itself, else
 ///   camera-intrinsics.txt in the folder, else assumed ones
 /// - unit of depth: `options`, else camera.json, else the recording or its format
 /// - poses: `options`, else camera.json, else the convention of the format or, with Questions::kDepth, one
 ///   under which the depth of nearby frames agrees
-/// - with Questions::kDepth: questions whether unit, focal length and poses can be right, see depth_evidence.hpp
-/// Each decision becomes one line of the report. Decisions that are only confirmed are not reported.
+/// - with Questions::kDepth: questions whether unit, focal length and poses can be right, see
+/// depth_evidence.hpp Each decision becomes one line of the report. Decisions that are only confirmed are not
+/// reported.
 /// @param folder  folder in which camera.json and camera-intrinsics.txt are looked for; may be a file
 /// @throws Error if the recording has no frames, none of its depth images can be read, or cameras do not fit
 ///         the images
 DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folder,
                         const SourceOptions& options);
 
-/// Returns the pose of frame `frame` + `later_by` as the recording states it. Counts a pose that is none in the
-/// report.
+/// Returns the pose of frame `frame` + `later_by` as the recording states it. Counts a pose that is none in
+/// the report.
 std::optional<Eigen::Isometry3d> stated_pose_of(const DecidedRecording& recording, std::size_t frame,
                                                 int later_by);
 /// Returns T_world_camera of a stated pose.

@@ -16,10 +16,11 @@
 namespace roomradar {
 namespace {
 
-constexpr std::size_t kPlaces = 14;              // of the recording at which frames are compared
+constexpr std::size_t kPlaces = 14;  // of the recording at which frames are compared
 constexpr std::array<std::size_t, 8> kApart = {1, 2, 4, 8, 16, 32, 64, 128};  // frames
 // See DepthDifference::disagreement.
-constexpr double kSurelyAgrees = 0.30, kAgrees = 0.72, kDisagrees = 0.75, kFarDisagrees = 0.80, kDoubtful = 0.70, kClearlyBetter = 0.07;
+constexpr double kSurelyAgrees = 0.30, kAgrees = 0.72, kDisagrees = 0.75, kFarDisagrees = 0.80,
+                 kDoubtful = 0.70, kClearlyBetter = 0.07;
 
 Intrinsics with_focal(const Intrinsics& camera, double factor) {
   Intrinsics changed = camera;
@@ -34,7 +35,8 @@ bool add_differences(const DepthImage& from, const DepthImage& to, const Intrins
                      const Eigen::Isometry3d& T_to_from, std::vector<double>& differences_m, double& sum,
                      std::size_t& count) {
   constexpr double kPoints = 1500.0, kTolerance = 0.02, kNear_m = 1e-3;
-  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(from.pixels.size()) / kPoints)));
+  const int step =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(from.pixels.size()) / kPoints)));
   std::size_t valid = 0, both = 0;
   double clipped = 0.0;
   for (int y = step / 2; y < from.height; y += step)
@@ -46,7 +48,8 @@ bool add_differences(const DepthImage& from, const DepthImage& to, const Intrins
       if (!(p.z() > kNear_m)) continue;
       const Eigen::Vector2d uv = project(camera, p);
       if (!(uv.x() > -0.5 && uv.y() > -0.5 && uv.x() < to.width - 0.5 && uv.y() < to.height - 0.5)) continue;
-      const float seen_m = to.at(static_cast<int>(std::lround(uv.x())), static_cast<int>(std::lround(uv.y())));
+      const float seen_m =
+          to.at(static_cast<int>(std::lround(uv.x())), static_cast<int>(std::lround(uv.y())));
       if (!(seen_m > 0.0F)) continue;
       const double difference_m = std::abs(p.z() - static_cast<double>(seen_m));
       differences_m.push_back(difference_m);
@@ -69,8 +72,8 @@ double median_of(std::vector<double>& values) {
 /// A frame that was read for the comparison.
 struct Sample {
   DepthImage depth_m;
-  /// Brightness at every second pixel of every second row of the depth image, 0..1; -1: unknown. Empty: there is
-  /// no colour image.
+  /// Brightness at every second pixel of every second row of the depth image, 0..1; -1: unknown. Empty: there
+  /// is no colour image.
   Image<float> brightness{};
 };
 
@@ -87,7 +90,8 @@ Image<float> brightness_of(const DepthImage& depth_m, const Intrinsics& camera, 
       const Eigen::Vector3d p = T_colour_depth * back_project(camera, 2.0 * x, 2.0 * y, z);
       if (!(p.z() > 0.01)) continue;
       const Eigen::Vector2d uv = project(colour_camera, p);
-      if (!(uv.x() >= half && uv.y() >= half && uv.x() < colour.width - half - 1 && uv.y() < colour.height - half - 1))
+      if (!(uv.x() >= half && uv.y() >= half && uv.x() < colour.width - half - 1 &&
+            uv.y() < colour.height - half - 1))
         continue;
       const int u = static_cast<int>(std::lround(uv.x())), v = static_cast<int>(std::lround(uv.y()));
       int sum = 0, count = 0;
@@ -101,8 +105,8 @@ Image<float> brightness_of(const DepthImage& depth_m, const Intrinsics& camera, 
   return brightness;
 }
 
-/// Returns 1 - the correlation of brightness between the points of `from` and the pixels of `to` where they are
-/// seen; nullopt if too few points are seen in both, or a surface without texture.
+/// Returns 1 - the correlation of brightness between the points of `from` and the pixels of `to` where they
+/// are seen; nullopt if too few points are seen in both, or a surface without texture.
 std::optional<double> brightness_disagreement(const Sample& from, const Sample& to, const Intrinsics& camera,
                                               const Eigen::Isometry3d& T_to_from) {
   constexpr double kPoints = 3000.0, kLeastContrast = 0.02;
@@ -115,11 +119,13 @@ std::optional<double> brightness_disagreement(const Sample& from, const Sample& 
     for (int x = step / 2; x < from.brightness.width; x += step) {
       const double a = static_cast<double>(from.brightness.at(x, y));
       if (a < 0.0) continue;
-      const Eigen::Vector3d p =
-          T_to_from * back_project(camera, 2.0 * x, 2.0 * y, static_cast<double>(from.depth_m.at(2 * x, 2 * y)));
+      const Eigen::Vector3d p = T_to_from * back_project(camera, 2.0 * x, 2.0 * y,
+                                                         static_cast<double>(from.depth_m.at(2 * x, 2 * y)));
       if (!(p.z() > 1e-3)) continue;
       const Eigen::Vector2d uv = 0.5 * project(camera, p);
-      if (!(uv.x() > 0.0 && uv.y() > 0.0 && uv.x() < to.brightness.width - 1 && uv.y() < to.brightness.height - 1)) continue;
+      if (!(uv.x() > 0.0 && uv.y() > 0.0 && uv.x() < to.brightness.width - 1 &&
+            uv.y() < to.brightness.height - 1))
+        continue;
       const double b = static_cast<double>(
           to.brightness.at(static_cast<int>(std::lround(uv.x())), static_cast<int>(std::lround(uv.y()))));
       if (b < 0.0) continue;
@@ -127,7 +133,8 @@ std::optional<double> brightness_disagreement(const Sample& from, const Sample& 
     }
   if (n < kLeastPoints) return std::nullopt;
   const double var_a = sum_aa / n - sum_a * sum_a / (n * n), var_b = sum_bb / n - sum_b * sum_b / (n * n);
-  if (!(var_a > kLeastContrast * kLeastContrast && var_b > kLeastContrast * kLeastContrast)) return std::nullopt;
+  if (!(var_a > kLeastContrast * kLeastContrast && var_b > kLeastContrast * kLeastContrast))
+    return std::nullopt;
   return 1.0 - (sum_ab / n - sum_a * sum_b / (n * n)) / std::sqrt(var_a * var_b);
 }
 
@@ -187,15 +194,17 @@ class Samples {
   std::map<std::size_t, std::optional<Sample>> samples_;
 };
 
-/// Motion of the camera between the frames of a pair, relative to one that leaves about two thirds of the view.
+/// Motion of the camera between the frames of a pair, relative to one that leaves about two thirds of the
+/// view.
 double motion_of(const Eigen::Isometry3d& T_a_b) {
   constexpr double kTurn_rad = 0.3, kShift_m = 0.4;
   return Eigen::AngleAxisd(T_a_b.linear()).angle() / kTurn_rad + T_a_b.translation().norm() / kShift_m;
 }
 
-/// Returns pairs of frames between which the camera has moved by `least_motion` or more, see motion_of(), by the
-/// poses. Takes the frames nearest in time. Without poses, frames four apart.
-std::vector<Pair> choose_pairs(std::size_t frames, std::size_t places, double least_motion, const PoseOf& pose_of_position) {
+/// Returns pairs of frames between which the camera has moved by `least_motion` or more, see motion_of(), by
+/// the poses. Takes the frames nearest in time. Without poses, frames four apart.
+std::vector<Pair> choose_pairs(std::size_t frames, std::size_t places, double least_motion,
+                               const PoseOf& pose_of_position) {
   constexpr double kMostMotion = 1.8;
   std::vector<Pair> pairs;
   for (std::size_t k = 0; k < places && frames > 1; ++k) {
@@ -220,8 +229,8 @@ std::vector<Pair> choose_pairs(std::size_t frames, std::size_t places, double le
   return pairs;
 }
 
-/// Returns up to eight pairs of frames, not necessarily near in time, between which the camera has moved sideways
-/// but hardly turned. They tell the scale of a camera that mostly turns.
+/// Returns up to eight pairs of frames, not necessarily near in time, between which the camera has moved
+/// sideways but hardly turned. They tell the scale of a camera that mostly turns.
 std::vector<Pair> choose_shifted_pairs(std::size_t frames, const PoseOf& pose_of_position) {
   constexpr std::size_t kTried = 40, kMost = 8, kMostApart = 300;
   constexpr double kMostTurn_rad = 0.25, kLeastShift_m = 0.1, kMostShift_m = 0.5;
@@ -252,8 +261,9 @@ std::vector<Pair> choose_shifted_pairs(std::size_t frames, const PoseOf& pose_of
 }
 
 /// Mean difference over all pairs whose frames have poses.
-DepthDifference mean_difference(const std::vector<Pair>& pairs, Samples& samples, const PoseOf& pose_of_position,
-                                double depth_factor = 1.0, double focal_factor = 1.0) {
+DepthDifference mean_difference(const std::vector<Pair>& pairs, Samples& samples,
+                                const PoseOf& pose_of_position, double depth_factor = 1.0,
+                                double focal_factor = 1.0) {
   DepthDifference mean{0.0, 0.0};
   std::vector<double> medians_m;
   std::size_t count = 0;
@@ -346,11 +356,15 @@ bool question_range(const DecidedRecording& recording, const DepthEvidence& evid
   const double unit_m = recording.depth_unit_m;
   constexpr double kFull = 0.4;  // of the pixels
   const bool is_fifth = std::abs(unit_m - 0.0002) < 1e-9;
-  const bool is_phone = facts.rig.depth_noise == kPhoneLidarNoise, is_flight = facts.rig.depth_noise == kTimeOfFlightNoise;
-  const bool is_kinect = facts.rig.depth_noise == DepthNoise{} &&
-                         (facts.camera_origin == Origin::kAssumed || facts.camera_source.ends_with("camera.json"));
+  const bool is_phone = facts.rig.depth_noise == kPhoneLidarNoise,
+             is_flight = facts.rig.depth_noise == kTimeOfFlightNoise;
+  const bool is_kinect =
+      facts.rig.depth_noise == DepthNoise{} &&
+      (facts.camera_origin == Origin::kAssumed || facts.camera_source.ends_with("camera.json"));
   // People hold a phone close to things; other sensors measure nothing there.
-  if (evidence.measured_part > kFull && evidence.median_depth_m < (is_phone ? 0.12 : is_kinect || is_flight ? 0.45 : 0.3))
+  if (evidence.measured_part > kFull && evidence.median_depth_m < (is_phone                 ? 0.12
+                                                                   : is_kinect || is_flight ? 0.45
+                                                                                            : 0.3))
     return ask("half of a full image is nearer than " + format_readable(evidence.median_depth_m, 2) + " m",
                is_fifth ? 0.001 : unit_m * (evidence.median_depth_m < 0.06 ? 10.0 : 5.0));
   const double most_m = is_kinect ? 10.5 : is_phone ? 9.0 : is_flight ? 12.0 : 60.0;
@@ -385,8 +399,8 @@ std::optional<double> mean_brightness_disagreement(const std::vector<Pair>& pair
 /// What may be wrong with a recording that has poses.
 struct Hypothesis {
   PoseConvention convention{};
-  double depth_factor = 1.0;  ///< times which depth is right
-  double focal_factor = 1.0;  ///< times which the focal length is right
+  double depth_factor = 1.0;     ///< times which depth is right
+  double focal_factor = 1.0;     ///< times which the focal length is right
   double near = 1.0, far = 1.0;  ///< DepthDifference::disagreement over near and far pairs
   double brightness = 0.0;       ///< mean_brightness_disagreement() over far pairs; 0 if there is no texture
   double median_m = 0.0;         ///< DepthDifference::median_m over near pairs
@@ -406,7 +420,8 @@ std::vector<Hypothesis> hypotheses_of(const RecordingFacts& facts, const PoseCon
           if (!is_wxyz || facts.pose_track)  // matrices have no order of a quaternion's numbers
             add({is_inverse, is_opengl, is_wxyz, unit_m, 0});
   if (!facts.pose_track && !facts.has_pose_times)
-    for (const int later_by : {-1, 1, -2, 2, -3, 3, -4, 4, -6, 6, -8, 8, -10, 10}) add({.later_by = later_by});
+    for (const int later_by : {-1, 1, -2, 2, -3, 3, -4, 4, -6, 6, -8, 8, -10, 10})
+      add({.later_by = later_by});
   for (const double factor : {0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 0.7, 1.4, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0})
     tried.push_back({.convention = now, .depth_factor = factor});
   for (const double factor : {0.6, 0.7, 0.77, 0.85, 1.15, 1.3, 1.4, 1.6})
@@ -422,8 +437,8 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
     const double unit_m = recording.depth_unit_m * best.depth_factor;
     report.add({"unit",
                 "depth agrees with the recorded poses if it is multiplied by about " +
-                    format_readable(best.depth_factor, 2) + "; is the unit of depth " + format_readable(unit_m, 3) +
-                    " m, or that of the poses another one?",
+                    format_readable(best.depth_factor, 2) + "; is the unit of depth " +
+                    format_readable(unit_m, 3) + " m, or that of the poses another one?",
                 0, unit_option(unit_m), true});
   } else if (best.focal_factor != 1.0) {
     report.add({"camera",
@@ -433,10 +448,11 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
                 0, "--camera FILE", true});
   } else {
     const std::string found = "depth of nearby frames differs by " + mm_text(now.median_m) +
-                              " under the recorded poses, but by " + mm_text(best.median_m) + " if they are " +
-                              describe(best.convention);
+                              " under the recorded poses, but by " + mm_text(best.median_m) +
+                              " if they are " + describe(best.convention);
     if (is_convention_given) {
-      report.add({"poses", found + "; they are used as stated", 0, "--poses-convention " + to_string(best.convention), true});
+      report.add({"poses", found + "; they are used as stated", 0,
+                  "--poses-convention " + to_string(best.convention), true});
       return;
     }
     recording.pose_convention = best.convention;
@@ -461,11 +477,13 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
   };
   const auto measure = [&](Hypothesis& hypothesis, const std::vector<Pair>& far_pairs) {
     const PoseOf pose = under(hypothesis.convention);
-    const DepthDifference near = mean_difference(near_pairs, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor);
+    const DepthDifference near =
+        mean_difference(near_pairs, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor);
     hypothesis.near = near.disagreement;
     hypothesis.median_m = near.median_m;
     hypothesis.far =
-        mean_difference(far_pairs, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor).disagreement;
+        mean_difference(far_pairs, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor)
+            .disagreement;
     hypothesis.brightness = mean_brightness_disagreement(far_pairs, samples, pose, hypothesis.depth_factor,
                                                          hypothesis.focal_factor)
                                 .value_or(0.0);
@@ -474,7 +492,8 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
   // By poses in millimetres all frames are far apart, so the far pairs of each unit are its own.
   const auto far_pairs_of = [&](const PoseConvention& convention) {
     std::vector<Pair> chosen = choose_pairs(recording.frames.size(), kPlaces, 0.8, under(convention));
-    for (const Pair& pair : choose_shifted_pairs(recording.frames.size(), under(convention))) chosen.push_back(pair);
+    for (const Pair& pair : choose_shifted_pairs(recording.frames.size(), under(convention)))
+      chosen.push_back(pair);
     return chosen;
   };
   const std::vector<Pair> far_pairs = far_pairs_of(now.convention);
@@ -486,17 +505,19 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
 
   Hypothesis best = now;
   for (Hypothesis& hypothesis : hypotheses_of(recording.facts, now.convention)) {
-    measure(hypothesis, hypothesis.convention.unit_m == now.convention.unit_m ? far_pairs
-                                                                              : far_pairs_of(hypothesis.convention));
+    measure(hypothesis, hypothesis.convention.unit_m == now.convention.unit_m
+                            ? far_pairs
+                            : far_pairs_of(hypothesis.convention));
     if (hypothesis.both() < now.both() - kClearlyBetter && hypothesis.both() < best.both()) best = hypothesis;
   }
   if (best.both() < now.both() && best.near < kAgrees)
     return adopt_or_advise(recording, now, best, samples.camera(), is_convention_given);
   if (now.near <= kDisagrees && now.far <= kFarDisagrees && now.far > kDoubtful)
-    recording.report->add({"poses",
-                           "depth of frames some way apart differs more than usual under the recorded poses, by " +
-                               mm_text(now.median_m) + " between near ones; they are used",
-                           0, "--poses tracked", true});
+    recording.report->add(
+        {"poses",
+         "depth of frames some way apart differs more than usual under the recorded poses, by " +
+             mm_text(now.median_m) + " between near ones; they are used",
+         0, "--poses tracked", true});
   if (now.near > kDisagrees || now.far > kFarDisagrees) {
     evidence.poses_disagree = true;
     recording.poses_are_used = is_convention_given;
@@ -512,8 +533,9 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
 // ---- without poses ----
 
 /// Registers two depth images. Returns nullopt if they cannot be.
-std::optional<Eigen::Isometry3d> register_depth(const DepthImage& from, const DepthImage& to, const Intrinsics& camera,
-                                                const DepthNoise& noise, const Eigen::Isometry3d& T_to_from_guess) {
+std::optional<Eigen::Isometry3d> register_depth(const DepthImage& from, const DepthImage& to,
+                                                const Intrinsics& camera, const DepthNoise& noise,
+                                                const Eigen::Isometry3d& T_to_from_guess) {
   constexpr ViewConfig kViews{.finest_width_px = 160, .levels = 2, .min_depth_m = 0.05F, .max_depth_m = 8.0F};
   ViewPyramid from_pyramid, to_pyramid;
   make_pyramid(from, camera, kViews, from_pyramid, noise);
@@ -528,61 +550,62 @@ std::optional<Eigen::Isometry3d> register_depth(const DepthImage& from, const De
   return tracking.T_world_camera;
 }
 
-/// Registers frames some steps apart, each time from twice the motion before. Returns the mean disagreement of
-/// depth and brightness, twice the mean of the two; nullopt if too few frames can be registered.
-std::optional<double> disagreement_when_registered(const std::vector<std::size_t>& places, Samples& samples,
-                                                   const DepthNoise& noise, double focal_factor) {
+/// Registers frames some steps apart, each time from twice the motion before. Returns the disagreement of
+/// depth plus that of brightness by place; nullopt where the frames cannot be registered.
+std::vector<std::optional<double>> disagreements_when_registered(const std::vector<std::size_t>& places,
+                                                                 Samples& samples, const DepthNoise& noise,
+                                                                 double focal_factor) {
   constexpr std::array<std::size_t, 3> kSteps = {3, 6, 12};
   const Intrinsics camera = with_focal(samples.camera(), focal_factor);
-  double sum = 0.0;
-  std::size_t count = 0;
+  std::vector<std::optional<double>> disagreements;
   for (const std::size_t place : places) {
     const Sample* a = samples.at(place);
-    if (!a) continue;
     Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();
     std::optional<double> last;
     for (const std::size_t step : kSteps) {
-      const Sample* b = samples.at(place + step);
+      const Sample* b = a ? samples.at(place + step) : nullptr;
       const auto T = b ? register_depth(a->depth_m, b->depth_m, camera, noise, T_b_a) : std::nullopt;
-      if (!T) {
-        if (b) last = std::nullopt;
-        break;
-      }
+      last.reset();
+      if (!T) break;
       last = depth_difference(a->depth_m, b->depth_m, camera, *T).disagreement +
              brightness_disagreement(*a, *b, camera, *T).value_or(0.0);
       T_b_a = *T * *T;
     }
-    if (!last) last = 1.0;
-    sum += *last;
-    ++count;
+    disagreements.push_back(last);
   }
-  if (count < 3) return std::nullopt;
-  return sum / static_cast<double>(count);
+  return disagreements;
 }
 
-/// Questions the focal length of a recording without poses: under a wrong one, depth images of a camera that turns
-/// cannot be registered well.
+/// Questions the focal length of a recording without poses: under a wrong one, depth images of a camera that
+/// turns cannot be registered well.
 void question_focal(const DecidedRecording& recording, Samples& samples) {
-  constexpr std::size_t kPlacesRegistered = 8, kLongest = 12;
-  constexpr double kBetter = 0.10;
+  constexpr std::size_t kPlacesRegistered = 8, kLongest = 12, kLeastPlaces = 4;
+  constexpr double kBetter = 0.08, kMostPlaces = 0.75;
   const std::size_t frames = recording.frames.size();
   if (frames < 3 * kLongest || recording.evidence->is_camera_still) return;
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < kPlacesRegistered; ++k)
     places.push_back(k * (frames - 1 - kLongest) / (kPlacesRegistered - 1));
   const DepthNoise& noise = recording.facts.rig.depth_noise;
-  const auto now = disagreement_when_registered(places, samples, noise, 1.0);
-  if (!now) return;
-  double best = *now, best_factor = 1.0;
+  const auto now = disagreements_when_registered(places, samples, noise, 1.0);
+  double best_gain = kBetter, best_factor = 1.0;
   for (const double factor : {0.7, 0.77, 0.87, 1.15, 1.3, 1.43}) {
-    const auto disagreement = disagreement_when_registered(places, samples, noise, factor);
-    if (disagreement && *disagreement < best) best = *disagreement, best_factor = factor;
+    const auto then = disagreements_when_registered(places, samples, noise, factor);
+    std::vector<double> gains;  // of the places where both can be registered
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (now[k] && then[k]) gains.push_back(*now[k] - *then[k]);
+    if (gains.size() < kLeastPlaces) continue;
+    const auto better = std::count_if(gains.begin(), gains.end(), [](double gain) { return gain > 0.0; });
+    const double gain = median_of(gains);
+    if (gain > best_gain && static_cast<double>(better) >= kMostPlaces * static_cast<double>(gains.size()))
+      best_gain = gain, best_factor = factor;
   }
-  if (best_factor == 1.0 || best > *now - kBetter) return;
+  if (best_factor == 1.0) return;
   recording.report->add({"camera",
                          "depth of nearby frames agrees better with a focal length of about " +
                              format_readable(best_factor * samples.camera().fx_px, 2) + " px than with " +
-                             format_readable(samples.camera().fx_px, 4) + " px (" + recording.facts.camera_source + ")",
+                             format_readable(samples.camera().fx_px, 4) + " px (" +
+                             recording.facts.camera_source + ")",
                          0, "--camera FILE", true});
 }
 
@@ -617,8 +640,9 @@ void question_depth(DecidedRecording& recording, bool is_convention_given) {
   for (const Pair& pair : pairs)
     if (pair.a + kSecondApart < frames) far_pairs.push_back({pair.a, pair.a + kSecondApart});
   if (!far_pairs.empty()) {
-    evidence.still_difference =
-        mean_difference(far_pairs, samples, [](std::size_t) { return Eigen::Isometry3d::Identity(); }).disagreement;
+    evidence.still_difference = mean_difference(far_pairs, samples, [](std::size_t) {
+                                  return Eigen::Isometry3d::Identity();
+                                }).disagreement;
     evidence.is_camera_still = *evidence.still_difference < 0.65;
   }
 

@@ -15,7 +15,8 @@ class RecordingSource final : public FrameSource {
   explicit RecordingSource(DecidedRecording recording)
       : recording_(std::move(recording)), rig_(recording_.facts.rig) {
     const RecordingFacts& facts = recording_.facts;
-    const std::string depth_name = facts.name + ", depth camera", colour_name = facts.name + ", colour camera";
+    const std::string depth_name = facts.name + ", depth camera",
+                      colour_name = facts.name + ", colour camera";
     require_valid(rig_.depth_camera, depth_name.c_str());
     if (facts.depth_lens != RationalLens{}) {
       depth_correction_.emplace(rig_.depth_camera, facts.depth_lens, depth_name.c_str());
@@ -90,7 +91,8 @@ class RecordingSource final : public FrameSource {
       if (colour_correction_) colour_correction_->correct(image);
       return true;
     } catch (const Error& fault) {
-      recording_.report->count("images", "% colour images cannot be read; their frames are used without colour",
+      recording_.report->count("images",
+                               "% colour images cannot be read; their frames are used without colour",
                                static_cast<std::int64_t>(position), fault.what());
       return false;
     }

@@ -13,7 +13,7 @@
 namespace roomradar {
 namespace {
 
-constexpr double kLeastRate_hz = 0.9;      // of images in a recording
+constexpr double kLeastRate_hz = 0.9;  // of images in a recording
 constexpr double kMostRate_hz = 240.0;
 constexpr const char* kStampsOption = "--stamps";
 
@@ -40,7 +40,8 @@ std::optional<double> period_of(std::span<const double> stamps) {
 
 /// Returns "1 depth image has" or "3 depth images have".
 std::string images_have(std::size_t count, const std::string& what) {
-  return count == 1 ? "1 " + what.substr(0, what.size() - 1) + " has" : std::to_string(count) + " " + what + " have";
+  return count == 1 ? "1 " + what.substr(0, what.size() - 1) + " has"
+                    : std::to_string(count) + " " + what + " have";
 }
 
 /// The list while it is being repaired.
@@ -126,9 +127,9 @@ void find_unit(Stamps& stamps, bool received) {
 
 // ---- with times of reception ----
 
-/// Finds places where the header's clock was set, by comparison with the time of reception. Moves later stamps
-/// back to the first clock. Replaces stamps that are not stated, or far from the time of reception for a
-/// moment.
+/// Finds places where the header's clock was set, by comparison with the time of reception. Moves later
+/// stamps back to the first clock. Replaces stamps that are not stated, or far from the time of reception for
+/// a moment.
 void repair_by_reception(Stamps& stamps) {
   constexpr std::size_t kWindow = 15;
   std::vector<std::size_t> stated;
@@ -157,7 +158,7 @@ void repair_by_reception(Stamps& stamps) {
       const double step_s = k > 0 ? stamp_s - last_stamp_s[k - 1] : 0.0;
       const double received_step_s = k > 0 ? received_s(i) - received_s(stated[k - 1]) : 0.0;
       // A recorder that stalls receives late, but then the stamps go on as before.
-      const bool goes_back = step_s < -1.5 * period_s, jumps = step_s > received_step_s + 0.5 + 3.0 * period_s;
+      const bool goes_back = step_s<-1.5 * period_s, jumps = step_s> received_step_s + 0.5 + 3.0 * period_s;
       const double limit_s = std::max(1.5 * period_s, 0.05);
       if (k > 0 && (goes_back || jumps) && std::abs(away_s) > limit_s) {
         const double next_level_s = [&] {
@@ -167,8 +168,9 @@ void repair_by_reception(Stamps& stamps) {
           return median_of(std::move(offsets));
         }();
         if (std::abs(next_level_s - level_s) > limit_s) {
-          largest_step_s = std::abs(next_level_s - level_s) > std::abs(largest_step_s) ? next_level_s - level_s
-                                                                                      : largest_step_s;
+          largest_step_s = std::abs(next_level_s - level_s) > std::abs(largest_step_s)
+                               ? next_level_s - level_s
+                               : largest_step_s;
           level_s = next_level_s;
           shift_s = first_level_s - level_s;
           stamps.result.stretches.push_back({i, shift_s});
@@ -192,8 +194,8 @@ void repair_by_reception(Stamps& stamps) {
   stamps.result.header_offset_s = first_level_s;
   stamps.result.is_reception = replaced == stamps.size();
   if (replaced == stamps.size())
-    stamps.say(replaced, "the " + stamps.rules.what +
-                             " have no time stamps; their times of reception are used");
+    stamps.say(replaced,
+               "the " + stamps.rules.what + " have no time stamps; their times of reception are used");
   else if (replaced > 0)
     stamps.say(replaced, images_have(replaced, stamps.rules.what) +
                              " no usable time stamp; their times of reception are used");
@@ -266,11 +268,14 @@ void undo_clock_changes(Stamps& stamps) {
   }
   if (begins.size() == 1) {
     if (swapped > 0)
-      stamps.say(swapped, images_have(swapped, stamps.rules.what) + " been listed before an earlier one; sorted");
+      stamps.say(swapped,
+                 images_have(swapped, stamps.rules.what) + " been listed before an earlier one; sorted");
     return;
   }
   const bool is_shuffled = begins.size() > 3 && stated.size() < 8 * begins.size();
-  const auto end_of = [&](std::size_t run) { return run + 1 < begins.size() ? begins[run + 1] : stated.size(); };
+  const auto end_of = [&](std::size_t run) {
+    return run + 1 < begins.size() ? begins[run + 1] : stated.size();
+  };
   // Sorted, do the runs follow one another without a gap?
   std::vector<std::size_t> by_time(begins.size());
   std::iota(by_time.begin(), by_time.end(), 0U);
@@ -284,7 +289,8 @@ void undo_clock_changes(Stamps& stamps) {
     are_in_line &= first_s >= last_s && first_s - last_s <= std::max(10.0 * period_s, 2.0);
   }
   if (is_shuffled || are_in_line) {
-    stamps.say(stamps.size(), "the " + stamps.rules.what + " are not listed in the order of their stamps; sorted");
+    stamps.say(stamps.size(),
+               "the " + stamps.rules.what + " are not listed in the order of their stamps; sorted");
     return;
   }
   double shift_s = 0.0, largest_step_s = 0.0;
@@ -296,15 +302,17 @@ void undo_clock_changes(Stamps& stamps) {
     const double first_s = stamps.s[stated[begins[run]]];
     shift_s = last_s + period_s - first_s;
     // Images of one recording are moved together, so that pairs stay pairs.
-    if (has_same_changes && std::abs(like->stretches[run - 1].shift_s - shift_s) < std::max(1.0, 10.0 * period_s))
+    if (has_same_changes &&
+        std::abs(like->stretches[run - 1].shift_s - shift_s) < std::max(1.0, 10.0 * period_s))
       shift_s = like->stretches[run - 1].shift_s;
     largest_step_s = std::max(largest_step_s, shift_s);
     stamps.result.stretches.push_back({stated[begins[run]], shift_s});
     for (std::size_t k = begins[run]; k < end_of(run); ++k, ++moved) stamps.s[stated[k]] += shift_s;
   }
-  stamps.say(moved, "the clock was set back by " + format_readable(largest_step_s, 3) + " s at image " +
-                        std::to_string(stamps.result.stretches.front().first) + " of the " + stamps.rules.what +
-                        "; later stamps continue after the ones before",
+  stamps.say(moved,
+             "the clock was set back by " + format_readable(largest_step_s, 3) + " s at image " +
+                 std::to_string(stamps.result.stretches.front().first) + " of the " + stamps.rules.what +
+                 "; later stamps continue after the ones before",
              true);
 }
 
@@ -323,7 +331,8 @@ void interpolate(Stamps& stamps) {
     const bool has_before = begin > 0, has_after = end < stamps.size();
     const double before_s = has_before ? stamps.s[begin - 1] : 0.0, after_s = has_after ? stamps.s[end] : 0.0;
     const double parts = static_cast<double>(count + 1);
-    const bool is_near = has_before && has_after && after_s > before_s && after_s - before_s < 3.0 * parts * period_s;
+    const bool is_near =
+        has_before && has_after && after_s > before_s && after_s - before_s < 3.0 * parts * period_s;
     for (std::size_t i = begin; i < end; ++i) {
       const double part = static_cast<double>(i - begin + 1);
       if (is_near)
@@ -348,7 +357,8 @@ void spread_equal(Stamps& stamps) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < stamps.size(); ++i)
     if (is_stated(stamps.s[i])) order.push_back(i);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return stamps.s[a] < stamps.s[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return stamps.s[a] < stamps.s[b]; });
   const double period_s = period_of(stamps.s).value_or(1.0 / kNominalRate_hz);
   std::size_t spread = 0;
   for (std::size_t begin = 0; begin < order.size();) {
@@ -425,7 +435,8 @@ RepairedStamps repair_stamps(const std::vector<StatedTime>& times, const StampRu
   } else if (std::none_of(stamps.s.begin(), stamps.s.end(), is_stated)) {
     use_numbers();
     if (stamps.size() > 1)
-      stamps.say(stamps.size(), "the " + rules.what + " have no time stamps; 30 images per second are assumed");
+      stamps.say(stamps.size(),
+                 "the " + rules.what + " have no time stamps; 30 images per second are assumed");
     return std::move(stamps.result);
   } else {
     remove_absurd(stamps);

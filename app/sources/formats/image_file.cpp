@@ -46,10 +46,20 @@ void require_decoded(const std::optional<std::string>& fault, const Image<Pixel>
     throw Error(name + ": is damaged: its pixels' size differs from its header's");
 }
 
-Image<std::uint16_t> decode_16_bit_png(std::string_view bytes, const std::string& name) {
+/// Decodes a 16 bit PNG, or a 16 bit PGM, whose pixels are big-endian by its specification.
+Image<std::uint16_t> decode_16_bit(std::string_view bytes, const std::string& name) {
   const ImageHeader header = read_image_header(bytes, name);
+  if (header.kind == ImageKind::kPgm && header.bits == 16) {
+    Image<std::uint16_t> image(header.width_px, header.height_px);
+    const std::uint8_t* raw = reinterpret_cast<const std::uint8_t*>(bytes.data()) + header.pixels_at;
+    for (std::uint16_t& pixel : image.pixels) {
+      pixel = static_cast<std::uint16_t>(raw[0] << 8 | raw[1]);
+      raw += 2;
+    }
+    return image;
+  }
   if (header.kind != ImageKind::kPng || header.bits != 16 || header.channels != 1)
-    throw Error(name + ": is a " + to_string(header) + "; depth must be a 16 bit grey PNG");
+    throw Error(name + ": is a " + to_string(header) + "; depth must be a 16 bit grey PNG or PGM");
   Image<std::uint16_t> image;
   require_decoded(decode_png(bytes, image), image, header, name);
   return image;
@@ -99,7 +109,7 @@ void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, 
     read_kinect_raw(path, depth_m);
     return scale_depth(unit_m, depth_m);
   }
-  const Image<std::uint16_t> image = decode_16_bit_png(read_image_bytes(path), path.string());
+  const Image<std::uint16_t> image = decode_16_bit(read_image_bytes(path), path.string());
   convert(image, units_per_m(unit_m), encoding == DepthEncoding::kTum ? 0 : 65535, depth_m);
 }
 
@@ -114,7 +124,7 @@ void scale_depth(double factor, DepthImage& depth_m) {
 
 void decode_depth_png(std::string_view bytes, float units_per_m, const std::string& name,
                       DepthImage& depth_m) {
-  convert(decode_16_bit_png(bytes, name), units_per_m, 65535, depth_m);
+  convert(decode_16_bit(bytes, name), units_per_m, 65535, depth_m);
 }
 
 void decode_float_png(std::string_view bytes, const std::string& name, DepthImage& depth_m) {
@@ -200,7 +210,7 @@ void require_depth(const DepthImage& depth_m, const std::string& name) {
 }
 
 void read_exact_depth_file(const std::filesystem::path& path, DepthImage& depth_m) {
-  const Image<std::uint16_t> halves = decode_16_bit_png(read_image_bytes(path), path.string());
+  const Image<std::uint16_t> halves = decode_16_bit(read_image_bytes(path), path.string());
   depth_m.resize(halves.width, halves.height / 2);
   for (int y = 0; y < depth_m.height; ++y)
     for (int x = 0; x < depth_m.width; ++x)

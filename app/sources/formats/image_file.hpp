@@ -11,9 +11,9 @@ namespace roomradar {
 
 /// Encoding of depth as integers in a file.
 enum class DepthEncoding {
-  /// 16 bit grey PNG in mm. 0 and 65535 are invalid (7-Scenes, numbered folders).
+  /// 16 bit grey PNG or PGM (big-endian) in mm. 0 and 65535 are invalid (7-Scenes, numbered folders).
   kMillimetres,
-  /// 16 bit grey PNG in 1/5000 m. 0 is invalid.
+  /// 16 bit grey PNG or PGM (big-endian) in 1/5000 m. 0 is invalid.
   kTum,
   /// 11 bit disparity as 16 bit little-endian (unlike standard PGM) after a PGM header. 2047 is invalid.
   kKinectRaw,
@@ -34,7 +34,7 @@ void scale_depth(double factor, DepthImage& depth_m);
 /// Reads a colour or grey image (PNG, JPEG or PPM). Throws Error as read_depth_file() does.
 void read_colour_file(const std::filesystem::path& path, ColourImage& colour);
 
-/// Decodes a depth image, a 16 bit grey PNG, from memory. 0 and 65535 are invalid.
+/// Decodes a depth image, a 16 bit grey PNG or PGM, from memory. 0 and 65535 are invalid.
 /// @param units_per_m  1000: the PNG is in mm
 /// @throws Error as read_depth_file() does, naming `name`
 void decode_depth_png(std::string_view bytes, float units_per_m, const std::string& name,

@@ -15,9 +15,8 @@ void InputReport::add(InputDecision decision) {
 void InputReport::count(const std::string& topic, const std::string& what, std::int64_t frame,
                         const std::string& fault) {
   const std::scoped_lock lock(mutex_);
-  auto counted = std::find_if(counted_.begin(), counted_.end(), [&](const Counted& each) {
-    return each.topic == topic && each.what == what;
-  });
+  auto counted = std::find_if(counted_.begin(), counted_.end(),
+                              [&](const Counted& each) { return each.topic == topic && each.what == what; });
   if (counted == counted_.end()) counted = counted_.insert(counted_.end(), {topic, what, fault, {}});
   const auto place = std::lower_bound(counted->frames.begin(), counted->frames.end(), frame);
   if (place == counted->frames.end() || *place != frame) counted->frames.insert(place, frame);

@@ -11,8 +11,8 @@ namespace roomradar {
 
 /// A decision about a recording, as one sentence.
 struct InputDecision {
-  std::string topic;     ///< time, images, poses, unit, camera or gravity
-  std::string sentence;  ///< what was found and what was decided, without the recording's name
+  std::string topic;       ///< time, images, poses, unit, camera or gravity
+  std::string sentence;    ///< what was found and what was decided, without the recording's name
   std::int64_t count = 0;  ///< number of frames, images, poses or lines that it concerns
   std::string option{};    ///< option that overrides the decision; empty: none
   /// True: the decision may be wrong, or something is missing that the user can supply.

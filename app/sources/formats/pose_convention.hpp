@@ -9,11 +9,11 @@ namespace roomradar {
 
 /// How stated poses differ from the convention of the recording's format. All false and 1: not at all.
 struct PoseConvention {
-  bool is_inverse = false;    ///< poses are world to camera instead of camera to world
-  bool is_opengl = false;     ///< the camera's axes are OpenGL's: x right, y up, z backwards
-  bool is_wxyz = false;       ///< quaternions are w x y z instead of x y z w
-  double unit_m = 1.0;        ///< length of a unit of the translations: 1, 0.01 or 0.001
-  int later_by = 0;           ///< the pose of frame i is that of frame i + later_by
+  bool is_inverse = false;  ///< poses are world to camera instead of camera to world
+  bool is_opengl = false;   ///< the camera's axes are OpenGL's: x right, y up, z backwards
+  bool is_wxyz = false;     ///< quaternions are w x y z instead of x y z w
+  double unit_m = 1.0;      ///< length of a unit of the translations: 1, 0.01 or 0.001
+  int later_by = 0;         ///< the pose of frame i is that of frame i + later_by
   friend bool operator==(const PoseConvention&, const PoseConvention&) = default;
 };
 

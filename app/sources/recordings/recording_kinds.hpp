@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// Returns the kind of the recording at `path`, a file or folder, such as "Record3D export". A folder with one
-/// file that is a recording counts as that file. Returns an empty string if there is none.
+/// Returns the kind of the recording at `path`, a file or folder, such as "Record3D export". A folder with
+/// one file that is a recording counts as that file. Returns an empty string if there is none.
 [[nodiscard]] std::string recording_kind(const std::filesystem::path& path);
 
 /// Returns true if the recording was written by another program than roomradar and libfreenect. Such a

@@ -64,8 +64,8 @@ class Check : public ::testing::Test {
     folder_ = fs::path(::testing::TempDir()) / ("roomradar_check_" + std::to_string(getpid()));
     fs::create_directories(folder_);
     for (const char* format : {"tum", "7scenes"}) {
-      const Outcome made = roomradar({"record", "sim:table?frames=60&width=160&rate=15", (folder_ / format).string(),
-                                      "--format", format});
+      const Outcome made = roomradar({"record", "sim:table?frames=60&width=160&rate=15",
+                                      (folder_ / format).string(), "--format", format});
       ASSERT_EQ(made.status, 0) << made.out;
     }
   }
@@ -79,8 +79,8 @@ class Check : public ::testing::Test {
   }
   static json prescanned(const fs::path& recording, std::vector<std::string> more) {
     const fs::path report = folder_ / "report.json";
-    more.insert(more.begin(), {"prescan", recording.string(), "--map", (folder_ / "map").string(), "--resolution",
-                               "0.04", "--texture", "off", "--report", report.string()});
+    more.insert(more.begin(), {"prescan", recording.string(), "--map", (folder_ / "map").string(),
+                               "--resolution", "0.04", "--texture", "off", "--report", report.string()});
     const Outcome outcome = roomradar(more);
     EXPECT_EQ(outcome.status, 0) << outcome.out;
     std::ifstream file(report);
@@ -133,8 +133,8 @@ TEST_F(Check, PosesThatCannotBeRightAreNotUsed) {
     if (entry.path().filename().string().ends_with(".pose.txt"))
       std::ofstream(entry.path()) << "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
   EXPECT_EQ(checked(recording, {}, 1)["poses_agree"], false);
-  const Outcome outcome = roomradar(
-      {"prescan", recording.string(), "--map", (folder_ / "none").string(), "--poses", "recorded", "--texture", "off"});
+  const Outcome outcome = roomradar({"prescan", recording.string(), "--map", (folder_ / "none").string(),
+                                     "--poses", "recorded", "--texture", "off"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.out.find("agrees under no convention"), std::string::npos) << outcome.out;
   EXPECT_FALSE(fs::exists(folder_ / "none"));
@@ -178,7 +178,8 @@ TEST_F(Check, WrongUsageAndMissingRecordingsAreNamed) {
 TEST_F(Check, RealRecordingsGiveNoFalseAlarm) {
   for (const char* name : {"kitchen", "fr1_rpy", "stray", "record3d", "hall", "turntable"}) {
     const auto recording = test::recording(name);
-    if (!recording) GTEST_SKIP() << "recording '" << name << "' is not here; set ROOMRADAR_DATA to its folder";
+    if (!recording)
+      GTEST_SKIP() << "recording '" << name << "' is not here; set ROOMRADAR_DATA to its folder";
     const json found = checked(*recording, {}, 0);
     EXPECT_EQ(found["camera_is_still"], name == std::string("turntable")) << name;
   }

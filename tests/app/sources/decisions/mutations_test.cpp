@@ -1,5 +1,6 @@
 // mutations_test.cpp: recordings whose units, stamps, poses, cameras and images are changed as other programs
-// write them. Each change must be undone by decide(), or named. ROOMRADAR_LONG_TESTS=1: all recordings, else two.
+// write them. Each change must be undone by decide(), or named. ROOMRADAR_LONG_TESTS=1: all recordings, else
+// two.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "app/sim/sensor/simulated_source.hpp"
 #include "app/sim/sensor/sim_options.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
 #include "app/sources/decisions/decide.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/recordings/recording_kinds.hpp"
@@ -30,8 +31,8 @@ constexpr std::size_t kFrames = 160;
 /// Reads each depth image once, in the unit that the recording states.
 void keep_depth_in_memory(RecordingFacts& facts) {
   const auto images = std::make_shared<std::map<std::size_t, DepthImage>>();
-  facts.read_depth = [read = facts.read_depth, images, unit = facts.depth_unit_m](std::size_t frame, double unit_m,
-                                                                                  DepthImage& depth_m) {
+  facts.read_depth = [read = facts.read_depth, images, unit = facts.depth_unit_m](
+                         std::size_t frame, double unit_m, DepthImage& depth_m) {
     auto found = images->find(frame);
     if (found == images->end()) {
       read(frame, unit, depth_m);
@@ -83,7 +84,8 @@ struct Mutation {
 };
 
 void scale_unit(RecordingFacts& facts, double factor) {
-  facts.read_depth = [read = facts.read_depth, factor](std::size_t frame, double unit_m, DepthImage& depth_m) {
+  facts.read_depth = [read = facts.read_depth, factor](std::size_t frame, double unit_m,
+                                                       DepthImage& depth_m) {
     read(frame, unit_m * factor, depth_m);
   };
 }
@@ -122,7 +124,9 @@ void take_poses_of(RecordingFacts& facts, const std::function<std::size_t(std::s
 /// Changes all stamps: of images, of poses and of accelerations.
 void change_stamps(RecordingFacts& facts, const std::function<double(double stamp_s, double part)>& change) {
   const double begin_s = facts.frames.front().time.stamp_s, end_s = facts.frames.back().time.stamp_s;
-  const auto changed = [&](double stamp_s) { return change(stamp_s, (stamp_s - begin_s) / (end_s - begin_s)); };
+  const auto changed = [&](double stamp_s) {
+    return change(stamp_s, (stamp_s - begin_s) / (end_s - begin_s));
+  };
   for (StatedFrame& frame : facts.frames) frame.time.stamp_s = changed(frame.time.stamp_s);
   for (StatedTime& colour : facts.colours) colour.stamp_s = changed(colour.stamp_s);
   if (facts.pose_track)
@@ -157,7 +161,8 @@ void scale_focal(RecordingFacts& facts, double factor) {
 }
 
 void lose_depth(RecordingFacts& facts, const std::function<bool(std::size_t)>& is_lost) {
-  facts.read_depth = [read = facts.read_depth, is_lost](std::size_t frame, double unit_m, DepthImage& depth_m) {
+  facts.read_depth = [read = facts.read_depth, is_lost](std::size_t frame, double unit_m,
+                                                        DepthImage& depth_m) {
     if (is_lost(frame)) throw Error("image " + std::to_string(frame) + ": is empty");
     read(frame, unit_m, depth_m);
   };
@@ -171,11 +176,14 @@ std::vector<Mutation> mutations() {
   for (const double factor : {0.1, 0.2, 0.25, 0.5, 2.0, 4.0, 5.0})
     add("unit x " + std::to_string(factor), {"unit"}, [factor](RecordingFacts& f) { scale_unit(f, factor); });
   for (const double factor : {0.7, 0.77, 1.3, 1.43})
-    add("focal x " + std::to_string(factor), {"camera"}, [factor](RecordingFacts& f) { scale_focal(f, factor); });
+    add("focal x " + std::to_string(factor), {"camera"},
+        [factor](RecordingFacts& f) { scale_focal(f, factor); });
 
-  const auto poses = [&](const std::string& name, std::function<Eigen::Isometry3d(Eigen::Isometry3d)> change) {
+  const auto poses = [&](const std::string& name,
+                         std::function<Eigen::Isometry3d(Eigen::Isometry3d)> change) {
     add("poses " + name, {"poses", "unit"}, [change](RecordingFacts& f) {
-      change_poses(f, [change](std::optional<Eigen::Isometry3d> T) { return T ? std::optional(change(*T)) : T; });
+      change_poses(
+          f, [change](std::optional<Eigen::Isometry3d> T) { return T ? std::optional(change(*T)) : T; });
     });
   };
   const Eigen::Isometry3d opengl(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
@@ -188,8 +196,10 @@ std::vector<Mutation> mutations() {
   poses("half as far", [](Eigen::Isometry3d T) { return T.translation() *= 0.5, T; });
   poses("rotation transposed", [](Eigen::Isometry3d T) { return T.linear().transposeInPlace(), T; });
   poses("mirrored", [](Eigen::Isometry3d T) { return T.translation().y() *= -1.0, T; });
-  add("frames shifted: poses by one", {"poses"}, [](RecordingFacts& f) { take_poses_of(f, [](std::size_t i) { return i + 1; }); });
-  add("frames shifted: poses by ten", {"poses"}, [](RecordingFacts& f) { take_poses_of(f, [](std::size_t i) { return i + 10; }); });
+  add("frames shifted: poses by one", {"poses"},
+      [](RecordingFacts& f) { take_poses_of(f, [](std::size_t i) { return i + 1; }); });
+  add("frames shifted: poses by ten", {"poses"},
+      [](RecordingFacts& f) { take_poses_of(f, [](std::size_t i) { return i + 10; }); });
   add("poses in reverse", {"poses"}, [](RecordingFacts& f) {
     take_poses_of(f, [last = f.frames.size() - 1](std::size_t i) { return last - std::min(i, last); });
   });
@@ -212,9 +222,11 @@ std::vector<Mutation> mutations() {
   add("stamps zero", {"time"}, [](RecordingFacts& f) {
     for (std::size_t i = 3; i < f.frames.size(); i += 7) f.frames[i].time.stamp_s = 0.0;
   });
-  add("one absurd stamp", {"time"}, [](RecordingFacts& f) { f.frames[f.frames.size() / 2].time.stamp_s = 9e15; });
+  add("one absurd stamp", {"time"},
+      [](RecordingFacts& f) { f.frames[f.frames.size() / 2].time.stamp_s = 9e15; });
   add("stamps twice", {"time"}, [](RecordingFacts& f) {
-    for (std::size_t i = 1; i < f.frames.size(); i += 2) f.frames[i].time.stamp_s = f.frames[i - 1].time.stamp_s;
+    for (std::size_t i = 1; i < f.frames.size(); i += 2)
+      f.frames[i].time.stamp_s = f.frames[i - 1].time.stamp_s;
   });
   add("shuffled", {"time"}, [](RecordingFacts& f) {
     std::vector<std::size_t> order = in_order(f.frames.size());
@@ -232,12 +244,15 @@ std::vector<Mutation> mutations() {
     reorder(f, order);
   });
 
-  add("every third depth image cut", {"images"}, [](RecordingFacts& f) { lose_depth(f, [](std::size_t i) { return i % 3 == 1; }); });
+  add("every third depth image cut", {"images"},
+      [](RecordingFacts& f) { lose_depth(f, [](std::size_t i) { return i % 3 == 1; }); });
   add("the last half cut", {"images"}, [](RecordingFacts& f) {
     lose_depth(f, [half = f.frames.size() / 2](std::size_t i) { return i > half; });
   });
   add("no colour image readable", {"images"}, [](RecordingFacts& f) {
-    f.read_colour = [](std::size_t i, ColourImage&) { throw Error("image " + std::to_string(i) + ": is empty"); };
+    f.read_colour = [](std::size_t i, ColourImage&) {
+      throw Error("image " + std::to_string(i) + ": is empty");
+    };
   });
   add("depth images of half the size", {"images"}, [](RecordingFacts& f) {
     f.read_depth = [read = f.read_depth](std::size_t frame, double unit_m, DepthImage& depth_m) {
@@ -248,8 +263,8 @@ std::vector<Mutation> mutations() {
   return all;
 }
 
-/// Changes that nothing in the recording contradicts: the unit of depth of a camera without poses, and the scale of
-/// poses between which the camera only turns.
+/// Changes that nothing in the recording contradicts: the unit of depth of a camera without poses, and the
+/// scale of poses between which the camera only turns.
 bool is_indistinguishable(const std::string& recording, const std::string& mutation) {
   const bool has_no_poses = recording == "time of flight, no poses", only_turns = recording == "fr1_rpy";
   return (has_no_poses && mutation.starts_with("unit")) ||
@@ -270,7 +285,8 @@ std::string difference(const DecidedRecording& got, const DecidedRecording& want
   for (std::size_t i = 0; i < got.frames.size(); ++i) {
     const double got_s = got.frames[i].stamp_s - got.frames.front().stamp_s,
                  wanted_s = wanted.frames[i].stamp_s - wanted.frames.front().stamp_s;
-    if (std::abs(got_s - wanted_s) > 1.5 * period_s) return "other times, by " + std::to_string(got_s - wanted_s) + " s";
+    if (std::abs(got_s - wanted_s) > 1.5 * period_s)
+      return "other times, by " + std::to_string(got_s - wanted_s) + " s";
   }
   for (std::size_t i = 0; i + 10 < got.frames.size(); i += 10) {
     const auto relative = [i](const DecidedRecording& recording) -> std::optional<Eigen::Isometry3d> {
@@ -282,7 +298,8 @@ std::string difference(const DecidedRecording& got, const DecidedRecording& want
     if (!T_got) continue;  // a lost pose is no wrong one
     if (!T_wanted) return "poses where there were none";
     const Eigen::Isometry3d error = T_wanted->inverse() * *T_got;
-    if (error.translation().norm() > 0.02 || Eigen::AngleAxisd(error.linear()).angle() > 0.02) return "other poses";
+    if (error.translation().norm() > 0.02 || Eigen::AngleAxisd(error.linear()).angle() > 0.02)
+      return "other poses";
   }
   const double unit = got.depth_unit_m / wanted.depth_unit_m * unit_factor;
   if (std::abs(unit - 1.0) > 0.02) return "another unit";
@@ -298,9 +315,14 @@ struct Recording {
 
 std::vector<Recording> recordings() {
   std::vector<Recording> all = {
-      {"table", [] { return std::optional(simulated_facts("sim:table?frames=160&width=320&seed=4", true, DepthNoise{})); }},
-      {"time of flight, no poses",
-       [] { return std::optional(simulated_facts("sim:table?frames=160&width=320&seed=5", false, kTimeOfFlightNoise)); }}};
+      {"table",
+       [] {
+         return std::optional(simulated_facts("sim:table?frames=160&width=320&seed=4", true, DepthNoise{}));
+       }},
+      {"time of flight, no poses", [] {
+         return std::optional(
+             simulated_facts("sim:table?frames=160&width=320&seed=5", false, kTimeOfFlightNoise));
+       }}};
   if (std::getenv("ROOMRADAR_LONG_TESTS") == nullptr) return all;
   for (const char* name : {"kitchen", "fr1_rpy", "record3d", "stray"})
     all.push_back({name, [name]() -> std::optional<RecordingFacts> {
@@ -324,8 +346,8 @@ TEST(Mutations, AreUndoneOrNamed) {
           << recording.name << ": false alarm: " << decision.sentence;
     const bool has_poses = pose_of(base, 40).has_value();
     if (has_poses)
-      std::printf("%s: disagreement %.2f near, %.2f far\n", recording.name.c_str(), *base.evidence->pose_disagreement,
-                  *base.evidence->far_pose_disagreement);
+      std::printf("%s: disagreement %.2f near, %.2f far\n", recording.name.c_str(),
+                  *base.evidence->pose_disagreement, *base.evidence->far_pose_disagreement);
     for (const Mutation& mutation : mutations()) {
       const bool is_shift = mutation.name.starts_with("frames shifted");
       if ((mutation.name.starts_with("poses") || is_shift) && !has_poses) continue;
@@ -339,7 +361,8 @@ TEST(Mutations, AreUndoneOrNamed) {
         };
       }
       if (changed.acceleration_track)
-        changed.acceleration_track = std::make_shared<std::vector<StampedAcceleration>>(*facts->acceleration_track);
+        changed.acceleration_track =
+            std::make_shared<std::vector<StampedAcceleration>>(*facts->acceleration_track);
       mutation.change(changed);
       const bool is_unit = mutation.name.starts_with("unit");
       const double factor = is_unit ? std::stod(mutation.name.substr(7)) : 1.0;
@@ -354,15 +377,18 @@ TEST(Mutations, AreUndoneOrNamed) {
             read_depth(got, i, depth_m);
             if (got.frames[i].colour) got.facts.read_colour(*got.frames[i].colour, colour);
           } catch (const Error& fault) {
-            got.report->count("images", "% images cannot be read", static_cast<std::int64_t>(i), fault.what());
+            got.report->count("images", "% images cannot be read", static_cast<std::int64_t>(i),
+                              fault.what());
           }
         }
         why = difference(got, base, factor);
         const std::vector<InputDecision> decisions = got.report->decisions();
         for (const InputDecision& decision : decisions) said += "\n    " + line_of(decision);
-        const bool is_named = std::any_of(decisions.begin(), decisions.end(), [&](const InputDecision& decision) {
-          return std::find(mutation.topics.begin(), mutation.topics.end(), decision.topic) != mutation.topics.end();
-        });
+        const bool is_named =
+            std::any_of(decisions.begin(), decisions.end(), [&](const InputDecision& decision) {
+              return std::find(mutation.topics.begin(), mutation.topics.end(), decision.topic) !=
+                     mutation.topics.end();
+            });
         if (why.empty())
           ++undone;
         else if (is_named)
@@ -370,15 +396,18 @@ TEST(Mutations, AreUndoneOrNamed) {
         else if (is_indistinguishable(recording.name, mutation.name))
           ++indistinguishable;
         else
-          ADD_FAILURE() << recording.name << ", " << mutation.name << ": silent: " << why << said << "\n    disagreement "
-                        << got.evidence->pose_disagreement.value_or(-1.0) << " " << got.evidence->far_pose_disagreement.value_or(-1.0);
+          ADD_FAILURE() << recording.name << ", " << mutation.name << ": silent: " << why << said
+                        << "\n    disagreement " << got.evidence->pose_disagreement.value_or(-1.0) << " "
+                        << got.evidence->far_pose_disagreement.value_or(-1.0);
       } catch (const Error& refusal) {
-        EXPECT_TRUE(mutation.topics.front() == "images") << recording.name << ", " << mutation.name << ": " << refusal.what();
+        EXPECT_TRUE(mutation.topics.front() == "images")
+            << recording.name << ", " << mutation.name << ": " << refusal.what();
         ++named;
       }
     }
   }
-  std::printf("%d mutations: %d undone, %d named, %d cannot be told\n", tried, undone, named, indistinguishable);
+  std::printf("%d mutations: %d undone, %d named, %d cannot be told\n", tried, undone, named,
+              indistinguishable);
 }
 
 }  // namespace

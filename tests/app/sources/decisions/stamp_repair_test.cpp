@@ -20,8 +20,10 @@ constexpr double kBegin_s = 1'305'031'102.0;
 std::vector<StatedTime> regular(std::size_t count, bool received = false) {
   std::vector<StatedTime> times;
   for (std::size_t i = 0; i < count; ++i) {
-    const double stamp_s = kBegin_s + kPeriod_s * static_cast<double>(i) + 0.002 * std::sin(static_cast<double>(i));
-    times.push_back({stamp_s, received ? stamp_s + 0.030 + 0.004 * std::cos(7.0 * static_cast<double>(i)) : kNoStamp});
+    const double stamp_s =
+        kBegin_s + kPeriod_s * static_cast<double>(i) + 0.002 * std::sin(static_cast<double>(i));
+    times.push_back(
+        {stamp_s, received ? stamp_s + 0.030 + 0.004 * std::cos(7.0 * static_cast<double>(i)) : kNoStamp});
   }
   return times;
 }
@@ -40,7 +42,8 @@ Repaired repaired(const std::vector<StatedTime>& times, StampRules rules = {}) {
   return result;
 }
 
-void expect_near(const std::vector<double>& got_s, const std::vector<StatedTime>& wanted, double tolerance_s) {
+void expect_near(const std::vector<double>& got_s, const std::vector<StatedTime>& wanted,
+                 double tolerance_s) {
   ASSERT_EQ(got_s.size(), wanted.size());
   for (std::size_t i = 0; i < got_s.size(); ++i) ASSERT_NEAR(got_s[i], wanted[i].stamp_s, tolerance_s) << i;
 }
@@ -127,7 +130,8 @@ TEST(StampRepair, ListsOfOneRecordingAreMovedTogether) {
   std::vector<StampedPose> track;
   for (const StatedTime& time : depth) track.push_back({time.stamp_s});
   repair_track(track, first.stamps);
-  for (std::size_t i = 0; i < track.size(); ++i) EXPECT_NEAR(track[i].stamp_s, first.stamps.stamps_s[i], 1e-9) << i;
+  for (std::size_t i = 0; i < track.size(); ++i)
+    EXPECT_NEAR(track[i].stamp_s, first.stamps.stamps_s[i], 1e-9) << i;
 }
 
 TEST(StampRepair, OneAbsurdStampCostsNothing) {
@@ -148,7 +152,8 @@ TEST(StampRepair, EqualStampsAreSpread) {
   std::vector<StatedTime> times = good;
   for (std::size_t i = 1; i < times.size(); i += 2) times[i].stamp_s = times[i - 1].stamp_s;
   const Repaired result = repaired(times);
-  for (std::size_t i = 1; i < times.size(); ++i) EXPECT_GT(result.stamps.stamps_s[i], result.stamps.stamps_s[i - 1]);
+  for (std::size_t i = 1; i < times.size(); ++i)
+    EXPECT_GT(result.stamps.stamps_s[i], result.stamps.stamps_s[i - 1]);
   expect_near(result.stamps.stamps_s, good, 1.1 * kPeriod_s);
 }
 
