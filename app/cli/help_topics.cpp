@@ -68,7 +68,8 @@ constexpr std::string_view kSources =
                                  .pose.txt
                      TUM RGB-D   depth.txt, rgb.txt, groundtruth.txt, accelerometer.txt
                      fakenect    INDEX.txt and the raw images of a Kinect
-                     numbered    depth/00000.png (mm), color/00000.jpg
+                     numbered    depth/00000.png (mm), color/00000.jpg; also pose/0.txt and intrinsic/ of
+                                 ScanNet's exports
                      Record3D    an export "EXR + RGB": metadata, depth/0.exr (m), rgb/0.jpg
                      ROS 1       FILE.bag with depth, colour and camera_info; poses from tf, gravity from an IMU
                      ROS 2       FILE.db3, FILE.mcap or their folder, as ROS 1
@@ -76,10 +77,15 @@ constexpr std::string_view kSources =
                      OpenNI      FILE.oni
                      ScanNet     FILE.sens;  ElasticFusion: FILE.klg
                      Azure       FILE.mkv of k4arecorder (Azure Kinect, Femto), with its calibration
-                     Stray       Stray Scanner's odometry.csv, camera_matrix.csv, depth/000000.png, rgb.mp4
+                     Stray       Stray Scanner's odometry.csv, camera_matrix.csv, depth/000000.png, and
+                                 rgb.mp4 if it is there
                      Redwood     depth/N.png (mm), color/N.jpg, *.log or intrinsic.json (also Open3D)
                      ICL-NUIM    depth/N.png (1/5000 m), rgb/N.png, *.gt.freiburg
-                   A camera.json in it describes the cameras, a calibration.json their errors.
+                   A camera.json in it describes the cameras, a calibration.json their errors. camera.json
+                   may also state "depth_unit_m" and "poses_convention", for any kind of recording.
+                   `roomradar check RECORDING` says what a recording states, whether its depth agrees with
+                   that, and what was decided. --depth-unit, --camera, --poses-convention and --stamps
+                   overrule it.
   SESSION          a folder that `run --record-session` wrote: replayed with identical results
   kinect:N         a Kinect v1, numbered from 0. It continues until Ctrl-C is pressed once. kinect:0?depth=mm
                    and kinect:0?depth=registered let libfreenect convert or register the depth.

@@ -50,7 +50,7 @@ Intrinsics read_camera_matrix(const fs::path& path, ImageSize size, RecordingFac
   const double width_px = 2.0 * camera.cx_px, height_px = 2.0 * camera.cy_px;  // of images with it in the middle
   const auto differs = [](double stated, int is) { return stated < 0.6 * is || stated > 1.4 * is; };
   if (differs(width_px, size.width_px) && differs(height_px, size.height_px) && width_px >= 2 && height_px >= 2) {
-    const double x = (size.width_px - 1) / width_px, y = (size.height_px - 1) / height_px;
+    const double x = size.width_px / (width_px + 1), y = size.height_px / (height_px + 1);
     camera = {size.width_px, size.height_px, x * camera.fx_px, y * camera.fy_px, x * camera.cx_px, y * camera.cy_px};
     facts.notes.push_back({"camera",
                            path.filename().string() + " is of images of about " + format_readable(width_px + 1, 4) +

@@ -102,9 +102,16 @@ void find_unit(Stamps& stamps, bool received) {
       const bool all_whole = std::all_of(stamps.s.begin(), stamps.s.end(), [](double stamp) {
         return !is_stated(stamp) || stamp == std::floor(stamp);
       });
+      // As seconds since 1970, such stamps are of the year 5000 and later.
+      constexpr double kLatest_s = 1e11;
+      const auto late = std::count_if(stamps.s.begin(), stamps.s.end(), [](double stamp) {
+        return is_stated(stamp) && stamp > kLatest_s;
+      });
+      const bool is_too_late = 2 * static_cast<std::size_t>(late) > stamps.size();
       // Keyframes may be several seconds apart. Other formats fix the unit, but some writers ignore that.
-      const bool may_be_seconds =
-          stamps.rules.have_no_unit ? !all_whole && *period < 60.0 : *period > 1e-3 && *period < 100.0;
+      const bool may_be_seconds = stamps.rules.have_no_unit
+                                      ? !all_whole && !is_too_late && *period < 60.0
+                                      : *period > 1e-3 && *period < 100.0;
       if (!may_be_seconds && !received)
         for (const double length_s : {1e-3, 1e-6, 1e-9, 1e3, 1e6})
           if (unit_s == 1.0 && is_plausible(length_s)) unit_s = length_s;
