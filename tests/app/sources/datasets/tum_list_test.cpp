@@ -1,0 +1,132 @@
+// tum_list_test.cpp: lists of images in the form of the TUM RGB-D benchmark, as other programs write them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+
+#include "app/sources/formats/image_file.hpp"
+#include "app/sources/recordings/folder_source.hpp"
+#include "tests/app/sources/sources_support.hpp"
+
+namespace roomradar::tum_list_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::contains;
+using test::decisions_about;
+using test::ReadAll;
+using test::TemporaryFolder;
+using test::write_text;
+
+constexpr int kFrames = 40;
+constexpr double kBegin_s = 1305031102.0;
+
+/// How a list is written. `stamp` writes the stamp of image i, in s after kBegin_s.
+struct ListForm {
+  std::string separator = " ", end = "\n", begin = "# timestamp filename\n", name_prefix = "";
+  std::function<std::string(double stamp_s)> stamp = [](double s) { return std::to_string(kBegin_s + s); };
+  std::function<void(std::vector<std::string>&)> order = [](std::vector<std::string>&) {};
+};
+
+/// Frame i has a depth of 1 m + i cm, red i, and the pose x = i m.
+void write_tum(const fs::path& folder, const ListForm& form) {
+  std::vector<std::string> depth, colour, poses;
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string name = form.name_prefix + std::to_string(i) + ".png";
+    fs::create_directories(folder / "depth");
+    fs::create_directories(folder / "rgb");
+    write_depth_file(DepthImage(8, 6, 1.0F + 0.01F * static_cast<float>(i)), DepthEncoding::kTum, folder / "depth" / name);
+    write_colour_file(ColourImage(8, 6, {static_cast<std::uint8_t>(i), 0, 0}), folder / "rgb" / name);
+    depth.push_back(form.stamp(i / 30.0) + form.separator + "depth/" + name);
+    colour.push_back(form.stamp(i / 30.0 + 0.01) + form.separator + "rgb/" + name);
+    poses.push_back(form.stamp(i / 30.0) + form.separator + std::to_string(i) + " 0 0 0 0 0 1");
+  }
+  const auto write = [&](const char* name, std::vector<std::string> lines) {
+    form.order(lines);
+    std::string text = form.begin;
+    for (const std::string& line : lines) text += line + form.end;
+    write_text(folder / name, text);
+  };
+  write("depth.txt", depth);
+  write("rgb.txt", colour);
+  write("groundtruth.txt", poses);
+}
+
+/// Expects all frames with their own colour and pose; returns the decisions.
+std::string expect_all_frames(const ListForm& form) {
+  const TemporaryFolder folder;
+  write_tum(folder.path(), form);
+  ReadAll all;
+  const std::string said =
+      decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  EXPECT_TRUE(all.faults.empty());
+  EXPECT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames)) << said;
+  for (std::size_t i = 0; i < std::min<std::size_t>(all.frames.size(), kFrames); ++i) {
+    const Frame& frame = all.frames[i];
+    EXPECT_NEAR(frame.depth_m.at(0, 0), 1.0 + 0.01 * static_cast<double>(i), 1e-4);
+    EXPECT_NEAR(frame.stamp_s - all.frames[0].stamp_s, static_cast<double>(i) / 30.0, 1e-4);
+    EXPECT_TRUE(!frame.colour.empty() && frame.T_world_camera) << i << "\n" << said;
+    if (frame.colour.empty() || !frame.T_world_camera) return said;
+    EXPECT_EQ(frame.colour.at(0, 0).r, i);
+    EXPECT_NEAR(frame.colour_after_depth_s, 0.01, 1e-4);
+    EXPECT_NEAR(frame.T_world_camera->translation().x(), static_cast<double>(i), 1e-2);
+  }
+  return said;
+}
+
+TEST(TumList, ByteOrderMarkCarriageReturnsTabsAndBlanksAreRead) {
+  const std::string plain = expect_all_frames({});
+  for (const char* separator : {" ", "\t", "  \t "})
+    for (const char* end : {"\n", "\r\n", " \r\n"})
+      for (const char* begin : {"# timestamp filename\n", "\xef\xbb\xbf# timestamp filename\r\n", "\xef\xbb\xbf", "\n"}) {
+        ListForm form;
+        form.separator = separator;
+        form.end = end;
+        form.begin = begin;
+        EXPECT_EQ(expect_all_frames(form), plain);
+      }
+}
+
+TEST(TumList, NamesMayHaveBlanks) {
+  ListForm form;
+  form.name_prefix = "image of camera 2 ";
+  EXPECT_FALSE(contains(expect_all_frames(form), "left out"));
+  form.end = " \r\n";
+  EXPECT_FALSE(contains(expect_all_frames(form), "left out"));
+}
+
+TEST(TumList, NanosecondsAndMillisecondsAreRecognised) {
+  const auto scaled = [](double per_s, const char* format) {
+    ListForm form;
+    form.stamp = [=](double s) {
+      char text[64];
+      std::snprintf(text, sizeof text, format, (kBegin_s + s) * per_s);
+      return std::string(text);
+    };
+    return form;
+  };
+  EXPECT_TRUE(contains(expect_all_frames(scaled(1e9, "%.0f")), "nanoseconds"));
+  EXPECT_TRUE(contains(expect_all_frames(scaled(1e6, "%.0f")), "microseconds"));
+  EXPECT_TRUE(contains(expect_all_frames(scaled(1e3, "%.3f")), "milliseconds"));
+  EXPECT_FALSE(contains(expect_all_frames(scaled(1, "%.6f")), "stamps"));
+}
+
+TEST(TumList, LinesMayHaveAnyOrder) {
+  ListForm form;
+  form.order = [](std::vector<std::string>& lines) { std::shuffle(lines.begin(), lines.end(), std::mt19937(3)); };
+  EXPECT_TRUE(contains(expect_all_frames(form), "not listed in the order of their stamps"));
+  form.order = [](std::vector<std::string>& lines) { std::reverse(lines.begin(), lines.end()); };
+  EXPECT_TRUE(contains(expect_all_frames(form), "not listed in the order of their stamps"));
+}
+
+TEST(TumList, BonnsDatasetHasItsOwnCamera) {
+  const TemporaryFolder folder;
+  const fs::path recording = folder.path() / "rgbd_bonn_balloon";
+  write_tum(recording, {});
+  EXPECT_TRUE(contains(
+      decisions_about([&](const SourceOptions& options) { return open_folder(recording, options); }), "the Xtion of the BONN dataset"));
+}
+
+}  // namespace
+}  // namespace roomradar::tum_list_test
