@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -103,6 +104,28 @@ std::vector<LoggedPose> read_log(const fs::path& path, RecordingFacts& facts) {
     facts.notes.push_back({"poses", std::to_string(poses.size()) + " poses are read, up to a fault: " + fault,
                            static_cast<std::int64_t>(poses.size()), "", true});
   return poses;
+}
+
+/// Numbers the poses by their place if two have the same number, as some programs write one heading for all.
+void number_by_place_if_repeated(std::vector<LoggedPose>& poses, const std::string& file, RecordingFacts& facts) {
+  std::set<std::int64_t> seen;
+  if (std::all_of(poses.begin(), poses.end(), [&](const LoggedPose& pose) { return seen.insert(pose.frame).second; }))
+    return;
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].frame = static_cast<std::int64_t>(i);
+  facts.notes.push_back({"poses",
+                         "the headings of " + file + " do not number the frames; its poses are those of the frames "
+                         "in their order",
+                         static_cast<std::int64_t>(poses.size()), "", true});
+}
+
+/// Returns the number of a frame's file minus its number in the headings: 0 if either the first or the last
+/// numbers agree, else that of the first ones. Files of Redwood's scans count from 1, headings from 0.
+std::int64_t files_after_headings(const std::vector<LoggedPose>& poses, const std::vector<std::int64_t>& files) {
+  if (poses.empty() || files.empty()) return 0;
+  const auto [least, most] = std::minmax_element(
+      poses.begin(), poses.end(), [](const LoggedPose& a, const LoggedPose& b) { return a.frame < b.frame; });
+  if (least->frame >= files.front() || most->frame == files.back()) return 0;
+  return least->frame == 0 ? files.front() : 0;
 }
 
 /// Returns true if the file's first lines are a heading of three integers and a row of four numbers.
@@ -247,16 +270,13 @@ RecordingFacts index_redwood(const fs::path& folder) {
   }
   const fs::path log = trajectory_log(folder);
   if (log.empty()) return facts;
-  // The frame's number is that of its file, or its place among the files if these do not count from 0.
-  const bool counts_files = !numbers.empty() && numbers.front() > 0;
   std::size_t without_image = 0;
-  const auto poses = read_log(log, facts);
+  std::vector<LoggedPose> poses = read_log(log, facts);
+  number_by_place_if_repeated(poses, log.filename().string(), facts);
+  const std::int64_t shift = files_after_headings(poses, numbers);
   for (const LoggedPose& pose : poses) {
-    const auto place = counts_files ? (pose.frame < static_cast<std::int64_t>(numbers.size())
-                                           ? numbers.begin() + static_cast<std::ptrdiff_t>(pose.frame)
-                                           : numbers.end())
-                                    : std::lower_bound(numbers.begin(), numbers.end(), pose.frame);
-    if (place == numbers.end() || (!counts_files && *place != pose.frame))
+    const auto place = std::lower_bound(numbers.begin(), numbers.end(), pose.frame + shift);
+    if (place == numbers.end() || *place != pose.frame + shift)
       ++without_image;
     else
       facts.frames[static_cast<std::size_t>(place - numbers.begin())].T_world_camera = pose.T_world_camera;

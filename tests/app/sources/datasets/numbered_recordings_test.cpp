@@ -1,6 +1,8 @@
 // numbered_recordings_test.cpp: Stray Scanner, Redwood, Open3D and ICL-NUIM: written recordings.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "app/sources/formats/image_file.hpp"
@@ -117,6 +119,63 @@ TEST(StrayScanner, DepthIsReadWithoutPosesAndVideo) {
   EXPECT_TRUE(all.frames[0].T_world_camera->isApprox(*whole.frames[0].T_world_camera, 1e-12));
 }
 
+// Stray Scanner, StrayScanner/Helpers/OdometryEncoder.swift, add(): the columns of three versions, the last without its
+// values; frame numbers have leading zeros.
+TEST(StrayScanner, ReadsTheColumnsOfAllVersions) {
+  const TemporaryFolder folder;
+  write_stray(folder.path());
+  const std::string heading = "timestamp, frame, x, y, z, qx, qy, qz, qw";
+  const auto frames_with = [&](const std::string& columns, const std::string& values, const char* end) {
+    std::string text = heading + columns + end;
+    for (int i = 0; i < kVideoFrames; ++i) {
+      const std::string number = padded(i);
+      text += std::to_string(100.0 + i / 60.0) + ", " + number.substr(number.size() - 6) + ", 1, 2, " +
+              std::to_string(i) + ", 0, 0, 0, 1" + values + end;
+    }
+    write_text(folder.path() / "odometry.csv", text);
+    ReadAll all;
+    const std::string said = decisions_about(
+        [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+    EXPECT_FALSE(contains(said, "odometry.csv")) << said;
+    return all.frames;
+  };
+  const std::vector<Frame> plain = frames_with("", "", "\n");
+  ASSERT_EQ(plain.size(), static_cast<std::size_t>(kVideoFrames));
+  EXPECT_NEAR(plain[9].stamp_s, 100.0 + 9 / 60.0, 1e-6);
+  for (const auto& [columns, values] :
+       {std::pair(", fx, fy, cx, cy", ", 50.0, 52.0, 31.5, 23.5"),
+        std::pair(", fx, fy, cx, cy, distortion_center_x, distortion_center_y", ", 50.0, 52.0, 31.5, 23.5, , ")})
+    for (const char* end : {"\n", "\r\n"}) {
+      const std::vector<Frame> frames = frames_with(columns, values, end);
+      ASSERT_EQ(frames.size(), plain.size());
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        EXPECT_EQ(frames[i].stamp_s, plain[i].stamp_s);
+        EXPECT_TRUE(frames[i].T_world_camera->isApprox(*plain[i].T_world_camera, 1e-12));
+      }
+    }
+}
+
+TEST(StrayScanner, ImagesAfterTheLastWholeRowHaveNoPose) {
+  const TemporaryFolder folder;
+  write_stray(folder.path());
+  std::string rows = "timestamp, frame, x, y, z, qx, qy, qz, qw\n";
+  for (int i = 0; i < 20; ++i)
+    rows += std::to_string(100.0 + i / 60.0) + ", " + std::to_string(i) + ", 1, 2, 3, 0, 0, 0, 1\n";
+  rows += "100.333333, 20, 1, 2, 3, 0, 0";  // the app was ended within it
+  write_text(folder.path() / "odometry.csv", rows);
+  fs::remove(folder.path() / "rgb.mp4");
+  ReadAll all;
+  const std::string said =
+      decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kVideoFrames));
+  EXPECT_TRUE(all.frames[19].T_world_camera);
+  EXPECT_FALSE(all.frames[20].T_world_camera);
+  for (std::size_t i = 1; i < all.frames.size(); ++i) EXPECT_NEAR(all.frames[i].stamp_s, 100.0 + static_cast<double>(i) / 60.0, 1e-4);
+  EXPECT_TRUE(contains(said, "1 lines of odometry.csv are cut short")) << said;
+  EXPECT_TRUE(contains(said, "10 depth images have no line in odometry.csv")) << said;
+  EXPECT_TRUE(contains(said, "rgb.mp4 is missing")) << said;
+}
+
 // ---- Redwood, Open3D, ICL-NUIM ----
 
 void write_images(const fs::path& folder, const char* colour, DepthEncoding encoding) {
@@ -182,6 +241,127 @@ TEST(Redwood, TakesTheIntrinsicsOfOpen3d) {
   EXPECT_EQ(all.frames[0].depth_camera, (Intrinsics{64, 48, 55, 56, 31.5, 23.5}));
   write_text(folder.path() / "intrinsic.json", R"({"width":128,"height":96,"intrinsic_matrix":[110]})");
   EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "must be 9 numbers"));
+}
+
+// Open3D, RGBDVideoReader::SaveFrames() and RGBDVideoMetadata::ConvertToJsonValue(), of a RealSense L515, whose unit is
+// 0.25 mm.
+TEST(Redwood, TakesUnitAndRateOfOpen3dsVideos) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 4; ++i) {
+    const std::string number = "0000" + std::to_string(i);
+    fs::create_directories(folder.path() / "depth");
+    fs::create_directories(folder.path() / "color");
+    cv::imwrite((folder.path() / "depth" / (number + ".png")).string(), cv::Mat(48, 64, CV_16UC1, cv::Scalar(6000 + i)));
+    cv::imwrite((folder.path() / "color" / (number + ".jpg")).string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar(9, 99, 199)));
+  }
+  const auto with = [&](const char* scale, const char* file = "intrinsic.json") {
+    write_text(folder.path() / file, std::string(R"({"color_format":"RS2_FORMAT_RGB8","depth_format":"RS2_FORMAT_Z16",)") +
+                                         R"("depth_scale":)" + scale + R"(,"device_name":"Intel RealSense L515","fps":15.0,)" +
+                                         R"("height":48,"intrinsic_matrix":[60.0,0.0,0.0,0.0,61.0,0.0,31.5,23.5,1.0],)" +
+                                         R"("serial_number":"f0","stream_length_usec":266666,"width":64})");
+  };
+  with("4000.0");
+  auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 4U);
+  EXPECT_EQ(all.frames[3].depth_m.at(0, 0), 6003.0F / 4000.0F);
+  EXPECT_EQ(all.frames[3].depth_camera, (Intrinsics{64, 48, 60, 61, 31.5, 23.5}));
+  EXPECT_NEAR(all.frames[3].stamp_s, 0.2, 1e-12);
+  for (const char* scale : {"0", "-4000", "\"4000\""}) {
+    with(scale);
+    const std::string message = error_of([&] { (void)open_folder(folder.path()); });
+    EXPECT_TRUE(contains(message, "intrinsic.json") && contains(message, "depth_scale")) << message;
+  }
+  fs::remove(folder.path() / "intrinsic.json");
+  with("999.9999491", "camera_intrinsic.json");  // as a float gives it
+  all = read_all(*open_folder(folder.path()));
+  EXPECT_EQ(all.frames[3].depth_m.at(0, 0), 6.003F);
+}
+
+/// Frame `number` of the log is at x = number.
+std::string logged(std::int64_t number, const std::string& heading) {
+  return heading + "\n1 0 0 " + std::to_string(number) + "\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+}
+
+// Open3D, TrajectoryIO.cpp, ReadPinholeCameraTrajectoryFromLOG() and its writer: three integers before each pose.
+TEST(Redwood, PosesBelongToTheFramesThatTheirHeadingsNumber) {
+  const auto read = [](const fs::path& folder, std::string& said) {
+    ReadAll all;
+    said = decisions_about([&](const SourceOptions& options) { return open_folder(folder, options); }, &all);
+    return all.frames;
+  };
+  const auto x_of = [](const Frame& frame) { return frame.T_world_camera ? frame.T_world_camera->translation().x() : -1.0; };
+  std::string said;
+  {  // some frames were not logged
+    const TemporaryFolder folder;
+    write_images(folder.path(), "color", DepthEncoding::kMillimetres);
+    std::string log;
+    for (const int i : {0, 1, 2, 5, 6, 20}) log += logged(i, std::to_string(i) + " " + std::to_string(i) + " 21");
+    write_text(folder.path() / "trajectory.log", log);
+    const auto frames = read(folder.path(), said);
+    ASSERT_EQ(frames.size(), 12U);
+    EXPECT_EQ(x_of(frames[2]), 2.0);
+    EXPECT_EQ(x_of(frames[3]), -1.0);
+    EXPECT_EQ(x_of(frames[5]), 5.0);
+    EXPECT_TRUE(contains(said, "1 poses of trajectory.log are of frames without a depth image")) << said;
+  }
+  for (const char* heading : {"0 0 1", "-1 -1 -1"}) {  // headings that do not count
+    const TemporaryFolder folder;
+    write_images(folder.path(), "color", DepthEncoding::kMillimetres);
+    std::string log;
+    for (int i = 0; i < 12; ++i) log += logged(i, heading);
+    write_text(folder.path() / "trajectory.log", log);
+    const auto frames = read(folder.path(), said);
+    ASSERT_EQ(frames.size(), 12U);
+    for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(x_of(frames[i]), static_cast<double>(i)) << heading << "\n" << said;
+  }
+  {  // as Redwood's scans: files from 1 on, with a stamp in their names; headings from 0 on
+    const TemporaryFolder folder;
+    write_images(folder.path(), "image", DepthEncoding::kMillimetres);
+    std::string log;
+    for (int i = 11; i >= 0; --i) {
+      char name[64];
+      std::snprintf(name, sizeof name, "%07d-%012d.png", i + 1, 33369 * i);
+      fs::rename(folder.path() / "depth" / (std::to_string(i) + ".png"), folder.path() / "depth" / name);
+      std::snprintf(name, sizeof name, "%07d-%012d.png", i + 1, 33369 * i + 8000);
+      fs::rename(folder.path() / "image" / (std::to_string(i) + ".png"), folder.path() / "image" / name);
+    }
+    for (int i = 0; i < 12; ++i) log += logged(i, std::to_string(i) + " " + std::to_string(i) + " " + std::to_string(i + 1));
+    write_text(folder.path() / "trajectory.log", log);
+    fs::remove(folder.path() / "depth" / "0000005-000000133476.png");
+    const auto frames = read(folder.path(), said);
+    ASSERT_EQ(frames.size(), 11U);
+    for (std::size_t i = 0; i < 11; ++i) {
+      const auto number = static_cast<double>(i < 4 ? i : i + 1);
+      EXPECT_EQ(x_of(frames[i]), number);
+      EXPECT_NEAR(frames[i].depth_m.at(0, 0), 1.0 + 0.01 * number, 1e-6);
+      EXPECT_EQ(frames[i].colour.at(0, 0).r, number);
+    }
+    EXPECT_TRUE(contains(said, "1 poses of trajectory.log")) << said;
+  }
+  {  // the first image was deleted
+    const TemporaryFolder folder;
+    write_images(folder.path(), "color", DepthEncoding::kMillimetres);
+    fs::remove(folder.path() / "depth" / "0.png");
+    std::string log;
+    for (int i = 0; i < 12; ++i) log += logged(i, std::to_string(i) + " " + std::to_string(i) + " 12");
+    write_text(folder.path() / "trajectory.log", log);
+    const auto frames = read(folder.path(), said);
+    ASSERT_EQ(frames.size(), 11U);
+    EXPECT_EQ(x_of(frames[0]), 1.0);
+  }
+}
+
+TEST(Redwood, AFileThatIsNoTrajectoryIsNotTakenForOne) {
+  const TemporaryFolder folder;
+  write_images(folder.path(), "color", DepthEncoding::kMillimetres);
+  for (const char* text : {"", "2024-05-01 12:00:00 started\n", "1 2 3\n4 5 6\n", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"}) {
+    write_text(folder.path() / "a.log", text);
+    ReadAll all;
+    const std::string said =
+        decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+    ASSERT_EQ(all.frames.size(), 12U) << text;
+    EXPECT_FALSE(all.frames[0].T_world_camera);
+  }
 }
 
 TEST(IclNuim, MirrorsItsLeftHandedFrames) {

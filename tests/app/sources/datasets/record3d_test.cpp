@@ -179,6 +179,50 @@ TEST(Record3d, AFrameWithoutAPoseKeepsItsDepth) {
   EXPECT_EQ(read_all(*open_folder(folder.path())).frames.size(), 3U);
 }
 
+// All fields that the app writes, with the name that some versions give the file. Poses are shorter than the list of
+// images.
+TEST(Record3d, ReadsMetadataOfOtherVersions) {
+  const TemporaryFolder folder;
+  write_export(folder.path());
+  fs::remove(folder.path() / "metadata");
+  write_text(folder.path() / "metadata.json",
+             R"({"w":12,"h":16,"dw":6,"dh":8,"fps":60,"K":[20,0,0,0,22,0,5.5,7.5,1],"initPose":[0,0,0,1,0,0,0],
+                 "cameraType":1,"scaledDepthK":[],"perFrameIntrinsicCoeffs":[[20,22,5.5,7.5],[20,22,5.5,7.5]],
+                 "poses":[[0,0,0,1,1,2,3],[0,0,0,1,1,2,4]],"frameTimestamps":[0.1,0.35]})");
+  test::ReadAll all;
+  const std::string said = test::decisions_about(
+      [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  ASSERT_EQ(all.frames.size(), 3U);
+  EXPECT_EQ(all.frames[1].stamp_s, 0.35);
+  EXPECT_EQ(all.frames[1].colour_camera, (Intrinsics{12, 16, 20, 22, 5.5, 7.5}));
+  EXPECT_TRUE(all.frames[1].T_world_camera);
+  EXPECT_FALSE(all.frames[2].T_world_camera);
+  EXPECT_TRUE(contains(said, "1 recorded pose")) << said;
+  EXPECT_TRUE(contains(said, "no usable time stamp")) << said;
+}
+
+TEST(Record3d, IsReadWithoutPosesAndStamps) {
+  for (const char* rest : {"", R"(,"poses":[],"frameTimestamps":[])", R"(,"poses":null,"frameTimestamps":null)"}) {
+    const TemporaryFolder folder;
+    write_export(folder.path(), std::string(R"({"w":12,"h":16,"dw":6,"dh":8,"fps":20,"K":[20,0,0,0,22,0,5.5,7.5,1])") +
+                                    rest + "}");
+    const auto all = read_all(*open_folder(folder.path()));
+    ASSERT_EQ(all.frames.size(), 3U);
+    EXPECT_FALSE(all.frames[0].T_world_camera);
+    EXPECT_NEAR(all.frames[2].stamp_s, 0.1, 1e-12);
+  }
+}
+
+TEST(Record3d, ItsOwnFormIsNamed) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "scan.r3d", "PK");
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path() / "scan.r3d"); }), "EXR + RGB"));
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "EXR + RGB"));
+  write_text(folder.path() / "unpacked" / "metadata", kMetadata);
+  write_text(folder.path() / "unpacked" / "rgbd" / "0.depth", "bvx2");
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path() / "unpacked"); }), "rgbd/N.depth"));
+}
+
 TEST(Record3d, SkipsAFrameWhoseImageIsDamaged) {
   const TemporaryFolder folder;
   write_export(folder.path());
