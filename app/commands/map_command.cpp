@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -12,7 +13,9 @@
 
 #include "app/building/building_map_commands.hpp"
 #include "app/cli/report.hpp"
+#include "app/cli/shell_line.hpp"
 #include "app/page/map_page.hpp"
+#include "app/sources/recordings/recording_kinds.hpp"
 #include "mapping/building/building_info.hpp"
 #include "mapping/map/level_surfaces.hpp"
 #include "mapping/map/map_export.hpp"
@@ -60,6 +63,16 @@ std::string describe(std::vector<LevelSurface> surfaces, const Mesh& mesh) {
   return text;
 }
 
+/// Throws Error naming `roomradar check` if the path is a recording, and not a map.
+void require_no_recording(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) || std::filesystem::exists(std::filesystem::path(path) / "map.json", ignored))
+    return;
+  if (const std::string kind = recording_kind(path); !kind.empty())
+    throw Error(path + ": is a recording (" + kind + "), not a map; `" + shell_line({"roomradar", "check", path}) +
+                "` says what it holds, and `roomradar prescan` makes a map of it");
+}
+
 void export_page(const MapExportOptions& options) {
   require_outside_maps(options.path);
   require_writable(options.path);
@@ -70,6 +83,7 @@ void export_page(const MapExportOptions& options) {
 
 int run(const MapInfoOptions& options) {
   if (is_building(options.map)) return run_on_building(options);
+  require_no_recording(options.map);
   const MapInfo info = load_map_info(options.map);
   const Mesh mesh = load_map_mesh(options.map);
   const std::vector<LevelSurface> surfaces = level_surfaces(mesh);
@@ -82,6 +96,7 @@ int run(const MapInfoOptions& options) {
 
 int run(const MapVerifyOptions& options) {
   if (is_building(options.map)) return run_on_building(options);
+  require_no_recording(options.map);
   const std::vector<std::string> faults = verify_map(options.map);
   for (const std::string& fault : faults) std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   if (!faults.empty()) return 1;
@@ -91,6 +106,7 @@ int run(const MapVerifyOptions& options) {
 
 int run(const MapExportOptions& options) {
   if (is_building(options.map)) return run_on_building(options);
+  require_no_recording(options.map);
   if (is_page(options.path)) {
     if (options.unknown)
       throw Error(options.path + ": --unknown writes a mesh; give a .ply, .obj, .stl or .glb file");

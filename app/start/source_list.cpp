@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "app/cli/session_folder.hpp"
+#include "app/cli/shell_line.hpp"
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/sim_options.hpp"
 #include "app/sources/kinect/fakenect_replay.hpp"
@@ -39,6 +40,7 @@ SourceEntry describe_recording(const fs::path& folder) {
   try {
     const RecordingFacts facts = read_facts(folder);
     entry.detail = facts.kind + ", " + frames_text(facts.frames.size());
+    entry.check_command = shell_line({"roomradar", "check", folder.string()});
   } catch (const std::exception& error) {
     entry.detail = "cannot be read";
     entry.fault = error.what();

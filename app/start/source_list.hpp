@@ -17,6 +17,8 @@ struct SourceEntry {
   /// camera stays at one position.
   std::string play_source;
   std::string fault;  ///< sentence on why the source cannot be used; empty if it can
+  /// Command that says what a recording holds and what is decided about it; empty for other sources.
+  std::string check_command{};
 };
 
 /// Returns the Kinects on the USB bus, or the recording that fakenect replays in place of one. Does not open

@@ -145,6 +145,8 @@ void draw_source_detail(const SourceEntry& source, const look::Fonts& fonts) {
       "Scan (S) makes a map of this room. Play (P) runs augmented reality with this camera in the map "
       "that is chosen below.");
   ImGui::Spacing();
+  if (!source.check_command.empty())
+    ImGui::TextWrapped("To see first what this recording holds, and what is missing: %s", source.check_command.c_str());
   if (source.kind == SourceKind::kKinect)
     ImGui::TextWrapped(
         "To scan well: walk slowly, 0.5 to 4 m from the surfaces, look at things from several sides, and "

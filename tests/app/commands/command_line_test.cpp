@@ -790,6 +790,19 @@ TEST_F(CommandLine, MapInfoListsTheLevelSurfaces) {
   EXPECT_NE(roomradar("map info " + map()).out.find("(floor)"), std::string::npos);
 }
 
+TEST_F(CommandLine, ARecordingInPlaceOfAMapIsPointedToCheck) {
+  const fs::path recording = folder_ / "a recording";
+  ASSERT_EQ(roomradar("record 'sim:table?frames=3&width=64' '" + recording.string() + "' --format tum").status, 0);
+  const std::string quoted = "'" + recording.string() + "'";
+  for (const std::string& command :
+       {"map info " + quoted, "map info --json " + quoted, "map verify " + quoted,
+        "map export " + quoted + " " + (folder_ / "recording.ply").string()}) {
+    const Outcome outcome = roomradar(command);
+    expect_fault(outcome, 1, "is a recording (TUM RGB-D recording), not a map");
+    expect_fault(outcome, 1, "`roomradar check " + quoted + "`");
+  }
+}
+
 TEST_F(CommandLine, CausesAreTheTrueOnes) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const std::string run = "run 'sim:table?frames=5&width=160' --map " + map();

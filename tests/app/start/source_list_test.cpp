@@ -36,6 +36,7 @@ TEST(SourceList, FindsRecordingsHereAndInTheFolderOfRecordings) {
     EXPECT_TRUE(entry.detail.ends_with(" recording, 3 frames")) << entry.detail;
     EXPECT_EQ(entry.fault, "");
     EXPECT_EQ(entry.play_source, entry.source);
+    EXPECT_EQ(entry.check_command, "roomradar check " + entry.source);
   }
   EXPECT_EQ(list_recordings(here / "b").size(), 1U);  // the folder itself
   EXPECT_TRUE(list_recordings(here / "not here").empty());
@@ -51,6 +52,10 @@ TEST(SourceList, FindsRecordingsOfOtherPrograms) {
   const std::vector<SourceEntry> entries = list_recordings(folder.path());
   ASSERT_EQ(entries.size(), 1U);
   EXPECT_EQ(entries[0].detail, "Record3D export, 1 frame");
+  fs::rename(folder.path() / "phone", folder.path() / "my phone");
+  EXPECT_EQ(describe_source((folder.path() / "my phone").string()).check_command,
+            "roomradar check '" + (folder.path() / "my phone").string() + "'");
+  EXPECT_EQ(describe_source("sim:table").check_command, "");
   EXPECT_NE(describe_source((folder.path() / "cut.mkv").string()).fault.find("cut.mkv: is"),
             std::string::npos);
 }
