@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "app/sources/containers/decompress.hpp"
@@ -18,6 +20,7 @@
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -43,7 +46,7 @@ struct RtabmapCamera {
 };
 
 /// Reads a camera: 11 integers (version, kind, size, counts), then K, D, R, P (doubles) and its pose
-/// (floats).
+/// (floats). Source: RTAB-Map, corelib/src/CameraModel.cpp, serialize(), and CameraModel.h, fx().
 RtabmapCamera read_camera(std::string_view bytes, const std::string& where) {
   ByteReader reader(bytes, where + ": a camera");
   const auto head = reader.number<std::array<std::int32_t, 11>>();
@@ -56,11 +59,17 @@ RtabmapCamera read_camera(std::string_view bytes, const std::string& where) {
   const auto K = reader.number<std::array<double, 9>>();
   std::array<double, 14> D{};
   reader.raw(D.data(), static_cast<std::size_t>(d_count) * sizeof(double));
-  (void)reader.take(static_cast<std::size_t>(r_count + p_count) * sizeof(double));
+  (void)reader.take(static_cast<std::size_t>(r_count) * sizeof(double));
+  std::array<double, 12> P{};
+  reader.raw(P.data(), static_cast<std::size_t>(p_count) * sizeof(double));
   RtabmapCamera result;
-  result.camera = {head[4], head[5], K[0], K[4], K[2], K[5]};
+  const bool is_rectified = p_count == 12 && P[0] > 0.0;  // P is of the stored images then, K and D are not
+  if (is_rectified)
+    result.camera = {head[4], head[5], P[0], P[5], P[2], P[6]};
+  else
+    result.camera = {head[4], head[5], K[0], K[4], K[2], K[5]};
   // Six coefficients are those of a fisheye lens; its images are stored rectified.
-  if (d_count != 6) result.lens = {D[0], D[1], D[2], D[3], D[4], D[5], D[6], D[7]};
+  if (!is_rectified && d_count != 6) result.lens = {D[0], D[1], D[2], D[3], D[4], D[5], D[6], D[7]};
   if (pose_count == 12) {
     if (const auto T = transform_of(reader.number<std::array<float, 12>>())) result.T_robot_camera = *T;
   }
@@ -128,11 +137,12 @@ void decode_rtabmap_depth(const std::string& bytes, ImageSize size, double unit_
   if (is_float) scale_depth(factor, depth_m);
 }
 
-/// A node with a depth image: its session, and its pose by the odometry of that session.
-struct NodePose {
+/// A node with a depth image: its session, its pose by the odometry of that session, and its camera.
+struct Node {
   std::int64_t id = 0;
   std::int64_t session = 0;
   std::optional<Eigen::Isometry3d> T_odometry_robot{};
+  std::optional<RtabmapCamera> camera{};  ///< unset: it is damaged or absent
 };
 
 /// Returns the values of a matrix that RTAB-Map compressed: a zlib stream, then rows, columns and OpenCV's
@@ -187,21 +197,21 @@ std::map<std::int64_t, Eigen::Isometry3d> optimised_poses(const SqliteFile& data
 /// Sets the poses of the frames: those of the optimised graph. A node that is not in the graph gets its
 /// odometry pose, moved like the nearest node of its session that is. Without an optimised graph, odometry
 /// poses of one session only: each session has a world frame of its own.
-void set_poses(const SqliteFile& database, const std::vector<NodePose>& nodes, RecordingFacts& facts) {
+void set_poses(const SqliteFile& database, const std::vector<Node>& nodes, RecordingFacts& facts) {
   const std::map<std::int64_t, Eigen::Isometry3d> optimised = optimised_poses(database);
   std::map<std::int64_t, std::size_t> frames_of_session;
-  for (const NodePose& node : nodes) ++frames_of_session[node.session];
+  for (const Node& node : nodes) ++frames_of_session[node.session];
   const auto longest =
       std::max_element(frames_of_session.begin(), frames_of_session.end(), [](const auto& a, const auto& b) {
         return a.second < b.second;
       })->first;
   std::map<std::int64_t, Eigen::Isometry3d> T_world_odometry;  // by session, of the last node in the graph
-  for (const NodePose& node : nodes)
+  for (const Node& node : nodes)
     if (const auto T = optimised.find(node.id); T != optimised.end() && node.T_odometry_robot)
       T_world_odometry.try_emplace(node.session, T->second * node.T_odometry_robot->inverse());
   std::size_t without = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const NodePose& node = nodes[i];
+    const Node& node = nodes[i];
     StatedFrame& frame = facts.frames[i];
     const auto T = optimised.find(node.id);
     if (T != optimised.end() && node.T_odometry_robot)
@@ -230,6 +240,51 @@ void set_poses(const SqliteFile& database, const std::vector<NodePose>& nodes, R
          static_cast<std::int64_t>(without), "", without > 0});
 }
 
+/// Returns the first node whose camera has the size that most nodes' cameras have. Throws Error with `fault` if no
+/// node has a camera.
+std::size_t first_of_usual_camera(const std::vector<Node>& nodes, const std::string& fault) {
+  std::map<std::pair<int, int>, std::size_t> nodes_of_size;
+  for (const Node& node : nodes)
+    if (node.camera) ++nodes_of_size[{node.camera->camera.width_px, node.camera->camera.height_px}];
+  if (nodes_of_size.empty()) throw Error(fault);
+  const auto usual = std::max_element(nodes_of_size.begin(), nodes_of_size.end(),
+                                      [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto first = std::find_if(nodes.begin(), nodes.end(), [&](const Node& node) {
+    return node.camera && std::pair(node.camera->camera.width_px, node.camera->camera.height_px) == usual->first;
+  });
+  return static_cast<std::size_t>(first - nodes.begin());
+}
+
+/// Notes nodes whose camera differs from the one that is used for all.
+void note_other_cameras(const std::vector<Node>& nodes, const RtabmapCamera& used, RecordingFacts& facts) {
+  constexpr double kLeast = 0.02;  // phones focus anew for each image, by less
+  std::int64_t other_size = 0, other_focal = 0;
+  double most = 0.0;
+  for (const Node& node : nodes) {
+    if (!node.camera) continue;
+    const Intrinsics& camera = node.camera->camera;
+    if (camera.width_px != used.camera.width_px || camera.height_px != used.camera.height_px) {
+      ++other_size;
+      continue;
+    }
+    const double difference = std::abs(camera.fx_px / used.camera.fx_px - 1.0);
+    if (difference < kLeast) continue;
+    ++other_focal;
+    most = std::max(most, difference);
+  }
+  if (other_size > 0)
+    facts.notes.push_back({"camera",
+                           std::to_string(other_size) + " of " + std::to_string(nodes.size()) +
+                               " nodes have a camera of another size; their images are left out if they differ, too",
+                           other_size, "", true});
+  if (other_focal > 0)
+    facts.notes.push_back({"camera",
+                           "the focal length of " + std::to_string(other_focal) + " of " +
+                               std::to_string(nodes.size()) + " nodes differs, by up to " +
+                               format_readable(100.0 * most, 2) + " %; that of the first one is used for all",
+                           other_focal, "--camera FILE", true});
+}
+
 }  // namespace
 
 bool is_rtabmap(const std::filesystem::path& path) {
@@ -249,11 +304,12 @@ RecordingFacts index_rtabmap(const std::filesystem::path& path) {
 
   RecordingFacts facts{.name = std::filesystem::canonical(path).string()};
   std::vector<std::int64_t> rows;
-  std::vector<NodePose> nodes;
+  std::vector<Node> nodes;
+  std::string camera_fault;
   // The oldest databases have one session only.
   const std::string session = database->has_column("Node", "map_id") ? "Node.map_id" : "0 * Node.id";
   database->query("SELECT Data.rowid, Node.stamp, Node.pose, length(Data.image), Node.id, " + session +
-                      " FROM Node JOIN Data ON Node.id = Data.id WHERE length(Data.depth) > 0 ORDER BY " +
+                      ", Data.calibration FROM Node JOIN Data ON Node.id = Data.id WHERE length(Data.depth) > 0 ORDER BY " +
                       session + ", Node.stamp, Node.id",
                   {}, [&](const SqliteRow& row) {
                     if (row.integer(3) > 0)
@@ -261,7 +317,12 @@ RecordingFacts index_rtabmap(const std::filesystem::path& path) {
                     else
                       facts.frames.push_back({.time = {row.number(1)}});
                     rows.push_back(row.integer(0));
-                    nodes.push_back({row.integer(4), row.integer(5), pose_in(row.bytes(2))});
+                    nodes.push_back({row.integer(4), row.integer(5), pose_in(row.bytes(2)), {}});
+                    try {
+                      nodes.back().camera = read_camera(row.bytes(6), where);
+                    } catch (const Error& fault) {
+                      if (camera_fault.empty()) camera_fault = fault.what();
+                    }
                   });
   if (rows.empty()) throw Error(where + ": contains no node with a depth image");
   set_poses(*database, nodes, facts);
@@ -269,13 +330,37 @@ RecordingFacts index_rtabmap(const std::filesystem::path& path) {
   const auto read = [database](const char* column, std::int64_t row) {
     return database->read_up_to("Data", column, row, std::uint64_t{1} << 29U);
   };
-  RtabmapCamera camera = read_camera(read("calibration", rows.front()), where);
-  for (StatedFrame& frame : facts.frames)
-    if (frame.T_world_camera) frame.T_world_camera = *frame.T_world_camera * camera.T_robot_camera;
-  const ImageSize depth_size = depth_image_size(read("depth", rows.front()), where + ": a depth image");
-  const bool has_colour = facts.frames.front().colour.has_value();
-  const ImageSize colour_size =
-      has_colour ? image_size(read("image", rows.front()), where + ": a colour image") : depth_size;
+  const std::size_t first = first_of_usual_camera(nodes, camera_fault);
+  RtabmapCamera camera = *nodes[first].camera;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    StatedFrame& frame = facts.frames[i];
+    const RtabmapCamera& own = nodes[i].camera ? *nodes[i].camera : camera;
+    if (frame.T_world_camera) frame.T_world_camera = *frame.T_world_camera * own.T_robot_camera;
+  }
+  note_other_cameras(nodes, camera, facts);
+  // Of the first images that can be read, from the first node with the usual camera on.
+  const auto size_by = [&](const char* column, const auto& size_of) {
+    std::optional<ImageSize> size;
+    std::string fault;
+    for (std::size_t k = 0; k < rows.size() && !size; ++k) {
+      const std::size_t i = (first + k) % rows.size();
+      if (column == std::string_view("image") && !facts.frames[i].colour) continue;
+      try {
+        size = size_of(read(column, rows[i]));
+      } catch (const Error& error) {
+        if (fault.empty()) fault = error.what();
+      }
+    }
+    return std::pair(size, fault);
+  };
+  const auto [found_depth, depth_fault] = size_by(
+      "depth", [&](const std::string& bytes) { return depth_image_size(bytes, where + ": a depth image"); });
+  if (!found_depth) throw Error(depth_fault);
+  const ImageSize depth_size = *found_depth;
+  const auto found_colour =
+      size_by("image", [&](const std::string& bytes) { return image_size(bytes, where + ": a colour image"); }).first;
+  const bool has_colour = found_colour.has_value();
+  const ImageSize colour_size = found_colour.value_or(depth_size);
   if (camera.camera.width_px <= 0) {  // some drivers leave it out
     camera.camera.width_px = colour_size.width_px;
     camera.camera.height_px = colour_size.height_px;
