@@ -2,6 +2,8 @@
 #include "app/c_api/roomradar_source.h"
 
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "app/c_api/conversions.hpp"
@@ -17,6 +19,8 @@ namespace {
 struct SourceState : Handled {
   static constexpr const char* kKind = "source";
   std::unique_ptr<FrameSource> source;
+  std::shared_ptr<InputReport> input = std::make_shared<InputReport>();
+  std::string input_text;  ///< decisions as JSON
   Frame frame;  ///< whose images the caller reads
 };
 
@@ -26,7 +30,10 @@ roomradar_status roomradar_source_open(const char* path, roomradar_source** sour
   return guarded("roomradar_source_open", nullptr, [&] {
     require_given(source, "source");
     auto state = std::make_shared<SourceState>();
-    state->source = open_folder(text_of(path, "path"));
+    SourceOptions options;
+    options.input = state->input;
+    options.questions = Questions::kDepth;
+    state->source = open_folder(text_of(path, "path"), options);
     *source = HandleTable<SourceState>::get().add<roomradar_source>(std::move(state));
   });
 }
@@ -36,6 +43,18 @@ roomradar_status roomradar_source_close(roomradar_source* source) {
 }
 
 const char* roomradar_source_error(const roomradar_source* source) { return error_of<SourceState>(source); }
+
+const char* roomradar_source_input(const roomradar_source* source) {
+  const std::shared_ptr<SourceState> state = HandleTable<SourceState>::get().find(source);
+  if (!state) return nullptr;
+  try {
+    state->input_text = to_json(state->input->decisions())
+                            .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return state->input_text.c_str();
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+}
 
 roomradar_status roomradar_source_next(roomradar_source* source, roomradar_frame* frame) {
   return with<SourceState>("roomradar_source_next", source, [&](SourceState& state) {

@@ -14,6 +14,10 @@ ROOMRADAR_API roomradar_status roomradar_source_open(const char* path, roomradar
 ROOMRADAR_API roomradar_status roomradar_source_close(roomradar_source* source);
 /* Returns the sentence of the last failed call with this handle; see roomradar_map_error(). */
 ROOMRADAR_API const char* roomradar_source_error(const roomradar_source* source);
+/* Returns what was decided about the recording so far, such as its unit, cameras and times, as a JSON array of
+ * objects with topic, sentence, count, option and advice. Valid until the next call of this function with this
+ * source. Null if the handle is closed or of another kind. */
+ROOMRADAR_API const char* roomradar_source_input(const roomradar_source* source);
 /* Reads the next frame. Its images belong to the library and are valid until the next call with this source.
  * Returns ROOMRADAR_END after the last frame, and ROOMRADAR_SKIPPED for an unreadable one. */
 ROOMRADAR_API roomradar_status roomradar_source_next(roomradar_source* source, roomradar_frame* frame);

@@ -47,7 +47,22 @@ std::unique_ptr<FrameSource> open_kinect_named(const std::string& source, Source
   return open_kinect(device, options);
 }
 
+/// Throws Error if options were given that state what a recording does not, for a source that states it itself.
+void require_no_statements(const std::string& source, const char* is, bool has_cameras, const SourceOptions& options) {
+  const char* given = options.depth_unit_m                             ? "--depth-unit"
+                      : options.pose_convention                        ? "--poses-convention"
+                      : options.stamps != StampChoice::kAuto           ? "--stamps"
+                      : has_cameras && !options.camera_file.empty()    ? "--camera"
+                                                                       : nullptr;
+  if (given) throw Error(source + ": is " + is + ", which " + given + " does not apply to; leave it out");
+}
+
 std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceOptions& options) {
+  const bool is_simulated = source.starts_with(kSim), is_openni = source.starts_with(kOpenni);
+  if (is_simulated || is_openni || source.starts_with(kKinect))
+    require_no_statements(source, is_simulated ? "simulated" : "a device", is_simulated || is_openni, options);
+  else if (std::filesystem::exists(source) && is_session_folder(source))
+    require_no_statements(source, "a recorded session", true, options);
   if (source.starts_with(kKinect)) return open_kinect_named(source, options);
   if (source.starts_with(kOpenni)) return open_openni(source.substr(kOpenni.size()), options);
   if (source.starts_with(kSim)) return std::make_unique<SimulatedSource>(parse_sim_spec(source));

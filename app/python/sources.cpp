@@ -11,7 +11,8 @@
 
 namespace roomradar::python {
 
-Source::Source(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+Source::Source(std::unique_ptr<FrameSource> source, std::shared_ptr<const InputReport> input)
+    : source_(std::move(source)), input_(input ? std::move(input) : std::make_shared<const InputReport>()) {}
 
 FrameSource& Source::opened() const {
   if (!source_) throw Error("the source is closed; open it again");
@@ -87,18 +88,49 @@ class FrameList final : public FrameSource {
   std::size_t at_ = 0;
 };
 
+/// Returns the decisions about a recording as dictionaries.
+py::list dictionaries_of(const std::vector<InputDecision>& decisions) {
+  py::list list;
+  for (const InputDecision& decision : decisions) {
+    py::dict each;
+    each["topic"] = decision.topic;
+    each["sentence"] = text_of(decision.sentence);
+    each["count"] = decision.count;
+    each["option"] = decision.option;
+    each["advice"] = decision.is_advice;
+    list.append(each);
+  }
+  return list;
+}
+
 std::unique_ptr<Source> open(const std::filesystem::path& source,
                              const std::optional<std::pair<std::int64_t, std::int64_t>>& frames,
                              const std::filesystem::path& calibration,
-                             const std::optional<Intrinsics>& depth_camera, bool keep_all, bool cache) {
+                             const std::optional<Intrinsics>& depth_camera, bool keep_all, bool cache,
+                             const std::optional<double>& depth_unit_m, const std::filesystem::path& camera,
+                             const std::string& poses_convention) {
   SourceOptions options;
   options.depth_camera = depth_camera;
+  options.depth_unit_m = depth_unit_m;
+  options.camera_file = camera;
+  if (!poses_convention.empty()) {
+    options.pose_convention = parse_pose_convention(poses_convention);
+    if (!options.pose_convention)
+      throw py::value_error("poses_convention: must be stated, or a list of inverse, opengl, wxyz, mm, cm");
+  }
+  options.questions = Questions::kDepth;
+  options.input = std::make_shared<InputReport>();
   options.keep_all = keep_all;
   options.cache_simulated = cache;
   std::optional<FrameRange> range;
   if (frames) range = FrameRange{frames->first, frames->second};
-  return without_gil(
-      [&] { return std::make_unique<Source>(open_source(source.string(), range, calibration, options)); });
+  std::unique_ptr<Source> opened = without_gil([&] {
+    return std::make_unique<Source>(open_source(source.string(), range, calibration, options), options.input);
+  });
+  for (const InputDecision& decision : options.input->decisions())
+    if (decision.is_advice)
+      py::module_::import("warnings").attr("warn")(text_of(source.string() + ": " + line_of(decision)));
+  return opened;
 }
 
 std::unique_ptr<Source> of_frames(const py::iterable& frames, const std::string& name) {
@@ -157,19 +189,27 @@ void bind_sources(py::module_& module) {
       .def_property_readonly(
           "last_fault", [](const Source& source) { return text_of(source.last_fault()); },
           "Why the last skipped frame was unreadable.")
+      .def_property_readonly(
+          "input", [](const Source& source) { return dictionaries_of(source.input().decisions()); },
+          "What was decided about a recording so far: a list of dictionaries with topic, sentence, count, option\n"
+          "and advice. Decisions with advice are also given as warnings when it is opened.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](Source& source, const py::args&) { source.close(); });
 
   module.def(
       "open_source", &open, py::arg("source"), py::kw_only(), py::arg("frames") = py::none(),
       py::arg("calibration") = "", py::arg("depth_camera") = py::none(), py::arg("keep_all") = false,
-      py::arg("cache") = false,
+      py::arg("cache") = false, py::arg("depth_unit_m") = py::none(), py::arg("camera") = "",
+      py::arg("poses_convention") = "",
       "Opens a recording (folder or file), a device (kinect:N, openni:N) or a simulated one (sim:ROOM).\n\n"
       "frames: first and last frame, both included; None: all\n"
       "calibration: file of `roomradar calibrate`; empty: that of the recording, if any\n"
       "depth_camera: replaces the recording's intrinsics\n"
       "keep_all: a live device queues its frames; otherwise only the newest is kept\n"
-      "cache: simulated frames are kept on disk, for callers that read them several times");
+      "cache: simulated frames are kept on disk, for callers that read them several times\n"
+      "depth_unit_m: length of a unit of the recorded depth; None: as the recording states\n"
+      "camera: a camera.json, or a text file with the depth camera's 3 x 3 matrix\n"
+      "poses_convention: stated, or a list of inverse, opengl, wxyz, mm, cm; empty: recognised");
 }
 
 }  // namespace roomradar::python

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/python/long_calls.hpp"
+#include "app/sources/formats/input_report.hpp"
 #include "mapping/types/frame_source.hpp"
 
 namespace roomradar::python {
@@ -14,7 +15,8 @@ namespace roomradar::python {
 /// A frame source, and the number of skipped frames. Throws Error if several threads use it concurrently.
 class Source {
  public:
-  explicit Source(std::unique_ptr<FrameSource> source);
+  /// @param input  decisions about the recording; null: there are none
+  explicit Source(std::unique_ptr<FrameSource> source, std::shared_ptr<const InputReport> input = nullptr);
   virtual ~Source() = default;
 
   /// Returns the next readable frame; null at the end. Call with the interpreter's lock, which is released
@@ -34,9 +36,11 @@ class Source {
   void was_read() { was_read_ = true; }
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }
   [[nodiscard]] const std::string& last_fault() const { return last_fault_; }
+  [[nodiscard]] const InputReport& input() const { return *input_; }
 
  private:
   std::unique_ptr<FrameSource> source_;
+  std::shared_ptr<const InputReport> input_;
   UseFlag use_;
   bool was_read_ = false;
   std::int64_t skipped_ = 0;

@@ -169,6 +169,8 @@ class Source:
     def skipped(self) -> int: ...
     @property
     def last_fault(self) -> str: ...
+    @property
+    def input(self) -> list[dict[str, Any]]: ...
 
 class SimTruth:
     @property
@@ -580,6 +582,9 @@ def open_source(
     depth_camera: Optional[Intrinsics] = ...,
     keep_all: bool = ...,
     cache: bool = ...,
+    depth_unit_m: Optional[float] = ...,
+    camera: _Path = ...,
+    poses_convention: str = ...,
 ) -> Source: ...
 def simulate(
     folder: _Path,

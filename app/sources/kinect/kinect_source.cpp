@@ -43,8 +43,9 @@ CameraRig rig_of(KinectDepth depth, const std::optional<KinectConstants>& consta
   RecordingFacts facts{.name = recording.empty() ? "the Kinect" : recording.string()};
   facts.rig = nominal_rig(NominalRig::kKinect, kSize, kSize);
   facts.camera_origin = Origin::kAssumed;
-  InputReport ignored;  // the device's own constants follow
-  choose_cameras(facts, recording, options, ignored);
+  facts.camera_source = constants ? "a Kinect v1, with the device's own constants for colour," : nominal_name(NominalRig::kKinect);
+  InputReport ignored;
+  choose_cameras(facts, recording, options, options.input ? *options.input : ignored);
   CameraRig rig = facts.rig;
   if (constants)
     if (const auto fitted = fit_kinect_rig(constants->seen_by_both, rig)) rig = *fitted;

@@ -138,6 +138,8 @@ int main(int argc, char** argv) {
   OK(roomradar_map_describe(map, &info));
   REQUIRE(info.triangles > 100 && info.max_world_m[0] > info.min_world_m[0]);
   OK(roomradar_source_open(argv[2], &source));
+  REQUIRE(roomradar_source_input(source) && roomradar_source_input(source)[0] == '[');
+  REQUIRE(roomradar_source_input(NULL) == NULL);
   memset(&options, 0, sizeof options);
   options.struct_size = sizeof options;
   options.poses = ROOMRADAR_POSES_RECORDED;

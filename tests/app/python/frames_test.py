@@ -1,6 +1,7 @@
 """Frames, sources, meshes, simulator: views share memory, and what does not fit is refused with a sentence."""
 import gc
 import unittest
+import warnings
 import weakref
 
 import numpy as np
@@ -151,6 +152,20 @@ class Sources(unittest.TestCase):
             with self.assertRaisesRegex(rr.Error, "the source is closed"):
                 use()
         source.close()  # again: nothing
+
+    def test_decisions_about_a_recording_are_listed_and_advice_is_a_warning(self):
+        recording = support.temporary_folder() / "table"
+        support.command("record", "sim:table?frames=30&width=160&rate=15", recording, "--format", "7scenes")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertFalse([each for each in rr.open_source(recording).input if each["advice"]])
+        with self.assertWarnsRegex(UserWarning, "unit"):
+            source = rr.open_source(recording, depth_unit_m=0.0001)
+        self.assertIn("unit", [each["topic"] for each in source.input if each["advice"]])
+        frames = [next(iter(rr.open_source(recording, depth_unit_m=unit_m))) for unit_m in (0.001, 0.002)]
+        np.testing.assert_allclose(frames[1].depth_m, 2 * frames[0].depth_m, rtol=1e-6)
+        with self.assertRaisesRegex(ValueError, "poses_convention"):
+            rr.open_source(recording, poses_convention="sideways")
 
     def test_what_is_no_source_is_named(self):
         with self.assertRaisesRegex(rr.Error, "no such file or folder"):
