@@ -65,7 +65,7 @@ grep -q '"last_map": "maps/table"' "$settings" || fail "the map is not remembere
 echo "== P plays in the chosen map, Ctrl+Q comes back"
 keys p
 until_true has_focus '^roomradar - '
-until_true says '^roomradar run sim:table.*path=view.* --map maps/table --window'
+until_true says "^roomradar run '?sim:table.*path=view.*'? --map maps/table --window"
 until_true says '^running'
 settled_shot play
 keys ctrl+q
