@@ -4,7 +4,9 @@
 #include <sqlite3.h>
 #include <zstd.h>
 
+#include <cmath>
 #include <cstring>
+#include <functional>
 #include <map>
 
 #include "app/sources/recordings/folder_source.hpp"
@@ -113,6 +115,22 @@ void expect_some_frames(const fs::path& path) {
   EXPECT_EQ(frame.index, 2);
 }
 
+/// The same messages, whose images have the header's stamps that `stamp_s` returns.
+std::vector<Message> with_stamps(const std::function<double(int image, double stamp_s)>& stamp_s) {
+  std::vector<Message> messages = some_messages();
+  int image = 0;
+  for (Message& message : messages) {
+    if (message.type != "sensor_msgs/msg/Image") continue;
+    const double stamp = stamp_s(image, 10.0 + image / 32.0);
+    const auto s = static_cast<std::int32_t>(std::floor(stamp));
+    const auto ns = static_cast<std::uint32_t>(std::llround((stamp - s) * 1e9));
+    std::memcpy(message.bytes.data() + 4, &s, sizeof s);
+    std::memcpy(message.bytes.data() + 8, &ns, sizeof ns);
+    ++image;
+  }
+  return messages;
+}
+
 // ---- databases ----
 
 std::string zstd(const std::string& bytes) {
@@ -165,6 +183,27 @@ TEST(Ros2Bag, ReadsADatabase) {
   expect_some_frames(folder.path() / "a.db3");
   write_db3(folder.path() / "b.db3", some_messages(), /*is_packed=*/true);
   expect_some_frames(folder.path() / "b.db3");
+}
+
+TEST(Ros2Bag, HeadersWithoutAStampAreReplacedByTheTimeOfReception) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::function<double(int, double)>& stamp_s, const std::string& words) {
+    const fs::path path = folder.path() / "a.db3";
+    fs::remove(path);
+    write_db3(path, with_stamps(stamp_s));
+    test::ReadAll all;
+    const std::string said =
+        test::decisions_about([&](const SourceOptions& options) { return open_folder(path, options); }, &all);
+    EXPECT_TRUE(contains(said, words)) << said;
+    ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames)) << said;
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      EXPECT_EQ(all.frames[i].depth_m.at(2, 1), static_cast<float>((8 + i) * 256 + 7) / 1000.0F);
+      EXPECT_NEAR(all.frames[i].stamp_s - all.frames[0].stamp_s, static_cast<double>(i) / 32.0, 0.021);
+    }
+  };
+  expect([](int, double) { return 0.0; }, "the depth images have no time stamps");
+  expect([](int i, double stamp_s) { return i == 2 ? 0.0 : stamp_s; }, "1 depth image has no usable time stamp");
+  expect([](int i, double stamp_s) { return i == 0 ? 0.0 : stamp_s; }, "1 depth image has no usable time stamp");
 }
 
 TEST(Ros2Bag, JoinsThePartsInAFolder) {

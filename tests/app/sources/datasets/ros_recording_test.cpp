@@ -1,6 +1,7 @@
 // ros_recording_test.cpp: bags of ROS 1: our own, those of a RealSense, those of TUM's form.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 
 #include "app/sources/recordings/folder_source.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
-using test::bytes_of;
 using test::contains;
 using test::error_of;
 using test::read_all;
@@ -27,7 +27,6 @@ using test::RosBytes;
 using test::some_frame;
 using test::TemporaryFolder;
 using test::write_text;
-using test::written_rvl;
 using test::written_rvl;
 using test::WrittenBag;
 
@@ -285,6 +284,135 @@ TEST(RosBag, ReadsABagThatWasCutShortUpToItsLastWholeChunk) {
     write_text(path, whole.substr(0, size));
     EXPECT_GT(error_of([&] { (void)open_folder(path); }).size(), 10U) << size;
   }
+}
+
+// ---- header stamps, and topics that differ ----
+
+constexpr int kStamped = 30;
+constexpr double kReceived_s = 1'700'000'000.25;
+
+/// Writes depth (1 m + i cm) and colour (red i), received at 20 Hz, colour 5 ms after depth. The functions return the
+/// header's stamps of image i by its time of reception.
+void write_stamped(const fs::path& path, const std::function<double(int, double)>& depth_stamp,
+                   const std::function<double(int, double)>& colour_stamp) {
+  WrittenBag bag(path);
+  bag.write("/camera/depth/camera_info", "sensor_msgs/CameraInfo", kReceived_s, ros_camera_info(0, 4, 3, 5));
+  bag.write("/camera/color/camera_info", "sensor_msgs/CameraInfo", kReceived_s, ros_camera_info(0, 4, 3, 5));
+  for (int i = 0; i < kStamped; ++i) {
+    const double at_s = kReceived_s + 0.05 * i;
+    std::string units;
+    for (int p = 0; p < 12; ++p) units += bytes_of(static_cast<std::uint16_t>(1000 + 10 * i));
+    bag.write("/camera/depth/image_raw", "sensor_msgs/Image", at_s,
+              ros_image(depth_stamp(i, at_s), "d", 4, 3, "16UC1", 2, units));
+    bag.write("/camera/color/image_raw", "sensor_msgs/Image", at_s + 0.005,
+              ros_image(colour_stamp(i, at_s + 0.005), "c", 4, 3, "rgb8", 3, std::string(36, static_cast<char>(i))));
+  }
+  bag.close();
+}
+
+/// Expects all frames, each with its colour, at 20 Hz in the order of reception; returns the decisions.
+std::string expect_stamped(const std::function<double(int, double)>& depth_stamp,
+                           const std::function<double(int, double)>& colour_stamp) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.bag";
+  write_stamped(path, depth_stamp, colour_stamp);
+  test::ReadAll all;
+  const std::string said =
+      test::decisions_about([&](const SourceOptions& options) { return open_folder(path, options); }, &all);
+  EXPECT_EQ(all.frames.size(), static_cast<std::size_t>(kStamped)) << said;
+  for (std::size_t i = 0; i < std::min<std::size_t>(all.frames.size(), kStamped); ++i) {
+    const Frame& frame = all.frames[i];
+    EXPECT_NEAR(frame.depth_m.at(1, 1), 1.0 + 0.01 * static_cast<double>(i), 1e-6);
+    EXPECT_NEAR(frame.stamp_s - all.frames[0].stamp_s, 0.05 * static_cast<double>(i), 0.011) << i << said;
+    EXPECT_FALSE(frame.colour.empty()) << i << said;
+    if (frame.colour.empty()) break;
+    EXPECT_EQ(frame.colour.at(0, 0).r, i);
+  }
+  return said;
+}
+
+TEST(RosBag, HeadersWithoutAStampAreReplacedByTheTimeOfReception) {
+  const auto right = [](int, double at_s) { return at_s - 0.02; };
+  const auto none = [](int, double) { return 0.0; };
+  const auto sometimes = [&](int i, double at_s) { return i % 3 == 1 ? 0.0 : right(i, at_s); };
+  const auto first = [&](int i, double at_s) { return i == 0 ? 0.0 : right(i, at_s); };
+  const std::string said = expect_stamped(right, right);
+  EXPECT_FALSE(contains(said, "stamp") || contains(said, "clock")) << said;
+  EXPECT_TRUE(contains(expect_stamped(none, none), "times of reception are used"));
+  EXPECT_TRUE(contains(expect_stamped(right, none), "the colour images have no time stamps"));
+  EXPECT_TRUE(contains(expect_stamped(none, right), "the depth images have no time stamps"));
+  EXPECT_TRUE(contains(expect_stamped(sometimes, right), "10 depth images have no usable time stamp"));
+  EXPECT_TRUE(contains(expect_stamped(right, sometimes), "10 colour images have no usable time stamp"));
+  EXPECT_TRUE(contains(expect_stamped(first, right), "1 depth image has no usable time stamp"));
+}
+
+TEST(RosBag, AClockThatIsSetWhileRecordingIsBridged) {
+  const auto set_by = [](double step_s) {
+    return [step_s](int i, double at_s) { return at_s - 0.02 + (i >= 15 ? step_s : 0.0); };
+  };
+  for (const double step_s : {-3600.0, -1.0, 1.0, 3600.0}) {
+    const std::string said = expect_stamped(set_by(step_s), set_by(step_s));
+    EXPECT_TRUE(contains(said, step_s < 0 ? "was set back" : "was set forward")) << step_s << said;
+  }
+  const auto own_clock = [](int, double at_s) { return at_s - kReceived_s + 77.0; };  // since the camera was switched on
+  const auto right = [](int, double at_s) { return at_s - 0.02; };
+  EXPECT_TRUE(contains(expect_stamped(own_clock, right), "clocks of colour and depth differ"));
+}
+
+TEST(RosBag, DepthThatIsRegisteredToColourIsPreferred) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.bag";
+  const auto write = [&](std::initializer_list<const char*> depth_topics) {
+    WrittenBag bag(path);
+    bag.write("/camera/color/camera_info", "sensor_msgs/CameraInfo", 1, ros_camera_info(1, 4, 3, 7));
+    for (const char* topic : depth_topics)
+      bag.write(fs::path(topic).parent_path() / "camera_info", "sensor_msgs/CameraInfo", 1, ros_camera_info(1, 4, 3, 5));
+    for (int i = 0; i < 3; ++i) {
+      for (const char* topic : depth_topics)
+        bag.write(topic, "sensor_msgs/Image", 1 + i / 30.0, ros_image(1 + i / 30.0, "d", 4, 3, "16UC1", 2, std::string(24, '\4')));
+      bag.write("/camera/color/image_raw", "sensor_msgs/Image", 1 + i / 30.0,
+                ros_image(1 + i / 30.0, "c", 4, 3, "rgb8", 3, std::string(36, 'x')));
+    }
+    bag.close();
+    test::ReadAll all;
+    const std::string said =
+        test::decisions_about([&](const SourceOptions& options) { return open_folder(path, options); }, &all);
+    EXPECT_EQ(all.frames.size(), 3U);
+    return said;
+  };
+  for (const char* registered :
+       {"/camera/aligned_depth_to_color/image_raw", "/camera/depth_registered/image_raw", "/camera/depth/hw_registered/image_rect"}) {
+    const std::string said = write({"/camera/depth/image_rect_raw", registered});
+    EXPECT_TRUE(contains(said, std::string("of 2 topics with depth, ") + registered + " is used, which is registered")) << said;
+    EXPECT_FALSE(contains(said, "place of the colour camera")) << said;
+  }
+  EXPECT_TRUE(contains(write({"/camera/depth/image_rect_raw"}), "the place of the colour camera beside the depth camera is not stated"));
+}
+
+TEST(RosBag, ImagesThatCannotBeReadArePassedOver) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.bag";
+  WrittenBag bag(path);
+  bag.write("/camera/depth/camera_info", "sensor_msgs/CameraInfo", 1, ros_camera_info(1, 4, 3, 5));
+  bag.write("/camera/color/camera_info", "sensor_msgs/CameraInfo", 1, ros_camera_info(1, 4, 3, 5));
+  for (int i = 0; i < 100; ++i) {
+    const double at_s = 1 + i / 30.0;
+    const bool is_lost = (i >= 20 && i < 50) || i >= 70;
+    bag.write("/camera/depth/image_raw", "sensor_msgs/Image", at_s,
+              ros_image(at_s, "d", 4, 3, "16UC1", 2, std::string(is_lost ? 3 : 24, '\4')));
+    bag.write("/camera/color/image_raw", "sensor_msgs/Image", at_s,
+              ros_image(at_s, "c", 4, 3, "rgb8", 3, std::string(i % 2 == 0 ? 5 : 36, 'x')));
+  }
+  bag.close();
+  test::ReadAll all;
+  const std::string said =
+      test::decisions_about([&](const SourceOptions& options) { return open_folder(path, options); }, &all);
+  ASSERT_EQ(all.frames.size(), 40U) << said;
+  EXPECT_EQ(all.faults.size(), 60U);
+  EXPECT_EQ(all.frames[20].index, 50);
+  EXPECT_TRUE(all.frames[0].colour.empty());
+  EXPECT_FALSE(all.frames[1].colour.empty());
+  EXPECT_TRUE(contains(said, "60 depth images cannot be read") && contains(said, "20 colour images cannot be read")) << said;
 }
 
 /// A bag of 5 GB whose pixels are holes of a sparse file. Says time and memory.
