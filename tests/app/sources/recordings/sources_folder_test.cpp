@@ -1,6 +1,8 @@
 // sources_folder_test.cpp: recordings on disk, intact and damaged.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
@@ -495,6 +497,72 @@ TEST(BadFrame, AnyNumberInARowIsPassedOver) {
   EXPECT_TRUE(contains(said, "28 depth images cannot be read")) << said;
 }
 
+/// Damages images 20 to 49 and 70 to 99 of a recording of 100, and every second colour image.
+void lose_images(const fs::path& folder, const std::vector<fs::path>& depth, const std::vector<fs::path>& colour) {
+  ASSERT_EQ(depth.size(), 100U) << folder;
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if ((i >= 20 && i < 50) || i >= 70) test::cut_to(depth[i], i % 2 == 0 ? 0.0 : 0.6);
+    if (i % 2 == 0 && i < colour.size()) test::cut_to(colour[i], 0.4);
+  }
+}
+
+TEST(BadFrame, ThirtyInARowCostNothingElseInFoldersOfEveryForm) {
+  const auto files_in = [](const fs::path& folder, const std::string& ending, const std::string& begin = "") {
+    std::vector<fs::path> files;
+    for (const auto& each : fs::directory_iterator(folder))
+      if (each.path().filename().string().ends_with(ending) && each.path().filename().string().starts_with(begin))
+        files.push_back(each.path());
+    std::sort(files.begin(), files.end());
+    return files;
+  };
+  const auto expect_rest = [](const fs::path& folder) {
+    ReadAll all;
+    const std::string said =
+        decisions_about([&](const SourceOptions& options) { return open_folder(folder, options); }, &all);
+    ASSERT_EQ(all.frames.size(), 40U) << folder << said;
+    EXPECT_EQ(all.faults.size(), 60U);
+    EXPECT_EQ(all.frames[19].index, 19);
+    EXPECT_EQ(all.frames[20].index, 50);
+    EXPECT_EQ(std::count_if(all.frames.begin(), all.frames.end(), [](const Frame& frame) { return frame.colour.empty(); }),
+              20);
+    EXPECT_TRUE(contains(said, "60 depth images cannot be read")) << said;
+    EXPECT_TRUE(contains(said, "20 colour images cannot be read")) << said;
+  };
+  {
+    const TemporaryFolder folder;
+    write_recording(folder.path(), RecordingFormat::kTum, 100);
+    lose_images(folder.path(), files_in(folder.path() / "depth", ".png"), files_in(folder.path() / "rgb", ".png"));
+    expect_rest(folder.path());
+  }
+  {
+    const TemporaryFolder folder;
+    write_recording(folder.path(), RecordingFormat::kSevenScenes, 100);
+    lose_images(folder.path(), files_in(folder.path(), "depth.png"), files_in(folder.path(), "color.png"));
+    expect_rest(folder.path());
+  }
+  {
+    const TemporaryFolder folder;
+    write_recording(folder.path(), RecordingFormat::kFakenect, 100, 640, 480);
+    lose_images(folder.path(), files_in(folder.path(), ".pgm", "d-"), files_in(folder.path(), ".ppm", "r-"));
+    expect_rest(folder.path());
+  }
+  for (const bool is_redwood : {false, true}) {  // numbered images, without and with Open3D's camera
+    const TemporaryFolder folder;
+    fs::create_directories(folder.path() / "depth");
+    fs::create_directories(folder.path() / "color");
+    for (int i = 0; i < 100; ++i) {
+      const Frame frame = some_frame(i);
+      const std::string name = std::to_string(1000 + i) + ".png";
+      write_depth_file(frame.depth_m, DepthEncoding::kMillimetres, folder.path() / "depth" / name);
+      write_colour_file(frame.colour, folder.path() / "color" / name);
+    }
+    if (is_redwood)
+      write_text(folder.path() / "intrinsic.json", R"({"width":16,"height":12,"intrinsic_matrix":[15,0,0,0,15,0,7,5,1]})");
+    lose_images(folder.path(), files_in(folder.path() / "depth", ".png"), files_in(folder.path() / "color", ".png"));
+    expect_rest(folder.path());
+  }
+}
+
 TEST(BadFrame, RecordingWithNoneButBadOnesIsRefused) {
   const TemporaryFolder folder;
   write_recording(folder.path(), RecordingFormat::kSevenScenes, 3);
@@ -540,6 +608,31 @@ TEST(SevenScenes, PoseThatIsNotANumberIsNoPose) {
   ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames));
   for (std::size_t i = 0; i < all.frames.size(); ++i)
     EXPECT_EQ(all.frames[i].T_world_camera.has_value(), i < 1 || i > 3) << i;
+}
+
+TEST(SevenScenes, PosesOfOtherFormsAreReadOrLost) {
+  const TemporaryFolder folder;
+  write_recording(folder.path(), RecordingFormat::kSevenScenes);
+  write_text(name_of(folder.path(), 0, "pose.txt"), "");
+  write_text(name_of(folder.path(), 1, "pose.txt"), "0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 0\n");
+  write_text(name_of(folder.path(), 2, "pose.txt"), "0 -1 0 1\n1 0 0 2\n0 0 1 3\n");                  // 3 x 4
+  write_text(name_of(folder.path(), 3, "pose.txt"), "0 1 0 0\n-1 0 0 0\n0 0 1 0\n1 2 3 1\n");          // transposed
+  write_text(name_of(folder.path(), 4, "pose.txt"), "0 -2 0 1\n2 0 0 2\n0 0 2 3\n0 0 0 1\n");          // scaled
+  write_text(name_of(folder.path(), 5, "pose.txt"), "0 -1 0 1\r\n1 0 0 2\r\n0 0 1 3\r\n0 0 0 1\r\n");  // of Windows
+  ReadAll all;
+  const std::string said =
+      decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames));
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  T.translation() << 1, 2, 3;
+  for (const std::size_t i : {0U, 1U, 4U}) EXPECT_FALSE(all.frames[i].T_world_camera) << i;
+  for (const std::size_t i : {2U, 3U, 5U}) {
+    ASSERT_TRUE(all.frames[i].T_world_camera) << i;
+    EXPECT_TRUE(all.frames[i].T_world_camera->isApprox(T, 1e-9)) << i;
+  }
+  EXPECT_TRUE(contains(said, "3 recorded poses are lost")) << said;
+  EXPECT_TRUE(contains(said, "stored column by column")) << said;
 }
 
 TEST(SevenScenes, RotationIsMadeExact) {
