@@ -1,7 +1,8 @@
 // camera_fuzz.cpp: camera.json, camera-intrinsics.txt, calibration.json and map.json, by the first byte.
 #include "app/calibration/calibration.hpp"
-#include "app/sources/formats/camera_rig.hpp"
 #include "app/sources/datasets/seven_scenes.hpp"
+#include "app/sources/decisions/camera_choice.hpp"
+#include "app/sources/formats/camera_rig.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
@@ -13,6 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     switch (data[0]) {
       case 'c':
         (void)read_camera_file(test::file_with(text, "camera.json"));
+        (void)read_stated_input(test::fuzz_folder(), {});
         break;
       case 'i':
         (void)read_intrinsics_matrix(test::file_with(text, "camera-intrinsics.txt"), 640, 480);
