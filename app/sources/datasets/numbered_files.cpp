@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
-#include "app/sources/datasets/recording_facts.hpp"
 #include "app/sources/formats/image_header.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "mapping/types/system/error.hpp"
@@ -29,6 +29,27 @@ std::optional<std::int64_t> number_in(const std::string& stem) {
   return parse_whole_number(std::string_view(stem).substr(before + 1));
 }
 
+/// Returns the first number anywhere in a file's name.
+std::optional<std::int64_t> first_number_in(const std::string& stem) {
+  constexpr std::string_view kDigits = "0123456789";
+  const std::size_t begin = std::min(stem.find_first_of(kDigits), stem.size());
+  const std::size_t end = std::min(stem.find_first_not_of(kDigits, begin), stem.size());
+  return parse_whole_number(std::string_view(stem).substr(begin, end - begin));
+}
+
+/// Returns the number that all digits of a file's name make.
+std::optional<std::int64_t> all_digits_in(const std::string& stem) {
+  std::string digits;
+  std::copy_if(stem.begin(), stem.end(), std::back_inserter(digits), [](char c) { return c >= '0' && c <= '9'; });
+  return parse_whole_number(digits);
+}
+
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 }  // namespace
 
 std::map<std::int64_t, fs::path> numbered_files(const fs::path& folder,
@@ -36,11 +57,20 @@ std::map<std::int64_t, fs::path> numbered_files(const fs::path& folder,
   std::map<std::int64_t, fs::path> files;
   if (!fs::is_directory(folder)) return files;
   const std::vector<fs::path> entries = entries_of(folder);
-  for (const std::string_view extension : extensions)
-    for (const fs::path& file : entries) {
-      const auto number = number_in(file.stem().string());
-      if (file.extension() == extension && number && *number >= 0) files.try_emplace(*number, file);
-    }
+  const auto list = [&](const auto& number_of) {
+    files.clear();
+    std::size_t images = 0;
+    for (const std::string_view extension : extensions)
+      for (const fs::path& file : entries) {
+        if (lower_case(file.extension().string()) != extension) continue;
+        ++images;
+        const auto number = number_of(file.stem().string());
+        if (number && *number >= 0) files.try_emplace(*number, file);
+      }
+    return 2 * files.size() >= images;
+  };
+  // The first number of names such as 2024-03-05_12-00-07_033 is of no use, nor the last of img_0012_depth16.
+  if (!list(number_in) && !list(first_number_in)) (void)list(all_digits_in);
   return files;
 }
 
@@ -68,6 +98,19 @@ ImageSize size_of_images(const std::vector<fs::path>& files, const fs::path& whe
   const auto most = std::max_element(votes.begin(), votes.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
   return {most->first.first, most->first.second};
+}
+
+std::optional<ImageSize> size_of_colours(const std::vector<fs::path>& files, const fs::path& where,
+                                         RecordingFacts& facts) {
+  if (files.empty()) return std::nullopt;
+  try {
+    return size_of_images(files, where);
+  } catch (const Error& fault) {
+    facts.notes.push_back({"images",
+                           "no colour image can be read, so depth is used without colour: " + std::string(fault.what()),
+                           static_cast<std::int64_t>(files.size()), "", true});
+    return std::nullopt;
+  }
 }
 
 Intrinsics scaled_to_depth(const Intrinsics& colour, ImageSize depth, const std::string& where) {

@@ -14,6 +14,7 @@
 #include "app/sources/formats/parse_numbers.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
@@ -90,15 +91,30 @@ bool is_numbered_images(const fs::path& folder) {
 
 RecordingFacts index_numbered_images(const fs::path& folder) {
   RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
-  const auto colour_files =
-      numbered_files(first_folder(folder, {"color", "colour", "rgb", "image"}), {".jpg", ".jpeg", ".png"});
+  const fs::path colour_folder =
+      first_folder(folder, {"color", "colour", "rgb", "image", "images", "colors", "Color", "RGB"});
+  const auto colour_files = numbered_files(colour_folder, {".jpg", ".jpeg", ".png"});
   const auto pose_files = numbered_files(first_folder(folder, {"pose", "poses"}), {".txt"});
+  const auto depth_files = numbered_files(folder / "depth", {".png", ".pgm"});
+  // Numbers of ten digits and more are times.
+  constexpr std::int64_t kLeastTime = 1'000'000'000;
+  const bool are_times = !depth_files.empty() && depth_files.begin()->first >= kLeastTime;
+  facts.has_no_clock = !are_times;
+  facts.stamps_have_no_unit = are_times;
   std::vector<fs::path> depths, colours;
   std::vector<std::string> poses;
   std::int64_t without_colour = 0, first_without_colour = -1;
-  for (const auto& [number, file] : numbered_files(folder / "depth", {".png"})) {
-    StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / kNominalRate_hz}};
-    if (const auto colour = colour_files.find(number); colour != colour_files.end()) {
+  std::error_code ignored;
+  if (are_times)
+    for (const auto& [number, file] : colour_files) {
+      facts.colours.push_back({.stamp_s = static_cast<double>(number)});
+      colours.push_back(file);
+    }
+  for (const auto& [number, file] : depth_files) {
+    StatedFrame frame{.time = {.stamp_s = static_cast<double>(number) / (are_times ? 1.0 : kNominalRate_hz)}};
+    if (are_times) {
+      // Colour images are paired by time.
+    } else if (const auto colour = colour_files.find(number); colour != colour_files.end()) {
       frame.colour = colours.size();
       colours.push_back(colour->second);
     } else if (without_colour++ == 0) {
@@ -109,7 +125,18 @@ RecordingFacts index_numbered_images(const fs::path& folder) {
     depths.push_back(file);
     facts.frames.push_back(std::move(frame));
   }
-  if (facts.frames.empty()) return facts;
+  if (facts.frames.empty()) {
+    for (const fs::path& file : entries_of(folder / "depth"))
+      if (file.has_extension())
+        throw Error(file.string() + ": is not read as depth; depth must be 16 bit grey images depth/NNNNN.png or " +
+                    ".pgm, so convert them");
+    return facts;
+  }
+  if (colours.empty() && !colour_folder.empty() && !is_empty_folder(colour_folder, ignored))
+    facts.notes.push_back({"images",
+                           "no file in " + colour_folder.filename().string() +
+                               " is a .jpg or .png with the number of a depth image; depth is used without colour",
+                           static_cast<std::int64_t>(depths.size()), "", true});
   if (!colours.empty() && without_colour > 0)
     facts.notes.push_back({"images",
                            "the colour image of " + std::to_string(without_colour) + " of " +
@@ -118,8 +145,7 @@ RecordingFacts index_numbered_images(const fs::path& folder) {
                            without_colour});
 
   const ImageSize size = size_of_images(depths, folder);
-  std::optional<ImageSize> colour_size;
-  if (!colours.empty()) colour_size = size_of_images(colours, folder);
+  const std::optional<ImageSize> colour_size = size_of_colours(colours, folder, facts);
   facts.rig = nominal_rig(NominalRig::kNumbered, size, colour_size);
   facts.camera_origin = Origin::kAssumed;
   facts.camera_source = nominal_name(NominalRig::kNumbered);

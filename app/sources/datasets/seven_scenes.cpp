@@ -111,7 +111,8 @@ struct FrameFiles {
 
 const std::regex& seven_scenes_name() {
   static const std::regex pattern(
-      R"(frame-(\d{1,9})\.(depth\.png|depth\.pgm|color\.png|color\.jpe?g|color\.none|pose\.txt))");
+      R"(frame-(\d{1,9})\.(depth\.png|depth\.pgm|color\.png|color\.jpe?g|color\.none|pose\.txt))",
+      std::regex::ECMAScript | std::regex::icase);
   return pattern;
 }
 
@@ -177,8 +178,7 @@ RecordingFacts index_seven_scenes(const fs::path& folder) {
   if (depths.empty()) throw Error(facts.name + ": contains no depth images");
 
   const ImageSize size = size_of_images(as_paths(depths), folder);
-  std::optional<ImageSize> colour_size;
-  if (!colours.empty()) colour_size = size_of_images(as_paths(colours), folder);
+  const std::optional<ImageSize> colour_size = size_of_colours(as_paths(colours), folder, facts);
   facts.rig = nominal_rig(NominalRig::kSevenScenes, size, colour_size);
   facts.camera_origin = Origin::kAssumed;
   facts.camera_source = nominal_name(NominalRig::kSevenScenes);
@@ -218,13 +218,16 @@ StatedPose read_pose_file(const fs::path& path) {
   std::vector<double> m;
   try {
     std::istringstream file(read_bytes(path, "a 4 x 4 pose", kMaxPose_bytes));
-    for (std::string line; std::getline(file, line);)
+    for (std::string line; std::getline(file, line);) {
+      // As numpy and spreadsheets write matrices.
+      std::replace_if(line.begin(), line.end(), [](char c) { return std::string_view(",;[]").find(c) != std::string_view::npos; }, ' ');
       for (const std::string_view word : split_words(line)) {
         const auto value = parse_number(word);
         if (!value) return {{}, name + ": '" + std::string(word.substr(0, 40)) + "' is not a number"};
         if (m.size() == 16) return {{}, name + ": has more than 16 numbers; must be a 4 x 4 pose"};
         m.push_back(*value);
       }
+    }
   } catch (const Error& fault) {
     return {{}, fault.what()};
   }

@@ -1,7 +1,10 @@
 // recording_kinds.cpp: the table of kinds, each with its detection and its reader.
 #include "app/sources/recordings/recording_kinds.hpp"
 
+#include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
 
 #include "app/sources/containers/matroska.hpp"
 #include "app/sources/containers/oni_file.hpp"
@@ -80,12 +83,37 @@ fs::path file_in(const fs::path& path) {
   return found.empty() ? path : found;
 }
 
-/// Returns the path's kind, or that of the one file in it, and sets `file` to what is to be read.
+/// Returns the folders in a folder, at most a hundred; none if it cannot be listed.
+std::vector<fs::path> folders_in(const fs::path& path) {
+  constexpr std::size_t kMost = 100;
+  std::vector<fs::path> folders;
+  std::error_code fault;
+  for (fs::directory_iterator each(path, fault), end; !fault && each != end && folders.size() < kMost;
+       each.increment(fault)) {
+    std::error_code ignored;
+    if (!is_hidden_file(each->path().filename().string()) && each->is_directory(ignored))
+      folders.push_back(each->path());
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+/// Returns the path's kind, or that of the one file or the one folder in it, and sets `file` to what is to be read.
 const Kind* kind_of(const fs::path& path, fs::path& file) {
   file = path;
   if (const Kind* kind = kind_of(path)) return kind;
   file = file_in(path);
-  return file == path ? nullptr : kind_of(file);
+  if (file != path) return kind_of(file);
+  // An archive that was unpacked into a folder of its own, or an app's folder in it.
+  constexpr int kLevels = 3;
+  for (int level = 0; level < kLevels; ++level) {
+    const std::vector<fs::path> folders = folders_in(file);
+    if (folders.size() != 1) break;
+    file = folders.front();
+    if (const Kind* kind = kind_of(file)) return kind;
+  }
+  file = path;
+  return nullptr;
 }
 
 [[noreturn]] void fail_unknown(const fs::path& path) {
@@ -101,6 +129,13 @@ const Kind* kind_of(const fs::path& path, fs::path& file) {
     throw Error(name + ": is a saved map, not a recording; give the recording or the device as SOURCE");
   if (fs::exists(path / "events.txt") && fs::exists(path / "session.json"))
     throw Error(name + ": is a recorded session, not a recording; `roomradar run` replays it");
+  std::vector<std::string> recordings;
+  for (const fs::path& folder : folders_in(path))
+    if (kind_of(folder)) recordings.push_back(folder.filename().string());
+  if (!recordings.empty())
+    throw Error(name + ": holds several folders, of which " + recordings.front() +
+                (recordings.size() == 1 ? " is a recording" : " and " + recordings.back() + " are recordings") +
+                "; give one of them");
   throw Error(name +
               ": is not a recording of a known format; looked for INDEX.txt (fakenect), depth.txt and "
               "rgb.txt (TUM RGB-D), frame-XXXXXX.depth.png (7-Scenes), depth/NNNNN.png with "

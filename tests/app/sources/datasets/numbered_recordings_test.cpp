@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -24,6 +25,94 @@ using test::TemporaryFolder;
 using test::write_text;
 
 std::string padded(int i) { return std::string(5, '0') + std::to_string(i); }
+
+// ---- folders of numbered images ----
+
+struct Written {
+  std::string depth_name, colour_name;
+};
+
+/// Frame i has a depth of 1 m + i cm and red i.
+void write_numbered(const fs::path& folder, const std::function<Written(int)>& name) {
+  for (const char* kind : {"depth", "color"}) fs::create_directories(folder / kind);
+  for (int i = 0; i < 12; ++i) {
+    write_depth_file(DepthImage(16, 12, 1.0F + 0.01F * static_cast<float>(i)), DepthEncoding::kMillimetres,
+                     folder / "depth" / name(i).depth_name);
+    write_colour_file(ColourImage(16, 12, {static_cast<std::uint8_t>(i), 0, 0}), folder / "color" / name(i).colour_name);
+  }
+}
+
+/// Expects the twelve frames with their own colour; returns the decisions.
+std::string expect_twelve(const fs::path& folder) {
+  ReadAll all;
+  const std::string said =
+      decisions_about([&](const SourceOptions& options) { return open_folder(folder, options); }, &all);
+  EXPECT_EQ(all.frames.size(), 12U) << said;
+  for (std::size_t i = 0; i < all.frames.size(); ++i) {
+    EXPECT_NEAR(all.frames[i].depth_m.at(0, 0), 1.0 + 0.01 * static_cast<double>(i), 1e-4);
+    EXPECT_TRUE(!all.frames[i].colour.empty() && all.frames[i].colour.at(0, 0).r == i) << i << "\n" << said;
+  }
+  return said;
+}
+
+TEST(NumberedImages, NamesMayBeOfManyForms) {
+  const std::vector<std::function<Written(int)>> forms = {
+      [](int i) { return Written{std::to_string(i) + ".PNG", std::to_string(i) + ".PNG"}; },
+      [](int i) { return Written{"img (" + std::to_string(i) + ").png", "img (" + std::to_string(i) + ").png"}; },
+      [](int i) { return Written{"img_" + padded(i) + "_depth16.png", "img_" + padded(i) + "_rgb8.png"}; },
+      [](int i) {
+        const std::string name = "2024-03-05_12-00-0" + std::to_string(i / 6) + "_" + std::to_string(100 + 100 * (i % 6)) + ".png";
+        return Written{name, name};
+      }};
+  for (const auto& form : forms) {
+    const TemporaryFolder folder;
+    write_numbered(folder.path(), form);
+    (void)expect_twelve(folder.path());
+  }
+}
+
+TEST(NumberedImages, NamesMayBeTimes) {
+  for (const double unit_per_s : {1e3, 1e6, 1e9}) {
+    const TemporaryFolder folder;
+    write_numbered(folder.path(), [=](int i) {
+      const auto name = [=](double s) { return std::to_string(static_cast<std::int64_t>(s * unit_per_s)) + ".png"; };
+      return Written{name(1.7e9 + i / 10.0), name(1.7e9 + i / 10.0 + 0.004)};
+    });
+    ReadAll all;
+    (void)decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+    ASSERT_EQ(all.frames.size(), 12U);
+    EXPECT_NEAR(all.frames[11].stamp_s - all.frames[0].stamp_s, 1.1, 1e-3);
+    (void)expect_twelve(folder.path());
+  }
+}
+
+TEST(NumberedImages, ColourThatCannotBeReadCostsOnlyColour) {
+  const TemporaryFolder folder;
+  write_numbered(folder.path(), [](int i) { return Written{padded(i) + ".png", padded(i) + ".png"}; });
+  for (const auto& file : fs::directory_iterator(folder.path() / "color")) write_text(file.path(), "404 Not Found");
+  ReadAll all;
+  const std::string said =
+      decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  EXPECT_EQ(all.frames.size(), 12U);
+  EXPECT_TRUE(contains(said, "no colour image can be read, so depth is used without colour")) << said;
+}
+
+TEST(NumberedImages, FoldersInFoldersAreEntered) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "__MACOSX");
+  write_numbered(folder.path() / "archive" / "scan", [](int i) { return Written{padded(i) + ".png", padded(i) + ".png"}; });
+  (void)expect_twelve(folder.path());
+  fs::copy(folder.path() / "archive", folder.path() / "second", fs::copy_options::recursive);
+  fs::copy(folder.path() / "archive" / "scan", folder.path() / "third", fs::copy_options::recursive);
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "third is a recording; give one of them"));
+}
+
+TEST(NumberedImages, DepthOfAnotherFormIsNamed) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "depth");
+  write_text(folder.path() / "depth" / "0.tiff", "II");
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "depth must be 16 bit grey images"));
+}
 
 // ---- Stray Scanner ----
 
