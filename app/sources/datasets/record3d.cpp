@@ -104,6 +104,7 @@ RecordingFacts index_record3d(const fs::path& folder) {
   facts.is_depth_registered = true;
   facts.depth_unit_m = 1.0;
   facts.unit_source = "metres, by Record3D's format";
+  facts.has_quaternions = true;
   set_arkit_axes(facts, /*camera_is_opengl=*/true);
 
   const Json poses = metadata.value("poses", Json());
@@ -114,6 +115,7 @@ RecordingFacts index_record3d(const fs::path& folder) {
   if (!(fps > 0.0)) throw Error(where + ": fps must be > 0");
   facts.has_no_clock = stamps.empty() && !metadata.contains("fps");
 
+  const auto images = numbered_files(folder / "rgb", {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
   for (const auto& [number, file] : numbered_files(folder / "depth", {".exr"})) {
     const auto at = static_cast<std::size_t>(number);
@@ -129,10 +131,10 @@ RecordingFacts index_record3d(const fs::path& folder) {
                            : p                ? "is no rigid transform"
                                               : "is not a list of 7 numbers";
     }
-    const fs::path image = folder / "rgb" / (std::to_string(number) + ".jpg");
-    if (fs::exists(image)) frame.colour = colour_paths.size();
+    const auto image = images.find(number);
+    if (image != images.end()) frame.colour = colour_paths.size();
     depth_paths.push_back(file);
-    colour_paths.push_back(image);
+    colour_paths.push_back(image == images.end() ? fs::path{} : image->second);
     facts.frames.push_back(std::move(frame));
   }
   facts.read_depth = [depth_paths](std::size_t frame, double unit_m, DepthImage& depth_m) {

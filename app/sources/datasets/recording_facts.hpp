@@ -86,6 +86,7 @@ struct RecordingFacts {
   /// T_world_camera = T_world_statedworld * (stated pose) * T_statedcamera_camera: the axes of the format.
   Eigen::Isometry3d T_world_statedworld = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_statedcamera_camera = Eigen::Isometry3d::Identity();
+  bool has_quaternions = false;  ///< the recording states rotations as quaternions, whose order may be another one
   bool has_pose_times = false;  ///< poses have time stamps of their own, so they cannot be shifted by a frame
   /// True: the world frame of the poses is aligned with gravity, so a pose gives the direction of gravity.
   bool is_world_level = false;

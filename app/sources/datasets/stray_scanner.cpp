@@ -123,6 +123,7 @@ RecordingFacts index_stray_scanner(const fs::path& folder) {
   facts.is_depth_registered = true;
   facts.unit_source = "millimetres, by Stray Scanner's format";
   facts.stamps_have_no_unit = true;
+  facts.has_quaternions = true;
   set_arkit_axes(facts, /*camera_is_opengl=*/false);
 
   std::size_t bad_lines = 0;

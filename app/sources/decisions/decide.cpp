@@ -157,7 +157,14 @@ void decide_times(DecidedRecording& recording, const SourceOptions& options) {
                       format_readable(1000.0 * facts.pair_within_s, 2) + " ms",
                   frames - paired, "--stamps", true});
   }
-  if (facts.pose_track) repair_track(*facts.pose_track, depth);
+  if (facts.pose_track)
+    if (const double unit_s = repair_track(*facts.pose_track, depth); unit_s != 1.0 && unit_s != depth.unit_s)
+      report.add({"time",
+                  std::string("the stamps of the poses are in ") + (unit_s == 1e-3   ? "milliseconds"
+                                                                    : unit_s == 1e-6 ? "microseconds"
+                                                                                     : "nanoseconds") +
+                      ", since only then they are near those of the images",
+                  static_cast<std::int64_t>(facts.pose_track->size())});
   if (facts.acceleration_track) repair_track(*facts.acceleration_track, depth);
 }
 
@@ -177,6 +184,47 @@ void report_lost_poses(const RecordingFacts& facts, InputReport& report) {
                                : " recorded poses are lost or no rigid transform; their frames are") +
                     " used without a pose" + (first.empty() ? "" : " (" + first + ")"),
                 static_cast<std::int64_t>(lost)});
+}
+
+/// Reports tracks whose entries are not near the images in time, so that most frames get nothing from them.
+void report_tracks(const DecidedRecording& recording) {
+  const RecordingFacts& facts = recording.facts;
+  const auto range_text = [](double first_s, double last_s) {
+    return format_fixed(first_s, 1) + " to " + format_fixed(last_s, 1) + " s";
+  };
+  const auto report_track = [&](const auto& track, const char* topic, const std::string& what,
+                                const auto& has_entry) {
+    std::size_t timed = 0, with = 0;
+    double first_s = 0.0, last_s = 0.0;
+    for (const DecidedFrame& frame : recording.frames) {
+      if (!frame.fault.empty()) continue;
+      if (timed++ == 0) first_s = frame.stamp_s;
+      last_s = frame.stamp_s;
+      if (has_entry(frame)) ++with;
+    }
+    if (track.empty() || timed < 10 || 10 * with >= 9 * timed) return;
+    const bool is_elsewhere = with == 0 && (track.back().stamp_s < first_s || track.front().stamp_s > last_s);
+    recording.report->add(
+        {topic,
+         "only " + std::to_string(with) + " of " + std::to_string(timed) + " frames have " + what +
+             " near in time" +
+             (is_elsewhere ? ": those recorded are from " +
+                                 range_text(track.front().stamp_s, track.back().stamp_s) + ", the images from " +
+                                 range_text(first_s, last_s) + "; is it another clock?"
+                           : "; those recorded are " +
+                                 format_readable((track.back().stamp_s - track.front().stamp_s) /
+                                                     static_cast<double>(std::max<std::size_t>(track.size(), 2) - 1),
+                                                 2) +
+                                 " s apart on average"),
+         static_cast<std::int64_t>(timed - with), "", is_elsewhere && topic == std::string("poses")});
+  };
+  if (facts.pose_track && facts.read_pose)
+    report_track(*facts.pose_track, "poses", "a recorded pose", [&](const DecidedFrame& frame) {
+      return facts.read_pose(frame.stated, frame.stamp_s).T_world_camera.has_value();
+    });
+  if (facts.acceleration_track && facts.read_down)
+    report_track(*facts.acceleration_track, "gravity", "a measured direction of gravity",
+                 [&](const DecidedFrame& frame) { return facts.read_down(frame.stated, frame.stamp_s).has_value(); });
 }
 
 /// Reports a gap in the images that is longer than any pause: the clock may have been set.
@@ -240,6 +288,7 @@ DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folde
   require_a_readable_image(recording);
   if (options.questions == Questions::kDepth) question_depth(recording, convention.has_value());
 
+  report_tracks(recording);
   report_gap(recording);
   advise_on_rate(recording);
 

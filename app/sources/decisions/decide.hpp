@@ -28,6 +28,8 @@ struct DepthEvidence {
   double measured_part = 0.0;                    ///< fraction of the pixels with depth
   double median_depth_m = 0.0;                   ///< of the pixels with depth
   double near_depth_m = 0.0, far_depth_m = 0.0;  ///< 5th and 90th percentile
+  /// Greatest depth, if many pixels have exactly it and none has one near it. Unset: there is no such depth.
+  std::optional<double> equal_most_m{};
   std::optional<double>
       noise_ratio{};            ///< standard deviation between neighbours / that of the sensor's model
   std::size_t posed_pairs = 0;  ///< number of compared pairs of frames that have poses

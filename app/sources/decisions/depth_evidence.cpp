@@ -310,6 +310,14 @@ void measure_depth_range(const std::vector<Pair>& pairs, Samples& samples, Depth
   evidence.median_depth_m = quantile(0.5);
   evidence.near_depth_m = quantile(0.05);
   evidence.far_depth_m = quantile(0.9);
+  // Depths that are all equal, and apart from the ones before.
+  constexpr double kBelow = 0.97;
+  const auto most = std::lower_bound(depths_m.begin(), depths_m.end(), depths_m.back());
+  const auto below = std::lower_bound(depths_m.begin(), most, kBelow * depths_m.back());
+  const auto equal = static_cast<double>(depths_m.end() - most);
+  if (equal > 0.02 * static_cast<double>(depths_m.size()) && static_cast<double>(most - below) < 0.02 * equal &&
+      most != depths_m.begin())
+    evidence.equal_most_m = depths_m.back();
 }
 
 /// Measures the noise as the spread of depth about the line through a pixel's neighbours, where these are
@@ -343,7 +351,7 @@ std::string unit_option(double unit_m) { return "--depth-unit " + format_readabl
 /// Questions a unit that the depths alone contradict. Returns true if it did.
 bool question_range(const DecidedRecording& recording, const DepthEvidence& evidence) {
   const RecordingFacts& facts = recording.facts;
-  if (facts.unit_origin == Origin::kOption || evidence.measured_part == 0.0) return false;
+  if (evidence.measured_part == 0.0) return false;
   const std::string unit_text = "a unit of " + format_general(recording.depth_unit_m, 4) + " m" +
                                 (facts.unit_source.empty() ? "" : " (" + facts.unit_source + ")");
   const auto ask = [&](const std::string& fact, double likely_unit_m) {
@@ -353,6 +361,15 @@ bool question_range(const DecidedRecording& recording, const DepthEvidence& evid
                            0, unit_option(likely_unit_m), true});
     return true;
   };
+  if (evidence.equal_most_m) {
+    recording.report->add({"images",
+                           "many depths are exactly " + format_readable(*evidence.equal_most_m, 5) +
+                               " m, and none is near that; does this value mean that nothing was measured? Write 0 "
+                               "for it, since it is taken as depth",
+                           0, "", true});
+    return true;
+  }
+  if (facts.unit_origin == Origin::kOption) return false;
   const double unit_m = recording.depth_unit_m;
   constexpr double kFull = 0.4;  // of the pixels
   const bool is_fifth = std::abs(unit_m - 0.0002) < 1e-9;
@@ -371,7 +388,9 @@ bool question_range(const DecidedRecording& recording, const DepthEvidence& evid
   if (evidence.far_depth_m > most_m)
     return ask("a tenth of all depths is beyond " + format_readable(evidence.far_depth_m, 2) +
                    " m, farther than such a sensor measures",
-               unit_m / 5.0);
+               unit_m / (evidence.far_depth_m < 5.0 * most_m    ? 5.0
+                         : evidence.far_depth_m < 10.0 * most_m ? 10.0
+                                                                : 1000.0));
   return false;
 }
 
@@ -417,7 +436,7 @@ std::vector<Hypothesis> hypotheses_of(const RecordingFacts& facts, const PoseCon
     for (const bool is_inverse : {false, true})
       for (const bool is_opengl : {false, true})
         for (const bool is_wxyz : {false, true})
-          if (!is_wxyz || facts.pose_track)  // matrices have no order of a quaternion's numbers
+          if (!is_wxyz || facts.pose_track || facts.has_quaternions)  // matrices have no order of a quaternion's numbers
             add({is_inverse, is_opengl, is_wxyz, unit_m, 0});
   if (!facts.pose_track && !facts.has_pose_times)
     for (const int later_by : {-1, 1, -2, 2, -3, 3, -4, 4, -6, 6, -8, 8, -10, 10})
@@ -466,13 +485,21 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
 void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_pairs, Samples& samples,
                     bool is_convention_given) {
   DepthEvidence& evidence = *recording.evidence;
+  constexpr int kMostLate = 30;                                                   // frames
   std::map<std::pair<std::size_t, int>, std::optional<Eigen::Isometry3d>> poses;  // as stated
+  const auto stated = [&](std::size_t position, int later_by) -> const std::optional<Eigen::Isometry3d>& {
+    const auto [place, is_new] = poses.try_emplace({position, later_by});
+    if (is_new) place->second = stated_pose_of(recording, position, later_by);
+    return place->second;
+  };
+  // All hypotheses are measured with the frames that have a pose as recorded. Else, where every second frame
+  // has one, poses that are a frame late would be compared at other frames.
   const auto under = [&](const PoseConvention& convention) -> PoseOf {
-    return [&poses, &recording, convention](std::size_t position) -> std::optional<Eigen::Isometry3d> {
-      const auto [place, is_new] = poses.try_emplace({position, convention.later_by});
-      if (is_new) place->second = stated_pose_of(recording, position, convention.later_by);
-      if (!place->second) return std::nullopt;
-      return in_world(recording.facts, *place->second, convention);
+    return [&, convention](std::size_t position) -> std::optional<Eigen::Isometry3d> {
+      if (!stated(position, recording.pose_convention.later_by)) return std::nullopt;
+      const auto& pose = stated(position, convention.later_by);
+      if (!pose) return std::nullopt;
+      return in_world(recording.facts, *pose, convention);
     };
   };
   const auto measure = [&](Hypothesis& hypothesis, const std::vector<Pair>& far_pairs) {
@@ -509,6 +536,17 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
                             ? far_pairs
                             : far_pairs_of(hypothesis.convention));
     if (hypothesis.both() < now.both() - kClearlyBetter && hypothesis.both() < best.both()) best = hypothesis;
+  }
+  // Not all shifts were tried: goes on to the best one near by.
+  for (bool goes_on = best.convention.later_by != 0; goes_on;) {
+    goes_on = false;
+    for (const int step : {-1, 1}) {
+      Hypothesis next = best;
+      next.convention.later_by += step;
+      if (std::abs(next.convention.later_by) > kMostLate) continue;
+      measure(next, far_pairs);
+      if (next.both() < best.both()) best = next, goes_on = true;
+    }
   }
   if (best.both() < now.both() && best.near < kAgrees)
     return adopt_or_advise(recording, now, best, samples.camera(), is_convention_given);
@@ -646,6 +684,11 @@ void question_depth(DecidedRecording& recording, bool is_convention_given) {
     evidence.is_camera_still = *evidence.still_difference < 0.65;
   }
 
+  if (evidence.measured_part == 0.0 && !pairs.empty()) {
+    recording.report->add(
+        {"images", "no pixel of the depth images that were tried holds a depth", 0, "", true});
+    return;
+  }
   const bool is_questioned = question_range(recording, evidence);
   const auto posed = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
     return pose_of(recording, pair.a) && pose_of(recording, pair.b);

@@ -385,21 +385,26 @@ void spread_equal(Stamps& stamps) {
 }
 
 template <typename Stamped>
-void repair_any_track(std::vector<Stamped>& track, const RepairedStamps& images) {
-  if (track.empty()) return;
+double repair_any_track(std::vector<Stamped>& track, const RepairedStamps& images) {
+  if (track.empty()) return 1.0;
   std::vector<double> image_s;
   std::copy_if(images.stamps_s.begin(), images.stamps_s.end(), std::back_inserter(image_s), is_stated);
-  if (image_s.empty()) return;
-  const auto [least, most] = std::minmax_element(image_s.begin(), image_s.end());
+  if (image_s.empty()) return 1.0;
+  const auto range = std::minmax_element(image_s.begin(), image_s.end());
+  const double least_s = *range.first, most_s = *range.second;
   const auto overlap = [&](double unit_s) {
     return std::count_if(track.begin(), track.end(), [&](const Stamped& each) {
-      return each.stamp_s * unit_s >= *least - 1.0 && each.stamp_s * unit_s <= *most + 1.0;
+      return each.stamp_s * unit_s >= least_s - 1.0 && each.stamp_s * unit_s <= most_s + 1.0;
     });
   };
-  if (images.unit_s != 1.0 && overlap(images.unit_s) > overlap(1.0)) {
-    const double divisor = std::round(1.0 / images.unit_s);
-    for (Stamped& each : track)
-      each.stamp_s = images.unit_s < 1.0 ? each.stamp_s / divisor : each.stamp_s * images.unit_s;
+  double unit_s = 1.0;
+  if (images.unit_s != 1.0 && overlap(images.unit_s) > overlap(1.0)) unit_s = images.unit_s;
+  if (overlap(unit_s) == 0)
+    for (const double other_s : {1e-3, 1e-6, 1e-9})
+      if (overlap(other_s) > 0) unit_s = other_s;
+  if (unit_s != 1.0) {
+    const double divisor = std::round(1.0 / unit_s);
+    for (Stamped& each : track) each.stamp_s = unit_s < 1.0 ? each.stamp_s / divisor : each.stamp_s * unit_s;
   }
   if (!images.stretches.empty()) {
     // The track's clock is the images': its parts begin where its stamps decrease.
@@ -413,6 +418,7 @@ void repair_any_track(std::vector<Stamped>& track, const RepairedStamps& images)
       }
   }
   sort_by_stamp(track);
+  return unit_s;
 }
 
 }  // namespace
@@ -454,11 +460,11 @@ RepairedStamps repair_stamps(const std::vector<StatedTime>& times, const StampRu
   return std::move(stamps.result);
 }
 
-void repair_track(std::vector<StampedPose>& track, const RepairedStamps& images) {
-  repair_any_track(track, images);
+double repair_track(std::vector<StampedPose>& track, const RepairedStamps& images) {
+  return repair_any_track(track, images);
 }
-void repair_track(std::vector<StampedAcceleration>& track, const RepairedStamps& images) {
-  repair_any_track(track, images);
+double repair_track(std::vector<StampedAcceleration>& track, const RepairedStamps& images) {
+  return repair_any_track(track, images);
 }
 
 }  // namespace roomradar

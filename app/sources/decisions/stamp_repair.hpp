@@ -48,8 +48,9 @@ struct StampRules {
 RepairedStamps repair_stamps(const std::vector<StatedTime>& times, const StampRules& rules,
                              InputReport& report);
 
-/// Brings the stamps of a track, such as poses, to the clock of the images: unit, clock changes, order.
-void repair_track(std::vector<StampedPose>& track, const RepairedStamps& images);
-void repair_track(std::vector<StampedAcceleration>& track, const RepairedStamps& images);
+/// Brings the stamps of a track, such as poses, to the clock of the images: unit, clock changes, order. Returns
+/// the length of a unit of its stamps, s: that of the images' stamps, or another if only that fits the images.
+double repair_track(std::vector<StampedPose>& track, const RepairedStamps& images);
+double repair_track(std::vector<StampedAcceleration>& track, const RepairedStamps& images);
 
 }  // namespace roomradar

@@ -410,5 +410,35 @@ TEST(Mutations, AreUndoneOrNamed) {
               indistinguishable);
 }
 
+bool says(const DecidedRecording& recording, const std::string& text) {
+  const auto decisions = recording.report->decisions();
+  return std::any_of(decisions.begin(), decisions.end(), [&](const InputDecision& decision) {
+    return decision.sentence.find(text) != std::string::npos;
+  });
+}
+
+TEST(Mutations, PosesOfEverySecondFrameAreNotShifted) {
+  RecordingFacts facts = simulated_facts("sim:table?frames=80&width=160&seed=4", true, DepthNoise{});
+  for (std::size_t i = 1; i < facts.frames.size(); i += 2) facts.frames[i].T_world_camera.reset();
+  const DecidedRecording recording = decide(facts, {}, asking());
+  EXPECT_EQ(recording.pose_convention, PoseConvention{});
+  EXPECT_TRUE(recording.poses_are_used);
+}
+
+TEST(Mutations, AValueThatMeansNothingMeasuredIsNamed) {
+  RecordingFacts facts = simulated_facts("sim:table?frames=40&width=160&seed=4", true, DepthNoise{});
+  EXPECT_FALSE(says(decide(facts, {}, asking()), "many depths are exactly"));
+  facts.read_depth = [read = facts.read_depth](std::size_t frame, double unit_m, DepthImage& depth_m) {
+    read(frame, unit_m, depth_m);
+    for (std::size_t i = 0; i < depth_m.pixels.size(); i += 5) depth_m.pixels[i] = 10.0F;
+  };
+  EXPECT_TRUE(says(decide(facts, {}, asking()), "many depths are exactly 10 m"));
+  facts.read_depth = [read = facts.read_depth](std::size_t frame, double unit_m, DepthImage& depth_m) {
+    read(frame, unit_m, depth_m);
+    std::fill(depth_m.pixels.begin(), depth_m.pixels.end(), 0.0F);
+  };
+  EXPECT_TRUE(says(decide(facts, {}, asking()), "holds a depth"));
+}
+
 }  // namespace
 }  // namespace roomradar::mutations_test
