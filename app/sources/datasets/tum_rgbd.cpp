@@ -2,11 +2,15 @@
 #include "app/sources/datasets/tum_rgbd.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,6 +22,7 @@
 #include "app/sources/formats/time_tracks.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 
 namespace roomradar {
 namespace {
@@ -32,7 +37,9 @@ constexpr double kGravityWithin_s = 0.050;
 template <typename Use>
 void for_each_line(const fs::path& path, const Use& use) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  const std::string text = read_bytes(path, "a list of stamps", kMaxList_bytes);
+  std::string text = read_bytes(path, "a list of stamps", kMaxList_bytes);
+  if (text.starts_with("\xff\xfe")) std::erase(text.erase(0, 2), '\0');  // UTF-16 of plain characters
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
   std::string_view rest = text;
   if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
   for (int line_number = 1; !rest.empty(); ++line_number) {
@@ -67,33 +74,147 @@ struct ListedImage {
   std::string file;
 };
 
+/// A line of a list of images, cut into stamp and name. Both may be empty.
+struct ListLine {
+  std::string stamp, name;
+};
+
+/// Cuts a line "stamp name", also with a comma or semicolon between, a decimal comma, or a name in quotes.
+ListLine cut(std::string_view line) {
+  const std::size_t blank = std::min(line.find_first_of(" \t\r"), line.size());
+  std::size_t stamp_end = blank;
+  std::string stamp(line.substr(0, blank));
+  if (const std::size_t mark = stamp.find_first_of(",;"); mark != std::string::npos) {
+    const auto fraction = std::string_view(stamp).substr(mark + 1);
+    if (!fraction.empty() && fraction.find_first_not_of("0123456789") == std::string_view::npos)
+      stamp[mark] = '.';
+    else
+      stamp_end = mark, stamp.resize(mark);
+  }
+  const std::size_t begin = std::min(line.find_first_not_of(" \t,;", stamp_end), line.size());
+  std::string_view name = line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
+  if (name.size() > 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+  return {std::move(stamp), std::string(name)};
+}
+
+/// Returns how the names of a list that was written on another machine become files in the folder: a function
+/// under which a name that is spread over the list exists, and what it does; null if there is none.
+std::pair<fs::path (*)(const fs::path& name), const char*> repair_of_names(const fs::path& folder,
+                                                                           const std::vector<std::string>& names) {
+  using Repair = fs::path (*)(const fs::path&);
+  const std::array<std::pair<Repair, const char*>, 4> repairs = {
+      std::pair<Repair, const char*>{
+          [](const fs::path& name) { return name.parent_path().filename() / name.filename(); },
+          "only their last two parts are used"},
+      {[](const fs::path& name) { return fs::path("depth") / name.filename(); }, "they are looked for in depth"},
+      {[](const fs::path& name) { return fs::path("rgb") / name.filename(); }, "they are looked for in rgb"},
+      {[](const fs::path& name) { return fs::path(name).replace_extension(name.extension() == ".png" ? ".jpg" : ".png"); },
+       "their endings are .jpg instead of .png, or the reverse"}};
+  constexpr std::size_t kTried = 5;
+  std::error_code ignored;
+  const auto exist = [&](const auto& repair) {
+    for (std::size_t k = 0; k < kTried && !names.empty(); ++k)
+      if (const fs::path file = repair(names[k * names.size() / kTried]); fs::exists(folder / file, ignored)) return true;
+    return false;
+  };
+  const auto is_inside = [](const fs::path& name) {
+    return name.is_absolute() || (!name.empty() && *name.begin() == "..") ? fs::path("/") : name;
+  };
+  if (exist([&](const fs::path& name) { return is_inside(name) == "/" ? fs::path("?") : name; })) return {};
+  for (const auto& [repair, what] : repairs)
+    if (exist(repair)) return {repair, what};
+  return {};
+}
+
 /// Reads the images of rgb.txt or depth.txt. A stamp that is not a number is unknown.
 std::vector<ListedImage> read_image_list(const fs::path& folder, const char* name, RecordingFacts& facts) {
+  struct Line {
+    ListLine cut;
+    std::string where;
+  };
+  std::vector<Line> lines;
+  std::vector<std::string> names;
+  for_each_line(folder / name, [&](std::string_view text, const std::string& where) {
+    lines.push_back({cut(text), where});
+    std::string& file = lines.back().cut.name;
+    std::error_code ignored;
+    if (file.find('\\') != std::string::npos && !fs::exists(folder / file, ignored))
+      std::replace(file.begin(), file.end(), '\\', '/');
+    const bool is_heading = lines.size() == 1 && !parse_number(lines[0].cut.stamp) && !fs::exists(folder / file, ignored);
+    if (is_heading && !lines[0].cut.stamp.empty() && std::isalpha(static_cast<unsigned char>(lines[0].cut.stamp[0])))
+      lines.clear();
+    else
+      names.push_back(file);
+  });
+  const auto [repair, what_is_repaired] = repair_of_names(folder, names);
+  if (repair)
+    facts.notes.push_back({"images",
+                           std::string("the names in ") + name + " are of no files in the folder; " + what_is_repaired,
+                           static_cast<std::int64_t>(names.size())});
+
   std::vector<ListedImage> images;
   BadLines bad, bad_stamps;
-  for_each_line(folder / name, [&](std::string_view line, const std::string& where) {
-    const std::size_t stamp_end = std::min(line.find_first_of(" \t\r"), line.size());
-    const std::string_view stamp_word = line.substr(0, stamp_end);
-    const std::size_t file_begin = std::min(line.find_first_not_of(" \t", stamp_end), line.size());
-    const std::size_t file_end = line.find_last_not_of(" \t\r") + 1;
-    const fs::path file =
-        fs::path(file_begin < file_end ? line.substr(file_begin, file_end - file_begin) : "")
-            .lexically_normal();
-    if (file.empty() || file == ".") return bad.add(where + ": must be a stamp and a file name");
-    if (file.is_absolute() || *file.begin() == "..")
-      return bad.add(where + ": the file must lie in the recording's folder");
-    const auto stamp = parse_number(stamp_word);
+  std::set<std::pair<std::string, std::string>> known;
+  std::int64_t repeated = 0;
+  for (const auto& [line, where] : lines) {
+    const fs::path stated = fs::path(line.name).lexically_normal();
+    const fs::path file = repair ? repair(stated) : stated;
+    if (file.empty() || file == ".") {
+      bad.add(where + ": must be a stamp and a file name");
+      continue;
+    }
+    if (file.is_absolute() || *file.begin() == "..") {
+      bad.add(where + ": the file must lie in the recording's folder");
+      continue;
+    }
+    if (!known.emplace(line.stamp, line.name).second) {
+      ++repeated;
+      continue;
+    }
+    const auto stamp = parse_number(line.stamp);
     if (!stamp || !std::isfinite(*stamp))
-      bad_stamps.add(where + ": '" + std::string(stamp_word.substr(0, 40)) + "' is not a number");
+      bad_stamps.add(where + ": '" + line.stamp.substr(0, 40) + "' is not a number");
     images.push_back({stamp && std::isfinite(*stamp) ? *stamp : kNoStamp, (folder / file).string()});
-  });
+  }
   bad.report("images", name, facts);
+  if (repeated > 0)
+    facts.notes.push_back({"images",
+                           std::to_string(repeated) + (repeated == 1 ? " line of " : " lines of ") + name +
+                               (repeated == 1 ? " repeats another one; it is used once"
+                                              : " repeat others; each is used once"),
+                           repeated});
   if (bad_stamps.count > 0)
     facts.notes.push_back({"time",
                            std::to_string(bad_stamps.count) + " stamps of " + name +
                                " are no numbers, the first: " + bad_stamps.first,
                            static_cast<std::int64_t>(bad_stamps.count)});
   return images;
+}
+
+/// Returns the number that the file's name is, as in 1305031229.528784.png; nullopt unless it has a fraction.
+std::optional<double> stamp_in_name(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  if (stem.find('.') == std::string::npos || stem.find_first_not_of("0123456789.") != std::string::npos)
+    return std::nullopt;
+  return parse_number(stem);
+}
+
+/// Returns the images of a folder whose names are their stamps.
+std::vector<ListedImage> images_named_by_stamps(const fs::path& folder) {
+  std::vector<ListedImage> images;
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) return images;
+  for (const fs::path& file : entries_of(folder))
+    if (const auto stamp = stamp_in_name(file)) images.push_back({*stamp, file.string()});
+  return images;
+}
+
+/// True if depth images are named by stamps, as in recordings of TUM's form without their lists.
+bool has_stamped_depth(const fs::path& folder) {
+  std::error_code fault;
+  for (fs::directory_iterator each(folder / "depth", fault), end; !fault && each != end; each.increment(fault))
+    if (!is_hidden_file(each->path().filename().string())) return stamp_in_name(each->path()).has_value();
+  return false;
 }
 
 /// Reads rows of `count` numbers, the first a stamp. Skips rows with a number that is not finite, which mean
@@ -104,11 +225,20 @@ std::vector<std::vector<double>> read_rows(const fs::path& folder, const char* n
   std::error_code ignored;
   if (!fs::exists(folder / name, ignored)) return rows;
   BadLines bad;
+  bool is_at_first = true;
   for_each_line(folder / name, [&](std::string_view line, const std::string& where) {
     std::vector<double> row;
     row.reserve(count);
-    for (const std::string_view word : split_words(line)) {
+    std::string text(line);
+    std::replace(text.begin(), text.end(), ';', ' ');
+    if (split_words(text).size() != count)
+      std::replace(text.begin(), text.end(), ',', ' ');
+    else
+      std::replace(text.begin(), text.end(), ',', text.find('.') == std::string::npos ? '.' : ' ');
+    const bool is_first = std::exchange(is_at_first, false);
+    for (const std::string_view word : split_words(text)) {
       const auto value = parse_number(word);
+      if (!value && is_first && row.empty() && std::isalpha(static_cast<unsigned char>(word[0]))) return;  // a heading
       if (!value) return bad.add(where + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
       row.push_back(*value);
     }
@@ -146,22 +276,29 @@ std::vector<fs::path> files_of(const std::vector<ListedImage>& images) {
 
 bool is_tum_rgbd(const fs::path& folder) {
   std::error_code ignored;
-  return fs::exists(folder / "depth.txt", ignored) || fs::exists(folder / "rgb.txt", ignored);
+  return fs::exists(folder / "depth.txt", ignored) || fs::exists(folder / "rgb.txt", ignored) ||
+         has_stamped_depth(folder);
 }
 
 RecordingFacts index_tum_rgbd(const fs::path& folder) {
-  if (!fs::exists(folder / "depth.txt"))
+  // Without lists, the names of the images are their stamps.
+  const bool is_depth_listed = fs::exists(folder / "depth.txt"), is_colour_listed = fs::exists(folder / "rgb.txt");
+  if (!is_depth_listed && !has_stamped_depth(folder))
     throw Error((folder / "depth.txt").string() + ": is missing beside rgb.txt");
-  const bool has_colour = fs::exists(folder / "rgb.txt");
-  if (!has_colour && fs::is_directory(folder / "rgb"))
+  RecordingFacts facts{.name = fs::canonical(folder).string(), .stamps_have_no_unit = true};
+  const auto depth = std::make_shared<const std::vector<ListedImage>>(
+      is_depth_listed ? read_image_list(folder, "depth.txt", facts) : images_named_by_stamps(folder / "depth"));
+  const auto colours = std::make_shared<const std::vector<ListedImage>>(
+      is_colour_listed ? read_image_list(folder, "rgb.txt", facts) : images_named_by_stamps(folder / "rgb"));
+  if (!is_colour_listed && colours->empty() && fs::is_directory(folder / "rgb"))
     throw Error((folder / "rgb.txt").string() +
                 ": is missing, although there is a folder rgb; it lists the colour images");
-
-  RecordingFacts facts{.name = fs::canonical(folder).string(), .stamps_have_no_unit = true};
-  const auto depth =
-      std::make_shared<const std::vector<ListedImage>>(read_image_list(folder, "depth.txt", facts));
-  const auto colours = std::make_shared<const std::vector<ListedImage>>(
-      has_colour ? read_image_list(folder, "rgb.txt", facts) : std::vector<ListedImage>());
+  for (const auto& [name, is_listed, images] :
+       {std::tuple("depth.txt", is_depth_listed, depth), {"rgb.txt", is_colour_listed, colours}})
+    if (!is_listed && !images->empty())
+      facts.notes.push_back({"time",
+                             std::string(name) + " is missing; the names of the images are taken as their stamps",
+                             static_cast<std::int64_t>(images->size())});
   for (const ListedImage& image : *depth) facts.frames.push_back({.time = {.stamp_s = image.stamp}});
   for (const ListedImage& image : *colours) facts.colours.push_back({.stamp_s = image.stamp});
   // A recording by RecordingWriter keeps the pairs made from a device.
@@ -171,8 +308,7 @@ RecordingFacts index_tum_rgbd(const fs::path& folder) {
   const bool is_bonn = fs::weakly_canonical(folder).filename().string().starts_with("rgbd_bonn_");
   const NominalRig nominal = is_bonn ? NominalRig::kBonn : NominalRig::kTum;
   const ImageSize size = size_of_images(files_of(*depth), folder);
-  std::optional<ImageSize> colour_size;
-  if (!colours->empty()) colour_size = size_of_images(files_of(*colours), folder);
+  const std::optional<ImageSize> colour_size = size_of_colours(files_of(*colours), folder, facts);
   facts.rig = nominal_rig(nominal, size, colour_size);
   facts.camera_origin = Origin::kAssumed;
   facts.camera_source = nominal_name(nominal);

@@ -25,6 +25,8 @@ constexpr double kBegin_s = 1305031102.0;
 /// How a list is written. `stamp` writes the stamp of image i, in s after kBegin_s.
 struct ListForm {
   std::string separator = " ", end = "\n", begin = "# timestamp filename\n", name_prefix = "";
+  std::string path_prefix = "";               ///< of images, before depth/ and rgb/
+  bool is_windows = false, is_quoted = false;  ///< paths with backslashes; in quotes
   std::function<std::string(double stamp_s)> stamp = [](double s) { return std::to_string(kBegin_s + s); };
   std::function<void(std::vector<std::string>&)> order = [](std::vector<std::string>&) {};
 };
@@ -38,8 +40,12 @@ void write_tum(const fs::path& folder, const ListForm& form) {
     fs::create_directories(folder / "rgb");
     write_depth_file(DepthImage(8, 6, 1.0F + 0.01F * static_cast<float>(i)), DepthEncoding::kTum, folder / "depth" / name);
     write_colour_file(ColourImage(8, 6, {static_cast<std::uint8_t>(i), 0, 0}), folder / "rgb" / name);
-    depth.push_back(form.stamp(i / 30.0) + form.separator + "depth/" + name);
-    colour.push_back(form.stamp(i / 30.0 + 0.01) + form.separator + "rgb/" + name);
+    const auto listed = [&](const std::string& kind) {
+      const std::string path = form.path_prefix + kind + (form.is_windows ? "\\" : "/") + name;
+      return form.separator + (form.is_quoted ? "\"" + path + "\"" : path);
+    };
+    depth.push_back(form.stamp(i / 30.0) + listed("depth"));
+    colour.push_back(form.stamp(i / 30.0 + 0.01) + listed("rgb"));
     poses.push_back(form.stamp(i / 30.0) + form.separator + std::to_string(i) + " 0 0 0 0 0 1");
   }
   const auto write = [&](const char* name, std::vector<std::string> lines) {
@@ -118,6 +124,68 @@ TEST(TumList, LinesMayHaveAnyOrder) {
   EXPECT_TRUE(contains(expect_all_frames(form), "not listed in the order of their stamps"));
   form.order = [](std::vector<std::string>& lines) { std::reverse(lines.begin(), lines.end()); };
   EXPECT_TRUE(contains(expect_all_frames(form), "not listed in the order of their stamps"));
+}
+
+TEST(TumList, CommasQuotesAndPathsOfOtherMachinesAreRead) {
+  const auto with = [](const char* separator, const char* prefix, const char* begin) {
+    ListForm form;
+    form.separator = separator;
+    form.path_prefix = prefix;
+    form.begin = begin;
+    return form;
+  };
+  for (const char* separator : {",", ", ", ";", "; "}) (void)expect_all_frames(with(separator, "", ""));
+  EXPECT_FALSE(contains(expect_all_frames(with(",", "", "timestamp,filename\n")), "left out"));
+  for (const char* prefix : {"/home/me/recordings/desk/", "C:/desk/", "../desk/"})
+    EXPECT_TRUE(contains(expect_all_frames(with(" ", prefix, "")), "only their last two parts are used"));
+  ListForm windows;
+  windows.is_windows = true;
+  (void)expect_all_frames(windows);
+  ListForm quoted;
+  quoted.is_quoted = true;
+  (void)expect_all_frames(quoted);
+}
+
+TEST(TumList, RepeatedLinesAreUsedOnce) {
+  ListForm form;
+  form.order = [](std::vector<std::string>& lines) {
+    const std::vector<std::string> once = lines;
+    lines.insert(lines.end(), once.begin(), once.end());
+  };
+  EXPECT_TRUE(contains(expect_all_frames(form), "40 lines of depth.txt repeat others; each is used once"));
+}
+
+TEST(TumList, WithoutListsNamesAreStamps) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 10; ++i)
+    for (const char* kind : {"depth", "rgb"}) {
+      fs::create_directories(folder.path() / kind);
+      const fs::path file = folder.path() / kind / (std::to_string(kBegin_s + 0.04 * i) + ".png");
+      if (kind == std::string("depth"))
+        write_depth_file(DepthImage(8, 6, 1.0F), DepthEncoding::kTum, file);
+      else
+        write_colour_file(ColourImage(8, 6, {1, 2, 3}), file);
+    }
+  ReadAll all;
+  const std::string said =
+      decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  ASSERT_EQ(all.frames.size(), 10U) << said;
+  EXPECT_NEAR(all.frames[9].stamp_s, kBegin_s + 0.36, 1e-5);
+  EXPECT_NEAR(all.frames[9].depth_m.at(0, 0), 1.0, 1e-4);
+  EXPECT_FALSE(all.frames[9].colour.empty());
+  EXPECT_TRUE(contains(said, "depth.txt is missing; the names of the images are taken as their stamps")) << said;
+}
+
+TEST(TumList, PosesOfAnotherClockAreNamed) {
+  const TemporaryFolder folder;
+  write_tum(folder.path(), {});
+  write_text(folder.path() / "groundtruth.txt", "0.0 1 0 0 0 0 0 1\n0.1 2 0 0 0 0 0 1\n1.3 3 0 0 0 0 0 1\n");
+  ReadAll all;
+  const std::string said =
+      decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  EXPECT_TRUE(contains(said, "only 0 of 40 frames have a recorded pose near in time")) << said;
+  EXPECT_TRUE(contains(said, "is it another clock?")) << said;
+  EXPECT_FALSE(contains(said, "gravity")) << said;
 }
 
 TEST(TumList, BonnsDatasetHasItsOwnCamera) {
