@@ -10,6 +10,7 @@
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/recordings/folder_source.hpp"
 #include "app/sources/recordings/recording_writer.hpp"
+#include "mapping/types/system/folder_entries.hpp"
 #include "tests/app/sources/sources_support.hpp"
 #include "tests/support/litter.hpp"
 
@@ -727,15 +728,28 @@ TEST(Tum, ListsThatAreMissingOrBrokenAreNamed) {
     act(folder.path());
     return error_of([&] { open_folder(folder.path()); });
   };
-  EXPECT_TRUE(
-      contains(fails([](const fs::path& f) { fs::remove(f / "depth.txt"); }), "depth.txt: is missing"));
-  EXPECT_TRUE(contains(fails([](const fs::path& f) { fs::remove(f / "rgb.txt"); }), "rgb.txt: is missing"));
+  const auto rename_images = [](const fs::path& images) {
+    int number = 0;
+    for (const fs::path& file : entries_of(images)) fs::rename(file, images / ("image " + std::to_string(number++) + "x.png"));
+  };
+  EXPECT_TRUE(contains(fails([&](const fs::path& f) {
+                         fs::remove(f / "depth.txt");
+                         rename_images(f / "depth");
+                       }),
+                       "depth.txt: is missing"));
+  EXPECT_TRUE(contains(fails([&](const fs::path& f) {
+                         fs::remove(f / "rgb.txt");
+                         rename_images(f / "rgb");
+                       }),
+                       "rgb.txt: is missing"));
   const auto says = [](const auto& act) {
     const TemporaryFolder folder;
     write_recording(folder.path(), RecordingFormat::kTum);
     act(folder.path());
     return decisions_about([&](const SourceOptions& options) { return open_folder(folder.path(), options); });
   };
+  for (const char* list : {"depth.txt", "rgb.txt"})
+    EXPECT_TRUE(contains(says([&](const fs::path& f) { fs::remove(f / list); }), std::string(list) + " is missing"));
   EXPECT_TRUE(contains(says([](const fs::path& f) { write_text(f / "groundtruth.txt", "1 2 3\n"); }),
                        "groundtruth.txt, line 1: has 3 numbers"));
   EXPECT_TRUE(contains(says([](const fs::path& f) { write_text(f / "accelerometer.txt", "#\n1 2 3 down\n"); }),
