@@ -66,6 +66,7 @@ enum class Origin {
 struct RecordingFacts {
   std::string name{};  ///< canonical path
   std::string kind{};  ///< such as "Record3D export"
+  std::string entered{};  ///< folder in the given one that holds the recording; empty: the given one does
 
   std::vector<StatedFrame> frames{};  ///< one per depth image, in the recording's order
   /// Times of the colour images, to be paired with depth images by time. Empty if StatedFrame::colour tells

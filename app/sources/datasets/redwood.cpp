@@ -11,6 +11,7 @@
 #include <string>
 
 #include "app/sources/datasets/numbered_files.hpp"
+#include "app/sources/datasets/seven_scenes.hpp"
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
@@ -235,6 +236,17 @@ void set_registered_camera(RecordingFacts& facts, const Intrinsics& camera) {
   if (facts.rig.colour_camera) fit(*facts.rig.colour_camera);
 }
 
+/// Takes the poses of files pose/N.txt, as other exports with an intrinsic.json have them.
+void read_pose_files(const fs::path& folder, const std::vector<std::int64_t>& numbers, RecordingFacts& facts) {
+  std::error_code ignored;
+  const auto files = numbered_files(folder / (fs::is_directory(folder / "pose", ignored) ? "pose" : "poses"), {".txt"});
+  if (files.empty()) return;
+  facts.read_pose = [files, numbers](std::size_t frame, double) {
+    const auto file = files.find(numbers[frame]);
+    return file == files.end() ? StatedPose{} : read_pose_file(file->second);
+  };
+}
+
 }  // namespace
 
 bool is_redwood(const fs::path& folder) {
@@ -269,7 +281,10 @@ RecordingFacts index_redwood(const fs::path& folder) {
     }
   }
   const fs::path log = trajectory_log(folder);
-  if (log.empty()) return facts;
+  if (log.empty()) {
+    read_pose_files(folder, numbers, facts);
+    return facts;
+  }
   std::size_t without_image = 0;
   std::vector<LoggedPose> poses = read_log(log, facts);
   number_by_place_if_repeated(poses, log.filename().string(), facts);

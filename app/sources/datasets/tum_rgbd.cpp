@@ -133,6 +133,7 @@ std::vector<ListedImage> read_image_list(const fs::path& folder, const char* nam
     std::string where;
   };
   std::vector<Line> lines;
+  bool is_at_first = true;
   std::vector<std::string> names;
   for_each_line(folder / name, [&](std::string_view text, const std::string& where) {
     lines.push_back({cut(text), where});
@@ -140,7 +141,7 @@ std::vector<ListedImage> read_image_list(const fs::path& folder, const char* nam
     std::error_code ignored;
     if (file.find('\\') != std::string::npos && !fs::exists(folder / file, ignored))
       std::replace(file.begin(), file.end(), '\\', '/');
-    const bool is_heading = lines.size() == 1 && !parse_number(lines[0].cut.stamp) && !fs::exists(folder / file, ignored);
+    const bool is_heading = std::exchange(is_at_first, false) && !parse_number(lines[0].cut.stamp) && !fs::exists(folder / file, ignored);
     if (is_heading && !lines[0].cut.stamp.empty() && std::isalpha(static_cast<unsigned char>(lines[0].cut.stamp[0])))
       lines.clear();
     else
@@ -212,6 +213,7 @@ std::vector<ListedImage> images_named_by_stamps(const fs::path& folder) {
 /// True if depth images are named by stamps, as in recordings of TUM's form without their lists.
 bool has_stamped_depth(const fs::path& folder) {
   std::error_code fault;
+  if (!fs::is_directory(folder / "rgb", fault) && !fs::exists(folder / "groundtruth.txt", fault)) return false;
   for (fs::directory_iterator each(folder / "depth", fault), end; !fault && each != end; each.increment(fault))
     if (!is_hidden_file(each->path().filename().string())) return stamp_in_name(each->path()).has_value();
   return false;

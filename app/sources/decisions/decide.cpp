@@ -273,9 +273,10 @@ DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folde
   for (const InputDecision& note : facts.notes) report.add(note);
   recording.facts = std::move(facts);
 
+  const std::filesystem::path files = recording.facts.entered.empty() ? folder : std::filesystem::path(recording.facts.entered);
   decide_times(recording, options);
-  choose_cameras(recording.facts, folder, options, report);
-  const StatedInput stated = read_stated_input(folder, options);
+  choose_cameras(recording.facts, files, options, report);
+  const StatedInput stated = read_stated_input(files, options);
   recording.depth_unit_m = recording.facts.depth_unit_m;
   if (const auto unit_m = options.depth_unit_m ? options.depth_unit_m : stated.depth_unit_m) {
     recording.depth_unit_m = *unit_m;

@@ -502,16 +502,16 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
       return in_world(recording.facts, *pose, convention);
     };
   };
-  const auto measure = [&](Hypothesis& hypothesis, const std::vector<Pair>& far_pairs) {
+  const auto measure = [&](Hypothesis& hypothesis, const std::vector<Pair>& near_of, const std::vector<Pair>& far_of) {
     const PoseOf pose = under(hypothesis.convention);
     const DepthDifference near =
-        mean_difference(near_pairs, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor);
+        mean_difference(near_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor);
     hypothesis.near = near.disagreement;
     hypothesis.median_m = near.median_m;
     hypothesis.far =
-        mean_difference(far_pairs, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor)
+        mean_difference(far_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor)
             .disagreement;
-    hypothesis.brightness = mean_brightness_disagreement(far_pairs, samples, pose, hypothesis.depth_factor,
+    hypothesis.brightness = mean_brightness_disagreement(far_of, samples, pose, hypothesis.depth_factor,
                                                          hypothesis.focal_factor)
                                 .value_or(0.0);
   };
@@ -524,17 +524,36 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
     return chosen;
   };
   const std::vector<Pair> far_pairs = far_pairs_of(now.convention);
-  measure(now, far_pairs);
+  measure(now, near_pairs, far_pairs);
   evidence.pose_disagreement = now.near;
   evidence.far_pose_disagreement = now.far;
   evidence.pose_difference_m = now.median_m;
   if (now.near < kSurelyAgrees && now.far < kSurelyAgrees) return;
 
+  // Poses of other frames exist for other pairs: a shift is compared with the poses as recorded on the pairs
+  // that have both.
+  const auto measure_shift = [&](Hypothesis& hypothesis) {
+    const PoseOf pose = under(hypothesis.convention);
+    const auto posed = [&](std::vector<Pair> pairs) {
+      std::erase_if(pairs, [&](const Pair& pair) { return !pose(pair.a) || !pose(pair.b); });
+      return pairs;
+    };
+    const std::vector<Pair> near = posed(near_pairs), far = posed(far_pairs);
+    Hypothesis same{.convention = now.convention};
+    measure(hypothesis, near, far);
+    measure(same, near, far);
+    hypothesis.near += now.near - same.near;
+    hypothesis.far += now.far - same.far;
+    hypothesis.brightness += now.brightness - same.brightness;
+  };
   Hypothesis best = now;
   for (Hypothesis& hypothesis : hypotheses_of(recording.facts, now.convention)) {
-    measure(hypothesis, hypothesis.convention.unit_m == now.convention.unit_m
-                            ? far_pairs
-                            : far_pairs_of(hypothesis.convention));
+    if (hypothesis.convention.later_by != now.convention.later_by)
+      measure_shift(hypothesis);
+    else
+      measure(hypothesis, near_pairs,
+              hypothesis.convention.unit_m == now.convention.unit_m ? far_pairs
+                                                                    : far_pairs_of(hypothesis.convention));
     if (hypothesis.both() < now.both() - kClearlyBetter && hypothesis.both() < best.both()) best = hypothesis;
   }
   // Not all shifts were tried: goes on to the best one near by.
@@ -544,7 +563,7 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
       Hypothesis next = best;
       next.convention.later_by += step;
       if (std::abs(next.convention.later_by) > kMostLate) continue;
-      measure(next, far_pairs);
+      measure_shift(next);
       if (next.both() < best.both()) best = next, goes_on = true;
     }
   }

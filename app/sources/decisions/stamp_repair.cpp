@@ -397,11 +397,14 @@ double repair_any_track(std::vector<Stamped>& track, const RepairedStamps& image
       return each.stamp_s * unit_s >= least_s - 1.0 && each.stamp_s * unit_s <= most_s + 1.0;
     });
   };
+  const auto by_stamp = [](const Stamped& a, const Stamped& b) { return a.stamp_s < b.stamp_s; };
+  const auto ends = std::minmax_element(track.begin(), track.end(), by_stamp);
+  const double track_length = ends.second->stamp_s - ends.first->stamp_s;
   double unit_s = 1.0;
   if (images.unit_s != 1.0 && overlap(images.unit_s) > overlap(1.0)) unit_s = images.unit_s;
   if (overlap(unit_s) == 0)
     for (const double other_s : {1e-3, 1e-6, 1e-9})
-      if (overlap(other_s) > 0) unit_s = other_s;
+      if (overlap(other_s) > 0 && track_length * other_s > 0.2 * (most_s - least_s)) unit_s = other_s;
   if (unit_s != 1.0) {
     const double divisor = std::round(1.0 / unit_s);
     for (Stamped& each : track) each.stamp_s = unit_s < 1.0 ? each.stamp_s / divisor : each.stamp_s * unit_s;

@@ -164,6 +164,7 @@ RecordingFacts read_facts(const fs::path& path) {
     RecordingFacts facts = kind->read(file);
     facts.kind = kind->name;
     if (file != path) facts.name = fs::canonical(path).string();
+    if (file != path && fs::is_directory(file)) facts.entered = file.string();
     return facts;
   } catch (const fs::filesystem_error& error) {
     throw Error(path.string() + ": cannot be listed: " + error.code().message());

@@ -101,7 +101,8 @@ TEST(NumberedImages, FoldersInFoldersAreEntered) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "__MACOSX");
   write_numbered(folder.path() / "archive" / "scan", [](int i) { return Written{padded(i) + ".png", padded(i) + ".png"}; });
-  (void)expect_twelve(folder.path());
+  write_text(folder.path() / "archive" / "scan" / "camera-intrinsics.txt", "14 0 7.5\n0 14 5.5\n0 0 1\n");
+  EXPECT_FALSE(contains(expect_twelve(folder.path()), "no camera is stated"));
   fs::copy(folder.path() / "archive", folder.path() / "second", fs::copy_options::recursive);
   fs::copy(folder.path() / "archive" / "scan", folder.path() / "third", fs::copy_options::recursive);
   EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "third is a recording; give one of them"));
@@ -438,6 +439,20 @@ TEST(Redwood, PosesBelongToTheFramesThatTheirHeadingsNumber) {
     ASSERT_EQ(frames.size(), 11U);
     EXPECT_EQ(x_of(frames[0]), 1.0);
   }
+}
+
+TEST(Redwood, TakesPosesOfFilesWithoutATrajectory) {
+  const TemporaryFolder folder;
+  write_numbered(folder.path(), [](int i) { return Written{padded(i) + ".png", padded(i) + ".png"}; });
+  write_text(folder.path() / "intrinsic.json",
+             R"({"width": 16, "height": 12, "intrinsic_matrix": [14, 0, 0, 0, 14, 0, 7.5, 5.5, 1]})");
+  fs::create_directories(folder.path() / "pose");
+  write_text(folder.path() / "pose" / (padded(3) + ".txt"), "1 0 0 5\n0 1 0 6\n0 0 1 7\n0 0 0 1\n");
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 12U);
+  ASSERT_TRUE(all.frames[3].T_world_camera);
+  EXPECT_TRUE(all.frames[3].T_world_camera->translation().isApprox(Eigen::Vector3d(5, 6, 7)));
+  EXPECT_FALSE(all.frames[2].T_world_camera);
 }
 
 TEST(Redwood, AFileThatIsNoTrajectoryIsNotTakenForOne) {

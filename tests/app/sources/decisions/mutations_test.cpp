@@ -425,6 +425,12 @@ TEST(Mutations, PosesOfEverySecondFrameAreNotShifted) {
   EXPECT_TRUE(recording.poses_are_used);
 }
 
+TEST(Mutations, PosesOfTheFirstFramesAreNotShifted) {
+  RecordingFacts facts = simulated_facts("sim:table?frames=80&width=160&seed=4", true, DepthNoise{});
+  for (std::size_t i = 30; i < facts.frames.size(); ++i) facts.frames[i].T_world_camera.reset();
+  EXPECT_EQ(decide(facts, {}, asking()).pose_convention, PoseConvention{});
+}
+
 TEST(Mutations, AValueThatMeansNothingMeasuredIsNamed) {
   RecordingFacts facts = simulated_facts("sim:table?frames=40&width=160&seed=4", true, DepthNoise{});
   EXPECT_FALSE(says(decide(facts, {}, asking()), "many depths are exactly"));
