@@ -112,9 +112,12 @@ RecordingFacts index_fakenect_dump(const fs::path& folder) {
   pairing.finish();
   take_pairs();
   if (bad_lines > 0)
-    facts.notes.push_back(
-        {"images", std::to_string(bad_lines) + " lines of INDEX.txt are left out, the first: " + first_bad,
-         bad_lines});
+    facts.notes.push_back({"images",
+                           std::to_string(bad_lines) +
+                               (bad_lines == 1 ? " line of INDEX.txt is left out: "
+                                               : " lines of INDEX.txt are left out, the first: ") +
+                               first_bad,
+                           bad_lines});
   if (facts.frames.empty()) return facts;
 
   const ImageSize size = size_of_images({depth_files.begin(), depth_files.end()}, folder);
