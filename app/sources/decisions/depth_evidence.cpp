@@ -72,7 +72,7 @@ double median_of(std::vector<double>& values) {
 /// A frame that was read for the comparison.
 struct Sample {
   DepthImage depth_m;
-  /// Brightness at every second pixel of every second row of the depth image, 0..1; -1: unknown. Empty: there
+  /// Brightness at each pixel of the depth image, 0..1; -1: unknown. Empty: there
   /// is no colour image.
   Image<float> brightness{};
 };
@@ -80,14 +80,14 @@ struct Sample {
 /// Returns the brightness of the colour image at the points of the depth image.
 Image<float> brightness_of(const DepthImage& depth_m, const Intrinsics& camera, const ColourImage& colour,
                            const Intrinsics& colour_camera, const Eigen::Isometry3d& T_colour_depth) {
-  Image<float> brightness(depth_m.width / 2, depth_m.height / 2, -1.0F);
+  Image<float> brightness(depth_m.width, depth_m.height, -1.0F);
   // Colour images are often finer than depth: the mean over a depth pixel.
   const int half = std::clamp(colour.width / std::max(depth_m.width, 1), 1, 4);
   for (int y = 0; y < brightness.height; ++y)
     for (int x = 0; x < brightness.width; ++x) {
-      const float z = depth_m.at(2 * x, 2 * y);
+      const float z = depth_m.at(x, y);
       if (!(z > 0.0F)) continue;
-      const Eigen::Vector3d p = T_colour_depth * back_project(camera, 2.0 * x, 2.0 * y, z);
+      const Eigen::Vector3d p = T_colour_depth * back_project(camera, x, y, z);
       if (!(p.z() > 0.01)) continue;
       const Eigen::Vector2d uv = project(colour_camera, p);
       if (!(uv.x() >= half && uv.y() >= half && uv.x() < colour.width - half - 1 &&
@@ -119,10 +119,10 @@ std::optional<double> brightness_disagreement(const Sample& from, const Sample& 
     for (int x = step / 2; x < from.brightness.width; x += step) {
       const double a = static_cast<double>(from.brightness.at(x, y));
       if (a < 0.0) continue;
-      const Eigen::Vector3d p = T_to_from * back_project(camera, 2.0 * x, 2.0 * y,
-                                                         static_cast<double>(from.depth_m.at(2 * x, 2 * y)));
+      const Eigen::Vector3d p = T_to_from * back_project(camera, x, y,
+                                                         static_cast<double>(from.depth_m.at(x, y)));
       if (!(p.z() > 1e-3)) continue;
-      const Eigen::Vector2d uv = 0.5 * project(camera, p);
+      const Eigen::Vector2d uv = project(camera, p);
       if (!(uv.x() > 0.0 && uv.y() > 0.0 && uv.x() < to.brightness.width - 1 &&
             uv.y() < to.brightness.height - 1))
         continue;
@@ -146,23 +146,65 @@ struct Pair {
 /// Poses of a position under an assumption; nullopt: none.
 using PoseOf = std::function<std::optional<Eigen::Isometry3d>(std::size_t)>;
 
+/// The spread of depth about the line through a pixel's neighbours, where these are smooth, relative to the
+/// sensor's model.
+class NoiseMeasure {
+ public:
+  void add(const DepthImage& depth_m, const DepthNoise& noise) {
+    constexpr double kOfThree = 1.2247;  // sqrt(1 + 1/4 + 1/4)
+    for (int y = 4; y < depth_m.height - 4; y += 7)
+      for (int x = 4; x < depth_m.width - 4; x += 7) {
+        const float z = depth_m.at(x, y), left = depth_m.at(x - 1, y), right = depth_m.at(x + 1, y);
+        if (!(z > 0.0F && left > 0.0F && right > 0.0F)) continue;
+        const float sigma_m = depth_sigma_m(noise, z);
+        const float difference_m = std::abs(z - 0.5F * (left + right));
+        if (difference_m > 5.0F * sigma_m || std::abs(left - right) > 0.02F * z) continue;  // an edge
+        const double ratio = static_cast<double>(difference_m / sigma_m) / kOfThree;
+        sum_ += ratio * ratio;
+        ++count_;
+      }
+  }
+  /// Returns nullopt for fewer than 200 smooth pixels.
+  [[nodiscard]] std::optional<double> ratio() const {
+    return count_ < 200 ? std::nullopt : std::optional(std::sqrt(sum_ / static_cast<double>(count_)));
+  }
+
+ private:
+  double sum_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+/// Reads frames, each once. Their images are at most 320 pixels wide, so that a hundred of them take 60 MB.
 class Samples {
  public:
-  explicit Samples(const DecidedRecording& recording) : recording_(recording) {
-    camera_ = recording.facts.rig.depth_camera;
+  explicit Samples(const DecidedRecording& recording)
+      : recording_(recording), full_camera_(recording.facts.rig.depth_camera) {
     if (recording.facts.depth_lens != RationalLens{}) {
-      correction_.emplace(camera_, recording.facts.depth_lens, recording.facts.name.c_str());
-      camera_ = correction_->ideal();
+      correction_.emplace(full_camera_, recording.facts.depth_lens, recording.facts.name.c_str());
+      full_camera_ = correction_->ideal();
     }
+    constexpr int kMostWidth_px = 320;
+    stride_ = std::max(1, (full_camera_.width_px + kMostWidth_px - 1) / kMostWidth_px);
+    const double middle = stride_ / 2;  // pixel that is taken of each square
+    camera_ = {full_camera_.width_px / stride_,
+               full_camera_.height_px / stride_,
+               full_camera_.fx_px / stride_,
+               full_camera_.fy_px / stride_,
+               (full_camera_.cx_px - middle) / stride_,
+               (full_camera_.cy_px - middle) / stride_};
   }
   /// Returns the frame; null if it cannot be read.
   const Sample* at(std::size_t position) {
     const auto [place, is_new] = samples_.try_emplace(position);
     if (is_new) {
-      Sample sample;
       try {
-        read_depth(recording_, position, sample.depth_m);
-        if (correction_) correction_->correct(sample.depth_m);
+        read_depth(recording_, position, full_m_);
+        if (correction_) correction_->correct(full_m_);
+        noise_.add(full_m_, recording_.facts.rig.depth_noise);
+        Sample sample{DepthImage(camera_.width_px, camera_.height_px)};
+        for (int y = 0; y < camera_.height_px; ++y)
+          for (int x = 0; x < camera_.width_px; ++x)
+            sample.depth_m.at(x, y) = full_m_.at(x * stride_ + stride_ / 2, y * stride_ + stride_ / 2);
         read_brightness(position, sample);
         place->second = std::move(sample);
       } catch (const Error&) {  // counted when the frame's turn comes
@@ -170,7 +212,12 @@ class Samples {
     }
     return place->second ? &*place->second : nullptr;
   }
+  /// Returns the camera of the samples.
   [[nodiscard]] const Intrinsics& camera() const { return camera_; }
+  /// Returns the camera of the recording's images, without their lens.
+  [[nodiscard]] const Intrinsics& full_camera() const { return full_camera_; }
+  /// Returns the noise of the frames read so far relative to the sensor's model; nullopt if unknown.
+  [[nodiscard]] std::optional<double> noise_ratio() const { return noise_.ratio(); }
 
  private:
   /// Leaves the brightness empty if there is no colour image, or it cannot be read.
@@ -188,8 +235,11 @@ class Samples {
   }
 
   const DecidedRecording& recording_;
-  Intrinsics camera_;
+  Intrinsics full_camera_, camera_;
+  int stride_ = 1;
+  DepthImage full_m_;   // scratch
   ColourImage colour_;  // scratch
+  NoiseMeasure noise_;
   std::optional<LensCorrection> correction_;
   std::map<std::size_t, std::optional<Sample>> samples_;
 };
@@ -318,32 +368,6 @@ void measure_depth_range(const std::vector<Pair>& pairs, Samples& samples, Depth
   if (equal > 0.02 * static_cast<double>(depths_m.size()) && static_cast<double>(most - below) < 0.02 * equal &&
       most != depths_m.begin())
     evidence.equal_most_m = depths_m.back();
-}
-
-/// Measures the noise as the spread of depth about the line through a pixel's neighbours, where these are
-/// smooth, relative to the sensor's model.
-void measure_noise(const std::vector<Pair>& pairs, Samples& samples, const DepthNoise& noise,
-                   DepthEvidence& evidence) {
-  constexpr double kOfThree = 1.2247;  // sqrt(1 + 1/4 + 1/4)
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const Pair& pair : pairs) {
-    const Sample* sample = samples.at(pair.a);
-    if (!sample) continue;
-    const DepthImage& depth_m = sample->depth_m;
-    for (int y = 4; y < depth_m.height - 4; y += 7)
-      for (int x = 4; x < depth_m.width - 4; x += 7) {
-        const float z = depth_m.at(x, y), left = depth_m.at(x - 1, y), right = depth_m.at(x + 1, y);
-        if (!(z > 0.0F && left > 0.0F && right > 0.0F)) continue;
-        const float sigma_m = depth_sigma_m(noise, z);
-        const float difference_m = std::abs(z - 0.5F * (left + right));
-        if (difference_m > 5.0F * sigma_m || std::abs(left - right) > 0.02F * z) continue;  // an edge
-        const double ratio = static_cast<double>(difference_m / sigma_m) / kOfThree;
-        sum += ratio * ratio;
-        ++count;
-      }
-  }
-  if (count >= 200) evidence.noise_ratio = std::sqrt(sum / static_cast<double>(count));
 }
 
 std::string unit_option(double unit_m) { return "--depth-unit " + format_readable(unit_m, 3); }
@@ -568,7 +592,7 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
     }
   }
   if (best.both() < now.both() && best.near < kAgrees)
-    return adopt_or_advise(recording, now, best, samples.camera(), is_convention_given);
+    return adopt_or_advise(recording, now, best, samples.full_camera(), is_convention_given);
   if (now.near <= kDisagrees && now.far <= kFarDisagrees && now.far > kDoubtful)
     recording.report->add(
         {"poses",
@@ -660,8 +684,8 @@ void question_focal(const DecidedRecording& recording, Samples& samples) {
   if (best_factor == 1.0) return;
   recording.report->add({"camera",
                          "depth of nearby frames agrees better with a focal length of about " +
-                             format_readable(best_factor * samples.camera().fx_px, 2) + " px than with " +
-                             format_readable(samples.camera().fx_px, 4) + " px (" +
+                             format_readable(best_factor * samples.full_camera().fx_px, 2) + " px than with " +
+                             format_readable(samples.full_camera().fx_px, 4) + " px (" +
                              recording.facts.camera_source + ")",
                          0, "--camera FILE", true});
 }
@@ -691,7 +715,7 @@ void question_depth(DecidedRecording& recording, bool is_convention_given) {
   const std::vector<Pair> pairs = choose_pairs(frames, kPlaces, 0.35, pose_at_position);
 
   measure_depth_range(pairs, samples, evidence);
-  measure_noise(pairs, samples, recording.facts.rig.depth_noise, evidence);
+  evidence.noise_ratio = samples.noise_ratio();
   std::vector<Pair> far_pairs;
   constexpr std::size_t kSecondApart = 32;
   for (const Pair& pair : pairs)

@@ -245,6 +245,46 @@ void remove_absurd(Stamps& stamps) {
     stamps.say(absurd.size(), images_have(absurd.size(), stamps.rules.what) + " a stamp far from all others");
 }
 
+/// Returns the longest gap between neighbours in the sorted stamps.
+double longest_gap_s(const std::vector<double>& stamps_s) {
+  std::vector<double> sorted;
+  std::copy_if(stamps_s.begin(), stamps_s.end(), std::back_inserter(sorted), is_stated);
+  std::sort(sorted.begin(), sorted.end());
+  double longest_s = 0.0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) longest_s = std::max(longest_s, sorted[i] - sorted[i - 1]);
+  return longest_s;
+}
+
+/// Repairs a list in which stamps of two clocks alternate: those below the longest gap are moved by the
+/// difference that most often makes a stamp follow the one before it.
+void join_two_clocks(Stamps& stamps, double period_s) {
+  const double gap_s = longest_gap_s(stamps.s);
+  std::vector<double> sorted;
+  std::copy_if(stamps.s.begin(), stamps.s.end(), std::back_inserter(sorted), is_stated);
+  std::sort(sorted.begin(), sorted.end());
+  double first_above_s = sorted.back();
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i] - sorted[i - 1] == gap_s) first_above_s = sorted[i];
+  // An error of the period is opposite in both directions.
+  std::vector<double> down_s, up_s;
+  const double* last = nullptr;
+  for (const double& stamp_s : stamps.s) {
+    if (!is_stated(stamp_s)) continue;
+    if (last && *last >= first_above_s && stamp_s < first_above_s) down_s.push_back(*last + period_s - stamp_s);
+    if (last && *last < first_above_s && stamp_s >= first_above_s) up_s.push_back(stamp_s - period_s - *last);
+    last = &stamp_s;
+  }
+  if (down_s.empty() || up_s.empty()) return;
+  const double shift_s = 0.5 * (median_of(std::move(down_s)) + median_of(std::move(up_s)));
+  std::size_t moved = 0;
+  for (double& stamp_s : stamps.s)
+    if (is_stated(stamp_s) && stamp_s < first_above_s) stamp_s += shift_s, ++moved;
+  stamps.say(moved,
+             "the stamps of the " + stamps.rules.what + " are of two clocks that differ by " +
+                 format_readable(shift_s, 3) + " s; those of one are moved",
+             true);
+}
+
 /// Splits the list where its stamps decrease. Moves later parts if the clock was set back there, which is
 /// assumed if the list has few such places and the stamps do not simply belong into another order.
 void undo_clock_changes(Stamps& stamps) {
@@ -295,6 +335,8 @@ void undo_clock_changes(Stamps& stamps) {
     const double first_s = stamps.s[stated[begins[by_time[i]]]];
     are_in_line &= first_s >= last_s && first_s - last_s <= std::max(10.0 * period_s, 2.0);
   }
+  const bool is_contiguous = longest_gap_s(stamps.s) <= std::max(100.0 * period_s, 10.0);
+  if (is_shuffled && !is_contiguous) return join_two_clocks(stamps, period_s);
   if (is_shuffled || are_in_line) {
     stamps.say(stamps.size(),
                "the " + stamps.rules.what + " are not listed in the order of their stamps; sorted");

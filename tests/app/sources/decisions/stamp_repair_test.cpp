@@ -117,6 +117,16 @@ TEST(StampRepair, AClockThatWasSetBackContinues) {
   }
 }
 
+TEST(StampRepair, StampsOfTwoClocksThatAlternateAreJoined) {
+  const auto good = regular(40);
+  std::vector<StatedTime> times = good;
+  for (std::size_t i = 1; i < times.size(); i += 2) times[i].stamp_s -= 100.0;
+  const Repaired result = repaired(times);
+  expect_near(result.stamps.stamps_s, good, 0.3 * kPeriod_s);
+  ASSERT_EQ(result.decisions.size(), 1U);
+  EXPECT_TRUE(result.decisions[0].is_advice);
+}
+
 TEST(StampRepair, ListsOfOneRecordingAreMovedTogether) {
   std::vector<StatedTime> depth = regular(120), colour = regular(120);
   for (StatedTime& time : colour) time.stamp_s += 0.004;
