@@ -814,7 +814,7 @@ TEST(Fakenect, BrokenListsAndFilesAreNamed) {
   std::ofstream(folder.path() / "r" / "INDEX.txt", std::ios::app) << "d-10.\n";
   const std::string said =
       decisions_about([&](const SourceOptions& options) { return open_folder(folder.path() / "r", options); });
-  EXPECT_TRUE(contains(said, "1 lines of INDEX.txt are left out") && contains(said, "'d-10.' is not of the form")) << said;
+  EXPECT_TRUE(contains(said, "1 line of INDEX.txt is left out") && contains(said, "'d-10.' is not of the form")) << said;
 }
 
 // ---- intrinsics ----
