@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 #include <vector>
 
@@ -57,7 +58,8 @@ ScratchFolder folder_of_links(const fs::path& folder, const std::vector<std::str
 }  // namespace
 
 FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
-  std::ifstream list(folder / "INDEX.txt");
+  constexpr std::uintmax_t kMaxList_bytes = std::uintmax_t{1} << 30;
+  std::istringstream list(read_bytes(folder / "INDEX.txt", "a list of files", kMaxList_bytes));
   std::vector<std::string> sound;
   bool all_sound = true;
   std::int64_t depth_images = 0;
