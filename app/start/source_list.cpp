@@ -76,8 +76,10 @@ SourceEntry describe_kinect(std::size_t number, const KinectOnUsb& kinect) {
   return entry;
 }
 
-void add_recordings_in(const fs::path& folder, std::vector<SourceEntry>& entries) {
+/// @param but  subfolder that is not searched, since its content is listed
+void add_recordings_in(const fs::path& folder, const fs::path& but, std::vector<SourceEntry>& entries) {
   std::vector<fs::path> candidates = subfolders(folder);
+  std::erase(candidates, but);
   for (fs::path& file : files_in_folder(folder))
     if (!recording_kind(file).empty()) candidates.push_back(std::move(file));
   for (const fs::path& each : candidates) {
@@ -102,8 +104,8 @@ std::vector<SourceEntry> list_recordings(const fs::path& folder) {
   std::vector<SourceEntry> entries;
   SourceEntry here = describe_recording(folder);
   if (here.fault.empty()) return {here};  // its subfolders hold its images
-  add_recordings_in(folder, entries);
-  add_recordings_in(folder / "recordings", entries);
+  add_recordings_in(folder, folder / "recordings", entries);
+  add_recordings_in(folder / "recordings", {}, entries);
   return entries;
 }
 
