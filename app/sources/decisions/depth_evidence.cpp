@@ -465,6 +465,8 @@ std::vector<Hypothesis> hypotheses_of(const RecordingFacts& facts, const PoseCon
   if (!facts.pose_track && !facts.has_pose_times)
     for (const int later_by : {-1, 1, -2, 2, -3, 3, -4, 4, -6, 6, -8, 8, -10, 10})
       add({.later_by = later_by});
+  else  // poses with stamps belong to no frame, but their clock may be off
+    for (const int later_by : {-2, 2, -3, 3, -4, 4, -6, 6, -8, 8}) add({.later_by = later_by});
   for (const double factor : {0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 0.7, 1.4, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0})
     tried.push_back({.convention = now, .depth_factor = factor});
   for (const double factor : {0.6, 0.7, 0.77, 0.85, 1.15, 1.3, 1.4, 1.6})
@@ -476,7 +478,19 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
                      const Intrinsics& camera, bool is_convention_given) {
   DepthEvidence& evidence = *recording.evidence;
   InputReport& report = *recording.report;
-  if (best.depth_factor != 1.0) {
+  const bool have_times = recording.facts.pose_track || recording.facts.has_pose_times;
+  if (best.convention.later_by != 0 && have_times) {
+    const std::size_t last = recording.frames.size() - 1;
+    const double period_s =
+        (recording.frames[last].stamp_s - recording.frames[0].stamp_s) / static_cast<double>(last);
+    report.add({"poses",
+                "depth of nearby frames differs by " + mm_text(now.median_m) + " under the recorded poses, but by " +
+                    mm_text(best.median_m) + " under those " +
+                    format_readable(std::abs(best.convention.later_by) * period_s, 2) + " s " +
+                    (best.convention.later_by > 0 ? "later" : "earlier") +
+                    "; is their clock another one than that of the images? They are used as stamped",
+                0, "--poses tracked", true});
+  } else if (best.depth_factor != 1.0) {
     const double unit_m = recording.depth_unit_m * best.depth_factor;
     report.add({"unit",
                 "depth agrees with the recorded poses if it is multiplied by about " +
@@ -509,7 +523,8 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
 void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_pairs, Samples& samples,
                     bool is_convention_given) {
   DepthEvidence& evidence = *recording.evidence;
-  constexpr int kMostLate = 30;                                                   // frames
+  constexpr int kMostLate = 30;              // frames
+  constexpr std::size_t kLeastShifted = 6;  // pairs
   std::map<std::pair<std::size_t, int>, std::optional<Eigen::Isometry3d>> poses;  // as stated
   const auto stated = [&](std::size_t position, int later_by) -> const std::optional<Eigen::Isometry3d>& {
     const auto [place, is_new] = poses.try_emplace({position, later_by});
@@ -563,6 +578,7 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
       return pairs;
     };
     const std::vector<Pair> near = posed(near_pairs), far = posed(far_pairs);
+    if (near.size() < kLeastShifted) return;  // stays at its worst
     Hypothesis same{.convention = now.convention};
     measure(hypothesis, near, far);
     measure(same, near, far);
@@ -661,7 +677,7 @@ std::vector<std::optional<double>> disagreements_when_registered(const std::vect
 /// turns cannot be registered well.
 void question_focal(const DecidedRecording& recording, Samples& samples) {
   constexpr std::size_t kPlacesRegistered = 8, kLongest = 12, kLeastPlaces = 4;
-  constexpr double kBetter = 0.08, kMostPlaces = 0.75;
+  constexpr double kBetter = 0.08, kMostPlaces = 0.75, kBetterEverywhere = 0.045, kNearlyAll = 0.85;
   const std::size_t frames = recording.frames.size();
   if (frames < 3 * kLongest || recording.evidence->is_camera_still) return;
   std::vector<std::size_t> places;
@@ -669,7 +685,7 @@ void question_focal(const DecidedRecording& recording, Samples& samples) {
     places.push_back(k * (frames - 1 - kLongest) / (kPlacesRegistered - 1));
   const DepthNoise& noise = recording.facts.rig.depth_noise;
   const auto now = disagreements_when_registered(places, samples, noise, 1.0);
-  double best_gain = kBetter, best_factor = 1.0;
+  double best_gain = 0.0, best_factor = 1.0;
   for (const double factor : {0.7, 0.77, 0.87, 1.15, 1.3, 1.43}) {
     const auto then = disagreements_when_registered(places, samples, noise, factor);
     std::vector<double> gains;  // of the places where both can be registered
@@ -678,8 +694,11 @@ void question_focal(const DecidedRecording& recording, Samples& samples) {
     if (gains.size() < kLeastPlaces) continue;
     const auto better = std::count_if(gains.begin(), gains.end(), [](double gain) { return gain > 0.0; });
     const double gain = median_of(gains);
-    if (gain > best_gain && static_cast<double>(better) >= kMostPlaces * static_cast<double>(gains.size()))
-      best_gain = gain, best_factor = factor;
+    const double part = static_cast<double>(better) / static_cast<double>(gains.size());
+    // A smaller gain counts if nearly all places have it.
+    const bool is_clear = (gain > kBetter && part >= kMostPlaces) ||
+                          (gain > kBetterEverywhere && part > kNearlyAll && gains.size() + 1 >= places.size());
+    if (is_clear && gain > best_gain) best_gain = gain, best_factor = factor;
   }
   if (best_factor == 1.0) return;
   recording.report->add({"camera",

@@ -1,6 +1,7 @@
 // pose_convention.cpp: converts poses between conventions, and conventions to and from text.
 #include "app/sources/formats/pose_convention.hpp"
 
+#include <cstdlib>
 #include <vector>
 
 namespace roomradar {
@@ -71,8 +72,9 @@ std::string describe(const PoseConvention& convention) {
   if (convention.unit_m == 0.001) words.emplace_back("in millimetres");
   if (convention.unit_m == 0.01) words.emplace_back("in centimetres");
   if (convention.later_by != 0)
-    words.push_back(std::to_string(convention.later_by > 0 ? convention.later_by : -convention.later_by) +
-                    (convention.later_by > 0 ? " frame too late" : " frame too early"));
+    words.push_back(std::to_string(std::abs(convention.later_by)) +
+                    (std::abs(convention.later_by) == 1 ? " frame" : " frames") +
+                    (convention.later_by > 0 ? " too late" : " too early"));
   return words.empty() ? "as the format defines them" : joined(words, ", ");
 }
 

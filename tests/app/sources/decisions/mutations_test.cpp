@@ -212,6 +212,10 @@ std::vector<Mutation> mutations() {
     add("clock set back by " + std::to_string(step_s), {"time"}, [step_s](RecordingFacts& f) {
       change_stamps(f, [step_s](double s, double part) { return part > 0.5 ? s - step_s : s; });
     });
+  add("pose clock 0.1 s late", {"poses"}, [](RecordingFacts& f) {
+    if (f.pose_track)
+      for (StampedPose& pose : *f.pose_track) pose.stamp_s += 0.1;
+  });
   add("clock set forward", {"time"}, [](RecordingFacts& f) {
     change_stamps(f, [](double s, double part) { return part > 0.5 ? s + 3600.0 : s; });
   });
