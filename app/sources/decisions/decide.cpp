@@ -160,9 +160,10 @@ void decide_times(DecidedRecording& recording, const SourceOptions& options) {
   if (facts.pose_track)
     if (const double unit_s = repair_track(*facts.pose_track, depth); unit_s != 1.0 && unit_s != depth.unit_s)
       report.add({"time",
-                  std::string("the stamps of the poses are in ") + (unit_s == 1e-3   ? "milliseconds"
-                                                                    : unit_s == 1e-6 ? "microseconds"
-                                                                                     : "nanoseconds") +
+                  std::string("the stamps of the poses are in ") +
+                      (unit_s == 1e-3   ? "milliseconds"
+                       : unit_s == 1e-6 ? "microseconds"
+                                        : "nanoseconds") +
                       ", since only then they are near those of the images",
                   static_cast<std::int64_t>(facts.pose_track->size())});
   if (facts.acceleration_track) repair_track(*facts.acceleration_track, depth);
@@ -208,14 +209,14 @@ void report_tracks(const DecidedRecording& recording) {
         {topic,
          "only " + std::to_string(with) + " of " + std::to_string(timed) + " frames have " + what +
              " near in time" +
-             (is_elsewhere ? ": those recorded are from " +
-                                 range_text(track.front().stamp_s, track.back().stamp_s) + ", the images from " +
-                                 range_text(first_s, last_s) + "; is it another clock?"
-                           : "; those recorded are " +
-                                 format_readable((track.back().stamp_s - track.front().stamp_s) /
-                                                     static_cast<double>(std::max<std::size_t>(track.size(), 2) - 1),
-                                                 2) +
-                                 " s apart on average"),
+             (is_elsewhere
+                  ? ": those recorded are from " + range_text(track.front().stamp_s, track.back().stamp_s) +
+                        ", the images from " + range_text(first_s, last_s) + "; is it another clock?"
+                  : "; those recorded are " +
+                        format_readable((track.back().stamp_s - track.front().stamp_s) /
+                                            static_cast<double>(std::max<std::size_t>(track.size(), 2) - 1),
+                                        2) +
+                        " s apart on average"),
          static_cast<std::int64_t>(timed - with), "", is_elsewhere && topic == std::string("poses")});
   };
   if (facts.pose_track && facts.read_pose)
@@ -223,8 +224,9 @@ void report_tracks(const DecidedRecording& recording) {
       return facts.read_pose(frame.stated, frame.stamp_s).T_world_camera.has_value();
     });
   if (facts.acceleration_track && facts.read_down)
-    report_track(*facts.acceleration_track, "gravity", "a measured direction of gravity",
-                 [&](const DecidedFrame& frame) { return facts.read_down(frame.stated, frame.stamp_s).has_value(); });
+    report_track(
+        *facts.acceleration_track, "gravity", "a measured direction of gravity",
+        [&](const DecidedFrame& frame) { return facts.read_down(frame.stated, frame.stamp_s).has_value(); });
 }
 
 /// Reports a gap in the images that is longer than any pause: the clock may have been set.
@@ -254,6 +256,15 @@ void advise_on_rate(const DecidedRecording& recording) {
   const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
   std::nth_element(steps_s.begin(), middle, steps_s.end());
   if (!(*middle * kLeastRate_hz > 1.0)) return;
+  for (const auto& [word, length_s] : {std::pair("ms", 1e-3), {"us", 1e-6}, {"ns", 1e-9}}) {
+    const double rate_hz = 1.0 / (*middle * length_s);
+    if (*middle < 5.0 || rate_hz < 1.0 || rate_hz > 240.0) continue;
+    recording.report->add({"time",
+                           "frames are " + format_readable(*middle, 2) + " s apart; are their stamps in " +
+                               word + ", which would be " + format_readable(rate_hz, 3) + " per second?",
+                           0, std::string("--stamps ") + word, true});
+    return;
+  }
   const bool has_poses = recording.evidence->pose_disagreement && recording.poses_are_used;
   recording.report->add(
       {"time",
@@ -273,7 +284,8 @@ DecidedRecording decide(RecordingFacts facts, const std::filesystem::path& folde
   for (const InputDecision& note : facts.notes) report.add(note);
   recording.facts = std::move(facts);
 
-  const std::filesystem::path files = recording.facts.entered.empty() ? folder : std::filesystem::path(recording.facts.entered);
+  const std::filesystem::path files =
+      recording.facts.entered.empty() ? folder : std::filesystem::path(recording.facts.entered);
   decide_times(recording, options);
   choose_cameras(recording.facts, files, options, report);
   const StatedInput stated = read_stated_input(files, options);

@@ -119,8 +119,8 @@ std::optional<double> brightness_disagreement(const Sample& from, const Sample& 
     for (int x = step / 2; x < from.brightness.width; x += step) {
       const double a = static_cast<double>(from.brightness.at(x, y));
       if (a < 0.0) continue;
-      const Eigen::Vector3d p = T_to_from * back_project(camera, x, y,
-                                                         static_cast<double>(from.depth_m.at(x, y)));
+      const Eigen::Vector3d p =
+          T_to_from * back_project(camera, x, y, static_cast<double>(from.depth_m.at(x, y)));
       if (!(p.z() > 1e-3)) continue;
       const Eigen::Vector2d uv = project(camera, p);
       if (!(uv.x() > 0.0 && uv.y() > 0.0 && uv.x() < to.brightness.width - 1 &&
@@ -365,8 +365,8 @@ void measure_depth_range(const std::vector<Pair>& pairs, Samples& samples, Depth
   const auto most = std::lower_bound(depths_m.begin(), depths_m.end(), depths_m.back());
   const auto below = std::lower_bound(depths_m.begin(), most, kBelow * depths_m.back());
   const auto equal = static_cast<double>(depths_m.end() - most);
-  if (equal > 0.02 * static_cast<double>(depths_m.size()) && static_cast<double>(most - below) < 0.02 * equal &&
-      most != depths_m.begin())
+  if (equal > 0.02 * static_cast<double>(depths_m.size()) &&
+      static_cast<double>(most - below) < 0.02 * equal && most != depths_m.begin())
     evidence.equal_most_m = depths_m.back();
 }
 
@@ -386,11 +386,12 @@ bool question_range(const DecidedRecording& recording, const DepthEvidence& evid
     return true;
   };
   if (evidence.equal_most_m) {
-    recording.report->add({"images",
-                           "many depths are exactly " + format_readable(*evidence.equal_most_m, 5) +
-                               " m, and none is near that; does this value mean that nothing was measured? Write 0 "
-                               "for it, since it is taken as depth",
-                           0, "", true});
+    recording.report->add(
+        {"images",
+         "many depths are exactly " + format_readable(*evidence.equal_most_m, 5) +
+             " m, and none is near that; does this value mean that nothing was measured? Write 0 "
+             "for it, since it is taken as depth",
+         0, "", true});
     return true;
   }
   if (facts.unit_origin == Origin::kOption) return false;
@@ -460,7 +461,8 @@ std::vector<Hypothesis> hypotheses_of(const RecordingFacts& facts, const PoseCon
     for (const bool is_inverse : {false, true})
       for (const bool is_opengl : {false, true})
         for (const bool is_wxyz : {false, true})
-          if (!is_wxyz || facts.pose_track || facts.has_quaternions)  // matrices have no order of a quaternion's numbers
+          if (!is_wxyz || facts.pose_track ||
+              facts.has_quaternions)  // matrices have no order of a quaternion's numbers
             add({is_inverse, is_opengl, is_wxyz, unit_m, 0});
   if (!facts.pose_track && !facts.has_pose_times)
     for (const int later_by : {-1, 1, -2, 2, -3, 3, -4, 4, -6, 6, -8, 8, -10, 10})
@@ -484,8 +486,8 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
     const double period_s =
         (recording.frames[last].stamp_s - recording.frames[0].stamp_s) / static_cast<double>(last);
     report.add({"poses",
-                "depth of nearby frames differs by " + mm_text(now.median_m) + " under the recorded poses, but by " +
-                    mm_text(best.median_m) + " under those " +
+                "depth of nearby frames differs by " + mm_text(now.median_m) +
+                    " under the recorded poses, but by " + mm_text(best.median_m) + " under those " +
                     format_readable(std::abs(best.convention.later_by) * period_s, 2) + " s " +
                     (best.convention.later_by > 0 ? "later" : "earlier") +
                     "; is their clock another one than that of the images? They are used as stamped",
@@ -523,8 +525,8 @@ void adopt_or_advise(DecidedRecording& recording, const Hypothesis& now, const H
 void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_pairs, Samples& samples,
                     bool is_convention_given) {
   DepthEvidence& evidence = *recording.evidence;
-  constexpr int kMostLate = 30;              // frames
-  constexpr std::size_t kLeastShifted = 6;  // pairs
+  constexpr int kMostLate = 30;                                                   // frames
+  constexpr std::size_t kLeastShifted = 6;                                        // pairs
   std::map<std::pair<std::size_t, int>, std::optional<Eigen::Isometry3d>> poses;  // as stated
   const auto stated = [&](std::size_t position, int later_by) -> const std::optional<Eigen::Isometry3d>& {
     const auto [place, is_new] = poses.try_emplace({position, later_by});
@@ -541,18 +543,18 @@ void question_poses(DecidedRecording& recording, const std::vector<Pair>& near_p
       return in_world(recording.facts, *pose, convention);
     };
   };
-  const auto measure = [&](Hypothesis& hypothesis, const std::vector<Pair>& near_of, const std::vector<Pair>& far_of) {
+  const auto measure = [&](Hypothesis& hypothesis, const std::vector<Pair>& near_of,
+                           const std::vector<Pair>& far_of) {
     const PoseOf pose = under(hypothesis.convention);
     const DepthDifference near =
         mean_difference(near_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor);
     hypothesis.near = near.disagreement;
     hypothesis.median_m = near.median_m;
     hypothesis.far =
-        mean_difference(far_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor)
-            .disagreement;
-    hypothesis.brightness = mean_brightness_disagreement(far_of, samples, pose, hypothesis.depth_factor,
-                                                         hypothesis.focal_factor)
-                                .value_or(0.0);
+        mean_difference(far_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor).disagreement;
+    hypothesis.brightness =
+        mean_brightness_disagreement(far_of, samples, pose, hypothesis.depth_factor, hypothesis.focal_factor)
+            .value_or(0.0);
   };
   Hypothesis now{.convention = recording.pose_convention};
   // By poses in millimetres all frames are far apart, so the far pairs of each unit are its own.
@@ -696,15 +698,16 @@ void question_focal(const DecidedRecording& recording, Samples& samples) {
     const double gain = median_of(gains);
     const double part = static_cast<double>(better) / static_cast<double>(gains.size());
     // A smaller gain counts if nearly all places have it.
-    const bool is_clear = (gain > kBetter && part >= kMostPlaces) ||
-                          (gain > kBetterEverywhere && part > kNearlyAll && gains.size() + 1 >= places.size());
+    const bool is_clear =
+        (gain > kBetter && part >= kMostPlaces) ||
+        (gain > kBetterEverywhere && part > kNearlyAll && gains.size() + 1 >= places.size());
     if (is_clear && gain > best_gain) best_gain = gain, best_factor = factor;
   }
   if (best_factor == 1.0) return;
   recording.report->add({"camera",
                          "depth of nearby frames agrees better with a focal length of about " +
-                             format_readable(best_factor * samples.full_camera().fx_px, 2) + " px than with " +
-                             format_readable(samples.full_camera().fx_px, 4) + " px (" +
+                             format_readable(best_factor * samples.full_camera().fx_px, 2) +
+                             " px than with " + format_readable(samples.full_camera().fx_px, 4) + " px (" +
                              recording.facts.camera_source + ")",
                          0, "--camera FILE", true});
 }

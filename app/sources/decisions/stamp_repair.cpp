@@ -92,9 +92,13 @@ void find_unit(Stamps& stamps, bool received) {
                                          {StampChoice::kNanoseconds, 1e-9}})
     if (stamps.rules.choice == choice) unit_s = length_s;
   if (unit_s == 1.0 && period) {
+    std::vector<double> received_s;
+    for (const StatedTime& time : stamps.times) received_s.push_back(time.received_s);
+    const std::optional<double> received_period = received ? period_of(received_s) : std::nullopt;
     const auto is_plausible = [&](double length_s) {
       const double rate_hz = 1.0 / (*period * length_s);
-      return rate_hz >= kLeastRate_hz && rate_hz <= kMostRate_hz;
+      const double ratio = received_period ? *period * length_s / *received_period : 1.0;
+      return rate_hz >= kLeastRate_hz && rate_hz <= kMostRate_hz && ratio > 0.3 && ratio < 3.0;
     };
     if (stamps.rules.like && stamps.rules.like->unit_s != 1.0) {
       unit_s = stamps.rules.like->unit_s;
@@ -104,15 +108,14 @@ void find_unit(Stamps& stamps, bool received) {
       });
       // As seconds since 1970, such stamps are of the year 5000 and later.
       constexpr double kLatest_s = 1e11;
-      const auto late = std::count_if(stamps.s.begin(), stamps.s.end(), [](double stamp) {
-        return is_stated(stamp) && stamp > kLatest_s;
-      });
+      const auto late = std::count_if(stamps.s.begin(), stamps.s.end(),
+                                      [](double stamp) { return is_stated(stamp) && stamp > kLatest_s; });
       const bool is_too_late = 2 * static_cast<std::size_t>(late) > stamps.size();
       // Keyframes may be several seconds apart. Other formats fix the unit, but some writers ignore that.
-      const bool may_be_seconds = stamps.rules.have_no_unit
-                                      ? !all_whole && !is_too_late && *period < 60.0
-                                      : *period > 1e-3 && *period < 100.0;
-      if (!may_be_seconds && !received)
+      const bool may_be_seconds = received_period             ? false
+                                  : stamps.rules.have_no_unit ? !all_whole && !is_too_late && *period < 60.0
+                                                              : *period > 1e-3 && *period < 100.0;
+      if (!may_be_seconds)
         for (const double length_s : {1e-3, 1e-6, 1e-9, 1e3, 1e6})
           if (unit_s == 1.0 && is_plausible(length_s)) unit_s = length_s;
     }
@@ -270,7 +273,8 @@ void join_two_clocks(Stamps& stamps, double period_s) {
   const double* last = nullptr;
   for (const double& stamp_s : stamps.s) {
     if (!is_stated(stamp_s)) continue;
-    if (last && *last >= first_above_s && stamp_s < first_above_s) down_s.push_back(*last + period_s - stamp_s);
+    if (last && *last >= first_above_s && stamp_s < first_above_s)
+      down_s.push_back(*last + period_s - stamp_s);
     if (last && *last < first_above_s && stamp_s >= first_above_s) up_s.push_back(stamp_s - period_s - *last);
     last = &stamp_s;
   }

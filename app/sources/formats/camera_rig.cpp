@@ -194,7 +194,9 @@ void write_camera_file(const CameraRig& rig, const std::filesystem::path& path) 
 
 Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_px, int height_px) {
   const std::string name = path.string();
-  const std::string text = read_json_text(path);
+  std::string text = read_json_text(path);
+  for (char& c : text)  // as NumPy and MATLAB print a matrix
+    if (c == ',' || c == ';' || c == '[' || c == ']') c = ' ';
   std::vector<double> m;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
@@ -203,6 +205,8 @@ Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_p
       if (!value) throw Error(name + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
       m.push_back(*value);
     }
+  if (m.size() == 12 || m.size() == 16)  // the first three columns and rows
+    m = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
   if (m.size() != 9)
     throw Error(name + ": has " + std::to_string(m.size()) + " numbers; must be a 3 x 3 matrix");
   if (m[1] != 0 || m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)

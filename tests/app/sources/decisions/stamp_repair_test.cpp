@@ -77,6 +77,19 @@ TEST(StampRepair, UnitsAreRecognisedByTheRate) {
   }
 }
 
+TEST(StampRepair, UnitsAreRecognisedByTheTimesOfReception) {
+  const auto good = regular(100, true);
+  for (const double factor : {1e-3, 1e3, 1e9}) {
+    std::vector<StatedTime> times = good;
+    for (StatedTime& time : times) time.stamp_s *= factor;
+    const Repaired result = repaired(times);
+    EXPECT_FALSE(result.decisions.empty()) << factor;
+    for (std::size_t i = 1; i < times.size(); ++i)
+      ASSERT_NEAR(result.stamps.stamps_s[i] - result.stamps.stamps_s[0], good[i].stamp_s - good[0].stamp_s, 0.010)
+          << factor << ' ' << i;
+  }
+}
+
 TEST(StampRepair, KeyframesSecondsApartAreInSeconds) {
   for (const double period_s : {0.67, 1.0, 2.3, 7.7}) {
     std::vector<StatedTime> times;

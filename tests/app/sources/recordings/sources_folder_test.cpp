@@ -851,6 +851,11 @@ TEST(Intrinsics, GoFromTheCallerToTheFileToTheFormat) {
   EXPECT_NEAR(depth_camera().fx_px, 585.0 * 16 / 640, 1e-9);  // scaled to the images' width
   write_text(folder.path() / "camera-intrinsics.txt", "20 0 8\n0 21 6\n0 0 1\n");
   EXPECT_EQ(depth_camera(), (Intrinsics{16, 12, 20, 21, 8, 6}));
+  for (const char* text : {"[[20, 0, 8],\n [0, 21, 6],\n [0, 0, 1]]\n", "20 0 8 0\n0 21 6 0\n0 0 1 0\n",
+                           "20;0;8\n0;21;6\n0;0;1\n", "20 0 8 0\n0 21 6 0\n0 0 1 0\n0 0 0 1\n"}) {
+    write_text(folder.path() / "camera-intrinsics.txt", text);
+    EXPECT_EQ(depth_camera(), (Intrinsics{16, 12, 20, 21, 8, 6})) << text;
+  }
 }
 
 TEST(Intrinsics, BrokenFilesAreNamed) {
