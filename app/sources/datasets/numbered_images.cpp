@@ -31,7 +31,7 @@ fs::path first_folder(const fs::path& folder, std::initializer_list<const char*>
 }
 
 /// Reads the camera of a 4 x 4 or 3 x 3 matrix. The matrix states no size: if its principal point is far from
-/// the middle of the images, they were scaled after the export, and the camera is scaled likewise, which is
+/// the middle of the images, they were scaled after the export, and the camera is scaled by the same factor, which is
 /// noted. Throws Error naming the file if it is none.
 Intrinsics read_camera_matrix(const fs::path& path, ImageSize size, RecordingFacts& facts) {
   constexpr std::uintmax_t kMax_bytes = 1U << 16U;

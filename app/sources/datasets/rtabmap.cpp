@@ -257,7 +257,7 @@ std::size_t first_of_usual_camera(const std::vector<Node>& nodes, const std::str
 
 /// Notes nodes whose camera differs from the one that is used for all.
 void note_other_cameras(const std::vector<Node>& nodes, const RtabmapCamera& used, RecordingFacts& facts) {
-  constexpr double kLeast = 0.02;  // phones focus anew for each image, by less
+  constexpr double kLeast = 0.02;  // phones focus again for each image, by less
   std::int64_t other_size = 0, other_focal = 0;
   double most = 0.0;
   for (const Node& node : nodes) {

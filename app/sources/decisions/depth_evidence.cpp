@@ -310,6 +310,21 @@ std::vector<Pair> choose_shifted_pairs(std::size_t frames, const PoseOf& pose_of
   return pairs;
 }
 
+/// Calls use(a, b, T_b_a) for each pair whose frames can be read and have poses, as if all depths were multiplied
+/// by depth_factor: that is the same as scaling the camera's motion the other way.
+template <typename Use>
+void for_each_posed_pair(const std::vector<Pair>& pairs, Samples& samples, const PoseOf& pose_of_position,
+                         double depth_factor, const Use& use) {
+  for (const Pair& pair : pairs) {
+    const Sample *a = samples.at(pair.a), *b = samples.at(pair.b);
+    const auto T_world_a = pose_of_position(pair.a), T_world_b = pose_of_position(pair.b);
+    if (!a || !b || !T_world_a || !T_world_b) continue;
+    Eigen::Isometry3d T_b_a = T_world_b->inverse() * *T_world_a;
+    T_b_a.translation() /= depth_factor;
+    use(*a, *b, T_b_a);
+  }
+}
+
 /// Mean difference over all pairs whose frames have poses.
 DepthDifference mean_difference(const std::vector<Pair>& pairs, Samples& samples,
                                 const PoseOf& pose_of_position, double depth_factor = 1.0,
@@ -318,18 +333,13 @@ DepthDifference mean_difference(const std::vector<Pair>& pairs, Samples& samples
   std::vector<double> medians_m;
   std::size_t count = 0;
   const Intrinsics camera = with_focal(samples.camera(), focal_factor);
-  for (const Pair& pair : pairs) {
-    const Sample *a = samples.at(pair.a), *b = samples.at(pair.b);
-    const auto T_world_a = pose_of_position(pair.a), T_world_b = pose_of_position(pair.b);
-    if (!a || !b || !T_world_a || !T_world_b) continue;
-    // Scaling all depths is the same as scaling the camera's motion the other way.
-    Eigen::Isometry3d T_b_a = T_world_b->inverse() * *T_world_a;
-    T_b_a.translation() /= depth_factor;
-    const DepthDifference one = depth_difference(a->depth_m, b->depth_m, camera, T_b_a);
-    mean.disagreement += one.disagreement;
-    medians_m.push_back(one.median_m * depth_factor);
-    ++count;
-  }
+  for_each_posed_pair(pairs, samples, pose_of_position, depth_factor,
+                      [&](const Sample& a, const Sample& b, const Eigen::Isometry3d& T_b_a) {
+                        const DepthDifference one = depth_difference(a.depth_m, b.depth_m, camera, T_b_a);
+                        mean.disagreement += one.disagreement;
+                        medians_m.push_back(one.median_m * depth_factor);
+                        ++count;
+                      });
   if (count == 0) return {};
   mean.disagreement /= static_cast<double>(count);
   mean.median_m = median_of(medians_m);
@@ -428,14 +438,10 @@ std::optional<double> mean_brightness_disagreement(const std::vector<Pair>& pair
   double sum = 0.0;
   std::size_t count = 0;
   const Intrinsics camera = with_focal(samples.camera(), focal_factor);
-  for (const Pair& pair : pairs) {
-    const Sample *a = samples.at(pair.a), *b = samples.at(pair.b);
-    const auto T_world_a = pose_of_position(pair.a), T_world_b = pose_of_position(pair.b);
-    if (!a || !b || !T_world_a || !T_world_b) continue;
-    Eigen::Isometry3d T_b_a = T_world_b->inverse() * *T_world_a;
-    T_b_a.translation() /= depth_factor;
-    if (const auto one = brightness_disagreement(*a, *b, camera, T_b_a)) sum += *one, ++count;
-  }
+  for_each_posed_pair(pairs, samples, pose_of_position, depth_factor,
+                      [&](const Sample& a, const Sample& b, const Eigen::Isometry3d& T_b_a) {
+                        if (const auto one = brightness_disagreement(a, b, camera, T_b_a)) sum += *one, ++count;
+                      });
   if (count * 2 < pairs.size()) return std::nullopt;
   return sum / static_cast<double>(count);
 }
