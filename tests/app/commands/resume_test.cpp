@@ -67,7 +67,7 @@ class ResumeTest : public ::testing::Test {
                                           "--resolution",
                                           "0.04",
                                           "--checkpoint-every",
-                                          "0.01",
+                                          checkpoint_every_s_,
                                           "--poses",
                                           poses};
     if (resume) arguments.emplace_back("--resume");
@@ -156,6 +156,7 @@ class ResumeTest : public ::testing::Test {
   static void TearDownTestSuite() { delete shared_; }
 
   test::TemporaryFolder temporary_;
+  std::string checkpoint_every_s_ = "0.01";
   static inline test::TemporaryFolder* shared_ = nullptr;  // not an object: forks would delete the folder
 };
 
@@ -189,6 +190,8 @@ TEST_F(ResumeTest, KilledAgainAndAgainTheMapIsTheSame) {
 
 TEST_F(ResumeTest, KilledWhileFusingAndWritingTheMapIsTheVerySame) {
   const fs::path uncut = uncut_tracked_map();
+  // Fusing takes 0.2 s here, in which 24 intervals between checkpoints must pass more than once.
+  checkpoint_every_s_ = "0.001";
   ASSERT_TRUE(cut_off(
       false, [&] { return is_fusing() && fs::exists(unfinished() / "checkpoint.writing"); }, "tracked"));
   ASSERT_EQ(run(scan(map(), true, "tracked")), 0) << said();
