@@ -13,7 +13,7 @@
 #include <string>
 
 #include "app/calibration/board_pose.hpp"
-#include "app/calibration/median.hpp"
+#include "app/sources/formats/median.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"

@@ -14,7 +14,7 @@
 
 #include "app/calibration/board_pose.hpp"
 #include "app/calibration/calibration_problem.hpp"
-#include "app/calibration/median.hpp"
+#include "app/sources/formats/median.hpp"
 #include "mapping/types/system/classic_locale.hpp"
 #include "mapping/types/system/error.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/calibration/board_pose.hpp"
-#include "app/calibration/median.hpp"
+#include "app/sources/formats/median.hpp"
 
 namespace roomradar {
 

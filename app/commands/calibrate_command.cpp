@@ -8,7 +8,7 @@
 
 #include "app/calibration/calibrate.hpp"
 #include "app/calibration/calibration_plot.hpp"
-#include "app/calibration/median.hpp"
+#include "app/sources/formats/median.hpp"
 #include "app/cli/deferred_errors.hpp"
 #include "app/cli/interrupt.hpp"
 #include "app/cli/open_source.hpp"

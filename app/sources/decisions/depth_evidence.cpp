@@ -6,8 +6,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <utility>
 #include <vector>
 
+#include "app/sources/formats/median.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
 #include "mapping/alignment/align.hpp"
 #include "mapping/types/system/error.hpp"
@@ -60,13 +62,6 @@ bool add_differences(const DepthImage& from, const DepthImage& to, const Intrins
   sum += clipped;
   count += both;
   return true;
-}
-
-double median_of(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// A frame that was read for the comparison.
@@ -342,7 +337,7 @@ DepthDifference mean_difference(const std::vector<Pair>& pairs, Samples& samples
                       });
   if (count == 0) return {};
   mean.disagreement /= static_cast<double>(count);
-  mean.median_m = median_of(medians_m);
+  mean.median_m = median_of(std::move(medians_m));
   return mean;
 }
 
@@ -728,7 +723,7 @@ DepthDifference depth_difference(const DepthImage& from, const DepthImage& to, c
   const bool forward = add_differences(from, to, camera, T_to_from, differences_m, sum, count);
   const bool backward = add_differences(to, from, camera, T_to_from.inverse(), differences_m, sum, count);
   DepthDifference difference;
-  difference.median_m = median_of(differences_m);
+  if (!differences_m.empty()) difference.median_m = median_of(std::move(differences_m));
   if (forward || backward) difference.disagreement = sum / static_cast<double>(count);
   if (forward != backward) difference.disagreement = 0.5 * (difference.disagreement + 1.0);
   return difference;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "app/sources/formats/median.hpp"
 #include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
@@ -18,12 +19,6 @@ constexpr double kMostRate_hz = 240.0;
 constexpr const char* kStampsOption = "--stamps";
 
 bool is_stated(double stamp_s) { return std::isfinite(stamp_s); }
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Returns the median difference of neighbours in the sorted stamps, without differences of 0; nullopt if all
 /// are equal.
@@ -202,7 +197,6 @@ void repair_by_reception(Stamps& stamps) {
     ++replaced;
   }
   stamps.result.header_offset_s = first_level_s;
-  stamps.result.is_reception = replaced == stamps.size();
   if (replaced == stamps.size())
     stamps.say(replaced,
                "the " + stamps.rules.what + " have no time stamps; their times of reception are used");
@@ -486,7 +480,6 @@ RepairedStamps repair_stamps(const std::vector<StatedTime>& times, const StampRu
   }
   if (rules.choice == StampChoice::kReception && received) {
     for (std::size_t i = 0; i < stamps.size(); ++i) stamps.s[i] = times[i].received_s;
-    stamps.result.is_reception = true;
     spread_equal(stamps);
     return std::move(stamps.result);
   }

@@ -23,7 +23,6 @@ struct RepairedStamps {
   /// Header clock minus reception clock, s; 0 if either is not recorded.
   double header_offset_s = 0.0;
   std::vector<ClockStretch> stretches{};  ///< empty: the clock was not set while recording
-  bool is_reception = false;              ///< all times are times of reception
 };
 
 struct StampRules {

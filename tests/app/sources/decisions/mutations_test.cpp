@@ -282,7 +282,7 @@ SourceOptions asking() {
   return options;
 }
 
-/// Returns why the decided recording is not the unchanged one; empty: it is, but for frames that are lost.
+/// Returns why the decided recording is not the unchanged one; empty: it is, except for lost frames.
 std::string difference(const DecidedRecording& got, const DecidedRecording& wanted, double unit_factor) {
   if (got.frames.size() != wanted.frames.size()) return "another number of frames";
   const double period_s = 1.0 / 30.0;
