@@ -33,6 +33,23 @@ double side_of(double height_m) {
   return height_m > 0.0 ? 1.0 : -1.0;
 }
 
+/// Returns true if a unit normal leans towards a direction by more than 3 degrees. Where two faces lie nearly
+/// flat on each other, their borders support them by normals that lean less.
+bool is_towards(const Vec3& normal, const Vec3& direction) {
+  constexpr double kLeans = 0.05;
+  return normal.dot(direction) > kLeans * direction.norm();
+}
+
+struct DirectedEdge {
+  Vec3 from, along;
+};
+/// Returns edge i of a triangle from its lesser end, by coordinates, to the other.
+DirectedEdge edge_from_lesser_end(const Face& t, std::size_t i) {
+  const Vec3 &a = t.corners[i], &b = t.corners[(i + 1) % 3];
+  const bool is_from_a = std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  return is_from_a ? DirectedEdge{a, b - a} : DirectedEdge{b, a - b};
+}
+
 bool pierces(const Vec3& a, const Vec3& b, const Face& t) {
   const double from = t.normal.dot(a - t.corners[0]), to = t.normal.dot(b - t.corners[0]);
   if (from * to > 0.0 || from == to) return false;
@@ -58,10 +75,24 @@ bool cross(const Face& a, const Face& b) {
   return false;
 }
 
-void FeatureCollector::add(const Vec3& on_scene, const Vec3& normal, double gap_m, const Face& s) const {
+void FeatureCollector::add(const Vec3& on_scene, const Vec3& normal, double gap_m, const Face& s,
+                           bool inside_is_nearer) const {
   if (normal.isZero() || !(gap_m <= reach_m)) return;
   if (scene_is_one_sided && !is_outside(normal, s)) return;
-  found.push_back({T_world_frame * on_scene, T_world_frame.linear() * normal, gap_m, kind});
+  (inside_is_nearer ? refused : found)
+      .push_back({T_world_frame * on_scene, T_world_frame.linear() * normal, gap_m, kind});
+}
+
+void FeatureCollector::erase_refused() const {
+  const auto key = [](const ClosestPoint& p) {
+    const Vec3 &a = p.point_world, &b = p.normal_world;
+    return std::array<double, 6>{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+  };
+  const auto is_before = [&](const ClosestPoint& a, const ClosestPoint& b) { return key(a) < key(b); };
+  std::sort(refused.begin(), refused.end(), is_before);
+  std::erase_if(found, [&](const ClosestPoint& p) {
+    return std::binary_search(refused.begin(), refused.end(), p, is_before);
+  });
 }
 
 Vec3 FeatureCollector::off_scene(double height_m, const Face& o, const Face& s, const Range& heights) const {
@@ -105,8 +136,12 @@ bool FeatureCollector::look(const FrameTriangle& object, const FrameTriangle& sc
     const double h = over_scene[k], g = over_object[k];
     if (std::abs(h) <= reach_m && is_over(o.corners[k], s))
       add(o.corners[k] - h * s.normal, off_scene(h, o, s, of_object), std::abs(h), s);
-    if (std::abs(g) <= reach_m && !(object_is_closed && g < -kTouching_m) && is_over(s.corners[k], o))
-      add(s.corners[k], off_object(g, s.corners[k], o, of_scene), std::abs(g), s);
+    if (std::abs(g) <= reach_m && !(object_is_closed && g < -kTouching_m) && is_over(s.corners[k], o)) {
+      const Vec3 normal = off_object(g, s.corners[k], o, of_scene);
+      const bool inside_is_nearer =
+          is_towards(normal, s.edge[k]) || is_towards(normal, Vec3(-s.edge[(k + 2) % 3]));
+      add(s.corners[k], normal, std::abs(g), s, inside_is_nearer);
+    }
   }
   // Seen along the scene's normal, all of one triangle may lie on one side of an edge of the other.
   std::array<bool, 3> is_passed;  // the object is wholly beside this scene edge
@@ -128,9 +163,10 @@ bool FeatureCollector::look(const FrameTriangle& object, const FrameTriangle& sc
 
 /// Adds the shortest segment between two edges that pass each other; it is perpendicular to both.
 void FeatureCollector::look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const {
-  const Vec3& a = o.corners[i];
-  const Vec3& b = s.corners[j];
-  const Vec3 &u = o.edge[i], &v = s.edge[j], w = a - b;
+  // From the lesser end of each edge: the triangle beyond it finds the same point to the last bit.
+  const auto [a, u] = edge_from_lesser_end(o, i);
+  const auto [b, v] = edge_from_lesser_end(s, j);
+  const Vec3 w = a - b;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
   const double across = uu * vv - uv * uv;
   if (!(across > 1e-6 * uu * vv)) return;  // parallel: their end points give the closest features
@@ -146,7 +182,8 @@ void FeatureCollector::look_at_edges(const Face& o, std::size_t i, const Face& s
   }
   // The segment enters a closed object: another of its faces is nearer.
   if (object_is_closed && way.dot(o.normal) > 1e-9 * gap_m) return;
-  add(on_scene, way / gap_m, gap_m, s);
+  const Vec3 normal = way / gap_m;
+  add(on_scene, normal, gap_m, s, is_towards(normal, s.inward[j]));
 }
 
 void keep_the_outermost(std::vector<ClosestPoint>& all, std::vector<ClosestPoint>& kept) {

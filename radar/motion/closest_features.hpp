@@ -59,15 +59,23 @@ struct FeatureCollector {
   const Eigen::Isometry3d& T_world_frame;
   /// Output: the collector appends its points to this vector.
   std::vector<ClosestPoint>& found;
+  /// Output: points on edges and vertices of a scene triangle whose inside is nearer to the object's point.
+  /// The triangle beyond the edge finds the same points, which are then no closest features: their normals
+  /// are none of the surface's.
+  std::vector<ClosestPoint>& refused;
 
   /// Appends the closest features of one pair of triangles. Returns true if the triangles intersect and the
   /// scene's surface is not one-sided.
   bool look(const FrameTriangle& object, const FrameTriangle& scene) const;
+  /// Removes the refused points from those found.
+  void erase_refused() const;
 
  private:
   /// Appends a point. Omits points farther than reach_m, with a zero normal, or on the inside of a one-sided
   /// surface.
-  void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m, const Face& s) const;
+  /// @param inside_is_nearer  the point is refused
+  void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m, const Face& s,
+           bool inside_is_nearer = false) const;
   /// Returns the scene triangle's normal, negated if an object vertex is below the scene triangle's plane. If
   /// the vertex touches the plane, the other vertices of the object's triangle decide the sign.
   /// @param height_m  height of the object vertex above the plane

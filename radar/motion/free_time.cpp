@@ -9,6 +9,7 @@
 #include "radar/geometry/inflated_distance.hpp"
 #include "radar/geometry/tree_pairs.hpp"
 #include "radar/motion/closest_features.hpp"
+#include "radar/motion/local_surface.hpp"
 
 namespace roomradar {
 namespace {
@@ -309,6 +310,20 @@ struct TreeFreedom {
   }
 };
 
+/// Replaces the point of the scene by the one nearest to the object's point. Beside the edge of a triangle, a
+/// neighbour may be nearer: the direction across the edge is then none of the surface's normals.
+void move_to_nearest(ClosestPoint& limit, const SceneTree& tree) {
+  constexpr double kRounding = 1.0 - 1e-9;
+  const Vec3 on_object = limit.point_world + limit.gap_m * limit.normal_world;
+  const std::optional<Vec3> nearest = nearest_point(tree.instance, on_object, kRounding * limit.gap_m);
+  if (!nearest) return;
+  const Vec3 way = on_object - *nearest;
+  if (!(way.norm() > 0.0)) return;
+  limit.point_world = *nearest;
+  limit.gap_m = way.norm();
+  limit.normal_world = way / limit.gap_m;
+}
+
 }  // namespace
 
 FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
@@ -338,6 +353,8 @@ FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double
         });
     result = freedom.result;
   }
+  if (result.limit.kind != SurfaceKind::kNothing && !is_one_sided(result.limit.kind))
+    move_to_nearest(result.limit, scene.trees[result.limit.tree]);
   return result;
 }
 

@@ -15,8 +15,8 @@ struct FreeTime {
   /// Duration from now on during which every pair of triangles keeps its minimum distance (see free_time()),
   /// s.
   double free_s = 0.0;
-  /// Present closest features of the pair that limits free_s. Its kind is kNothing if the whole duration is
-  /// free.
+  /// Of the pair that limits free_s: the object's point nearest to the scene's triangle, and the scene's
+  /// point nearest to that. Its kind is kNothing if the whole duration is free.
   ClosestPoint limit;
 };
 

@@ -49,8 +49,8 @@ bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const F
 SurfaceKindMask near_features(const TreeInstance& object, const RadarScene& scene, double reach_m,
                               SurfaceKindMask left_out, const TreeStates& states,
                               std::vector<ClosestPoint>& points) {
-  thread_local PendingPairs pending;                   // scratch
-  thread_local std::vector<ClosestPoint> found, kept;  // scratch
+  thread_local PendingPairs pending;                            // scratch
+  thread_local std::vector<ClosestPoint> found, refused, kept;  // scratch
   points.clear();
   SurfaceKindMask crossed = 0;
   if (!is_usable(object) || !(reach_m > 0.0)) return crossed;
@@ -60,9 +60,11 @@ SurfaceKindMask near_features(const TreeInstance& object, const RadarScene& scen
     if (states.is_left_out(number)) continue;
     if (are_farther_apart(object, tree.instance, reach_m)) continue;
     found.clear();
+    refused.clear();
     TreePair trees(object, tree.instance);
     const FeatureCollector places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),
-                                  tree.kind, trees.T_world_frame,      found};
+                                  tree.kind, trees.T_world_frame,      found,
+                                  refused};
     bool crosses = false;
     visit_pairs<PairOrder::kAny>(
         trees, pending,
@@ -77,6 +79,7 @@ SurfaceKindMask near_features(const TreeInstance& object, const RadarScene& scen
       crossed |= bit_of(tree.kind);
       continue;
     }
+    places.erase_refused();
     for (ClosestPoint& point : found) point.tree = number;
     keep_the_outermost(found, kept);
     points.insert(points.end(), kept.begin(), kept.end());

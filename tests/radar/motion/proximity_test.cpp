@@ -203,6 +203,26 @@ TEST(Proximity, NoMotionIsFreeForLongerThanItIs) {
   EXPECT_GT(stopped, 50);
 }
 
+TEST(Proximity, FeaturesOverALevelSheetHaveItsNormal) {
+  // Beside an edge of the sheet's triangles, the direction across the edge is no normal of the sheet.
+  Pair pair(shapes::ball(0.05F, 32, 64), grid(60));
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<ClosestPoint> points;
+  for (int i = 0; i < 200; ++i) {
+    Eigen::Isometry3d T = at(0.8 * unit(random), 0.8 * unit(random), 0.0505 + 0.0005 * unit(random));
+    T.rotate(Eigen::AngleAxisd(3.0 * unit(random), Vec3(unit(random), unit(random), 1).normalized()));
+    EXPECT_EQ(pair.near(T, 0.0015, points), 0U);
+    EXPECT_FALSE(points.empty());
+    for (const ClosestPoint& p : points) EXPECT_GT(p.normal_world.z(), std::cos(0.06)) << i;
+    // Towards the sheet at a shallow angle: the feature that ends the motion, too.
+    const Vec3 along = Eigen::AngleAxisd(3.0 * unit(random), Vec3::UnitZ()) * Vec3(1.5, 0, -0.15);
+    const FreeTime free = pair.free_time(T, {along, Vec3::Zero(), Vec3::Zero()}, 0.1, 0.0005);
+    ASSERT_EQ(free.limit.kind, SurfaceKind::kStatic) << i;
+    EXPECT_NEAR(free.limit.normal_world.z(), 1.0, 1e-9) << i;
+  }
+}
+
 /// Two boards, coarse, and the same with sides of many triangles.
 struct Boards {
   Pair coarse{shapes::box({0.3F, 0.2F, 0.02F}), shapes::box({0.5F, 0.25F, 0.02F})};
