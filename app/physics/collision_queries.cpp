@@ -34,6 +34,11 @@ CollisionQueries make_collision_queries(CyberRadar& radar, const TriangleTree& o
     const Spent spent{spent_ms};
     return free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out, trees);
   };
+  probe.patch = [&, spent_ms](std::uint32_t tree, const Eigen::Vector3d& point_world,
+                              const Eigen::Vector3d& facing_world, double reach_m) {
+    const Spent spent{spent_ms};
+    return fit_plane(scene.trees[tree].instance, point_world, facing_world, reach_m);
+  };
   return probe;
 }
 

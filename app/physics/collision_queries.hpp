@@ -9,6 +9,7 @@
 #include "app/physics/body.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/geometry/contact.hpp"
+#include "radar/motion/local_surface.hpp"
 #include "radar/motion/proximity.hpp"
 #include "radar/motion/time_of_impact.hpp"
 
@@ -41,6 +42,11 @@ struct CollisionQueries {
   std::function<FreeTime(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
                          double duration_s, double keep_m, SurfaceKindMask left_out, const TreeStates& trees)>
       free_time;
+  /// Plane fitted to a tree of the scene about a point; see fit_plane(). Null: contacts have the normals of
+  /// the closest features.
+  std::function<FittedPlane(std::uint32_t tree, const Eigen::Vector3d& point_world,
+                            const Eigen::Vector3d& facing_world, double reach_m)>
+      patch{};
   /// One entry per tree of the scene, in the scene's order. Trees beyond the last entry do not belong to
   /// bodies.
   std::span<const SceneBody> others = {};

@@ -30,6 +30,31 @@ std::size_t bystander_index(std::span<const MovingBody> bodies, const SceneBody&
   return system.bodies.size() - 1;
 }
 
+/// Gives a contact with a mapped surface the normal of the plane fitted to the surface about it, if the
+/// surface is flat within a map's noise there, and the contact is a facet or bump of this noise: such bumps
+/// must not brake the body. A step, an edge or rough ground keeps the normal of the feature that is touched.
+/// The impulse acts where a plane would touch a round body, so that it turns the body as little as along the
+/// feature's normal. Returns whether the contact was changed.
+bool patch_contact(const MovingBody& moving, const ClosestPoint& p, const PhysicsConfig& config,
+                   SolverContact& contact) {
+  constexpr double kSteepest = 0.5;     // cosine of 60 degrees: facets of a few mm may be steep
+  constexpr double kHighest = 1.5;      // of the allowed roughness: height of a bump over the plane
+  constexpr double kNarrow = 0.25;      // of the reach: too narrow for a plane
+  constexpr double kLongest_m = 0.1;    // of a round body's radius
+  constexpr double kSame = 1.0 - 1e-9;  // on a flat surface, features keep their normals
+  if (p.kind != SurfaceKind::kStatic || !moving.probe->patch || !(config.patch_reach_m > 0.0)) return false;
+  const FittedPlane patch = moving.probe->patch(p.tree, p.point_world, p.normal_world, config.patch_reach_m);
+  const double cosine = patch.normal_world.dot(p.normal_world);
+  if (!(cosine > kSteepest) || cosine > kSame) return false;
+  if (patch.roughness_m > config.roughness_m || patch.extent_m < kNarrow * config.patch_reach_m) return false;
+  if (patch.normal_world.dot(p.point_world - patch.centre_world) > kHighest * config.roughness_m)
+    return false;
+  const double arm_m = std::clamp(-contact.contact_offset_m.dot(patch.normal_world), 0.0, kLongest_m);
+  contact.contact_offset_m += arm_m * (p.normal_world - cosine * patch.normal_world);
+  contact.normal = patch.normal_world;
+  return true;
+}
+
 /// Adds the contacts of one body, except those of pairs that are in the system.
 void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const std::vector<bool>& is_listed,
                   const PhysicsConfig& config, ContactSystem& system) {
@@ -56,6 +81,9 @@ void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const s
     }
     contact.friction = coefficients.friction;
     contact.restitution = coefficients.restitution;
+    Feature& feature = system.features.emplace_back(Feature{contact.normal, contact.contact_offset_m});
+    feature.is_on_patch = patch_contact(moving, p, config, contact);
+    feature.patch_normal = contact.normal;
     system.contacts.push_back(contact);
     system.gap_m.push_back(p.gap_m);
     system.kinds.push_back(p.kind);
@@ -67,6 +95,7 @@ void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const s
     contact.contact_offset_m = push.point_world - centre;
     contact.normal = push.normal_world;
     contact.friction = on_room(moving.body->material, config).friction;
+    system.features.push_back({contact.normal, contact.contact_offset_m});
     system.gap_m.push_back(0.0);
     system.kinds.push_back(push.touched);
     system.push.push_back(&push);
@@ -99,6 +128,7 @@ bool is_active(const MovingBody& moving) {
 void find_contacts(std::span<MovingBody> bodies, const PhysicsConfig& config, const Eigen::Vector3d& up_world,
                    ContactSystem& system) {
   system.contacts.clear();
+  system.features.clear();
   system.gap_m.clear();
   system.kinds.clear();
   system.push.clear();

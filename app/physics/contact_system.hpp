@@ -80,9 +80,18 @@ struct PastContact {
   Eigen::Vector3d friction_impulse_Ns = Eigen::Vector3d::Zero();
 };
 
+/// Normal of a contact's closest features, and their point on the body, from its centre of mass.
+struct Feature {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(), offset_m = Eigen::Vector3d::Zero();
+  bool is_on_patch = false;  ///< the contact has patch_normal instead
+  Eigen::Vector3d patch_normal = Eigen::Vector3d::UnitZ();
+};
+
 /// Contacts of a substep's bodies. The solver's bodies are first the substep's bodies, then the bystanders.
 struct ContactSystem {
+  /// Their normals, and the points where impulses act, are those of the surface's patch; see patch_contact().
   std::vector<SolverContact> contacts;
+  std::vector<Feature> features;   ///< per contact: the closest features
   std::vector<double> gap_m;       ///< per contact; 0 for a Push
   std::vector<SurfaceKind> kinds;  ///< per contact: kind of the surface that SolverContact::body touches
   std::vector<const Push*> push;   ///< per contact; null if the contact is not a Push

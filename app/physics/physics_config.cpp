@@ -23,6 +23,8 @@ void require_valid(const PhysicsConfig& config) {
   require_not_negative("friction", config.friction);
   require_not_negative("rolling", config.rolling);
   require_positive("contact_margin_m", config.contact_margin_m);
+  require_not_negative("patch_reach_m", config.patch_reach_m);
+  require_not_negative("roughness_m", config.roughness_m);
   require_positive("max_step_s", config.max_step_s);
   require_positive("max_advance_s", config.max_advance_s);
   require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,

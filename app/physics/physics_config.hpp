@@ -17,6 +17,13 @@ struct PhysicsConfig {
   /// Gap between resting bodies and surfaces, measured by Contact::lower_m (the radar's lower bound of the
   /// distance). Without a gap, rounding errors would turn contacts into overlaps.
   double contact_margin_m = 0.001;
+  /// Impulses act along the normal of the plane fitted to the room's surface within this distance of a
+  /// contact, if the surface is flat there within `roughness_m`. 0: along the normal of the feature in
+  /// contact.
+  double patch_reach_m = 0.09;
+  /// Max standard deviation of a surface from the fitted plane, m: a map's noise. Features that rise over the
+  /// plane by more than 1.5 times this are steps.
+  double roughness_m = 0.002;
   double max_step_s = 1.0 / 60.0;  ///< max substep, exceeded by 5 % at most
   /// Max time simulated per call of advance(). Time beyond it is discarded, so that objects do not jump after
   /// a camera stall.

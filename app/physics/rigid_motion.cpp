@@ -7,6 +7,7 @@
 
 #include "app/physics/set_motion.hpp"
 #include "app/physics/sliding.hpp"
+#include "radar/motion/joint_motion.hpp"
 
 namespace roomradar {
 namespace {
@@ -51,6 +52,7 @@ class Substep {
   const PhysicsConfig& config_;
   ContactSystem& system_;
   std::vector<SubstepResult>& results_;
+  std::vector<Velocity> rises_;  ///< per body: part of its motion that lifts it over bumps; empty: none
   const Vec3 up_ = -config_.gravity_world_mps2.stableNormalized();  // zero without gravity
 
   [[nodiscard]] bool is_member(std::size_t solver_index) const { return solver_index < bodies_.size(); }
@@ -63,8 +65,11 @@ class Substep {
   void find_balanced();
   void move();
   [[nodiscard]] std::vector<RigidMotion> motions();
+  void follow_features();
   [[nodiscard]] std::vector<Velocity> corrections();
   [[nodiscard]] std::vector<Velocity> mean_velocities();
+  void find_rises(const std::vector<Velocity>& means);
+  void settle(const std::vector<double>& gone_s);
 };
 
 /// Cancels the velocity into contacts that would close within the time left, with restitution for fast
@@ -185,6 +190,17 @@ void Substep::find_balanced() {
   }
 }
 
+/// Gives the contacts the normals of their features and no friction, for changes of position without
+/// momentum.
+void Substep::follow_features() {
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+    SolverContact& contact = system_.contacts[i];
+    contact.normal = system_.features[i].normal;
+    contact.contact_offset_m = system_.features[i].offset_m;
+    contact.friction = 0.0;
+  }
+}
+
 /// Returns position corrections, without momentum, that restore the margin at contacts nearer than it.
 std::vector<Velocity> Substep::corrections() {
   constexpr double kAtOnce = 0.3, kFastest_mps = 0.1, kLeft = 0.05;
@@ -197,7 +213,6 @@ std::vector<Velocity> Substep::corrections() {
     const double left = left_s(bodies_, contact);
     contact.leaves_mps =
         missing_m > 0.0 ? std::min(kAtOnce * missing_m / left, kFastest_mps) : missing_m / left;
-    contact.friction = 0.0;
   }
   if (!is_needed) return corrections;
   for (SolverBody& body : system_.bodies) body.velocity = {};
@@ -236,6 +251,8 @@ std::vector<Velocity> Substep::mean_velocities() {
 /// Returns the motions of the active bodies with their mean velocities; zero for others.
 std::vector<RigidMotion> Substep::motions() {
   const std::vector<Velocity> means = mean_velocities();
+  follow_features();
+  find_rises(means);
   const std::vector<Velocity> lifts = corrections();
   std::vector<RigidMotion> motions(bodies_.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -253,9 +270,46 @@ std::vector<RigidMotion> Substep::motions() {
     motion.angular_rad_s = mean_free_spin(body, slower * means[i].angular_rad_s, moving.left_s);
     motion.linear_m_s += lifts[i].linear_mps;
     motion.angular_rad_s += lifts[i].angular_rad_s;
+    if (!rises_.empty()) {
+      motion.linear_m_s += rises_[i].linear_mps;
+      motion.angular_rad_s += rises_[i].angular_rad_s;
+    }
     motions[i] = motion;
   }
   return motions;
+}
+
+/// Sets rises_: what must be added to motions along a plane, without momentum, so that they do not enter the
+/// bumps of the surface itself.
+void Substep::find_rises(const std::vector<Velocity>& means) {
+  constexpr double kLeast_mps = 1e-6;
+  rises_.clear();
+  const bool is_any_bumpy = std::any_of(system_.features.begin(), system_.features.end(),
+                                        [](const Feature& feature) { return feature.is_on_patch; });
+  if (!is_any_bumpy) return;
+  for (std::size_t i = 0; i < system_.bodies.size(); ++i)
+    system_.bodies[i].velocity = is_member(i) ? means[i] : Velocity{};
+  allow_closing_gaps(bodies_, config_.contact_margin_m, system_);
+  bool is_needed = false;
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+    SolverContact& contact = system_.contacts[i];
+    const Vec3 slip_mps = slip_at(contact, system_.bodies);
+    if (!system_.features[i].is_on_patch) {
+      contact.leaves_mps -= slip_mps.dot(contact.normal);
+      continue;
+    }
+    // Its rotation rolls a round body over a bump, not into it: that part keeps to the plane.
+    const Vec3& along_mps = means[contact.body].linear_mps;
+    contact.leaves_mps -=
+        along_mps.dot(contact.normal) + (slip_mps - along_mps).dot(system_.features[i].patch_normal);
+    is_needed |= contact.leaves_mps > kLeast_mps;
+  }
+  if (!is_needed) return;
+  for (SolverBody& body : system_.bodies) body.velocity = {};
+  set_masses(bodies_, Movable::kActive, system_);
+  clear_impulses(system_);
+  solve(0.0);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) rises_.push_back(system_.bodies[i].velocity);
 }
 
 /// Returns the angular velocity after a motion: with the angular momentum before it. The path of a body in
@@ -270,6 +324,27 @@ Vec3 spin_after(const Body& body, const Eigen::Matrix3d& inertia_m2, const Vec3&
   const double energy_after = after_rad_s.dot(momentum_m2_rad_s);
   if (is_touched && energy_after > energy_before) after_rad_s *= std::sqrt(energy_before / energy_after);
   return after_rad_s;
+}
+
+/// Takes the bodies that were lifted over bumps back down, as far as the bumps leave the margin.
+void Substep::settle(const std::vector<double>& gone_s) {
+  for (std::size_t i = 0; i < rises_.size(); ++i) {
+    const Velocity& rise = rises_[i];
+    if (!(gone_s[i] > 0.0) || (rise.linear_mps.isZero(0.0) && rise.angular_rad_s.isZero(0.0))) continue;
+    const MovingBody& moving = bodies_[i];
+    Eigen::Isometry3d& T_world_object = moving.body->T_world_object;
+    const RigidMotion back{-rise.linear_mps, -rise.angular_rad_s, moving.body->mass.centre_object};
+    const double margin_m = config_.contact_margin_m, keep_m = 0.5 * margin_m;
+    const auto [free_s, limit] =
+        moving.probe->free_time(T_world_object, back, gone_s[i], keep_m, moving.left_out, {});
+    double back_s = free_s;
+    if (limit.kind != SurfaceKind::kNothing)
+      back_s *= std::max(limit.gap_m - margin_m, 0.0) / (limit.gap_m - keep_m);
+    if (!(back_s > 0.0)) continue;
+    T_world_object = pose_after(T_world_object, back, back_s);
+    make_orthonormal(T_world_object);
+    if (moving.moved != nullptr && *moving.moved) (*moving.moved)();
+  }
 }
 
 /// Moves the active bodies, and changes their velocities by the fraction of the time that they moved.
@@ -302,6 +377,7 @@ void Substep::move() {
     if (gone_s[i] > kProgress * moving.dt_s) continue;
     if (++moving.stops_in_place == kMaxStopsInPlace) moving.left_s = 0.0;
   }
+  settle(gone_s);
 }
 
 void Substep::run() {
