@@ -30,12 +30,25 @@ std::size_t bystander_index(std::span<const MovingBody> bodies, const SceneBody&
   return system.bodies.size() - 1;
 }
 
+/// Returns the plane fitted to the surface about a contact, or about a contact that is a third of the reach
+/// away.
+const FittedPlane& plane_about(const ClosestPoint& p, double reach_m, MovingBody& moving) {
+  constexpr double kSameFacing = 0.9;
+  for (const PatchPlane& patch : moving.patches)
+    if (patch.tree == p.tree && (patch.point_world - p.point_world).norm() < reach_m / 3.0 &&
+        patch.plane.normal_world.dot(p.normal_world) > kSameFacing)
+      return patch.plane;
+  moving.patches.push_back(
+      {p.tree, p.point_world, moving.probe->patch(p.tree, p.point_world, p.normal_world, reach_m)});
+  return moving.patches.back().plane;
+}
+
 /// Gives a contact with a mapped surface the normal of the plane fitted to the surface about it, if the
 /// surface is flat within a map's noise there, and the contact is a facet or bump of this noise: such bumps
 /// must not brake the body. A step, an edge or rough ground keeps the normal of the feature that is touched.
 /// The impulse acts where a plane would touch a round body, so that it turns the body as little as along the
 /// feature's normal. Returns whether the contact was changed.
-bool patch_contact(const MovingBody& moving, const ClosestPoint& p, const PhysicsConfig& config,
+bool patch_contact(MovingBody& moving, const ClosestPoint& p, const PhysicsConfig& config,
                    SolverContact& contact) {
   constexpr double kSteepest = 0.5;     // cosine of 60 degrees: facets of a few mm may be steep
   constexpr double kHighest = 1.5;      // of the allowed roughness: height of a bump over the plane
@@ -43,7 +56,7 @@ bool patch_contact(const MovingBody& moving, const ClosestPoint& p, const Physic
   constexpr double kLongest_m = 0.1;    // of a round body's radius
   constexpr double kSame = 1.0 - 1e-9;  // on a flat surface, features keep their normals
   if (p.kind != SurfaceKind::kStatic || !moving.probe->patch || !(config.patch_reach_m > 0.0)) return false;
-  const FittedPlane patch = moving.probe->patch(p.tree, p.point_world, p.normal_world, config.patch_reach_m);
+  const FittedPlane& patch = plane_about(p, config.patch_reach_m, moving);
   const double cosine = patch.normal_world.dot(p.normal_world);
   if (!(cosine > kSteepest) || cosine > kSame) return false;
   if (patch.roughness_m > config.roughness_m || patch.extent_m < kNarrow * config.patch_reach_m) return false;
@@ -56,9 +69,9 @@ bool patch_contact(const MovingBody& moving, const ClosestPoint& p, const Physic
 }
 
 /// Adds the contacts of one body, except those of pairs that are in the system.
-void add_contacts(std::span<const MovingBody> bodies, std::size_t index, const std::vector<bool>& is_listed,
+void add_contacts(std::span<MovingBody> bodies, std::size_t index, const std::vector<bool>& is_listed,
                   const PhysicsConfig& config, ContactSystem& system) {
-  const MovingBody& moving = bodies[index];
+  MovingBody& moving = bodies[index];
   const Vec3 centre = centre_world(*moving.body);
   for (const ClosestPoint& p : moving.near) {
     SolverContact contact;

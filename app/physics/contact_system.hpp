@@ -2,6 +2,7 @@
 // solver.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -34,6 +35,13 @@ inline constexpr SurfaceKindMask kMovingSurfaces =
     bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
 constexpr bool is_moving_surface(SurfaceKind kind) { return (bit_of(kind) & kMovingSurfaces) != 0; }
 
+/// Plane fitted to a tree of the scene about a point.
+struct PatchPlane {
+  std::uint32_t tree = 0;
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
+  FittedPlane plane;
+};
+
 /// A body in a substep, with its progress.
 struct MovingBody {
   Body* body = nullptr;
@@ -55,12 +63,13 @@ struct MovingBody {
   double left_s = 0.0;  ///< time of the substep that remains to be simulated
   /// A surface other than the pushing one intersects the body. The contact solver then does not move it.
   bool crosses = false;
-  Velocity velocity{}, after{};      ///< before and after the second solve
-  ClosestPoint limited_by{};         ///< feature that ended the body's last motion
-  int stops_in_place = 0;            ///< motions in this substep that hardly moved the body
-  bool contacts_known = false;       ///< sleeping bodies: contacts are in the system
-  std::vector<ClosestPoint> near{};  ///< closest features at its pose
-  std::size_t near_found = 0;        ///< size of `near` without the feature that ended the body's last motion
+  Velocity velocity{}, after{};       ///< before and after the second solve
+  ClosestPoint limited_by{};          ///< feature that ended the body's last motion
+  int stops_in_place = 0;             ///< motions in this substep that hardly moved the body
+  bool contacts_known = false;        ///< sleeping bodies: contacts are in the system
+  std::vector<ClosestPoint> near{};   ///< closest features at its pose
+  std::vector<PatchPlane> patches{};  ///< fitted in this call
+  std::size_t near_found = 0;  ///< size of `near` without the feature that ended the body's last motion
   /// Pose at which the body's features were queried in this substep; unset if they were not.
   std::optional<Eigen::Isometry3d> T_world_near{};
 };
