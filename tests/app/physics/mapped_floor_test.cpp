@@ -171,7 +171,7 @@ TEST(MappedFloor, BodiesWithoutFrictionKeepTheirSpeedOverFlatTriangles) {
     for (int i = 0; i < lanes(); ++i) {
       const Lane lane = slide(world, shape, angle_of(i), frictionless());
       EXPECT_NEAR(lane.end_mps, kSpeed_mps, 1e-3) << shape.name << ", lane " << i;
-      EXPECT_LT(lane.lift_m, 1e-4) << shape.name << ", lane " << i;
+      EXPECT_LT(lane.lift_m, 2.5e-4) << shape.name << ", lane " << i;
       EXPECT_LT(lane.aside_m, 1e-3) << shape.name << ", lane " << i;
     }
   EXPECT_EQ(world.deepest_m, 0.0);
@@ -184,7 +184,8 @@ TEST(MappedFloor, BodiesWithoutFrictionKeepTheirSpeedOverAMapsNoise) {
     for (int i = 0; i < lanes(); ++i) {
       const Lane lane = slide(world, shape, angle_of(i), frictionless());
       EXPECT_NEAR(lane.end_mps, kSpeed_mps, 0.03) << shape.name << ", lane " << i;
-      EXPECT_LT(lane.lift_m, 4.0 * kNoise_m) << shape.name << ", lane " << i;
+      EXPECT_LT(lane.lift_m, 6.0 * kNoise_m)  // from the lowest of its start to the highest of its lane
+          << shape.name << ", lane " << i;
       EXPECT_LT(lane.aside_m, 0.03) << shape.name << ", lane " << i;
     }
   EXPECT_EQ(world.deepest_m, 0.0);
