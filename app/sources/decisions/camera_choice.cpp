@@ -46,6 +46,14 @@ void set_origin(RecordingFacts& facts, Origin origin, const std::string& source)
   facts.camera_source = source;
 }
 
+/// Returns true if a stated focal length is that of the device assumed until then, to 3 %. If not, the device is
+/// another one, and so is its colour camera. With a single matrix, as in the 3DMatch and TSDF-Fusion datasets,
+/// depth is registered to colour.
+bool is_same_device(const Intrinsics& stated, const Intrinsics& assumed) {
+  constexpr double kSame = 0.03;
+  return std::abs(stated.fx_px / assumed.fx_px - 1.0) < kSame;
+}
+
 /// Reports cameras, and the place of the colour camera, that nothing states.
 void report_assumed(const RecordingFacts& facts, InputReport& report) {
   const Intrinsics& camera = facts.rig.depth_camera;
@@ -98,10 +106,13 @@ void choose_cameras(RecordingFacts& facts, const fs::path& folder, const SourceO
   } else if (const fs::path matrix = matrix_file(facts, folder, options); !matrix.empty()) {
     const bool was_assumed = facts.camera_origin == Origin::kAssumed;
     facts.colour_camera_source = facts.camera_source;
+    const Intrinsics assumed = rig.depth_camera;
     rig.depth_camera = read_intrinsics_matrix(matrix, depth.width_px, depth.height_px);
+    const bool is_other_device = was_assumed && !is_same_device(rig.depth_camera, assumed);
+    if (is_other_device) rig.timing = {};
     facts.depth_lens = {};
     set_origin(facts, is_option ? Origin::kOption : Origin::kFile, matrix.string());
-    if (facts.is_depth_registered || (was_assumed && facts.is_registered_if_given))
+    if (facts.is_depth_registered || (was_assumed && facts.is_registered_if_given) || is_other_device)
       register_colour();
     else
       facts.is_colour_camera_assumed = was_assumed;
