@@ -27,10 +27,11 @@ Registration require_registered(const SavedMap& a, const SavedMap& b, const std:
 
 MapChanges changes_between(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                            const std::string& name_b, Report& report) {
-  const Eigen::Isometry3d T_a_b = share_world(a.info, b.info)
-                                      ? Eigen::Isometry3d::Identity()
-                                      : require_registered(a, b, name_a, name_b, report).T_a_b;
-  return {T_a_b, report.times.timed("diff", [&] { return diff_maps(a.octree, b.octree, T_a_b); })};
+  const Registration found = share_world(a.info, b.info) ? Registration{}
+                                                         : require_registered(a, b, name_a, name_b, report);
+  return {found.T_a_b, report.times.timed("diff", [&] {
+            return diff_maps(a.octree, b.octree, found.T_a_b, found.T_b_a, {});
+          })};
 }
 
 }  // namespace roomradar

@@ -99,9 +99,9 @@ MapPointer merge(const Map& a, const Map& b) {
 
 std::vector<Change> diff(const Map& a, const Map& b) {
   return without_gil([&] {
-    const Eigen::Isometry3d T_a_b =
-        share_world(a.saved.info, b.saved.info) ? Eigen::Isometry3d::Identity() : registered(a, b).T_a_b;
-    return diff_maps(a.saved.octree, b.saved.octree, T_a_b);
+    const Registration found =
+        share_world(a.saved.info, b.saved.info) ? Registration{} : registered(a, b);
+    return diff_maps(a.saved.octree, b.saved.octree, found.T_a_b, found.T_b_a, {});
   });
 }
 

@@ -251,33 +251,37 @@ class ObjectFinder {
 /// @param T_world_has  to the world of the result
 Change describe_thing(ChangeKind kind, const std::vector<VoxelIndex>& thing, const StaticMap& has,
                       const StaticMap& lacks, const Eigen::Isometry3d& T_world_has,
-                      const Eigen::Isometry3d& T_world_lacks) {
+                      const Eigen::Isometry3d& T_lacks_has) {
   Change change;
   change.kind = kind;
   const double voxel_m = has.resolution_m();
+  Eigen::AlignedBox3d box_has;
   for (const VoxelIndex& voxel : thing) {
-    const Eigen::Vector3d p =
-        T_world_has * ((voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * voxel_m);
+    const Eigen::Vector3d p_has = (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * voxel_m;
+    const Eigen::Vector3d p = T_world_has * p_has;
+    box_has.extend(p_has);
     change.surface_world.push_back(p);
     change.box_world.extend(p);
     change.position_world += p / static_cast<double>(thing.size());
   }
   change.area_m2 = static_cast<double>(thing.size()) * voxel_m * voxel_m;
-  change.box_world.min().array() -= 0.5 * voxel_m;
-  change.box_world.max().array() += 0.5 * voxel_m;
+  for (Eigen::AlignedBox3d* box : {&change.box_world, &box_has}) {
+    box->min().array() -= 0.5 * voxel_m;
+    box->max().array() += 0.5 * voxel_m;
+  }
 
-  const Eigen::Isometry3d T_has_world = T_world_has.inverse(), T_lacks_world = T_world_lacks.inverse();
+  // In the grid of the map that has the object, so that the volume does not depend on the result's world.
   constexpr double kMostCells = 4e6;  // takes some seconds
-  Eigen::Array3d cells = (change.box_world.sizes().array() / voxel_m).round().max(1.0);
+  Eigen::Array3d cells = (box_has.sizes().array() / voxel_m).round().max(1.0);
   while (cells.prod() > kMostCells) cells = (0.8 * cells).floor().max(1.0);
-  const Eigen::Vector3d step = (change.box_world.sizes().array() / cells).matrix();
+  const Eigen::Vector3d step = (box_has.sizes().array() / cells).matrix();
   for (int z = 0; z < static_cast<int>(cells.z()); ++z)
     for (int y = 0; y < static_cast<int>(cells.y()); ++y)
       for (int x = 0; x < static_cast<int>(cells.x()); ++x) {
-        const Eigen::Vector3d p =
-            change.box_world.min() + (Eigen::Vector3d(x, y, z).array() + 0.5).matrix().cwiseProduct(step);
-        if (lacks.occupancy_at(T_lacks_world * p) == Occupancy::kFree &&
-            has.occupancy_at(T_has_world * p) != Occupancy::kFree)
+        const Eigen::Vector3d p_has =
+            box_has.min() + (Eigen::Vector3d(x, y, z).array() + 0.5).matrix().cwiseProduct(step);
+        if (lacks.occupancy_at(T_lacks_has * p_has) == Occupancy::kFree &&
+            has.occupancy_at(p_has) != Occupancy::kFree)
           change.volume_m3 += step.prod();
       }
   return change;
@@ -301,13 +305,18 @@ void require_valid(const DiffConfig& config) {
 
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const DiffConfig& config) {
+  return diff_maps(a, b, T_a_b, T_a_b.inverse(), config);
+}
+
+std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
+                              const Eigen::Isometry3d& T_b_a, const DiffConfig& config) {
   require_valid(config);
   const Eigen::Isometry3d T_a_a = Eigen::Isometry3d::Identity();
   std::vector<Change> changes;
   for (const auto& thing : ObjectFinder(b, a, T_a_b, config).find())
-    changes.push_back(describe_thing(ChangeKind::kAppeared, thing, b, a, T_a_b, T_a_a));
-  for (const auto& thing : ObjectFinder(a, b, T_a_b.inverse(), config).find())
-    changes.push_back(describe_thing(ChangeKind::kVanished, thing, a, b, T_a_a, T_a_b));
+    changes.push_back(describe_thing(ChangeKind::kAppeared, thing, b, a, T_a_b, T_a_b));
+  for (const auto& thing : ObjectFinder(a, b, T_b_a, config).find())
+    changes.push_back(describe_thing(ChangeKind::kVanished, thing, a, b, T_a_a, T_b_a));
   std::stable_sort(changes.begin(), changes.end(),
                    [](const Change& left, const Change& right) { return left.area_m2 > right.area_m2; });
   return changes;

@@ -172,12 +172,21 @@ Registration register_into(const SavedMap& a, const SavedMap& b, const Registrat
 }  // namespace
 
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config) {
-  const Registration found = register_into(a, b, config);
-  if (found.status != RegistrationStatus::kNoOverlap) return found;
-  // Conversely, a may be one corner of b.
-  Registration turned = register_into(b, a, config);
-  turned.T_a_b = turned.T_a_b.inverse();
-  return turned ? turned : found;
+  // Both orders of the maps are registered in the same direction, so that their results mirror each other.
+  if (octree_checksum(b.info) < octree_checksum(a.info)) {
+    Registration mirrored = register_maps(b, a, config);
+    std::swap(mirrored.T_a_b, mirrored.T_b_a);
+    return mirrored;
+  }
+  Registration found = register_into(a, b, config);
+  if (found.status == RegistrationStatus::kNoOverlap) {
+    // Conversely, a may be one corner of b.
+    Registration turned = register_into(b, a, config);
+    turned.T_a_b = turned.T_a_b.inverse();
+    if (turned) found = turned;
+  }
+  found.T_b_a = found.T_a_b.inverse();
+  return found;
 }
 
 namespace {

@@ -34,6 +34,8 @@ enum class RegistrationStatus {
 struct [[nodiscard]] Registration {
   RegistrationStatus status = RegistrationStatus::kNotRecognised;
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< valid only if the status is kRegistered
+  /// Inverse of T_a_b, set by register_maps(): bit by bit the T_a_b of the maps in the other order.
+  Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();
   int agreeing_views = 0;   ///< number of keyframes of b whose match in a agrees with T_a_b
   double overlap = 0.0;     ///< fraction of b's surface that is in space known to a
   double agreement = 0.0;   ///< fraction of that surface that is on a's surface, not in a's free space
