@@ -57,8 +57,9 @@ void sum_regions(ConnectedComponents& found) {
 
 void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
                      const RegionBits& bits, const Intrinsics& camera, const DepthNoise& noise,
-                     ConnectedComponents& found) {
+                     int max_gap_px, ConnectedComponents& found) {
   found.runs.reserve(depth_m.pixels.size());
+  found.first_run.reserve(static_cast<std::size_t>(depth_m.height));
   found.regions.reserve(depth_m.pixels.size());
   found.runs.clear();
   found.regions.clear();
@@ -71,7 +72,26 @@ void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>&
     return std::abs(depth[a] - depth[b]) <= 4.0F * depth_sigma_m(noise, z) + slope * z;
   };
 
+  const auto is_gap = [&](std::uint32_t first, std::uint32_t end) {
+    return first < end && static_cast<int>(end - first) <= max_gap_px &&
+           std::all_of(depth + first, depth + end, [](float z) { return !(z > 0.0F); });
+  };
+  // Two pixels of a row or column, `apart` pixels from each other, with only unmeasured pixels between them.
+  const auto is_one_surface = [&](std::uint32_t a, std::uint32_t b, int apart) {
+    const float z = std::min(depth[a], depth[b]);
+    return std::abs(depth[a] - depth[b]) <=
+           4.0F * depth_sigma_m(noise, z) + slope * static_cast<float>(apart) * z;
+  };
+
   std::vector<PixelRun>& runs = found.runs;
+  found.first_run.clear();
+  const auto run_of = [&](std::uint32_t pixel, std::uint32_t pixel_row) {
+    const auto begin = runs.begin() + found.first_run[pixel_row];
+    const auto end = runs.begin() + found.first_run[pixel_row + 1];
+    const auto after = std::upper_bound(
+        begin, end, pixel, [](std::uint32_t value, const PixelRun& run) { return value < run.first; });
+    return static_cast<std::uint32_t>(after - runs.begin()) - 1;
+  };
   std::size_t above = 0;  // first run of the row above that may touch
   std::size_t row_begin = 0;
   const auto width = static_cast<std::uint32_t>(depth_m.width);
@@ -81,6 +101,7 @@ void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>&
     above = row_begin;
     row_begin = runs.size();
     const std::size_t above_end = row_begin;
+    found.first_run.push_back(static_cast<std::uint32_t>(row_begin));
     for (int x = next_marked(marks, 0, depth_m.width, any); x < depth_m.width;
          x = next_marked(marks, x, depth_m.width, any)) {
       const auto id = static_cast<std::uint32_t>(runs.size());
@@ -107,6 +128,20 @@ void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>&
         for (std::uint32_t p = first; p <= last; ++p) {
           if (!hang_together(p, p - width)) continue;
           join(runs, id, static_cast<std::uint32_t>(other));
+          break;
+        }
+      }
+      if (max_gap_px == 0) continue;
+      if (id > row_begin && is_gap(runs[id - 1].last + 1, run.first) &&
+          is_one_surface(runs[id - 1].last, run.first, static_cast<int>(run.first - runs[id - 1].last)))
+        join(runs, id, id - 1);
+      for (std::uint32_t p = run.first; p <= run.last && y > 1; ++p) {
+        if (depth[p - width] > 0.0F) continue;
+        for (int up = 2; up <= std::min(max_gap_px + 1, y); ++up) {
+          const std::uint32_t q = p - static_cast<std::uint32_t>(up) * width;
+          if (!(depth[q] > 0.0F)) continue;
+          if ((evidence[q] & any) != 0 && is_one_surface(p, q, up))
+            join(runs, id, run_of(q, static_cast<std::uint32_t>(y - up)));
           break;
         }
       }

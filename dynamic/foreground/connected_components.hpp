@@ -38,17 +38,23 @@ struct RegionBits {
 /// Entries to which no run refers are meaningless.
 struct ConnectedComponents {
   std::vector<PixelRun> runs;
+  std::vector<std::uint32_t> first_run;  ///< scratch: per row, its first run; at the end, the number of runs
   std::vector<ConnectedComponent> regions;
 };
 
 /// Finds the connected regions of pixels with the weak or the strong bit. Neighbours are connected if both
 /// have the strong bit, or if they are on one surface. Two pixels are on one surface if their depths differ
 /// by at most a bound. The bound is the noise plus the depth change of a plane at 80 degrees incidence.
+///
+/// Pixels of a row or column with up to max_gap_px unmeasured pixels between them, and nothing else, are
+/// neighbours too, if they are on one surface. A surface that is measured only here and there, such as dark
+/// or shiny skin, is thus one region.
 /// @param evidence  bits of each pixel of depth_m
+/// @param max_gap_px  0: only adjacent pixels are neighbours
 ///
 /// Allocates only if the image is larger than those of earlier calls.
 void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
                      const RegionBits& bits, const Intrinsics& camera, const DepthNoise& noise,
-                     ConnectedComponents& found);
+                     int max_gap_px, ConnectedComponents& found);
 
 }  // namespace roomradar

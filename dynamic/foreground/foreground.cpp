@@ -42,7 +42,8 @@ Belief belief_in(const ConnectedComponent& region, const Difference& difference,
 // Labels the accepted regions of one kind; returns their number of pixels.
 std::size_t label_regions(const DepthImage& depth_m, const Difference& difference, const Intrinsics& camera,
                           const ForegroundConfig& config, ForegroundState& state, LabelImage& labels) {
-  find_components(depth_m, state.evidence.bits, difference.bits, camera, config.noise, state.regions);
+  find_components(depth_m, state.evidence.bits, difference.bits, camera, config.noise, config.max_gap_px,
+                  state.regions);
   const auto width = static_cast<std::uint32_t>(depth_m.width);
   std::size_t labelled = 0;
   for (const PixelRun& run : state.regions.runs) {

@@ -31,6 +31,7 @@ void require_valid(const ForegroundConfig& config) {
           "in 0..256");
   require(config.hole_reach_px >= 0 && config.hole_reach_px <= 256, "hole_reach_px", config.hole_reach_px,
           "in 0..256");
+  require(config.max_gap_px >= 0 && config.max_gap_px <= 256, "max_gap_px", config.max_gap_px, "in 0..256");
   require(config.min_region_px >= 0, "min_region_px", config.min_region_px, ">= 0");
   require(config.min_region_m2 >= 0.0F && std::isfinite(config.min_region_m2), "min_region_m2",
           config.min_region_m2, ">= 0");

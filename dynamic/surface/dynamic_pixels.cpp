@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace roomradar {
@@ -29,6 +30,45 @@ std::uint64_t take_word(const std::uint8_t* mask, const float* depth_m, int coun
     word |= std::uint64_t{is_in} << i;
   }
   return word;
+}
+
+/// Sets the unmeasured pixels between pixel (x, y) and the next dynamic pixel along (dx, dy), if these are at
+/// most kMostGap_px pixels on one surface. A plane's inverse depth is linear between the two.
+void bridge(const DepthImage& depth_m, int x, int y, int dx, int dy, DynamicPixels& pixels) {
+  constexpr int kMostGap_px = 4;
+  constexpr float kOneSurface = 0.03F;  // max relative difference of depth
+  int apart = 1;
+  const auto is_unmeasured = [&](int u, int v) {
+    return depth_m.contains(u, v) && !(depth_m.at(u, v) > 0.0F) && !pixels.measured.at(u, v);
+  };
+  while (apart <= kMostGap_px && is_unmeasured(x + apart * dx, y + apart * dy)) ++apart;
+  const int end_x = x + apart * dx, end_y = y + apart * dy;
+  if (apart == 1 || !depth_m.contains(end_x, end_y) || !pixels.measured.at(end_x, end_y)) return;
+  const float here = pixels.inverse_depth[depth_m.index(x, y)];
+  const float there = pixels.inverse_depth[depth_m.index(end_x, end_y)];
+  if (std::abs(here - there) > kOneSurface * std::min(here, there)) return;
+  for (int k = 1; k < apart; ++k) {
+    const int u = x + k * dx, v = y + k * dy;
+    pixels.measured.row(v)[u >> 6] |= std::uint64_t{1} << (u & 63);
+    pixels.inverse_depth[depth_m.index(u, v)] =
+        here + (there - here) * static_cast<float>(k) / static_cast<float>(apart);
+  }
+}
+
+/// Bridges narrow gaps without depth, along rows and then along columns.
+void bridge_gaps(const DepthImage& depth_m, DynamicPixels& pixels) {
+  const auto visit = [&](int y, int i, std::uint64_t ends, int dx, int dy) {
+    for (; ends != 0; ends &= ends - 1) bridge(depth_m, 64 * i + std::countr_zero(ends), y, dx, dy, pixels);
+  };
+  for (int y = 0; y < depth_m.height; ++y) {
+    for (int i = 0; i < pixels.measured.words; ++i) {
+      const std::uint64_t* word = pixels.measured.row(y) + i;
+      visit(y, i, word[0] & ~(word[0] >> 1 | word[1] << 63), 1, 0);
+    }
+  }
+  for (int y = 0; y + 1 < depth_m.height; ++y)
+    for (int i = 0; i < pixels.measured.words; ++i)
+      visit(y, i, pixels.measured.row(y)[i] & ~pixels.measured.row(y + 1)[i], 0, 1);
 }
 
 /// Sets a pixel of `smooth` that is not measured to the mean of its measured neighbours.
@@ -64,6 +104,7 @@ void take_dynamic_pixels(const DepthImage& depth_m, const MaskImage& dynamic_mas
           take_word(mask + x, depth_m.pixels.data() + at, count, pixels.inverse_depth.data() + at);
     }
   }
+  bridge_gaps(depth_m, pixels);
   take_majority(pixels.measured, pixels.smooth);
   take_far_from(pixels.measured, pixels.smooth, pixels.thin);
   for (int y = 0; y < depth_m.height; ++y) {

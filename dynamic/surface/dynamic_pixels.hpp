@@ -11,7 +11,8 @@ namespace roomradar {
 /// Dynamic pixels of one frame. Depths are stored as inverse depths because a plane's inverse depth is linear
 /// over the image.
 struct DynamicPixels {
-  PixelBits measured;  ///< pixels in the mask that have depth
+  /// Pixels in the mask that have depth, and pixels without depth in narrow gaps of their surface.
+  PixelBits measured;
   /// `measured` with a smooth outline: a pixel is set if most of the surrounding 3 x 3 pixels are in
   /// `measured`. Every pixel of `measured` is in `smooth`, has a neighbour in `smooth`, or is in `thin`.
   PixelBits smooth;

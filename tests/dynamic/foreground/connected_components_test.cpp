@@ -62,7 +62,7 @@ TEST(ConnectedComponents, AreThoseOfAFloodFill) {
       evidence[i] = static_cast<std::uint8_t>(random() % holes == 0 && holes > 1 ? 0 : random() % 32);
     }
     ConnectedComponents found;
-    find_components(depth_m, evidence, kBits, camera, {}, found);
+    find_components(depth_m, evidence, kBits, camera, {}, 0, found);
     const std::vector<int> truth = flood(depth_m, evidence, 100.0);
 
     std::vector<int> number(evidence.size(), 0);
@@ -97,6 +97,36 @@ TEST(ConnectedComponents, AreThoseOfAFloodFill) {
       EXPECT_EQ(region.core, sum.core);
       EXPECT_NEAR(region.depth2_m2, sum.depth2_m2, 1e-4F * sum.depth2_m2);
     }
+  }
+}
+
+std::size_t components_across(const DepthImage& depth_m, int max_gap_px) {
+  std::vector<std::uint8_t> evidence(depth_m.pixels.size());
+  for (std::size_t i = 0; i < evidence.size(); ++i) evidence[i] = depth_m.pixels[i] < 1.5F ? 3 : 0;
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    if (!(depth_m.pixels[i] > 0.0F)) evidence[i] = 0;
+  ConnectedComponents found;
+  const Intrinsics camera{depth_m.width, depth_m.height, 585.0, 585.0, 0.0, 0.0};
+  find_components(depth_m, evidence, kBits, camera, {}, max_gap_px, found);
+  std::size_t roots = 0;
+  for (std::size_t run = 0; run < found.runs.size(); ++run) roots += found.runs[run].region == run;
+  return roots;
+}
+
+TEST(ConnectedComponents, BridgeUnmeasuredPixelsOfOneSurfaceAndNothingElse) {
+  // Two pixels in a row, or in a column, with a gap of three between them.
+  for (const bool in_a_row : {true, false}) {
+    const auto gap = [&](float between_m, float far_side_m) {
+      DepthImage depth_m(9, 9, 2.0F);
+      for (int i = 2; i <= 6; ++i)
+        (in_a_row ? depth_m.at(i, 4) : depth_m.at(4, i)) = i == 2 ? 1.0F : i == 6 ? far_side_m : between_m;
+      return depth_m;
+    };
+    EXPECT_EQ(components_across(gap(0.0F, 1.0F), 3), 1U);
+    EXPECT_EQ(components_across(gap(0.0F, 1.0F), 2), 2U) << "wider than is bridged";
+    EXPECT_EQ(components_across(gap(0.0F, 1.0F), 0), 2U);
+    EXPECT_EQ(components_across(gap(2.0F, 1.0F), 3), 2U) << "something else was measured between them";
+    EXPECT_EQ(components_across(gap(0.0F, 1.3F), 3), 2U) << "another surface";
   }
 }
 

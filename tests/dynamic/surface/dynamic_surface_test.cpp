@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -324,6 +325,23 @@ TEST(DynamicSurface, AHoleInAHandStaysOpenAndSpecksAreClosed) {
   EXPECT_EQ(seen.at(320, 240), 0.0F);
   EXPECT_EQ(back.at(320, 240), 0.0F);
   EXPECT_NEAR(seen.at(270, 200), 0.7F, 1e-5F);
+}
+
+TEST(DynamicSurface, AHandFullOfNarrowGapsIsOneSurface) {
+  Scene scene;
+  scene.put_rectangle(200, 150, 320, 260, 1.0F);
+  const auto covered_px = [&] {
+    const DepthImage seen = seen_depth(meshed(scene), scene);
+    return std::count_if(seen.pixels.begin(), seen.pixels.end(), [](float z) { return z > 0.0F; });
+  };
+  const auto whole = static_cast<double>(covered_px());
+  std::mt19937 random(7);
+  for (int y = 150; y < 260; y += 2)
+    for (int x = 200; x < 320; x += 2)
+      if (random() % 10 < 4)
+        for (const auto& [u, v] : {std::pair{x, y}, {x + 1, y}, {x, y + 1}, {x + 1, y + 1}})
+          scene.depth_m.at(u, v) = 0.0F;
+  EXPECT_GT(static_cast<double>(covered_px()), 0.97 * whole);
 }
 
 TEST(DynamicSurface, WhatTheImageCutsOffIsThickThere) {
