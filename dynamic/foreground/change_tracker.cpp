@@ -145,7 +145,8 @@ bool ChangeTracker::review(const View& view, float dt_s, ChangePoint& point) {
   bool holds = came ? in_sight && !in_model : !in_sight && in_model;
   if (!came && model < -tolerance) return may_stay_unseen;  // the model has a surface in front of the point
   if (holds && !is_labelled(view.labels, x, y, came ? PixelLabel::kMoved : PixelLabel::kRevealed)) {
-    if (view.labels.at(x, y) == PixelLabel::kNotKnown) return may_stay_unseen;
+    const PixelLabel label = view.labels.at(x, y);
+    if (label == PixelLabel::kNotKnown || label == PixelLabel::kUnmapped) return may_stay_unseen;
     holds = false;
   }
   point.unseen_s = 0.0F;

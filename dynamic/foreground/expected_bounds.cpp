@@ -73,7 +73,8 @@ void find_extremes_in_reach(ExpectedBounds& bounds) {
   bounds.nearest_level_m = bounds.nearest_m;
   bounds.farthest_level_m = bounds.farthest_m;
   // Through a hole of the model the sensor may see to an unknown distance.
-  for (float& farthest : bounds.farthest_level_m) farthest = farthest > 0.0F ? farthest : kNoDepth_m;
+  for (std::size_t i = 0; i < bounds.model_m.size(); ++i)
+    if (!(bounds.model_m[i] > 0.0F)) bounds.farthest_level_m[i] = kNoDepth_m;
   for (int reach = 1; reach <= kMaxReach; ++reach) {
     spread(bounds.grid, bounds.nearest_level_m, 1, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
     spread(bounds.grid, bounds.farthest_level_m, 1, Farther{}, bounds.along_rows_m, bounds.farthest_level_m);
@@ -85,14 +86,86 @@ void find_extremes_in_reach(ExpectedBounds& bounds) {
   }
 }
 
+// Marks the small surfaces that holes separate from the rest of the model.
+void find_islands(ExpectedBounds& bounds) {
+  constexpr std::size_t kMostOfAll = 50;  // an island has at most a fiftieth of the image
+  const BlockGrid& grid = bounds.grid;
+  std::vector<ExpectedBounds::BlockRun>& runs = bounds.runs;
+  runs.clear();
+  const auto root_of = [&](std::size_t run) {
+    while (runs[run].parent != run) run = runs[run].parent = runs[runs[run].parent].parent;
+    return run;
+  };
+  std::size_t above = 0;
+  for (int row = 0; row < grid.rows; ++row) {
+    const std::size_t row_begin = runs.size();
+    std::size_t other = above;
+    const float* farthest = bounds.farthest_m.data() + grid.at(0, row);
+    for (int column = 0; column < grid.columns; ++column) {
+      if (!(farthest[column] > 0.0F)) continue;
+      const int first = column;
+      while (column + 1 < grid.columns && farthest[column + 1] > 0.0F) ++column;
+      const std::size_t id = runs.size();
+      runs.push_back({row, first, column, id, static_cast<std::size_t>(column - first + 1)});
+      while (other < row_begin && runs[other].last < first - 1) ++other;
+      for (std::size_t touching = other; touching < row_begin && runs[touching].first <= column + 1;
+           ++touching) {
+        const std::size_t a = root_of(id), b = root_of(touching);
+        if (a == b) continue;
+        runs[std::max(a, b)].parent = std::min(a, b);
+        runs[std::min(a, b)].blocks += runs[std::max(a, b)].blocks;
+      }
+    }
+    above = row_begin;
+  }
+  bounds.is_island.assign(grid.size(), 0);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (kMostOfAll * runs[root_of(i)].blocks > grid.size()) continue;
+    const auto begin = bounds.is_island.begin() + static_cast<std::ptrdiff_t>(grid.at(0, runs[i].row));
+    std::fill(begin + runs[i].first, begin + runs[i].last + 1, std::uint8_t{1});
+  }
+}
+
 void find_extremes_around_holes(int reach_px, ExpectedBounds& bounds) {
   bounds.nearest_around_hole_m = bounds.nearest_m;
+  for (std::size_t i = 0; i < bounds.is_island.size(); ++i)
+    if (bounds.is_island[i] != 0) bounds.nearest_around_hole_m[i] = kNoDepth_m;
   int reach = 0;
   for (const int wanted = blocks_along(reach_px); reach < wanted;) {
     const int step = std::min(2 * reach + 1, wanted - reach);
     spread(bounds.grid, bounds.nearest_around_hole_m, step, Nearer{}, bounds.along_rows_m,
            bounds.nearest_around_hole_m);
     reach += step;
+  }
+  // Wider holes: the nearest of the values from above, and of those from below.
+  const BlockGrid& grid = bounds.grid;
+  std::vector<float>& around = bounds.nearest_around_hole_m;
+  if (std::find(around.begin(), around.end(), kNoDepth_m) == around.end()) return;
+  std::vector<float>& from_below = bounds.nearest_level_m;
+  from_below = around;
+  const auto fill = [&](std::vector<float>& values, int column, int row, int step) {
+    float& value = values[grid.at(column, row)];
+    if (value != kNoDepth_m) return;
+    if (column - step >= 0 && column - step < grid.columns)
+      value = std::min(value, values[grid.at(column - step, row)]);
+    if (row - step < 0 || row - step >= grid.rows) return;
+    for (int u = std::max(column - 1, 0); u <= std::min(column + 1, grid.columns - 1); ++u)
+      value = std::min(value, values[grid.at(u, row - step)]);
+  };
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) fill(around, column, row, 1);
+  for (int row = grid.rows - 1; row >= 0; --row)
+    for (int column = grid.columns - 1; column >= 0; --column) fill(from_below, column, row, -1);
+  for (std::size_t i = 0; i < around.size(); ++i) around[i] = std::min(around[i], from_below[i]);
+}
+
+// Adds the background to the blocks without a model.
+void add_background(const UnmappedSpace& unmapped, ExpectedBounds& bounds) {
+  bounds.background_m.resize(bounds.grid.size());
+  for (std::size_t i = 0; i < bounds.model_m.size(); ++i) {
+    bounds.background_m[i] = bounds.model_m[i] > 0.0F ? 0.0F : unmapped.farthest[i].depth_m;
+    if (!(bounds.background_m[i] > 0.0F)) continue;
+    bounds.nearest_m[i] = bounds.farthest_m[i] = bounds.background_m[i];
   }
 }
 
@@ -168,13 +241,18 @@ void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, 
 
 }  // namespace
 
-void find_bounds(const DepthImage& expected_m, const Intrinsics& camera, const ForegroundConfig& config,
-                 float misfit_per_m, ExpectedBounds& bounds) {
+void find_bounds(const DepthImage& expected_m, const Intrinsics& camera,
+                 const Eigen::Isometry3d& T_world_camera, const ForegroundConfig& config, float misfit_per_m,
+                 UnmappedSpace& unmapped, ExpectedBounds& bounds) {
   bounds.grid = {blocks_along(expected_m.width), blocks_along(expected_m.height)};
   find_extremes(expected_m, bounds);
+  bounds.model_m = bounds.farthest_m;
+  find_islands(bounds);
+  find_extremes_around_holes(config.hole_reach_px, bounds);
+  warp_unmapped(camera, T_world_camera, bounds.model_m, unmapped);
+  add_background(unmapped, bounds);
   choose_reach(camera, config, bounds);
   find_extremes_in_reach(bounds);
-  find_extremes_around_holes(config.hole_reach_px, bounds);
   weigh_surfaces(camera, config, misfit_per_m, bounds);
 }
 

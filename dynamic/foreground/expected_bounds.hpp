@@ -1,10 +1,12 @@
 // expected_bounds.hpp: bounds of the static model's depth under pose and map errors, per block of pixels.
 #pragma once
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "dynamic/foreground/foreground_config.hpp"
 #include "dynamic/foreground/pixel_blocks.hpp"
+#include "dynamic/foreground/unmapped_space.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
@@ -15,8 +17,15 @@ namespace roomradar {
 /// per block of 4 x 4 pixels. Depths are in metres along the optical axis.
 struct ExpectedBounds {
   BlockGrid grid;
-  /// Extremes of the block's expected depths; kNoDepth_m and 0 if the block has none.
+  /// Extremes of the block's expected depths; kNoDepth_m and 0 if the block has none. In a block without any
+  /// model, both are the background that the run has seen, if any.
   std::vector<float> nearest_m, farthest_m;
+  std::vector<float> model_m;  ///< farthest depth of the model in the block; 0: none
+  /// 1 if the block's surface is a small one in the middle of a hole. It may be the rest of a thing that the
+  /// scan took for a part of the room, such as a person who stood still for a while.
+  std::vector<std::uint8_t> is_island;
+  /// Depth to compare with in the model's holes: the background that the run has seen; 0: none.
+  std::vector<float> background_m;
   /// Standard deviation of measured minus expected depth, from all errors combined.
   std::vector<float> sigma_m;
   /// Range of the expected depths within `reach` of the block. Pose and map errors could shift the edges of
@@ -26,14 +35,20 @@ struct ExpectedBounds {
   /// nearest_in_reach_m is kNoDepth_m or farthest_in_reach_m is 0, a pixel is compared on that side only with
   /// its own expected depth.
   std::vector<float> nearest_in_reach_m, farthest_in_reach_m;
-  /// Nearest expected depth within hole_reach_px of the block, for pixels in the model's holes. kNoDepth_m:
-  /// none.
+  /// For pixels in the model's holes and islands: nearest depth of the rest of the model within hole_reach_px
+  /// of the block or, if there is none, of the hole's border. kNoDepth_m: the view has no model.
   std::vector<float> nearest_around_hole_m;
   std::vector<int> reach;  ///< max shift of an edge, in blocks to each side
 
   // Scratch.
   std::vector<float> nearest_level_m, farthest_level_m, along_rows_m;
   std::vector<float> row_nearest_m, row_farthest_m;
+  struct BlockRun {
+    int row, first, last;  ///< columns first to last
+    std::size_t parent;    ///< in union-find
+    std::size_t blocks;    ///< of all runs whose parent is this one
+  };
+  std::vector<BlockRun> runs;
 };
 
 /// Largest float: "no surface" as a nearest depth, "unbounded" as a farthest depth.
@@ -48,10 +63,12 @@ inline float facing_sigma_m(const DepthNoise& noise, float depth_m, float model_
   return std::sqrt(sensor * sensor + model_sigma_m * model_sigma_m + misfit * misfit);
 }
 
-/// Computes the bounds of each block.
+/// Computes the bounds of each block. Warps `unmapped` into the camera's view.
 /// @param expected_m  depth of the static model in the camera's view, 0 = no surface; must not be an empty
 ///                    image
-void find_bounds(const DepthImage& expected_m, const Intrinsics& camera, const ForegroundConfig& config,
-                 float misfit_per_m, ExpectedBounds& bounds);
+/// @param unmapped    what the run has seen where the model has no surface
+void find_bounds(const DepthImage& expected_m, const Intrinsics& camera,
+                 const Eigen::Isometry3d& T_world_camera, const ForegroundConfig& config, float misfit_per_m,
+                 UnmappedSpace& unmapped, ExpectedBounds& bounds);
 
 }  // namespace roomradar

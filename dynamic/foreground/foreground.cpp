@@ -17,6 +17,13 @@ struct Difference {
 
 enum class Belief { kNone, kMaybe, kSure };
 
+bool is_large(const ConnectedComponent& region, const Intrinsics& camera, const ForegroundConfig& config,
+              float times = 1.0F) {
+  const float area_m2 = region.depth2_m2 / static_cast<float>(camera.fx_px * camera.fy_px);
+  return static_cast<float>(region.pixels) >= times * static_cast<float>(config.min_region_px) &&
+         area_m2 >= times * config.min_region_m2;
+}
+
 Belief belief_in(const ConnectedComponent& region, const Difference& difference, const Intrinsics& camera,
                  const ForegroundConfig& config) {
   constexpr float kAtFirstSight = 3.0F;  // times the least size
@@ -30,13 +37,8 @@ Belief belief_in(const ConnectedComponent& region, const Difference& difference,
   if (region.strong == 0 || strong < part * difference.min_strong_of_all * pixels ||
       strong < part * config.min_strong_fraction * judged)
     return Belief::kNone;
-  const float area_m2 = region.depth2_m2 / static_cast<float>(camera.fx_px * camera.fy_px);
-  const auto has = [&](float times) {
-    return pixels >= times * static_cast<float>(config.min_region_px) &&
-           area_m2 >= times * config.min_region_m2;
-  };
-  if (has(was ? kSeenBefore : kAtFirstSight)) return Belief::kSure;
-  return has(1.0F) ? Belief::kMaybe : Belief::kNone;
+  if (is_large(region, camera, config, was ? kSeenBefore : kAtFirstSight)) return Belief::kSure;
+  return is_large(region, camera, config) ? Belief::kMaybe : Belief::kNone;
 }
 
 // Labels the accepted regions of one kind; returns their number of pixels.
@@ -47,13 +49,18 @@ std::size_t label_regions(const DepthImage& depth_m, const Difference& differenc
   const auto width = static_cast<std::uint32_t>(depth_m.width);
   std::size_t labelled = 0;
   for (const PixelRun& run : state.regions.runs) {
-    const Belief belief = belief_in(state.regions.regions[run.region], difference, camera, config);
+    const ConnectedComponent& region = state.regions.regions[run.region];
+    const Belief belief = belief_in(region, difference, camera, config);
     if (belief == Belief::kSure) {
       std::fill(labels.pixels.begin() + run.first, labels.pixels.begin() + run.last + 1, difference.label);
       labelled += run.last - run.first + 1;
     } else {
       for (std::uint32_t i = run.first; i <= run.last; ++i)
         if ((state.evidence.bits[i] & difference.bits.strong) != 0) labels.pixels[i] = PixelLabel::kNotKnown;
+      if (difference.label == PixelLabel::kMoved && is_large(region, camera, config))
+        for (std::uint32_t i = run.first; i <= run.last; ++i)
+          if ((state.evidence.bits[i] & kInHole) != 0 && labels.pixels[i] == PixelLabel::kNotKnown)
+            labels.pixels[i] = PixelLabel::kUnmapped;
       if (belief == Belief::kNone) continue;
     }
     const std::uint8_t bit = belief == Belief::kSure ? difference.block : difference.block_maybe;
@@ -83,10 +90,12 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   state.evidence.resize(depth_m.width, depth_m.height);
 
   follow_misfit(depth_m, expected_depth_m, config.noise, state.fit);
-  find_bounds(expected_depth_m, camera, config, state.fit.misfit_per_m, state.bounds);
+  find_bounds(expected_depth_m, camera, T_world_camera, config, state.fit.misfit_per_m, state.unmapped,
+              state.bounds);
+  see_what_came(depth_m, state.bounds.model_m, config.noise, state.unmapped);
   warp_history(state.memory, depth_m, camera, T_world_camera, state.before);
-  weigh_pixels(depth_m, expected_depth_m, config, state.bounds, state.fit.misfit_per_m, state.before,
-               state.evidence, labels);
+  weigh_pixels(depth_m, expected_depth_m, config, state.bounds, state.unmapped, state.fit.misfit_per_m,
+               state.before, state.evidence, labels);
   mark_revealed_cores(depth_m, expected_depth_m, state.bounds, state.evidence);
   drop_far_weak(depth_m, config.weak_reach_px, state.bounds.grid, state.evidence);
 
@@ -115,12 +124,14 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
     int valid = 0, not_known = 0;
     for (int x = 0; x < depth_m.width; ++x) {
       valid += live[x] > 0.0F;
-      not_known += (live[x] > 0.0F) & (label[x] == PixelLabel::kNotKnown);
+      not_known +=
+          (live[x] > 0.0F) & (label[x] == PixelLabel::kNotKnown || label[x] == PixelLabel::kUnmapped);
     }
     for (int x = 0; x < depth_m.width; ++x) mask[x] = label[x] == PixelLabel::kMoved ? 255 : 0;
     counts.valid += static_cast<std::size_t>(valid);
     counts.not_known += static_cast<std::size_t>(not_known);
   }
+  see_background(depth_m, dynamic_mask, state.bounds.model_m, config.noise, state.unmapped);
   return counts;
 }
 

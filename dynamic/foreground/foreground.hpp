@@ -11,6 +11,7 @@
 #include "dynamic/foreground/foreground_history.hpp"
 #include "dynamic/foreground/pixel_evidence.hpp"
 #include "dynamic/foreground/static_residual.hpp"
+#include "dynamic/foreground/unmapped_space.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 
@@ -20,6 +21,7 @@ namespace roomradar {
 /// previous frame.
 struct ForegroundState {
   ForegroundHistory memory;
+  UnmappedSpace unmapped;
   StaticResidual fit;
 
   ExpectedBounds bounds;
@@ -32,7 +34,7 @@ struct ForegroundCounts {
   std::size_t valid = 0;  ///< number of pixels with measured depth
   std::size_t moved = 0;
   std::size_t revealed = 0;
-  std::size_t not_known = 0;  ///< number of pixels with measured depth that are kNotKnown
+  std::size_t not_known = 0;  ///< number of pixels with measured depth that are kNotKnown or kUnmapped
 };
 
 /// Compares a depth frame with the static model's depth at the same pose.
@@ -52,9 +54,11 @@ struct ForegroundCounts {
 /// error stay static, and objects between two near edges are found. A region grows from its seeds along the
 /// measured surface, over pixels nearer than the model.
 ///
-/// A hole of the model is an area without expected depth. No region starts in a hole. A region can grow into
-/// a hole over pixels nearer than all expected depths within hole_reach_px. All other pixels in holes are
-/// kNotKnown, since a hole does not prove a difference. In an unmapped view, all pixels are kNotKnown.
+/// A hole of the model is an area without expected depth. It proves no difference. But what this run has seen
+/// in it counts as the model does: a surface nearer than that has come since, as has one where nothing was
+/// measured before. A region can also grow into a hole, over pixels nearer than the model around it. Such
+/// pixels are kUnmapped if they belong to no dynamic region. All other pixels in holes are kNotKnown. In an
+/// unmapped view, all pixels are kNotKnown until something moves in it.
 ///
 /// A region is accepted if it is large enough and has a sufficient fraction of strong pixels. Both thresholds
 /// are lower where the previous frame had a region. A new region of less than three times min_region_px or

@@ -34,6 +34,29 @@ void stretch_bounds(const ForegroundConfig& config, const ExpectedBounds& bounds
   }
 }
 
+// Expands what is known about the holes and islands of a row of blocks, if it has any.
+void stretch_unmapped(const UnmappedSpace& unmapped, const ExpectedBounds& bounds, int row, int width,
+                      RowBounds& pixels) {
+  const std::size_t begin = bounds.grid.at(0, row),
+                    end = begin + static_cast<std::size_t>(bounds.grid.columns);
+  bool is_all_mapped = true;
+  for (std::size_t i = begin; i < end; ++i)
+    is_all_mapped &= (bounds.model_m[i] > 0.0F) & (bounds.is_island[i] == 0);
+  if (is_all_mapped && pixels.is_all_mapped) return;  // the row before has set the same
+  pixels.is_all_mapped = is_all_mapped;
+  stretch(bounds.background_m.data() + begin, width, pixels.background_m.data());
+  stretch(bounds.is_island.data() + begin, width, pixels.is_island.data());
+  for (int x = 0; x < width; x += kBlock_px) {
+    const std::size_t block = bounds.grid.at(x / kBlock_px, row);
+    const BlockSurface& seen = unmapped.nearest[block];
+    const bool has_come = !(bounds.model_m[block] > 0.0F) && seen.has_come != 0 && seen.unseen == 0;
+    const int x_end = std::min(x + kBlock_px, width);
+    std::fill(pixels.come_m.begin() + x, pixels.come_m.begin() + x_end, has_come ? seen.depth_m : 0.0F);
+    std::fill(pixels.moving_m.begin() + x, pixels.moving_m.begin() + x_end,
+              has_come && is_moving(seen) ? seen.depth_m : 0.0F);
+  }
+}
+
 // Computes the evidence of one row of pixels, without their neighbours.
 void weigh_row(const float* live, const float* expected, int width, const ForegroundConfig& config,
                const RowBounds& bounds, float misfit_per_m, std::uint8_t* bits, PixelLabel* labels) {
@@ -55,15 +78,30 @@ void weigh_row(const float* live, const float* expected, int width, const Foregr
     bits[x] = static_cast<std::uint8_t>((moved | revealed) & (known ? 0xFF : 0));
     labels[x] = known ? PixelLabel::kStatic : PixelLabel::kNotKnown;
   }
-  // Holes of the model prove nothing, but a dynamic region may cover them.
+  // A hole of the model proves nothing, unless this run has seen something farther in it. But a dynamic
+  // region may cover it.
   int holes = 0;
+  const std::uint8_t* is_island = bounds.is_island.data();
   for (int x = 0; x < width; ++x) holes |= !(expected[x] > 0.0F);
-  if (holes == 0) return;
+  if (holes == 0 && bounds.is_all_mapped) return;
+  constexpr float kSameSurface = 1.1F;  // max ratio of depths within a block
   const float* around = bounds.around_hole_m.data();
+  const float* background = bounds.background_m.data();
   for (int x = 0; x < width; ++x) {
-    if (expected[x] > 0.0F || !(live[x] > 0.0F) || around[x] == kNoDepth_m) continue;
+    const float z = live[x];
+    if ((expected[x] > 0.0F && is_island[x] == 0) || !(z > 0.0F) || (bits[x] & kStrongMoved) != 0) continue;
+    if (z < kSameSurface * bounds.moving_m[x]) {
+      bits[x] = kWeakMoved | kStrongMoved;
+      continue;
+    }
+    if (background[x] - z > strong[x]) {
+      bits[x] = kWeakMoved | (z < nearest[x] - strong[x] ? kStrongMoved : kAmbiguousMoved);
+      continue;
+    }
+    if (z < kSameSurface * bounds.come_m[x]) bits[x] = kWeakMoved | kInHole;
+    if (around[x] == kNoDepth_m) continue;
     const float sigma = facing_sigma_m(config.noise, around[x], config.model_sigma_m, misfit_per_m);
-    if (live[x] < around[x] - config.strong_sigmas * sigma) bits[x] = kWeakMoved | kInHole;
+    if (z < around[x] - config.strong_sigmas * sigma) bits[x] = kWeakMoved | kInHole;
   }
 }
 
@@ -152,21 +190,25 @@ bool is_revealed(const DepthImage& depth_m, const DepthImage& expected_m, int co
 void PixelEvidence::resize(int width_px, int height_px) {
   const auto width = static_cast<std::size_t>(width_px);
   bits.resize(width * static_cast<std::size_t>(height_px));
-  for (auto* values : {&row.weak_m, &row.strong_m, &row.nearest_m, &row.farthest_m, &row.around_hole_m})
+  for (auto* values : {&row.weak_m, &row.strong_m, &row.nearest_m, &row.farthest_m, &row.around_hole_m,
+                       &row.background_m, &row.come_m, &row.moving_m})
     values->resize(width);
   row.keep.resize(width);
+  row.is_all_mapped = false;
+  row.is_island.resize(width);
   row.bits.assign(static_cast<std::size_t>(blocks_along(width_px)) * kBlock_px, 0);
 }
 
 void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& settings,
-                  const ExpectedBounds& bounds, float misfit_per_m, const std::vector<std::uint8_t>& before,
-                  PixelEvidence& evidence, LabelImage& labels) {
+                  const ExpectedBounds& bounds, const UnmappedSpace& unmapped, float misfit_per_m,
+                  const std::vector<std::uint8_t>& before, PixelEvidence& evidence, LabelImage& labels) {
   const ForegroundConfig config = settings;
   const int width = depth_m.width;
   const BlockGrid grid = bounds.grid;
   evidence.blocks.evidence.assign(grid.size(), 0);
   for (int row = 0; row < grid.rows; ++row) {
     stretch_bounds(config, bounds, before, row, width, evidence);
+    stretch_unmapped(unmapped, bounds, row, width, evidence.row);
     const int end = std::min((row + 1) * kBlock_px, depth_m.height);
     for (int y = row * kBlock_px; y < end; ++y) {
       weigh_row(depth_m.row(y), expected_m.row(y), width, config, evidence.row, misfit_per_m,
@@ -246,7 +288,12 @@ void drop_far_weak(const DepthImage& depth_m, int reach_px, const BlockGrid& gri
     if (y % kBlock_px == 0)
       stretch(near.data() + grid.at(0, y / kBlock_px), depth_m.width, evidence.row.keep.data());
     std::uint8_t* bits = evidence.bits.data() + depth_m.index(0, y);
-    for (int x = 0; x < depth_m.width; ++x) bits[x] &= evidence.row.keep[x];
+    // Pixels in holes of the model stay, since nothing but the region that they belong to can tell about
+    // them.
+    for (int x = 0; x < depth_m.width; ++x) {
+      static_assert(kInHole == kWeakMoved << 5);
+      bits[x] &= static_cast<std::uint8_t>(evidence.row.keep[x] | (bits[x] >> 5 & bits[x] & kWeakMoved));
+    }
   }
 }
 

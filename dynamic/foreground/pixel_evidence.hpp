@@ -16,6 +16,7 @@ enum class PixelLabel : std::uint8_t {
   kStatic,    ///< agrees with the static model within noise and pose error
   kMoved,     ///< nearer than the static model, as for an object in front of it
   kRevealed,  ///< uncovered background: farther than the static model, as after an object's removal
+  kUnmapped,  ///< in front of space without a model, and nothing shows that it moved
 };
 using LabelImage = Image<PixelLabel>;
 
@@ -27,8 +28,9 @@ inline constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kAmbiguousMoved 
                               kStrongRevealed = 16, kAmbiguousRevealed = 32, kMovedBefore = 64,
                               kRevealedBefore = 128;
 
-/// Set together with kWeakMoved if the pixel is in a hole of the model (without expected depth). Shares a bit
-/// with kAmbiguousRevealed, since no pixel is farther than the model in a hole.
+/// Set together with kWeakMoved if the pixel is in a hole or island of the model (ExpectedBounds) and no
+/// strong evidence says more. Shares a bit with kAmbiguousRevealed, since no pixel is farther than the model
+/// in a hole.
 inline constexpr std::uint8_t kInHole = kAmbiguousRevealed;
 
 /// Set on pixels of uncovered background by mark_revealed_cores(). Shares a bit with kAmbiguousMoved, since
@@ -38,8 +40,14 @@ inline constexpr std::uint8_t kRevealedCore = kAmbiguousMoved;
 /// Thresholds, depth bounds and scratch for one row of pixels. Each vector has one value per pixel.
 struct RowBounds {
   std::vector<float> weak_m, strong_m;  ///< min differences from the model for weak and strong evidence
-  std::vector<float> nearest_m, farthest_m, around_hole_m;  ///< of the pixel's block, from ExpectedBounds
-  std::vector<std::uint8_t> keep, bits;                     ///< scratch
+  /// Of the pixel's block, from ExpectedBounds.
+  std::vector<float> nearest_m, farthest_m, around_hole_m, background_m;
+  /// Depth of a surface that has come into the pixel's block in unmapped space, and of one that moves; 0:
+  /// none.
+  std::vector<float> come_m, moving_m;
+  bool is_all_mapped = false;            ///< true: no hole or island fills any block of the row
+  std::vector<std::uint8_t> is_island;   ///< of the pixel's block, from ExpectedBounds
+  std::vector<std::uint8_t> keep, bits;  ///< scratch
 };
 
 /// Evidence bits per block of 4 x 4 pixels.
@@ -64,11 +72,12 @@ struct PixelEvidence {
 /// known, else kNotKnown.
 /// @param depth_m, expected_m  measured depth and the static model's depth, m, height x width, 0 = unknown
 /// @param bounds       depth range of the static room per block, for expected_m
+/// @param unmapped     what the run has seen in the model's holes, this frame included
 /// @param misfit_per_m  standard deviation of measured minus expected inverse depth of static surfaces
 /// @param before       history bits per block, see warp_history()
 void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& settings,
-                  const ExpectedBounds& bounds, float misfit_per_m, const std::vector<std::uint8_t>& before,
-                  PixelEvidence& evidence, LabelImage& labels);
+                  const ExpectedBounds& bounds, const UnmappedSpace& unmapped, float misfit_per_m,
+                  const std::vector<std::uint8_t>& before, PixelEvidence& evidence, LabelImage& labels);
 
 /// Sets kRevealedCore in blocks whose neighbourhood consists of revealed blocks (farther than the model). The
 /// neighbourhood's radius is more than half the max edge error, rounded up to blocks. A model edge displaced

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 
 #include "mapping/types/system/error.hpp"
@@ -176,14 +177,74 @@ TEST(Foreground, HoleOfTheModelIsMovedOnlyNearerThanAllAroundIt) {
   EXPECT_EQ(mark(live_m, expected_m).counts.revealed, 0U);
 }
 
-TEST(Foreground, FarInsideAnUnmappedViewNothingIsKnown) {
+TEST(Foreground, AHandFullOfGapsIsMovedWhereverItIsMeasured) {
+  const auto is_hand = [](int x, int y) { return x >= 200 && x < 320 && y >= 150 && y < 260; };
+  for (const auto& [block_px, gaps] : {std::pair{1, 0.4}, {1, 0.6}, {2, 0.3}, {8, 0.5}}) {
+    std::mt19937 random(5);
+    DepthImage live_m = flat(1.0F);
+    fill_rectangle(live_m, 200, 150, 320, 260, 0.8F);
+    add_noise(live_m, 3);
+    for (int y = 150; y < 260; y += block_px)
+      for (int x = 200; x < 320; x += block_px)
+        if (std::bernoulli_distribution(gaps)(random))
+          fill_rectangle(live_m, x, y, std::min(x + block_px, 320), std::min(y + block_px, 260), 0.0F);
+    const Marked marked = mark(live_m, flat(1.0F));
+    int measured = 0, moved = 0;
+    for (int y = 0; y < 480; ++y) {
+      for (int x = 0; x < 640; ++x) {
+        const bool is_moved = marked.dynamic_mask.at(x, y) != 0;
+        measured += is_hand(x, y) && live_m.at(x, y) > 0.0F ? 1 : 0;
+        moved += is_hand(x, y) && is_moved ? 1 : 0;
+        EXPECT_FALSE(is_moved && !(live_m.at(x, y) > 0.0F)) << "only what is measured is in the mask";
+      }
+    }
+    EXPECT_GT(moved, 0.98 * measured) << block_px << " px, " << gaps;
+  }
+}
+
+TEST(Foreground, APersonWhoHidesAHoleOfTheModelIsMovedAsAWhole) {
+  // As where the scan never saw what is behind the person: the outline is in front of the wall, the rest not.
+  DepthImage expected_m = flat(2.6F);
+  fill_rectangle(expected_m, 220, 100, 420, 480, 0.0F);
+  DepthImage live_m = flat(2.6F);
+  fill_rectangle(live_m, 170, 60, 470, 480, 0.85F);
+  add_noise(live_m, 4);
+  const auto person = [](int x, int y) { return x >= 170 && x < 470 && y >= 60; };
+  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).dynamic_mask, person), 0.98);
+}
+
+TEST(Foreground, WhatHidesOnlyUnmappedSpaceIsThereButHasNotMoved) {
+  DepthImage expected_m = flat(2.6F);
+  fill_rectangle(expected_m, 100, 60, 500, 420, 0.0F);
+  DepthImage live_m = expected_m;
+  fill_rectangle(live_m, 200, 150, 400, 300, 0.85F);
+  const Marked marked = mark(live_m, expected_m, {}, kKinect, 40);
+  EXPECT_EQ(marked.labels.at(300, 200), PixelLabel::kUnmapped);
+  EXPECT_EQ(marked.counts.moved, 0U);
+}
+
+TEST(Foreground, ARestOfAPersonInTheModelDoesNotCutThePersonInTwo) {
+  // The scan took a strip of the person for a part of the room.
+  DepthImage expected_m = flat(2.6F);
+  fill_rectangle(expected_m, 220, 100, 420, 480, 0.0F);
+  fill_rectangle(expected_m, 300, 260, 330, 400, 0.86F);
+  DepthImage live_m = flat(2.6F);
+  fill_rectangle(live_m, 170, 60, 470, 480, 0.85F);
+  add_noise(live_m, 4);
+  const auto person = [](int x, int y) { return x >= 170 && x < 470 && y >= 60; };
+  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).dynamic_mask, person), 0.98);
+  EXPECT_EQ(mark(expected_m, expected_m).counts.moved, 0U) << "alone it is a part of the room";
+}
+
+TEST(Foreground, FarInsideAnUnmappedViewNothingIsKnownToMove) {
   DepthImage expected_m = flat(0.0F);
   fill_rectangle(expected_m, 0, 0, 320, 480, 2.0F);
   DepthImage live_m = flat(2.0F);
   fill_rectangle(live_m, 500, 100, 600, 300, 1.0F);
   const Marked marked = mark(live_m, expected_m);
   EXPECT_EQ(marked.counts.moved, 0U);
-  EXPECT_EQ(marked.labels.at(550, 200), PixelLabel::kNotKnown);
+  EXPECT_EQ(marked.labels.at(550, 200), PixelLabel::kUnmapped);
+  EXPECT_EQ(marked.labels.at(450, 200), PixelLabel::kNotKnown);
 }
 
 TEST(Foreground, SpecksAreNoise) {

@@ -93,6 +93,69 @@ TEST(ForegroundInTime, WhatLeftLeavesNothingBehind) {
   EXPECT_EQ(run.marked.counts.moved, 0U);
 }
 
+// A box 100 px wide at box_m in a view of which the map knows the lowest rows only, moved to column x.
+DepthImage unmapped_view(float behind_m, float box_m, int x) {
+  DepthImage depth_m = flat(behind_m);
+  fill_rectangle(depth_m, 0, 400, 640, 480, 1.0F);
+  if (box_m > 0.0F) fill_rectangle(depth_m, x, 200, x + 100, 300, box_m);
+  return depth_m;
+}
+
+DepthImage mapped_below() {
+  DepthImage expected_m = flat(0.0F);
+  fill_rectangle(expected_m, 0, 400, 640, 480, 1.0F);
+  return expected_m;
+}
+
+TEST(ForegroundInTime, WhatComesIntoUnmappedSpaceIsMovedAsAWhole) {
+  // Nothing, or something, is measured behind it; it is nearer or farther than the mapped surface in view.
+  for (const auto& [behind_m, box_m] : {std::pair{0.0F, 0.7F}, {0.0F, 2.0F}, {3.0F, 0.7F}, {3.0F, 2.0F}}) {
+    Watch run;
+    run.see(unmapped_view(behind_m, box_m, 0), mapped_below());  // it is there from the start
+    for (int x = 0; x < 300; x += 6) {
+      DepthImage live_m = unmapped_view(behind_m, box_m, x);
+      add_noise(live_m, static_cast<unsigned>(x));
+      run.see(live_m, mapped_below());
+      if (x < 120) continue;
+      const auto box = [&](int u, int v) { return u >= x && u < x + 100 && v >= 200 && v < 300; };
+      EXPECT_GT(intersection_over_union(run.marked.dynamic_mask, box), 0.97)
+          << behind_m << " m behind " << box_m << " m at " << x;
+    }
+  }
+}
+
+TEST(ForegroundInTime, WhatStandsInUnmappedSpaceIsNotMovedByTheCamerasMotion) {
+  // The camera moves 15 cm to the right and turns; the box and the wall behind it stand.
+  for (const float behind_m : {0.0F, 3.0F}) {
+    Watch run;
+    for (int frame = 0; frame < 60; ++frame) {
+      const double right_m = 0.0025 * frame;
+      DepthImage live_m = unmapped_view(behind_m, 1.2F, 0);
+      fill_rectangle(live_m, 0, 200, 100, 300, behind_m);
+      const int x = 320 - static_cast<int>(std::lround(kKinect.fx_px * right_m / 1.2));
+      fill_rectangle(live_m, x, 200, x + 100, 300, 1.2F);
+      add_noise(live_m, static_cast<unsigned>(frame));
+      Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+      T_world_camera.translation().x() = right_m;
+      run.see(live_m, mapped_below(), T_world_camera);
+      EXPECT_EQ(run.marked.counts.moved, 0U) << frame << ", " << behind_m << " m behind";
+    }
+  }
+}
+
+TEST(ForegroundInTime, WhatHasComeIntoUnmappedSpaceAndStandsIsNoLongerMoved) {
+  Watch run;
+  for (int frame = 0; frame < 10; ++frame) run.see(unmapped_view(0.0F, 0.0F, 0), mapped_below());
+  int moved_frames = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    run.see(unmapped_view(0.0F, 0.7F, 200), mapped_below());
+    moved_frames += run.marked.counts.moved > 0 ? 1 : 0;
+  }
+  EXPECT_GT(moved_frames, 60);
+  EXPECT_LT(moved_frames, 200);
+  EXPECT_EQ(run.marked.labels.at(250, 250), PixelLabel::kUnmapped) << "but it is there";
+}
+
 TEST(ForegroundInTime, AMapThatFitsBadlyIsTrustedLess) {
   // 1.5 cm between map and room, at 1 m; then they agree again.
   Watch run;

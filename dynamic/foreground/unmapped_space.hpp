@@ -1,0 +1,64 @@
+// unmapped_space.hpp: what this run has seen where the static model has no surface: the farthest surface, and
+// what came while the camera looked.
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dynamic/foreground/pixel_blocks.hpp"
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
+
+namespace roomradar {
+
+/// A surface seen in one block of 4 x 4 pixels.
+struct BlockSurface {
+  Eigen::Vector3f p_world_m = Eigen::Vector3f::Zero();
+  float depth_m = 0.0F;       ///< in the camera of UnmappedSpace; 0: none
+  std::uint8_t frames = 0;    ///< number of frames that agreed, up to a limit
+  std::uint8_t unseen = 0;    ///< number of frames without any measurement since
+  std::uint8_t has_come = 0;  ///< 1: it is nearer than what was there, or nothing was there
+};
+
+/// Memory of one camera, ignored if the intrinsics change. All vectors have one value per block.
+struct UnmappedSpace {
+  BlockGrid grid;
+  Intrinsics camera;  ///< size 0 x 0: nothing was seen so far
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::vector<BlockSurface> farthest;  ///< the farthest surface so far
+  std::vector<BlockSurface> nearest;   ///< the surface of the last frames
+  std::vector<std::uint8_t> empty;     ///< number of last frames in which nothing was measured there
+  /// 1 for rows and columns of blocks in which anything was ever measured. Others near the image's border are
+  /// the sensor's margin, in which nothing can be measured.
+  std::vector<std::uint8_t> row_measures, column_measures;
+  std::int64_t frames = 0;
+
+  std::vector<BlockSurface> reached;  // scratch
+  std::vector<std::uint8_t> empty_before;
+};
+
+/// Moves the memory into this frame's view. What leaves the view, or gets into a block with a model, is
+/// forgotten.
+/// @param model_m  per block: depth of the static model; 0: none
+void warp_unmapped(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                   const std::vector<float>& model_m, UnmappedSpace& space);
+
+/// Updates `nearest` and `empty` from this frame, in the blocks without any surface of the model. A surface
+/// has come if it is nearer than what was there, or if nothing was measured there in the last frames. But
+/// where it continues the model, or a surface that has been there for a while, it is a part of that, which
+/// was not measured before.
+void see_what_came(const DepthImage& depth_m, const std::vector<float>& model_m, const DepthNoise& noise,
+                   UnmappedSpace& space);
+
+/// Returns true if the surface in a block has come, and moved in the last half second. Surfaces that
+/// see_background() finds moved count as moving for some seconds more.
+bool is_moving(const BlockSurface& nearest);
+
+/// Updates `farthest` in the blocks without any surface of the model. A farther measurement replaces what was
+/// seen; one within noise is averaged with the first ones. Pixels that have moved do not count.
+void see_background(const DepthImage& depth_m, const MaskImage& dynamic_mask,
+                    const std::vector<float>& model_m, const DepthNoise& noise, UnmappedSpace& space);
+
+}  // namespace roomradar
