@@ -38,7 +38,7 @@ std::vector<FrameSpan> lost_frames(const std::vector<TrackedFrame>& frames) {
 }
 
 std::string why_none_trusted(const PrescanWork& work) {
-  if (work.config.poses == PoseOrigin::kTracked) return "is there depth between 0.5 and 6 m in the frames?";
+  if (work.config.poses != PoseOrigin::kRecorded) return "is there depth between 0.5 and 6 m in the frames?";
   return "the recording has no poses, or none within the octree's reach of " +
          std::to_string(std::lround(work.reach_m)) + " m: use --poses tracked";
 }
@@ -167,13 +167,14 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   }
 
   result.lost = lost_frames(pass.found.frames);
+  result.parts = pass.found.parts;
   counts = pass.counts;
   counts.stopped_for_memory |= pass.stopped_for_memory;
   counts.frames_tracked = static_cast<std::int64_t>(map.trajectory.size());
   counts.frames_lost = counts.frames_read - counts.frames_skipped - counts.frames_tracked;
   counts.frames_fused = static_cast<std::int64_t>(pass.fused.size());
   counts.ghost_voxels = pass.ghost_voxels.value_or(0);
-  if (config.poses == PoseOrigin::kTracked) {
+  if (config.poses != PoseOrigin::kRecorded) {
     const TrajectoryError error = absolute_trajectory_error(map.trajectory, pass.found.recorded);
     if (error.poses > 0) counts.trajectory_error = error;
   }

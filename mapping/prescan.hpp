@@ -15,6 +15,7 @@
 #include "mapping/prescan_counts.hpp"
 #include "mapping/revision/ghosts.hpp"
 #include "mapping/scan_observer.hpp"
+#include "mapping/scan_parts.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/frame_source.hpp"
 #include "mapping/types/pose_origin.hpp"
@@ -25,7 +26,7 @@ namespace roomradar {
 
 struct PrescanConfig {
   double resolution_m = 0.01;  ///< edge of the octree's smallest voxels
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   OdometryConfig odometry;
   std::optional<GivenUp> up;  ///< up direction that the user states; unset: estimated
   int fuse_every = 1;         ///< only tracked frames whose index is a multiple of this are fused
@@ -53,6 +54,7 @@ struct FrameSpan {
 struct PrescanResult {
   SavedMap map;                 ///< map.info.counts are set, too
   std::vector<Hole> holes;      ///< regions that the scan did not observe; largest first, outer borders last
+  std::vector<ScanPart> parts;  ///< parts of the scan, see join_parts()
   std::vector<FrameSpan> lost;  ///< readable frames without a trusted pose, in order
   PrescanCounts counts;
   SurfaceStats surface;

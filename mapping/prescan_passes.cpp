@@ -109,6 +109,12 @@ Eigen::Vector3d middle_of_recorded(const PrescanWork& work, const TrackingPass& 
                                : pass.recorded.front().T_world_camera.translation();
 }
 
+OdometryConfig odometry_config_of(const PrescanConfig& config) {
+  OdometryConfig odometry = config.odometry;
+  odometry.use_recorded_poses = config.poses == PoseOrigin::kAuto;
+  return odometry;
+}
+
 /// Removes the last seconds of the scan: the frames' poses, and the keyframes made of them. The frames remain
 /// counted as read, and are not fused since they have no pose.
 /// @param known  keyframes of the map that is extended; null: a new map
@@ -120,7 +126,7 @@ void undo(PrescanWork& work, TrackingPass& pass, const KeyframeDatabase* known, 
   if (first == kept.frames.end()) return;
   const std::int64_t from_index = first->frame_index;
   forget_frames_from(from_index, kept);
-  pass.odometry = Odometry(work.config.odometry, std::move(kept));
+  pass.odometry = Odometry(odometry_config_of(work.config), std::move(kept));
   if (known) pass.odometry.set_prior_map(*known);
   std::erase_if(pass.recorded, [&](const TimedPose& pose) { return pose.frame_index >= from_index; });
   work.observer->forgot_frames(from_index);
@@ -131,10 +137,10 @@ void undo(PrescanWork& work, TrackingPass& pass, const KeyframeDatabase* known, 
 /// @param known  keyframes of the map that is extended; null: a new map
 bool restart_with_better_times(PrescanWork& work, const KeyframeDatabase* known, TrackingPass& pass) {
   const std::int64_t frames = work.source->frame_count().value_or(0);
-  if (work.config.poses != PoseOrigin::kTracked || pass.counts.restarts >= kMostRestarts) return false;
+  if (work.config.poses == PoseOrigin::kRecorded || pass.counts.restarts >= kMostRestarts) return false;
   if (pass.counts.frames_read != std::min(frames, kProbeFrames)) return false;
   if (!are_times_wrong(pass.odometry.state().timing) || !work.source->rewind()) return false;
-  OdometryConfig config = work.config.odometry;
+  OdometryConfig config = odometry_config_of(work.config);
   config.timing = pass.odometry.state().timing.current;
   const std::int64_t restarts = pass.counts.restarts + 1;
   pass = TrackingPass(config);
@@ -157,7 +163,7 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
         recorded_pose(frame, middle_of_recorded(work, pass, frame), work.reach_m);
     if (recorded) pass.recorded.push_back({frame.index, frame.stamp_s, *recorded});
     Tracking tracking;
-    if (config.poses == PoseOrigin::kTracked) {
+    if (config.poses != PoseOrigin::kRecorded) {
       tracking = pass.odometry.track(frame);
     } else if (recorded) {
       tracking = {.status = TrackStatus::kTracked, .T_world_camera = *recorded};
@@ -165,7 +171,11 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
     }
     work.track_ms[frame.index] = ms_since(start);
     work.times.add_ms("track", work.track_ms[frame.index]);
-    if (tracking) pass.up.add(frame, tracking.T_world_camera);
+    if (tracking) {
+      const auto part = static_cast<std::size_t>(pass.odometry.current_part());
+      if (part >= pass.up.size()) pass.up.resize(part + 1);
+      pass.up[part].add(frame, tracking.T_world_camera);
+    }
     if (work.observer) {
       work.observer->after_frame(frame, tracking, pass.odometry, work.times);
       if (const double undo_s = work.observer->take_undo_s(); undo_s > 0.0)
@@ -188,12 +198,20 @@ TrajectoryEstimate estimate_trajectory(PrescanWork& work, const KeyframeDatabase
   }
   TrajectoryEstimate found;
   found.frames = work.times.timed("optimise", [&] { return pass.odometry.optimise(); });
-  found.up = config.up ? pass.up.take(*config.up) : pass.up.estimate();
   found.recorded = std::move(pass.recorded);
   pass.counts.keyframes = pass.odometry.counts().keyframes;
   pass.counts.loops_found = pass.odometry.counts().loops_found;
   pass.counts.timing = pass.odometry.state().timing.current;
+  pass.counts.recorded_used = pass.odometry.state().prior.used;
+  pass.counts.recorded_contradicted = pass.odometry.state().prior.contradicted;
+  pass.counts.recorded_sigma_m = pass.odometry.state().prior.sigma_m;
   found.keyframe_database = pass.odometry.take_keyframe_database();
+  int main_part = 0;
+  found.parts = work.times.timed("join", [&] {
+    return join_parts(found.frames, found.keyframe_database, pass.odometry.state().located, main_part);
+  });
+  const UpEstimator& up = pass.up[std::min(static_cast<std::size_t>(main_part), pass.up.size() - 1)];
+  found.up = config.up ? up.take(*config.up) : up.estimate();
   return found;
 }
 
@@ -244,6 +262,10 @@ Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEst
   // overlaps.
   RegistrationConfig located;
   located.min_overlap = 0.01;
+  // Many keyframes were localised in the map, so it is the same room, in which things may have moved.
+  constexpr std::int64_t kManyAnchored = 5;
+  constexpr double kMovedThings = 0.5;
+  if (odometry.state().counts.anchored >= kManyAnchored) located.min_agreement = kMovedThings;
   const Registration placed =
       odometry.state().located
           ? verify_registration(map.octree, surface, Eigen::Isometry3d::Identity(), located)
@@ -263,15 +285,15 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
     fusing.counts.frames_resumed = fusing.frames_read;
     return fusing;
   }
-  TrackingPass pass(work.config.odometry);
+  TrackingPass pass(odometry_config_of(work.config));
   if (checkpoint) {
-    pass = read_tracking_pass(*checkpoint, work.config.odometry);
+    pass = read_tracking_pass(*checkpoint, odometry_config_of(work.config));
     pass.counts.frames_resumed = pass.counts.frames_read;
     show_resumed(work, kTrackingStage, static_cast<std::size_t>(pass.counts.frames_read));
     skip_frames(*work.source, pass.counts.frames_read);
   }
   const KeyframeDatabase* const known =
-      map && work.config.poses == PoseOrigin::kTracked ? &*map->keyframe_database : nullptr;
+      map && work.config.poses != PoseOrigin::kRecorded ? &*map->keyframe_database : nullptr;
   if (known) pass.odometry.set_prior_map(*known);
   FusionPass fusing;
   fusing.found = estimate_trajectory(work, known, pass);

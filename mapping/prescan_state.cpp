@@ -19,15 +19,17 @@ namespace fs = std::filesystem;
 
 template <typename Archive>
 void serialize(Archive& archive, PrescanCounts& counts) {
-  for (std::int64_t* count : {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked,
-                              &counts.frames_fused, &counts.frames_lost, &counts.keyframes,
-                              &counts.loops_found, &counts.restarts, &counts.ghost_voxels}) {
+  for (std::int64_t* count :
+       {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked, &counts.frames_fused,
+        &counts.frames_lost, &counts.keyframes, &counts.loops_found, &counts.restarts, &counts.ghost_voxels,
+        &counts.recorded_used, &counts.recorded_contradicted}) {
     serialize(archive, *count);
     if constexpr (Archive::kReads) {
       if (*count < 0) archive.fail("is damaged: a count is negative");
     }
   }
   serialize(archive, counts.timing);
+  serialize(archive, counts.recorded_sigma_m);
   serialize(archive, counts.stopped_for_memory);
   serialize(archive, counts.last_fault);
 }
@@ -38,7 +40,16 @@ void serialize(Archive& archive, TrackedFrame& frame) {
   serialize(archive, frame.stamp_s);
   serialize(archive, frame.T_world_camera);
   serialize(archive, frame.status, TrackStatus::kDiverged);
+  serialize(archive, frame.part);
   serialize(archive, frame.trusted);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, ScanPart& part) {
+  serialize(archive, part.first);
+  serialize(archive, part.last);
+  serialize(archive, part.frames);
+  serialize(archive, part.is_joined);
 }
 
 template <typename Archive>
@@ -81,12 +92,19 @@ constexpr const char* kOdometry = "odometry";
 constexpr const char* kOctree = "octree.bin";
 constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRPRSCAN";
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 
 template <typename Archive>
 void serialize_state(Archive& archive, TrackingPass& pass) {
   serialize(archive, pass.counts);
-  pass.up.serialize_fields(archive);
+  auto parts = static_cast<std::uint64_t>(pass.up.size());
+  serialize(archive, parts);
+  if constexpr (Archive::kReads) {
+    constexpr std::uint64_t kMost = 1'000'000;
+    if (parts == 0 || parts > kMost) archive.fail("is damaged: its number of parts");
+    pass.up.resize(static_cast<std::size_t>(parts));
+  }
+  for (UpEstimator& up : pass.up) up.serialize_fields(archive);
   serialize(archive, pass.recorded);
 }
 
@@ -96,6 +114,7 @@ void serialize_state(Archive& archive, FusionPass& pass) {
   serialize(archive, pass.found.frames);
   serialize(archive, pass.found.up);
   serialize(archive, pass.found.recorded);
+  serialize(archive, pass.found.parts);
   serialize(archive, pass.T_world_found);
   serialize(archive, pass.frames_read);
   serialize(archive, pass.fused);

@@ -10,6 +10,7 @@
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/prescan_counts.hpp"
 #include "mapping/revision/ghost_removal.hpp"
+#include "mapping/scan_parts.hpp"
 #include "mapping/storage/checkpoints.hpp"
 
 namespace roomradar {
@@ -19,8 +20,8 @@ struct TrackingPass {
   explicit TrackingPass(const OdometryConfig& config) : odometry(config) {}
   PrescanCounts counts;  ///< over the frames read so far
   Odometry odometry;
-  UpEstimator up;
-  std::vector<TimedPose> recorded;  ///< recorded camera poses, if any
+  std::vector<UpEstimator> up = std::vector<UpEstimator>(1);  ///< one per part of the scan
+  std::vector<TimedPose> recorded;                            ///< recorded camera poses, if any
 };
 
 /// Result of the first pass: camera poses, keyframe database and up direction.
@@ -29,6 +30,7 @@ struct TrajectoryEstimate {
   KeyframeDatabase keyframe_database;
   UpDirection up;
   std::vector<TimedPose> recorded;
+  std::vector<ScanPart> parts;  ///< see join_parts()
 };
 
 /// State of the second pass, which fuses the frames and then removes ghosts.

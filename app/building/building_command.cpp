@@ -116,8 +116,8 @@ void add_options(CLI::App& command, BuildingOptions& options) {
       ->type_name("M");
   add_poses_option(
       command, options.poses,
-      "estimate the camera poses (tracked), or use those of the recordings, which must be in one\n"
-      "world (recorded) (default: tracked)");
+      "estimate the camera poses, with those of the recordings as a prior (auto) or without them\n"
+      "(tracked), or use those of the recordings, which must be in one world (recorded) (default: auto)");
   add_processes_option(command, options.processes);
   add_report_option(command, options.report);
 }

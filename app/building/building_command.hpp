@@ -16,7 +16,7 @@ struct BuildingOptions {
   std::string recordings;  ///< path of the list; see read_recording_list()
   TileGrid grid;
   double deviation_m = 0.002;
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   int processes = 0;  ///< max number of concurrent jobs; 0: one per processor
   std::string report;
 };

@@ -30,7 +30,7 @@ struct BuildingWork {
   std::filesystem::path list_folder;        ///< of the list of recordings, absolute
   std::vector<ListedRecording> recordings;  ///< in order of their names
   TileGrid grid;
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   double deviation_m = 0.002;
 
   /// Folder that contains one folder per job.

@@ -101,7 +101,7 @@ int run(const TrackStep& step) {
   std::vector<Submap> parts = split_at_losses(submap, kMaxGap, kMinFrames);
   if (parts.empty()) throw Error(source->name() + ": tracking was lost again and again; move more slowly");
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (step.poses == PoseOrigin::kTracked) put_origin_on_floor(parts[i]);
+    if (step.poses != PoseOrigin::kRecorded) put_origin_on_floor(parts[i]);
     make_folder(step.out / std::to_string(i));
     save_submap(parts[i], step.out / std::to_string(i));
     save_features(features_of(parts[i]), step.out / std::to_string(i) / kFeaturesFile);

@@ -17,7 +17,7 @@ namespace roomradar {
 /// tracking, begins another submap, out/1 and so on; see split_at_losses().
 struct TrackStep {
   std::string source;
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   std::filesystem::path out;  ///< folder, which must exist
 };
 int run(const TrackStep& step);

@@ -32,7 +32,7 @@ PrescanConfig prescan_config_of(const PrescanOptions& options) {
   config.max_memory_bytes = static_cast<std::size_t>(kMB * options.max_memory_mb);
   // Recorded poses may disagree with the depth by more than the threshold that tells a ghost from a wall;
   // ghost removal would then erase walls.
-  config.remove_ghosts = options.poses == PoseOrigin::kTracked;
+  config.remove_ghosts = options.poses != PoseOrigin::kRecorded;
   return config;
 }
 

@@ -27,8 +27,8 @@ Registration require_registered(const SavedMap& a, const SavedMap& b, const std:
 
 MapChanges changes_between(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                            const std::string& name_b, Report& report) {
-  const Registration found = share_world(a.info, b.info) ? Registration{}
-                                                         : require_registered(a, b, name_a, name_b, report);
+  const Registration found =
+      share_world(a.info, b.info) ? Registration{} : require_registered(a, b, name_a, name_b, report);
   return {found.T_a_b, report.times.timed("diff", [&] {
             return diff_maps(a.octree, b.octree, found.T_a_b, found.T_b_a, {});
           })};

@@ -174,7 +174,8 @@ RunOptions read_session(const fs::path& folder) {
   options.script = (folder / kEvents).string();
   try {
     options.map = json.at("map").get<std::string>();
-    options.poses = choice_of(json, "poses", {PoseOrigin::kTracked, PoseOrigin::kRecorded}, folder);
+    options.poses =
+        choice_of(json, "poses", {PoseOrigin::kAuto, PoseOrigin::kTracked, PoseOrigin::kRecorded}, folder);
     options.surfaces = choice_of(
         json, "surfaces",
         {SurfacePolicy::kMap, SurfacePolicy::kBorder, SurfacePolicy::kSkirt, SurfacePolicy::kHoles}, folder);

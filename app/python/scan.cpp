@@ -98,9 +98,10 @@ Scan scan(FrameSource& source, PrescanConfig config, const Map* extend, const py
 }
 
 PoseOrigin origin_of(const std::string& poses) {
-  for (const PoseOrigin origin : {PoseOrigin::kTracked, PoseOrigin::kRecorded})
+  for (const PoseOrigin origin : {PoseOrigin::kAuto, PoseOrigin::kTracked, PoseOrigin::kRecorded})
     if (to_string(origin) == poses) return origin;
-  throw py::value_error("poses: is \"" + required_text(poses, "poses") + "\"; must be tracked or recorded");
+  throw py::value_error("poses: is \"" + required_text(poses, "poses") +
+                        "\"; must be auto, tracked or recorded");
 }
 
 std::optional<GivenUp> up_of(const py::object& up) {
@@ -154,6 +155,8 @@ py::dict dict_of(const PrescanCounts& counts) {
   dict["frames_lost"] = counts.frames_lost;
   dict["keyframes"] = counts.keyframes;
   dict["loops_found"] = counts.loops_found;
+  dict["recorded_used"] = counts.recorded_used;
+  dict["recorded_contradicted"] = counts.recorded_contradicted;
   dict["ghost_voxels"] = counts.ghost_voxels;
   dict["stopped_for_memory"] = counts.stopped_for_memory;
   return dict;
@@ -203,7 +206,7 @@ void bind_scan(py::module_& module) {
         return scan_source(source, poses, {resolution_m, deviation_m, tracking_px, fuse_every}, up, hold_out,
                            texture, max_memory_mb, extend, progress);
       },
-      py::arg("source"), py::kw_only(), py::arg("poses") = "tracked",
+      py::arg("source"), py::kw_only(), py::arg("poses") = "auto",
       py::arg("resolution_m") = quality.resolution_m, py::arg("deviation_m") = quality.deviation_m,
       py::arg("tracking_px") = quality.tracking_px, py::arg("fuse_every") = quality.fuse_every,
       py::arg("up") = py::none(), py::arg("hold_out") = 0, py::arg("texture") = true,
@@ -211,7 +214,8 @@ void bind_scan(py::module_& module) {
       "Scans a room and returns a Scan, whose map is in memory; save it with Map.save(). The map is that of\n"
       "`roomradar prescan` with the same settings, byte for byte. Reads the source several times.\n\n"
       "source: a Source, or the name of one as for open_source()\n"
-      "poses: tracked (by odometry), or recorded (those of the frames)\n"
+      "poses: auto (by odometry, with recorded poses as a prior), tracked (by odometry alone), or recorded "
+      "(those of the frames)\n"
       "resolution_m: edge of the smallest voxels\n"
       "deviation_m: max distance of the simplified mesh from the full one\n"
       "up: up direction in the poses' world, \"camera\" (the cameras' mean), or None (estimated)\n"

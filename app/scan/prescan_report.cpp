@@ -36,6 +36,10 @@ nlohmann::json results_of(const PrescanResult& scanned) {
       {"depth_readout_s", counts.timing.depth_readout_s},
       {"colour_readout_s", counts.timing.colour_readout_s},
       {"colour_delay_s", counts.timing.colour_delay_s},
+      {"recorded_poses",
+       {{"used", counts.recorded_used},
+        {"contradicted", counts.recorded_contradicted},
+        {"sigma_m", counts.recorded_sigma_m}}},
       {"ghost_voxels", counts.ghost_voxels},
       {"frames_resumed", counts.frames_resumed},
       {"stopped_for_memory", counts.stopped_for_memory},
@@ -52,6 +56,12 @@ nlohmann::json results_of(const PrescanResult& scanned) {
   results["lost"] = nlohmann::json::array();
   for (const FrameSpan& span : scanned.lost)
     results["lost"].push_back({{"from_frame", span.first}, {"until_frame", span.last + 1}});
+  results["parts"] = nlohmann::json::array();
+  for (const ScanPart& part : scanned.parts)
+    results["parts"].push_back({{"from_frame", part.first},
+                                {"until_frame", part.last + 1},
+                                {"frames", part.frames},
+                                {"in_map", part.is_joined}});
   results["holes"] = nlohmann::json::array();
   for (const Hole& hole : scanned.holes) results["holes"].push_back(hole_row(hole));
   results["ate_rmse_m"] = nullptr;  // set only for tracked poses of a recording that has poses
@@ -77,6 +87,32 @@ nlohmann::json held_out_json(const HeldOutScore& score) {
 }
 
 namespace {
+
+/// Names the parts of the scan that are not in the map, and warns if little of the recording was used.
+void print_parts(const PrescanOptions& options, const PrescanResult& scanned) {
+  constexpr double kEnough = 0.8;
+  for (const ScanPart& part : scanned.parts) {
+    if (part.is_joined) continue;
+    const long long first = part.first, last = part.last;
+    std::printf(
+        "a part is not in the map: frames %lld-%lld show no place that the map shows. To add it, record the "
+        "way "
+        "between the two and run `roomradar prescan WAY --map %s --resume`, then `roomradar prescan %s "
+        "--frames "
+        "%lld:%lld --map %s --resume`\n",
+        first, last, options.map.c_str(), options.source.c_str(), first, last, options.map.c_str());
+  }
+  const PrescanCounts& counts = scanned.counts;
+  const std::int64_t readable = counts.frames_read - counts.frames_skipped;
+  if (readable > 0 && static_cast<double>(counts.frames_tracked) < kEnough * static_cast<double>(readable))
+    std::printf(
+        "warning: only %.0f %% of the frames are in the map; the others have no pose that can be trusted. "
+        "Move "
+        "more slowly, keep furniture or corners in view, and let views overlap by half; poses of the "
+        "recording "
+        "help, see --poses\n",
+        100.0 * static_cast<double>(counts.frames_tracked) / static_cast<double>(readable));
+}
 
 /// Prints a line if the map has level surfaces, none of which is the floor.
 void print_floor(const Mesh& mesh_world) {
@@ -109,6 +145,7 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
     if (scanned.lost.size() > kShown) std::printf(" and %zu more spans", scanned.lost.size() - kShown);
     std::printf("\n");
   }
+  print_parts(options, scanned);
   if (counts.frames_skipped > 0) {
     std::printf("%lld frames could not be read; the last fault: %s\n",
                 static_cast<long long>(counts.frames_skipped), counts.last_fault.c_str());
@@ -118,6 +155,14 @@ void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
         "the up direction is not known: no gravity was recorded and no level surface was found; up is taken "
         "from the first camera. If that is wrong, scan again with --up X,Y,Z or --up camera\n");
   print_floor(scanned.map.mesh);
+  if (counts.recorded_used > 0)
+    std::printf("recorded poses constrained the motion of %lld frames; their noise is %.1f mm%s\n",
+                static_cast<long long>(counts.recorded_used), 1e3 * counts.recorded_sigma_m,
+                counts.recorded_contradicted > 0
+                    ? ("; depth contradicted them in " + std::to_string(counts.recorded_contradicted) +
+                       " frames, which were tracked without them")
+                          .c_str()
+                    : "");
   if (counts.trajectory_error)
     std::printf("trajectory against the recorded poses: RMSE %.1f mm, max %.1f mm\n",
                 1e3 * counts.trajectory_error->rmse_m, 1e3 * counts.trajectory_error->max_m);

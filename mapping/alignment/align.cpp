@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mapping/alignment/point_to_plane.hpp"
 #include "mapping/types/linear_algebra.hpp"
@@ -24,6 +25,7 @@ double independent_part(const Intrinsics& finest_camera) {
 struct Step {
   Vector6d twist = Vector6d::Zero();
   Matrix6d information = Matrix6d::Zero();
+  Matrix6d clear = Matrix6d::Zero();  ///< see Tracking::clear_information
   int held = 0;
 };
 
@@ -42,6 +44,8 @@ Step solve(const NormalEquations& depth, const NormalEquations& colour, double l
   fixed.setZero();
   Matrix6d H = scale.asDiagonal() * colour.H * scale.asDiagonal();
   Vector6d g = scale.cwiseProduct(colour.g);
+  constexpr double kClearly = 10.0;
+  Step step;
   for (int i = 0; i < 6; ++i) {
     const double strength = by_depth.values(i);
     if (strength <= static_cast<double>(config.min_constraint) * depth.weight) continue;
@@ -49,11 +53,12 @@ Step solve(const NormalEquations& depth, const NormalEquations& colour, double l
     H += strength * direction * direction.transpose();
     g += direction * direction.dot(depth_g);
     fixed += direction * direction.transpose();
+    if (strength > kClearly * static_cast<double>(config.min_constraint) * depth.weight)
+      step.clear += strength * direction * direction.transpose();
   }
   const double least = 1.0 / (independent * static_cast<double>(config.max_uncertainty_m) *
                               static_cast<double>(config.max_uncertainty_m));
   const SymmetricEigen<6> both = symmetric_eigen(H);
-  Step step;
   for (int i = 0; i < 6; ++i) {
     const double strength = both.values(i);
     if (!(strength > least)) {
@@ -68,6 +73,7 @@ Step solve(const NormalEquations& depth, const NormalEquations& colour, double l
   const Vector6d inverse_scale = scale.cwiseInverse();
   step.information =
       independent * (inverse_scale.asDiagonal() * step.information * inverse_scale.asDiagonal());
+  step.clear = independent * (inverse_scale.asDiagonal() * step.clear * inverse_scale.asDiagonal());
   return step;
 }
 
@@ -139,6 +145,8 @@ std::string_view to_string(TrackStatus status) {
       return "degenerate";
     case TrackStatus::kDiverged:
       return "diverged";
+    case TrackStatus::kUncertain:
+      return "uncertain";
   }
   return "unknown";
 }
@@ -215,6 +223,7 @@ Tracking align(const SourcePoints& live, std::span<const PosedReference> referen
   result.rms_m = std::sqrt(total.squares / static_cast<double>(std::max<std::size_t>(total.inliers, 1)));
   result.unconstrained_dofs = step.held;
   result.information = step.information;
+  result.clear_information = step.clear;
   result.status = step.held > 0 ? TrackStatus::kDegenerate : TrackStatus::kTracked;
   return result;
 }
@@ -223,6 +232,61 @@ Tracking align(const SourcePoints& live, const TargetView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config) {
   const PosedReference one{&reference, reference.T_world_view};
   return align(live, std::span<const PosedReference>(&one, 1), T_world_camera_guess, config);
+}
+
+PoseSigma pose_sigma(const Tracking& tracking) {
+  constexpr double kNone = 1e-3;  // weight of a direction without information, 1/m^2
+  constexpr double kPart = 0.1;   // smaller parts of a direction along an axis are rounding
+  constexpr double kCertain_m = 0.02;
+  PoseSigma sigma;
+  const Eigen::Matrix3d& R = tracking.T_world_camera.linear();
+  Matrix6d to_world = Matrix6d::Zero();
+  to_world.topLeftCorner<3, 3>() = R;
+  to_world.bottomRightCorner<3, 3>() = R;
+  const SymmetricEigen<6> solved =
+      symmetric_eigen(Matrix6d(to_world * tracking.information * to_world.transpose()));
+  Matrix6d covariance = Matrix6d::Zero();
+  Vector6d free = Vector6d::Zero();
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d direction = solved.vectors.col(i);
+    if (solved.converged && solved.values(i) > kNone)
+      covariance += direction * direction.transpose() / solved.values(i);
+    else
+      free = free.cwiseMax(direction.cwiseAbs());
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    sigma.position_m(axis) =
+        free(axis) > kPart ? std::numeric_limits<double>::infinity() : std::sqrt(covariance(axis, axis));
+    sigma.rotation_rad(axis) = free(axis + 3) > kPart ? std::numeric_limits<double>::infinity()
+                                                      : std::sqrt(covariance(axis + 3, axis + 3));
+  }
+  if (free.head<3>().maxCoeff() > kPart) {
+    for (int i = 0; i < 6; ++i) {
+      if (solved.converged && solved.values(i) > kNone) continue;
+      const Eigen::Vector3d part = solved.vectors.col(i).head<3>();
+      if (part.norm() > sigma.least_certain_world.norm()) sigma.least_certain_world = part;
+    }
+    sigma.least_certain_world.normalize();
+  } else {
+    const SymmetricEigen<3> position = symmetric_eigen(Eigen::Matrix3d(covariance.topLeftCorner<3, 3>()));
+    if (position.converged && position.values(2) > kCertain_m * kCertain_m)
+      sigma.least_certain_world = position.vectors.col(2);
+  }
+  return sigma;
+}
+
+DepthFit depth_fit(const SourcePoints& live, std::span<const PosedReference> references,
+                   const Eigen::Isometry3d& T_world_camera, const AlignConfig& config) {
+  DepthFit fit;
+  if (references.empty() || live.levels.empty() || !T_world_camera.matrix().allFinite()) return fit;
+  const int level = std::min(config.finest_level, static_cast<int>(live.levels.size()) - 1);
+  std::vector<Exposure> exposures(references.size());
+  const PointMatches total = match_references(live.levels[static_cast<std::size_t>(level)], references,
+                                              static_cast<std::size_t>(level), T_world_camera,
+                                              limits_at(level, config), {}, exposures, fit.overlap);
+  if (total.met > 0)
+    fit.inlier_fraction = static_cast<double>(total.inliers) / static_cast<double>(total.met);
+  return fit;
 }
 
 Eigen::Isometry3d expected_motion(const Tracking& tracking, const Eigen::Isometry3d& T_last_now) {

@@ -18,6 +18,9 @@ enum class TrackStatus {
   /// The image disagrees with the references at the aligned pose, or the correction exceeds
   /// AlignConfig::max_correction_m. The returned pose is the guess.
   kDiverged,
+  /// A pose that nothing has verified for more than 0.15 s: directions that depth leaves unconstrained were
+  /// only predicted. Returned by locate(), not by align().
+  kUncertain,
 };
 std::string_view to_string(TrackStatus status);
 
@@ -35,12 +38,32 @@ struct [[nodiscard]] Tracking {
   /// the camera frame: T_true = T_world_camera * exp(twist). The matrix is scaled down, since the errors of
   /// neighbouring pixels are correlated.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Part of `information` along directions that depth constrains clearly: ten times above
+  /// AlignConfig::min_constraint. Along the others, bumps and noise may pretend a constraint.
+  Eigen::Matrix<double, 6, 6> clear_information = Eigen::Matrix<double, 6, 6>::Zero();
   explicit operator bool() const { return status == TrackStatus::kTracked; }
 };
+
+/// Standard deviations of a pose, from Tracking::information.
+struct PoseSigma {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();    ///< along x, y, z of the world; infinite: unknown
+  Eigen::Vector3d rotation_rad = Eigen::Vector3d::Zero();  ///< about x, y, z of the world; infinite: unknown
+  /// Unit direction in the world along which the position is least certain; zero if all are known.
+  Eigen::Vector3d least_certain_world = Eigen::Vector3d::Zero();
+};
+
+/// Directions without information get an infinite standard deviation along each axis that they have a part
+/// in.
+PoseSigma pose_sigma(const Tracking& tracking);
 
 /// Returns true if T_world_camera is an aligned pose, possibly with unconstrained degrees of freedom.
 inline bool has_pose(const Tracking& tracking) {
   return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
+}
+
+/// Returns true if T_world_camera is an aligned pose or, with kUncertain, the best guess.
+inline bool has_guess(const Tracking& tracking) {
+  return has_pose(tracking) || tracking.status == TrackStatus::kUncertain;
 }
 
 struct AlignConfig {
@@ -100,6 +123,16 @@ Tracking align(const SourcePoints& live, std::span<const PosedReference> referen
 /// Aligns with a single reference, at its own T_world_view.
 Tracking align(const SourcePoints& live, const TargetView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
+
+/// Agreement of an image's depth with references at a given pose.
+struct DepthFit {
+  double overlap = 0.0;          ///< as Tracking::overlap
+  double inlier_fraction = 0.0;  ///< as Tracking::inlier_fraction; 0 without correspondences
+};
+
+/// Compares the image's depth with the references at a pose, at the finest level, without aligning.
+DepthFit depth_fit(const SourcePoints& live, std::span<const PosedReference> references,
+                   const Eigen::Isometry3d& T_world_camera, const AlignConfig& config = {});
 
 /// Returns the motion for a twist (translation m, rotation vector rad). Converts translation and rotation
 /// separately, which equals the exponential map to first order.

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "mapping/alignment/view.hpp"
 
@@ -37,6 +38,13 @@ struct Keyframe {
   CameraVelocity velocity = {};         ///< of the camera at `frame_index`
   CameraVelocity steady_velocity = {};  ///< mean over several frames up to `frame_index`
   SensorTiming timing = {};             ///< sensor times used to register the view's intensity to its depth
+  /// Pose in the recording's world; unset if the recording has none, or recorded poses are not used.
+  std::optional<Eigen::Isometry3d> T_recorded_camera = {};
+  /// Part of the scan: parts begin where tracking was lost, and their relative poses are unknown.
+  int part = 0;
+  /// Depth constrained the pose weakly, and corners constrained it; see constrain_by_flow().
+  bool is_by_flow = false;
+  std::int64_t stretch = 0;  ///< MotionPrior::stretch of T_recorded_camera
 };
 
 /// Returns a measure of how much two viewpoints differ: distance / 0.8 m + angle / 35 degrees. At 1, the two

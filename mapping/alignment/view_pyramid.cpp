@@ -193,6 +193,12 @@ void halve_intensity(ViewPyramid& pyramid) {
   }
 }
 
+void make_grey(const ColourImage& colour, int max_width_px, Image<float>& grey) {
+  int block = 1;
+  while (colour.width / block > std::max(max_width_px, 1)) block *= 2;
+  block_grey(colour, block, grey);
+}
+
 void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
                   ViewPyramid& pyramid, const DepthNoise& noise) {
   pyramid.noise = noise;

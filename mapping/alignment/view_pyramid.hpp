@@ -55,6 +55,10 @@ struct FrameMotion {
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid,
                   const FrameMotion& motion = {});
 
+/// Averages a colour image to grey levels (0..255) of at most max_width_px columns, by halving. Empty for an
+/// empty image.
+void make_grey(const ColourImage& colour, int max_width_px, Image<float>& grey);
+
 /// Builds a pyramid without intensity.
 /// @param noise  noise model of the sensor; for rendered depth, of the sensor whose images are compared with
 ///               the rendered depth

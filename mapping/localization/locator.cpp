@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "mapping/alignment/feature_flow.hpp"
+#include "mapping/alignment/motion_prior.hpp"
+#include "mapping/alignment/stationary_camera.hpp"
 #include "mapping/localization/depth_agreement.hpp"
 #include "mapping/types/linear_algebra.hpp"
 
@@ -143,6 +147,35 @@ void look_at_all(Locator& locator) {
   make_source_points(locator.buffers.live_pyramid, locator.buffers.live, {}, kLiveStep_px);
 }
 
+/// Localises the frame by many features of one keyframe, such as close to a door, where depth is flat and
+/// patches are few. Depth must agree with the keyframe's and the model's.
+Tracking search_by_features(const Locator& locator, const Frame& frame,
+                            const KeyframeDatabase& keyframe_database, const ExpectedDepth& expected_depth) {
+  constexpr int kMany = 100;
+  constexpr double kElsewhere_m = 0.5, kElsewhere_rad = 0.5;  // keyframes this near show the same place
+  constexpr double kMinKeyframeAgreement = 0.85, kMinAlike = 0.6, kMaxFarther = 0.15, kMinCovered = 0.2;
+  const Relocalisation found = relocalise(frame, keyframe_database, locator.relocalise);
+  if (!found || found.feature_inliers < kMany || found.depth_agreement < kMinKeyframeAgreement) return {};
+  // A second place that looks the same makes the first uncertain.
+  const Relocalisation other = relocalise(frame, keyframe_database, locator.relocalise, [&](std::size_t i) {
+    return !is_near(keyframe_database.keyframes[i].T_world_camera, found.T_world_camera, kElsewhere_m,
+                    kElsewhere_rad);
+  });
+  if (other && 2 * other.feature_inliers > found.feature_inliers &&
+      !is_same_pose(other.T_world_camera, found.T_world_camera))
+    return {};
+  const DepthAgreement agreement = depth_agreement_of(frame.depth_m, expected_depth(found.T_world_camera));
+  if (agreement.both < kMinCovered * agreement.valid || agreement.alike_part() < kMinAlike ||
+      agreement.farther_part() > kMaxFarther)
+    return {};
+  constexpr double kSigma_m = 0.01;  // of a relocalised pose
+  Tracking tracking;
+  tracking.status = TrackStatus::kTracked;
+  tracking.T_world_camera = found.T_world_camera;
+  tracking.information = prior_information(kSigma_m, Eigen::Isometry3d::Identity());
+  return tracking;
+}
+
 /// Searches the whole map: by patches and, if these give no certain pose, by the depth's shape. Without
 /// gravity and colour, finds only poses near keyframes with a similar view.
 Tracking search(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
@@ -177,6 +210,10 @@ Tracking search(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
       hypotheses.push_back(tried(locator, frame, seen, {by_preview.T_world_camera, 0, {}}, expected_depth));
   }
   Tracking found = judge();
+  if (!has_pose(found) && !frame.colour.empty() && locator.search_end != SearchEnd::kAmbiguous) {
+    found = search_by_features(locator, frame, keyframe_database, expected_depth);
+    if (has_pose(found)) locator.search_end = SearchEnd::kFound;
+  }
   if (!has_pose(found) && frame.down_camera) {
     if (locator.index.shapes.empty()) locator.index.shapes = shape_index(keyframe_database);
     for (const ShapeCandidate& candidate : search_by_shape(
@@ -188,16 +225,44 @@ Tracking search(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
   return found;
 }
 
-/// Tracks from the last pose and motion.
-Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expected_depth) {
+/// Combines an alignment that started from the recorded prior with it. If the alignment failed or is far off,
+/// the recorded pose holds where the model supports it.
+Tracking with_recorded(Locator& locator, const Frame& frame, const Eigen::Isometry3d& T_world_prior,
+                       const Tracking& aligned, double dt_s, const ExpectedDepth& expected_depth) {
+  constexpr double kMinAlike = 0.5, kMost_m = 0.15;
+  const double difference_m = constrained_difference_m(T_world_prior, aligned);
+  if (has_pose(aligned) && difference_m < kMost_m && !contradicts(locator.prior, difference_m))
+    return combine(locator.prior, T_world_prior, aligned, dt_s);
+  const double by_prior = depth_agreement_of(frame.depth_m, expected_depth(T_world_prior)).alike_part();
+  const double by_alignment =
+      has_pose(aligned)
+          ? depth_agreement_of(frame.depth_m, expected_depth(aligned.T_world_camera)).alike_part()
+          : 0.0;
+  if (by_prior > kMinAlike && by_prior >= by_alignment - 0.1) {
+    Tracking tracking = aligned;
+    tracking.status = TrackStatus::kTracked;
+    tracking.T_world_camera = T_world_prior;
+    tracking.information = prior_information(locator.prior.sigma_m, Eigen::Isometry3d::Identity());
+    return tracking;
+  }
+  ++locator.prior.contradicted;
+  interrupt_prior(locator.prior);
+  return aligned;
+}
+
+/// Tracks from the last pose and motion, or from the recorded motion.
+Tracking follow(Locator& locator, const Frame& frame, double dt_s, const ExpectedDepth& expected_depth) {
   // This near, the view rendered at the last pose shows the same surfaces, and it exists already.
   constexpr double kNear_m = 0.04, kNear_rad = 0.04;
   const Eigen::Isometry3d& T_world_last = *locator.T_world_camera;
-  const Eigen::Isometry3d T_world_predicted = T_world_last * locator.T_last_now;
+  const std::optional<Eigen::Isometry3d> T_world_prior =
+      locator.use_recorded_poses ? predicted_by(locator.prior, frame.T_world_camera) : std::nullopt;
+  const Eigen::Isometry3d T_world_predicted = T_world_prior.value_or(T_world_last * locator.T_last_now);
   Tracking tracking = align_with_model(
       locator, locator.align, frame.depth_camera,
       is_near(T_world_last, T_world_predicted, kNear_m, kNear_rad) ? T_world_last : T_world_predicted,
       T_world_predicted, expected_depth);
+  if (T_world_prior) return with_recorded(locator, frame, *T_world_prior, tracking, dt_s, expected_depth);
   if (has_pose(tracking) &&
       is_bend_not_motion(tracking, T_world_predicted, T_world_last, frame.depth_m, expected_depth)) {
     tracking.status = TrackStatus::kDegenerate;
@@ -266,6 +331,83 @@ bool verify_tracking(Locator& locator, const Frame& frame, const KeyframeDatabas
   return true;
 }
 
+/// Returns true if depth, or depth and patches, prove the pose.
+bool is_proven(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+               const Eigen::Isometry3d& T_world_camera, const ExpectedDepth& expected_depth,
+               Tracking& tracking) {
+  if (locator.index.patches.empty() && !keyframe_database.keyframes.empty())
+    locator.index.patches = build_patch_index(keyframe_database);
+  const std::vector<SurfacePatch> seen = describe_patches(frame, locator.relocalise.place.patches);
+  const PoseHypothesis hypothesis = tried(locator, frame, seen, {T_world_camera, 0, {}}, expected_depth);
+  const bool is_constrained = !is_weak(hypothesis.tracking) || is_verified_by_patches(hypothesis);
+  if (!is_constrained || !is_certain(hypothesis)) {
+    if (frame.colour.empty()) return false;
+    tracking = search_by_features(locator, frame, keyframe_database, expected_depth);
+    return has_pose(tracking) && is_near(tracking.T_world_camera, T_world_camera, 0.3, 0.3);
+  }
+  tracking = hypothesis.tracking;
+  tracking.status = TrackStatus::kTracked;  // patches constrain what depth does not
+  return true;
+}
+
+/// Decides whether a followed pose counts as located. Directions that depth does not constrain are predicted
+/// for kLongest_s at most. Then a pose must be proven at or near the predicted one, or found by a search.
+void require_verified(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+                      double dt_s, const ExpectedDepth& expected_depth, Tracking& tracking) {
+  constexpr double kLongest_s = 0.15;
+  constexpr int kEvery = 3, kSearchEvery = 9;  // frames between two proofs, and between two searches
+  if (tracking.status == TrackStatus::kTracked && !locator.is_uncertain) {
+    locator.carried_s = 0.0;
+    return;
+  }
+  locator.carried_s += dt_s;
+  if (!locator.is_uncertain && locator.carried_s <= kLongest_s) return;
+  Tracking proven;
+  if (locator.uncertain_frames % kEvery == 0 &&
+      is_proven(locator, frame, keyframe_database, tracking.T_world_camera, expected_depth, proven)) {
+    tracking = proven;
+  } else if (locator.uncertain_frames % kSearchEvery == kSearchEvery - 1) {
+    look_at_all(locator);
+    proven = search(locator, frame, keyframe_database, expected_depth);
+    if (has_pose(proven)) {
+      tracking = proven;
+      tracking.status = TrackStatus::kTracked;
+      locator.T_world_camera.reset();  // the jump is not a motion
+    }
+  }
+  if (has_pose(proven)) {
+    locator.carried_s = 0.0;
+    locator.is_uncertain = false;
+    locator.uncertain_frames = 0;
+    return;
+  }
+  locator.is_uncertain = true;
+  ++locator.uncertain_frames;
+  tracking.status = TrackStatus::kUncertain;
+}
+
+/// Adds the uncertainty of predicted directions: a hand moves by up to 0.5 m/s.
+void add_motion_uncertainty(const Locator& locator, Tracking& tracking) {
+  constexpr double kSpeed_mps = 0.5, kLeast_m = 0.01;
+  const double sigma_m = kLeast_m + kSpeed_mps * locator.carried_s;
+  tracking.information += prior_information(sigma_m, Eigen::Isometry3d::Identity());
+}
+
+/// Returns the last pose if the colour image shows that the camera has not moved since.
+std::optional<Tracking> keep_stationary(Locator& locator, const Frame& frame) {
+  constexpr int kWidth_px = 320;
+  make_grey(frame.colour, kWidth_px, locator.buffers.grey);
+  const bool has_depth = locator.buffers.live.levels.front().size() >=
+                         static_cast<std::size_t>(std::max(locator.align.min_points, 1));
+  const bool is_still = locator.T_world_camera && has_depth && !locator.is_uncertain &&
+                        is_camera_stationary(locator.moved_grey, locator.buffers.grey, locator.is_stationary);
+  locator.is_stationary = is_still;
+  if (!is_still) return std::nullopt;
+  Tracking tracking = locator.moved;
+  tracking.T_world_camera = locator.T_world_moved;
+  return tracking;
+}
+
 }  // namespace
 
 Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
@@ -273,35 +415,58 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
   make_pyramid(frame.depth_m, frame.depth_camera, locator.live_view, locator.buffers.live_pyramid,
                frame.depth_noise);
   make_source_points(locator.buffers.live_pyramid, locator.buffers.live, dynamic_mask, kLiveStep_px);
+  constexpr double kLongestStep_s = 1.0;
+  const double dt_s =
+      std::clamp(frame.stamp_s - std::exchange(locator.last_stamp_s, frame.stamp_s).value_or(frame.stamp_s),
+                 0.0, kLongestStep_s);
 
   Tracking tracking;
   bool may_be_found = true;  // by a search; one per frame is enough
+  const std::optional<Tracking> still = keep_stationary(locator, frame);
   if (locator.T_world_camera) {
-    tracking = follow(locator, frame, expected_depth);
+    tracking = still ? *still : follow(locator, frame, dt_s, expected_depth);
     if (has_pose(tracking))
       may_be_found = verify_tracking(locator, frame, keyframe_database, expected_depth, tracking);
-    if (!has_pose(tracking)) {
+    if (has_pose(tracking) && !still)
+      require_verified(locator, frame, keyframe_database, dt_s, expected_depth, tracking);
+    if (!has_guess(tracking)) {
       locator.T_world_lost = locator.T_world_camera;
       locator.T_world_camera.reset();
       locator.lost_frames = locator.unverified_frames = locator.recheck_cooldown_frames = 0;
     }
   }
-  if (!has_pose(tracking)) {
+  if (!has_guess(tracking)) {
     look_at_all(locator);
     tracking = resume(locator, frame, keyframe_database, expected_depth);
     if (!has_pose(tracking) && may_be_found)
       tracking = search(locator, frame, keyframe_database, expected_depth);
+    locator.carried_s = 0.0;
+    locator.is_uncertain = false;
+    locator.uncertain_frames = 0;
+    interrupt_prior(locator.prior);
   }
 
-  if (!has_pose(tracking)) {
+  if (!has_guess(tracking)) {
     locator.T_last_now.setIdentity();
+    locator.moved_grey.resize(0, 0);
     return tracking;
   }
+  if (tracking.status != TrackStatus::kTracked) add_motion_uncertainty(locator, tracking);
   locator.T_last_now =
       locator.T_world_camera
           ? expected_motion(tracking, locator.T_world_camera->inverse() * tracking.T_world_camera)
           : Eigen::Isometry3d::Identity();
   locator.T_world_camera = tracking.T_world_camera;
+  if (locator.use_recorded_poses && frame.T_world_camera && tracking && !locator.prior.T_world_recorded)
+    restart_prior(locator.prior, tracking.T_world_camera, *frame.T_world_camera);
+  if (!still) {
+    locator.moved = tracking;
+    locator.T_world_moved = tracking.T_world_camera;
+    if (tracking)
+      locator.moved_grey = locator.buffers.grey;
+    else
+      locator.moved_grey.resize(0, 0);
+  }
   return tracking;
 }
 

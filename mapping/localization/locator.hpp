@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapping/alignment/align.hpp"
+#include "mapping/alignment/motion_prior.hpp"
 #include "mapping/alignment/view.hpp"
 #include "mapping/localization/correlative_search.hpp"
 #include "mapping/localization/keyframe_database.hpp"
@@ -31,6 +32,7 @@ struct LocatorBuffers {
   ViewPyramid live_pyramid, expected_pyramid;
   SourcePoints live;
   TargetView expected;
+  Image<float> grey;
 };
 
 /// Settings of locate(), and its state between frames.
@@ -48,6 +50,20 @@ struct Locator {
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< pose of the previous frame; unset while lost
   /// Predicted motion from the previous frame to the next.
   Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
+  /// Use recorded poses of the frames as a prior on the motion, see MotionPrior.
+  bool use_recorded_poses = false;
+  MotionPrior prior;
+  std::optional<double> last_stamp_s;
+  /// Time for which unconstrained directions were only predicted, s.
+  double carried_s = 0.0;
+  /// True after carried_s has exceeded 0.15 s, until a pose is verified.
+  bool is_uncertain = false;
+  int uncertain_frames = 0;  ///< consecutive frames with is_uncertain
+  /// Image and pose of the last frame in which the camera was not judged stationary.
+  Image<float> moved_grey;
+  Tracking moved;  ///< result of the frame of moved_grey
+  Eigen::Isometry3d T_world_moved = Eigen::Isometry3d::Identity();
+  bool is_stationary = false;
   int unverified_frames = 0;  ///< number of consecutive frames whose depth contradicts the tracked pose
   /// Number of further frames whose depth must contradict the pose before the next search of the map.
   int recheck_cooldown_frames = 0;
@@ -71,14 +87,16 @@ struct Locator {
 /// gravity is unknown and the frame has no colour or the map no patches, the search uses relocalise(). A pose
 /// found by search must be certain (is_certain()) and unambiguous (is_ambiguous()).
 ///
-/// If the status is kDegenerate, the pose equals the prediction in unconstrained directions. A sensor that
+/// If the status is kDegenerate, the pose equals the prediction in unconstrained directions. After 0.15 s of
+/// such poses the status is kUncertain: the pose is the best guess, and the map is searched until patches or
+/// depth verify a pose. A camera whose colour image shows that it stands still keeps its pose. A sensor that
 /// recalibrates distorts its depth for a moment. If alignment mistakes the distortion for motion, locate()
 /// returns the previous frame's pose with kDegenerate.
 ///
 /// @param dynamic_mask  empty, or of the depth image's size. Non-zero pixels showed a moving object in the
 ///                      previous frame and are ignored
-/// @return a usable pose if the status is kTracked or kDegenerate. With any other status, the camera is lost,
-///         and the next call searches the map
+/// @return a usable pose if the status is kTracked or kDegenerate, a best guess if it is kUncertain. With any
+///         other status, the camera is lost, and the next call searches the map
 Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                 const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth);
 

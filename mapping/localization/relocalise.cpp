@@ -41,11 +41,12 @@ KeyframeProof prove_with_depth(const SourcePoints& live, const TargetView& live_
 /// Returns the indices of at most `count` keyframes whose depth is most similar to the frame's, ray by ray.
 /// For other keyframes, alignment starting at their pose would have almost no points within its gate.
 std::vector<std::size_t> nearest_in_depth(const Frame& frame, const KeyframeDatabase& keyframe_database,
-                                          std::size_t count) {
+                                          std::size_t count, const std::function<bool(std::size_t)>& accept) {
   constexpr int kEvery_px = 8;  // pixels of a preview
   constexpr float kGate_m = 0.3F;
   std::vector<std::pair<int, std::size_t>> unlike;
   for (std::size_t i = 0; i < keyframe_database.keyframes.size(); ++i) {
+    if (accept && !accept(i)) continue;
     const MapKeyframe& place = keyframe_database.keyframes[i];
     int alike = 0;
     for (int v = kEvery_px / 2; v < place.preview_camera.height_px; v += kEvery_px) {
@@ -88,7 +89,7 @@ std::string_view to_string(RelocalisationStatus status) {
 }
 
 Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_database,
-                          const RelocaliseConfig& config) {
+                          const RelocaliseConfig& config, const std::function<bool(std::size_t)>& accept) {
   Relocalisation none;
   if (keyframe_database.keyframes.empty()) {
     none.status = RelocalisationStatus::kNoKeyframes;
@@ -113,7 +114,7 @@ Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_d
     constexpr int kMinMatches = 8;
     const MapKeyframe here = make_map_keyframe(frame, Eigen::Isometry3d::Identity(), config.place);
     const auto most = static_cast<std::size_t>(std::max(config.candidates, 0));
-    for (const std::size_t i : most_alike(here, keyframe_database, most, kMinMatches)) {
+    for (const std::size_t i : most_alike(here, keyframe_database, most, kMinMatches, accept)) {
       const KeyframeMatch match = match_keyframes(keyframe_database.keyframes[i], here);
       if (match.inliers < config.min_feature_inliers) continue;
       none.status = RelocalisationStatus::kNotVerified;
@@ -124,7 +125,7 @@ Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_d
   } else {
     constexpr std::size_t kMostByDepth = 40;  // each takes some milliseconds
     const TargetView live_reference = target_of(pyramid, view);
-    for (const std::size_t i : nearest_in_depth(frame, keyframe_database, kMostByDepth)) {
+    for (const std::size_t i : nearest_in_depth(frame, keyframe_database, kMostByDepth, accept)) {
       KeyframeProof proof = prove_with_depth(live, live_reference, keyframe_database.keyframes[i], view);
       if (proof.holds) witnesses.push_back({i, 0, std::move(proof)});
     }

@@ -1,7 +1,9 @@
 // relocalise.hpp: finds the pose of a frame in a known map without an initial estimate.
 #pragma once
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 
 #include "mapping/localization/keyframe_database.hpp"
@@ -42,7 +44,9 @@ struct RelocaliseConfig {
 /// gives a pose. Alignment with the keyframe's downsampled depth image refines and verifies the pose. If the
 /// frame or the database has no colour, alignment is tried with the 40 keyframes most similar in depth, and
 /// verification is stricter. Deterministic. Does not throw, even for corrupt frames.
+/// @param accept  returns true for the indices of keyframes that are tried; empty: all
 Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_database,
-                          const RelocaliseConfig& config = {});
+                          const RelocaliseConfig& config = {},
+                          const std::function<bool(std::size_t)>& accept = {});
 
 }  // namespace roomradar

@@ -52,9 +52,9 @@ void require_valid(const DiffConfig& config);
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const DiffConfig& config = {});
 
-/// Same, with the inverse of T_a_b given. With the maps in the other order, and both transforms exchanged, the
-/// result is the same bit by bit, except that what appeared has vanished and that positions are in the other
-/// world frame.
+/// Same, with the inverse of T_a_b given. With the maps in the other order, and both transforms exchanged,
+/// the result is the same bit by bit, except that what appeared has vanished and that positions are in the
+/// other world frame.
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const Eigen::Isometry3d& T_b_a, const DiffConfig& config);
 

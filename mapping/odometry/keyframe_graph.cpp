@@ -2,9 +2,11 @@
 #include "mapping/odometry/keyframe_graph.hpp"
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <utility>
 
+#include "mapping/alignment/motion_prior.hpp"
 #include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
@@ -37,10 +39,18 @@ void solve_free(KeyframeGraph& graph, const std::vector<PoseConstraint>& constra
   for (std::size_t i = 0; i < poses.size(); ++i) graph.keyframes[i].T_world_camera = poses[i];
 }
 
-/// Holds the first pose constant, unless anchors locate the keyframes in the world.
+/// Holds the first pose of each part constant, unless anchors locate the part in the world.
+void hold_first_of_parts(const KeyframeGraph& graph, std::vector<bool>& constant) {
+  std::map<int, bool> is_held;  // by part
+  for (const PoseAnchor& anchor : graph.anchors) is_held[graph.keyframes[anchor.pose].part] = true;
+  for (std::size_t i = 0; i < graph.keyframes.size(); ++i) {
+    if (!std::exchange(is_held[graph.keyframes[i].part], true)) constant[i] = true;
+  }
+}
+
 std::vector<bool> first_constant(const KeyframeGraph& graph) {
   std::vector<bool> constant(graph.keyframes.size(), false);
-  if (!constant.empty() && graph.anchors.empty()) constant.front() = true;
+  hold_first_of_parts(graph, constant);
   return constant;
 }
 
@@ -52,6 +62,7 @@ PoseConstraint weighed_by_likeness(PoseConstraint constraint) {
   constexpr double kSigma_m = 0.02, kSigma_rad = 0.063;  // for two identical viewpoints
   constexpr double kAlike = 0.3;                         // view_distance() at which the weight is halved
   constexpr double kNothing = 1e-9;                      // relative to the strongest direction
+  if (constraint.recorded) return constraint;
   const double distance = view_distance(constraint.T_a_b) / kAlike;
   const double weight = 1.0 / (1.0 + distance * distance * distance * distance);
   const SymmetricEigen<6> known = symmetric_eigen(constraint.information);
@@ -71,9 +82,10 @@ PoseConstraint weighed_by_likeness(PoseConstraint constraint) {
 }  // namespace
 
 std::vector<std::size_t> keyframes_near(std::span<const Keyframe> keyframes,
-                                        const Eigen::Isometry3d& T_world_camera, double furthest) {
+                                        const Eigen::Isometry3d& T_world_camera, double furthest, int part) {
   std::vector<std::pair<double, std::size_t>> found;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    if (keyframes[i].part != part) continue;
     const double distance = view_distance(keyframes[i].T_world_camera.inverse() * T_world_camera);
     if (distance < furthest) found.emplace_back(distance, i);
   }
@@ -103,10 +115,16 @@ bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const Keyfr
   const bool loop = newer - older >= kNeighbours;
   if (loop) ++(agree ? graph.loops_found : graph.loops_rejected);
   if (!agree) return false;
+  // Systematic errors of alignments count once recorded poses compete with them.
+  const bool is_weak_pair = graph.keyframes[older].is_by_flow || graph.keyframes[newer].is_by_flow;
+  const auto information = [&](const Tracking& t) {
+    if (is_weak_pair) return limited_information(t.clear_information);
+    return graph.recorded_sigma_m > 0.0 ? limited_information(t.information) : t.information;
+  };
   graph.constraints.push_back(
-      {older, newer, newer_in_older.T_world_camera, newer_in_older.information, loop});
+      {older, newer, newer_in_older.T_world_camera, information(newer_in_older), loop, false});
   graph.constraints.push_back(
-      {newer, older, older_in_newer.T_world_camera, older_in_newer.information, loop});
+      {newer, older, older_in_newer.T_world_camera, information(older_in_newer), loop, false});
   return true;
 }
 
@@ -127,9 +145,30 @@ void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeC
   const std::size_t newest = graph.keyframes.size() - 1;
   const std::vector<std::size_t> near =
       keyframes_near(std::span(graph.keyframes).first(newest), graph.keyframes[newest].T_world_camera,
-                     config.graph.furthest);
+                     config.graph.furthest, graph.keyframes[newest].part);
   for (const std::size_t i : spread(near, static_cast<std::size_t>(std::max(config.graph.max_edges_new, 1))))
     join(graph, i, newest, relative(graph, i, newest), config, cache);
+}
+
+void connect_flow(KeyframeGraph& graph, std::size_t keyframe) {
+  constexpr double kSigma_m = 0.01, kSigma_rad = 0.004;
+  if (keyframe == 0 || keyframe >= graph.keyframes.size()) return;
+  const Keyframe &a = graph.keyframes[keyframe - 1], &b = graph.keyframes[keyframe];
+  if (a.part != b.part || !(a.is_by_flow || b.is_by_flow)) return;
+  Matrix6d information = Matrix6d::Zero();
+  information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
+  information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
+  graph.constraints.push_back(
+      {keyframe - 1, keyframe, a.T_world_camera.inverse() * b.T_world_camera, information, false, true});
+}
+
+void connect_recorded(KeyframeGraph& graph, std::size_t keyframe) {
+  if (keyframe == 0 || keyframe >= graph.keyframes.size()) return;
+  const Keyframe &a = graph.keyframes[keyframe - 1], &b = graph.keyframes[keyframe];
+  if (!a.T_recorded_camera || !b.T_recorded_camera || a.stretch != b.stretch) return;
+  const Eigen::Isometry3d T_a_b = a.T_recorded_camera->inverse() * *b.T_recorded_camera;
+  graph.constraints.push_back(
+      {keyframe - 1, keyframe, T_a_b, prior_information(graph.recorded_sigma_m, T_a_b), true, true});
 }
 
 void solve(KeyframeGraph& graph) {
@@ -163,9 +202,10 @@ void solve_positions_then_turns(KeyframeGraph& graph) {
 void solve_near_newest(KeyframeGraph& graph, double furthest) {
   if (graph.keyframes.size() < 2) return;
   std::vector<bool> constant(graph.keyframes.size(), true);
-  for (const std::size_t i : keyframes_near(graph.keyframes, graph.keyframes.back().T_world_camera, furthest))
+  for (const std::size_t i : keyframes_near(graph.keyframes, graph.keyframes.back().T_world_camera, furthest,
+                                            graph.keyframes.back().part))
     constant[i] = false;
-  if (graph.anchors.empty()) constant.front() = true;
+  hold_first_of_parts(graph, constant);
   solve_free(graph, graph.constraints, graph.anchors, constant);
 }
 

@@ -34,6 +34,8 @@ struct KeyframeGraphConfig {
 struct KeyframeGraph {
   std::vector<Keyframe> keyframes;  ///< the first pose is constant if there are no anchors
   std::vector<PoseConstraint> constraints;
+  /// Standard deviation of recorded poses (MotionPrior::sigma_m), which connect consecutive keyframes.
+  double recorded_sigma_m = 0.0;
   std::vector<PoseAnchor> anchors;  ///< measured poses of keyframes in the world frame of a known map
   /// Number of connected pairs that are at least three keyframes apart in sequence.
   std::int64_t loops_found = 0;
@@ -47,10 +49,11 @@ struct ConnectConfig {
   KeyframeGraphConfig graph;
 };
 
-/// Returns the indices of all keyframes whose view_distance() to a camera pose is less than `furthest`,
-/// nearest first.
+/// Returns the indices of all keyframes of a part whose view_distance() to a camera pose is less than
+/// `furthest`, nearest first.
 std::vector<std::size_t> keyframes_near(std::span<const Keyframe> keyframes,
-                                        const Eigen::Isometry3d& T_world_camera, double furthest);
+                                        const Eigen::Isometry3d& T_world_camera, double furthest,
+                                        int part = 0);
 
 /// Returns true if T_older_newer differs from the two keyframes' current relative pose by less than the
 /// assumed drift (drift_m + drift_part * path length).
@@ -78,6 +81,14 @@ bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eige
 /// Connects the newest keyframe to older keyframes near it. If more than max_edges_new keyframes are near,
 /// chooses max_edges_new of them, spread evenly over the order of view_distance().
 void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache);
+
+/// Connects a keyframe with the one before it by their present relative pose, if corners constrained the pose
+/// of one of them: alignments of the two then constrain only some directions.
+void connect_flow(KeyframeGraph& graph, std::size_t keyframe);
+
+/// Connects a keyframe with the one before it by their recorded relative pose, if both have recorded poses of
+/// the same stretch.
+void connect_recorded(KeyframeGraph& graph, std::size_t keyframe);
 
 /// Optimises all keyframe poses to fit the constraints and anchors.
 void solve(KeyframeGraph& graph);

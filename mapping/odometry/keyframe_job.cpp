@@ -20,7 +20,8 @@ bool join_alike(KeyframeGraph& graph, const MapKeyframe& newest, const KeyframeD
   const std::size_t number = graph.keyframes.size() - 1;
   bool joined = false;
   const auto is_distant = [&](std::size_t i) {
-    return view_distance(graph.keyframes[i].T_world_camera.inverse() *
+    return graph.keyframes[i].part == graph.keyframes[number].part &&
+           view_distance(graph.keyframes[i].T_world_camera.inverse() *
                          graph.keyframes[number].T_world_camera) >= config.graph.furthest;
   };
   for (const std::size_t i : most_alike(newest, keyframe_database, kCandidates, kMinMatches, is_distant)) {
@@ -55,6 +56,8 @@ KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config) {
   const bool came_back = join_alike(graph, result.place, *job.keyframe_database, config.join, job.cache);
   const bool closes_loop = came_back && is_contradicted(graph, known_constraints);
   connect_newest(graph, config.join, job.cache);
+  connect_flow(graph, graph.keyframes.size() - 1);
+  connect_recorded(graph, graph.keyframes.size() - 1);
   if (closes_loop) {
     solve(graph);
   } else {

@@ -59,8 +59,8 @@ void align_halves(std::span<const Keyframe> keyframes, std::span<HalfPair> halve
 std::vector<std::size_t> choose_older(std::span<const Keyframe> keyframes, std::size_t newer,
                                       std::span<const KeyframePair> aligned,
                                       const KeyframeGraphConfig& config) {
-  const std::vector<std::size_t> near =
-      keyframes_near(keyframes.first(newer), keyframes[newer].T_world_camera, config.furthest);
+  const std::vector<std::size_t> near = keyframes_near(
+      keyframes.first(newer), keyframes[newer].T_world_camera, config.furthest, keyframes[newer].part);
   struct Candidate {
     std::size_t keyframe, rank;  // rank in the order of view_distance()
   };
@@ -120,6 +120,10 @@ void close_loops(KeyframeGraph& graph, std::vector<KeyframePair> aligned, const 
   graph.constraints.clear();
   graph.loops_found = graph.loops_rejected = 0;
   for (const KeyframePair& pair : aligned) add_constraints(graph, pair, config.graph);
+  for (std::size_t i = 0; i < graph.keyframes.size(); ++i) {
+    connect_flow(graph, i);
+    connect_recorded(graph, i);
+  }
 }
 
 std::size_t PairAligner::advance(const std::vector<Keyframe>& keyframes, const ConnectConfig& config) {

@@ -2,6 +2,7 @@
 #include "mapping/odometry/odometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mapping/alignment/packed_view.hpp"
@@ -22,17 +23,19 @@ Tracking Odometry::State::start(const Frame& frame) {
   return tracking;
 }
 
-/// Aligns the frame with a keyframe and its neighbours; prepares at most one neighbour that is not cached.
-Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess) {
+/// Returns a keyframe and its neighbours as references; prepares at most one neighbour that is not cached.
+/// Valid until the next call.
+std::vector<PosedReference> Odometry::State::references_near(std::size_t first,
+                                                             const Eigen::Isometry3d& T_world_guess) {
   // Max view_distance(); beyond it the frame overlaps the keyframe too little.
   constexpr double kUsefulReference = 0.7;
   const auto most = static_cast<std::size_t>(std::max(config.references, 1));
   const std::vector<Keyframe>& keyframes = kept.graph.keyframes;
-  std::vector<std::shared_ptr<const CachedKeyframe>> used{
-      cache.get(first, *keyframes[first].view, config.view)};
+  used = {cache.get(first, *keyframes[first].view, config.view)};
   std::vector<PosedReference> references{{&used[0]->reference, keyframes[first].T_world_camera}};
   bool made_one = false;
-  for (const std::size_t i : keyframes_near(keyframes, T_world_guess, kUsefulReference)) {
+  for (const std::size_t i :
+       keyframes_near(keyframes, T_world_guess, kUsefulReference, keyframes[first].part)) {
     if (i == first || references.size() >= most) continue;
     auto other = cache.find(i);
     if (!other && std::exchange(made_one, true)) continue;
@@ -40,20 +43,93 @@ Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d&
     references.push_back({&other->reference, keyframes[i].T_world_camera});
     used.push_back(std::move(other));
   }
-  return align(live, references, T_world_guess, config.align, readout);
+  return references;
+}
+
+/// Aligns the frame with a keyframe and its neighbours.
+Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess) {
+  return align(live, references_near(first, T_world_guess), T_world_guess, config.align, readout);
 }
 
 /// Tracks the frame from the predicted pose, or recovers.
 Tracking Odometry::State::find_pose(const Frame& frame, const PredictedMotion& predicted) {
   readout = {kept.T_world_last, predicted.dt_s, kept.timing.current.depth_readout_s};
+  if (std::optional<Tracking> tracking = follow_recorded(frame, predicted)) return *tracking;
   Tracking tracking = align_near(kept.current, predicted.T_world_camera);
-  if (is_plausible(tracking, predicted.T_world_camera)) {
+  constrain(frame, predicted.velocity, tracking);
+  // After a long step the guess is poor, and an alignment that depth constrains weakly may have ended
+  // anywhere.
+  constexpr double kLongStep_s = 0.35;
+  const bool is_unsure = predicted.dt_s > kLongStep_s && is_weak(tracking) && !is_pose_by_flow;
+  if (!is_unsure && is_plausible(tracking, predicted.T_world_camera)) {
     velocity = velocity_of(kept.T_world_last.inverse() * tracking.T_world_camera, predicted.dt_s);
     return tracking;
   }
   readout = {};
   velocity = {};
   return recover(frame);
+}
+
+/// Tracks the frame from the pose that the recorded poses predict, and combines both. Returns nullopt if
+/// there is no prediction, or if depth contradicts it: another pose then explains the depth clearly better.
+std::optional<Tracking> Odometry::State::follow_recorded(const Frame& frame,
+                                                         const PredictedMotion& predicted) {
+  // Max difference of an alignment that started from the recorded pose; beyond it, one of the two is wrong.
+  constexpr double kMost_m = 0.15;
+  constexpr double kClearlyMore = 0.2;  // inliers that an alignment must add to contradict a recorded pose
+  // Below kFewInliers, depth does not support the recorded pose. It is wrong if another pose has
+  // kManyInliers.
+  constexpr double kFewInliers = 0.5, kManyInliers = 0.7, kNoSupport = 0.2, kMinOverlap = 0.2;
+  constexpr double kSameView = 0.7;                          // view_distance()
+  constexpr double kMostStep_m = 0.3, kMostSpeed_mps = 3.0;  // a larger step is a jump of the recorded world
+  if (!config.use_recorded_poses) return std::nullopt;
+  const std::optional<Eigen::Isometry3d> T_prior = predicted_by(kept.prior, frame.T_world_camera);
+  if (!T_prior) return std::nullopt;
+  const double step_m = (kept.T_world_last.inverse() * *T_prior).translation().norm();
+  if (!(step_m < kMostStep_m + kMostSpeed_mps * std::clamp(predicted.dt_s, 0.0, 2.0))) {
+    ++kept.prior.contradicted;
+    interrupt_prior(kept.prior);
+    return std::nullopt;
+  }
+  const auto with_velocity = [&](const Tracking& tracking) {
+    velocity = velocity_of(kept.T_world_last.inverse() * tracking.T_world_camera, predicted.dt_s);
+    return tracking;
+  };
+  std::size_t first = kept.current;
+  if (view_distance(kept.graph.keyframes[first].T_world_camera.inverse() * *T_prior) > kSameView) {
+    const auto near =
+        keyframes_near(kept.graph.keyframes, *T_prior, kSameView, kept.graph.keyframes[first].part);
+    if (!near.empty()) first = near.front();
+  }
+  const Tracking aligned = align_near(first, *T_prior);
+  const double difference_m = constrained_difference_m(*T_prior, aligned);
+  const bool is_near = has_pose(aligned) && difference_m < kMost_m;
+  if (is_near && !contradicts(kept.prior, difference_m))
+    return with_velocity(combine(kept.prior, *T_prior, aligned, predicted.dt_s));
+
+  const DepthFit fit = depth_fit(live, references_near(first, *T_prior), *T_prior, config.align);
+  if (is_near && aligned.inlier_fraction > fit.inlier_fraction + kClearlyMore)
+    return with_velocity(combine(kept.prior, *T_prior, aligned, predicted.dt_s));
+  const bool may_be_wrong = fit.overlap > kMinOverlap && fit.inlier_fraction < kFewInliers;
+  if (may_be_wrong) {
+    const Tracking without = align_near(kept.current, predicted.T_world_camera);
+    if (is_plausible(without, predicted.T_world_camera) && without && without.overlap > kMinOverlap &&
+        without.inlier_fraction > kManyInliers) {
+      ++kept.prior.contradicted;
+      interrupt_prior(kept.prior);
+      return with_velocity(without);
+    }
+  }
+  Tracking tracking;  // lost if depth does not support the recorded pose at all, such as behind a hand
+  tracking.T_world_camera = *T_prior;
+  tracking.overlap = fit.overlap;
+  tracking.inlier_fraction = fit.inlier_fraction;
+  if (fit.overlap < kMinOverlap || fit.inlier_fraction > kNoSupport) {
+    tracking.status = TrackStatus::kTracked;
+    tracking.information = prior_information(kept.prior.sigma_m, Eigen::Isometry3d::Identity());
+    ++kept.prior.used;
+  }
+  return with_velocity(tracking);
 }
 
 Tracking Odometry::State::recover(const Frame& frame) {
@@ -74,6 +150,122 @@ Tracking Odometry::State::recover(const Frame& frame) {
   return tracking;
 }
 
+/// Where depth constrains the pose weakly, such as over a bare floor, corners constrain it. While the camera
+/// turns fast, corners are not where a global shutter would show them.
+void Odometry::State::constrain(const Frame& frame, const CameraVelocity& predicted, Tracking& tracking) {
+  constexpr double kMost_px = 1.5;
+  is_pose_by_flow = false;
+  const SensorTiming& timing = kept.timing.current;
+  const double late_s = 0.5 * timing.colour_readout_s + std::abs(timing.colour_delay_s);
+  const double focal_px =
+      frame.colour.empty() ? 0.0 : frame.colour_camera.fx_px * pyramid.grey.width / frame.colour.width;
+  if (predicted.angular_radps.norm() * late_s * focal_px > kMost_px) return;
+  if (!has_pose(tracking) || flow.corners_px.empty() || !is_weak(tracking)) return;
+  if (kept.graph.keyframes[flow_keyframe].part != kept.graph.keyframes[kept.current].part) return;
+  const Eigen::Isometry3d T_world_flow = kept.graph.keyframes[flow_keyframe].T_world_camera * T_keyframe_flow;
+  const FlowPose pose = constrain_by_flow(flow, T_world_flow, frame, pyramid.grey, tracking, config.align);
+  is_pose_by_flow = pose.is_used;
+  tracking = pose.tracking;
+}
+
+/// Takes corners from this frame if those that are followed show too little of its view.
+void Odometry::State::renew_flow(const Frame& frame, const Tracking& tracking) {
+  constexpr double kSameView = 0.15;  // view_distance(): some 5 degrees
+  if (!flow.corners_px.empty() && flow_keyframe < kept.graph.keyframes.size() &&
+      kept.graph.keyframes[flow_keyframe].part == kept.graph.keyframes[kept.current].part) {
+    const Eigen::Isometry3d T_world_flow =
+        kept.graph.keyframes[flow_keyframe].T_world_camera * T_keyframe_flow;
+    if (view_distance(T_world_flow.inverse() * tracking.T_world_camera) < kSameView) return;
+  }
+  flow = make_flow_reference(frame, pyramid.grey);
+  flow_keyframe = kept.current;
+  T_keyframe_flow = kept.graph.keyframes[kept.current].T_world_camera.inverse() * tracking.T_world_camera;
+}
+
+/// Begins a new part of the scan with this frame, at the last known pose. Returns false if the frame has too
+/// little depth.
+bool Odometry::State::begin_part(const Frame& frame, Tracking& tracking) {
+  if (!config.begin_parts || predicted_by(kept.prior, frame.T_world_camera)) return false;
+  if (live.levels.front().size() < static_cast<std::size_t>(std::max(config.align.min_points, 1)))
+    return false;
+  if (frame.colour.empty() && !kept.last_moved_grey.empty()) return false;  // this frame alone
+  take_over_job();
+  if (!kept.lost)
+    kept.lost = LostPlace{kept.current,
+                          kept.graph.keyframes[kept.current].T_world_camera.inverse() * kept.T_world_last,
+                          frame.stamp_s};
+  tracking = {};
+  tracking.status = TrackStatus::kTracked;
+  tracking.T_world_camera = kept.T_world_last;
+  tracking.overlap = tracking.inlier_fraction = 1.0;
+  velocity = {};
+  add_keyframe(frame, tracking, kept.parts++);
+  return true;
+}
+
+/// For 1 s after a loss, tries the place of the loss and the keyframes of other parts. If the frame is found
+/// there and is tracked in the current part as well, merges the current part into the other.
+std::optional<Tracking> Odometry::State::return_to_lost_place(const Frame& frame,
+                                                              const PredictedMotion& predicted) {
+  constexpr double kLongest_s = 1.0;
+  if (!kept.lost) return std::nullopt;
+  if (frame.stamp_s - kept.lost->stamp_s > kLongest_s) {
+    kept.lost.reset();
+    return std::nullopt;
+  }
+  readout = {};
+  const Eigen::Isometry3d T_world_guess = take_over_job() * predicted.T_world_camera;
+  const int part = kept.graph.keyframes[kept.current].part;
+  std::size_t keyframe = kept.lost->keyframe;
+  const Eigen::Isometry3d T_world_lost =
+      kept.graph.keyframes[keyframe].T_world_camera * kept.lost->T_keyframe_camera;
+  Tracking found = align_near(keyframe, T_world_lost);
+  if (!found || !is_plausible(found, T_world_lost)) {
+    const Relocalisation at_known =
+        relocalise(frame, kept.keyframe_database, config.relocalise,
+                   [&](std::size_t i) { return kept.graph.keyframes[i].part != part; });
+    if (!at_known) return std::nullopt;
+    keyframe = static_cast<std::size_t>(at_known.keyframe);
+    found = align_near(keyframe, at_known.T_world_camera);
+    if (!found) return std::nullopt;
+  }
+  ++kept.counts.relocalised;
+  const Tracking tracked = align_near(kept.current, T_world_guess);
+  if (is_plausible(tracked, T_world_guess) && tracked)
+    merge_current_part(keyframe, found.T_world_camera, tracked.T_world_camera);
+  take_up(keyframe);
+  kept.T_world_last = found.T_world_camera;
+  kept.lost.reset();
+  velocity = {};
+  return found;
+}
+
+/// Moves the current part to where a frame was found in another part, and connects both.
+/// @param keyframe         keyframe of the other part
+/// @param T_world_found    the frame's pose in the other part
+/// @param T_world_tracked  the frame's pose in the current part
+void Odometry::State::merge_current_part(std::size_t keyframe, const Eigen::Isometry3d& T_world_found,
+                                         const Eigen::Isometry3d& T_world_tracked) {
+  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // standard deviations of a relocalised pose
+  const Eigen::Isometry3d T_other_current = T_world_found * T_world_tracked.inverse();
+  std::vector<Keyframe> moved = kept.graph.keyframes;
+  const int part = moved[kept.current].part;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (moved[i].part != part) continue;
+    moved[i].T_world_camera = T_other_current * moved[i].T_world_camera;
+    kept.graph.keyframes[i].part = moved[keyframe].part;
+  }
+  move_keyframes(moved, kept);
+  Matrix6d information = Matrix6d::Zero();
+  information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
+  information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
+  const std::vector<Keyframe>& keyframes = kept.graph.keyframes;
+  kept.graph.constraints.push_back(
+      {keyframe, kept.current,
+       keyframes[keyframe].T_world_camera.inverse() * keyframes[kept.current].T_world_camera, information,
+       true, false});
+}
+
 /// Limits the change of motion between frames to that of a hand. A recalibrating sensor seems to exceed it.
 /// The first motion may turn more, because no motion is known before it.
 bool Odometry::State::is_plausible(const Tracking& tracking,
@@ -89,10 +281,10 @@ bool Odometry::State::is_plausible(const Tracking& tracking,
 void Odometry::State::take_evidence(const Frame& frame, const Tracking& tracking) {
   const CameraVelocity steady = mean_velocity(kept, tracking.T_world_camera, frame.stamp_s);
   const Keyframe& keyframe = kept.graph.keyframes[kept.current];
-  const auto used = cache.get(kept.current, *keyframe.view, config.view);
+  const auto current = cache.get(kept.current, *keyframe.view, config.view);
   add_evidence(kept.timing,
                timing_evidence(
-                   live, {tracking.T_world_camera, velocity, steady, kept.timing.current}, used->reference,
+                   live, {tracking.T_world_camera, velocity, steady, kept.timing.current}, current->reference,
                    {keyframe.T_world_camera, keyframe.velocity, keyframe.steady_velocity, keyframe.timing}));
 }
 
@@ -116,6 +308,11 @@ void Odometry::set_prior_map(KeyframeDatabase known) {
   update_index(state_->known);
 }
 
+int Odometry::current_part() const {
+  const OdometrySnapshot& kept = state_->kept;
+  return kept.graph.keyframes.empty() ? 0 : kept.graph.keyframes[kept.current].part;
+}
+
 const OdometrySnapshot& Odometry::state() const { return state_->kept; }
 
 Tracking Odometry::track(const Frame& frame) {
@@ -129,14 +326,25 @@ Tracking Odometry::track(const Frame& frame) {
   make_source_points(s.pyramid, s.live);
   const bool is_joining = s.job.valid() || s.joined;
   if (is_joining && ++s.job_frames >= s.config.apply_result_after_frames) s.take_over_job();
-  if (!first && is_camera_stationary(kept.last_moved_grey, s.pyramid.grey)) {
+  if (!first && is_camera_stationary(kept.last_moved_grey, s.pyramid.grey, kept.is_stationary)) {
+    kept.is_stationary = true;
     ++kept.counts.tracked;
     kept.T_world_last = kept.last_moved.T_world_camera;
     kept.T_last_next.setIdentity();
     keep(kept, frame, kept.last_moved);
     return kept.last_moved;
   }
-  Tracking tracking = first ? s.start(frame) : s.find_pose(frame, predicted);
+  kept.is_stationary = false;
+  Tracking tracking;
+  if (first) {
+    tracking = s.start(frame);
+  } else if (const std::optional<Tracking> returned = s.return_to_lost_place(frame, predicted)) {
+    tracking = *returned;
+  } else {
+    tracking = s.find_pose(frame, predicted);
+  }
+  const bool begins_part =
+      !first && !has_pose(tracking) && !kept.graph.keyframes.empty() && s.begin_part(frame, tracking);
   const bool second = !first && kept.graph.keyframes.size() == 1 && !kept.frames.empty() &&
                       kept.graph.keyframes.front().frame_index == kept.frames.back().frame_index;
   if (tracking && second) {
@@ -154,17 +362,20 @@ Tracking Odometry::track(const Frame& frame) {
   }
   const Eigen::Isometry3d T_last_next = kept.T_world_last.inverse() * tracking.T_world_camera;
   kept.path_length_m += motion_length_m(T_last_next) * (tracking ? 1.0 : 10.0);
-  if (tracking && !first) {
+  if (tracking && !first && !begins_part) {
     // The first keyframe was made with the velocity of one pair of frames.
     if (s.config.estimate_timing && kept.current > 0) s.take_evidence(frame, tracking);
     deskew(s.pyramid, s.velocity, kept.timing.current.depth_readout_s);
     s.improve_current(tracking);
     s.choose_keyframe(frame, tracking);
   }
+  if (s.config.use_recorded_poses && tracking && frame.T_world_camera && !kept.prior.T_world_recorded)
+    restart_prior(kept.prior, tracking.T_world_camera, *frame.T_world_camera);
   ++(tracking ? kept.counts.tracked : kept.counts.degenerate);
   kept.T_last_next = expected_motion(tracking, T_last_next);
   kept.T_world_last = tracking.T_world_camera;
   kept.last_moved_grey.resize(0, 0);
+  if (tracking && !kept.graph.keyframes.empty()) s.renew_flow(frame, tracking);
   if (tracking) {
     kept.last_moved_grey = s.pyramid.grey;
     kept.last_moved = tracking;

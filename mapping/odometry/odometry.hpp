@@ -35,6 +35,9 @@ class Odometry {
   /// cameras.
   Tracking track(const Frame& frame);
 
+  /// Returns the part of the scan (Keyframe::part) to which the last tracked frame belongs.
+  [[nodiscard]] int current_part() const;
+
   /// Adds a frame with a given pose. Adds a keyframe to the database if the pose differs enough from those of
   /// all keyframes (OdometryConfig::keyframe_distance_m, keyframe_angle_deg). Does not align or optimise.
   void add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera);

@@ -3,6 +3,7 @@
 // All numbers are little-endian; each file has a magic word, a version (u32), a body, and a checksum (u64).
 #include "mapping/odometry/odometry_checkpoint.hpp"
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kStateMagic = "RRODOMET", kViewMagic = "RRKEYFRM";
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 constexpr int kMaxSide_px = 8192;
 
 fs::path view_name(std::size_t number, std::uint32_t revision) {
@@ -36,6 +37,35 @@ Eigen::Isometry3d take_pose(BinaryReader& in, const char* what) {
   for (Eigen::Index i = 0; i < 16; ++i) T.matrix().data()[i] = in.take_finite(what);
   if (!is_rigid(T, 1e-6)) in.fail(std::string(what) + " is not a rotation and a shift");
   return T;
+}
+
+void put_optional_pose(std::string& out, const std::optional<Eigen::Isometry3d>& T) {
+  put(out, std::uint32_t{T ? 1U : 0U});
+  put_pose(out, T.value_or(Eigen::Isometry3d::Identity()));
+}
+
+std::optional<Eigen::Isometry3d> take_optional_pose(BinaryReader& in, const char* what) {
+  const bool is_set = in.take<std::uint32_t>(what) != 0;
+  const Eigen::Isometry3d T = take_pose(in, what);
+  return is_set ? std::optional(T) : std::nullopt;
+}
+
+void put_prior(std::string& out, const MotionPrior& prior) {
+  put_optional_pose(out, prior.T_world_recorded);
+  put(out, prior.sigma_m);
+  put(out, prior.mean_difference_m);
+  for (const std::int64_t count : {prior.stretch, prior.used, prior.contradicted}) put(out, count);
+}
+
+MotionPrior take_prior(BinaryReader& in) {
+  MotionPrior prior;
+  prior.T_world_recorded = take_optional_pose(in, "the recorded world's pose");
+  prior.sigma_m = in.take_finite("standard deviation of recorded poses");
+  prior.mean_difference_m = in.take_finite("mean difference of recorded poses");
+  if (!(prior.sigma_m > 0.0)) in.fail("the standard deviation of recorded poses is not positive");
+  for (std::int64_t* count : {&prior.stretch, &prior.used, &prior.contradicted})
+    *count = in.take<std::int64_t>("counts of recorded poses");
+  return prior;
 }
 
 void put_velocity(std::string& out, const CameraVelocity& velocity) {
@@ -191,6 +221,10 @@ void put_graph(std::string& out, const KeyframeGraph& graph) {
     put_velocity(out, keyframe.velocity);
     put_velocity(out, keyframe.steady_velocity);
     put_times(out, keyframe.timing);
+    put_optional_pose(out, keyframe.T_recorded_camera);
+    put(out, keyframe.stretch);
+    put(out, keyframe.part);
+    put(out, std::uint32_t{keyframe.is_by_flow ? 1U : 0U});
   }
   put(out, std::uint64_t{graph.constraints.size()});
   for (const PoseConstraint& c : graph.constraints) {
@@ -199,6 +233,7 @@ void put_graph(std::string& out, const KeyframeGraph& graph) {
     put_pose(out, c.T_a_b);
     put_information(out, c.information);
     put(out, std::uint32_t{c.robust ? 1U : 0U});
+    put(out, std::uint32_t{c.recorded ? 1U : 0U});
   }
   put(out, std::uint64_t{graph.anchors.size()});
   for (const PoseAnchor& anchor : graph.anchors) {
@@ -208,6 +243,7 @@ void put_graph(std::string& out, const KeyframeGraph& graph) {
   }
   put(out, graph.loops_found);
   put(out, graph.loops_rejected);
+  put(out, graph.recorded_sigma_m);
 }
 
 KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
@@ -222,6 +258,11 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
     keyframe.velocity = take_velocity(in);
     keyframe.steady_velocity = take_velocity(in);
     keyframe.timing = take_times(in);
+    keyframe.T_recorded_camera = take_optional_pose(in, "a keyframe's recorded pose");
+    keyframe.stretch = in.take<std::int64_t>("stretch");
+    keyframe.part = in.take<int>("part");
+    keyframe.is_by_flow = in.take<std::uint32_t>("keyframe") != 0;
+    if (keyframe.part < 0) in.fail("a keyframe's part is negative");
     keyframe.view =
         std::make_shared<const PackedView>(packed(read_view(folder / view_name(i, keyframe.revision))));
   }
@@ -232,6 +273,7 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
     c.T_a_b = take_pose(in, "a constraint's pose");
     c.information = take_information(in);
     c.robust = in.take<std::uint32_t>("constraint") != 0;
+    c.recorded = in.take<std::uint32_t>("constraint") != 0;
   }
   graph.anchors.resize(take_count(in, kPose_bytes + kInformation_bytes, "anchors"));
   for (PoseAnchor& anchor : graph.anchors) {
@@ -241,6 +283,7 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
   }
   graph.loops_found = in.take<std::int64_t>("loops");
   graph.loops_rejected = in.take<std::int64_t>("loops");
+  graph.recorded_sigma_m = in.take_finite("standard deviation of recorded poses");
   return graph;
 }
 
@@ -316,6 +359,14 @@ void save_odometry(const Odometry& odometry, const fs::path& into, const fs::pat
   put_pose(out, kept.last_moved.T_world_camera);
   put(out, std::uint32_t{kept.located ? 1U : 0U});
   put_timing(out, kept.timing);
+  put(out, std::uint32_t{kept.is_stationary ? 1U : 0U});
+  put(out, kept.parts);
+  put(out, std::uint32_t{kept.lost ? 1U : 0U});
+  const LostPlace lost = kept.lost.value_or(LostPlace{});
+  put(out, std::uint64_t{lost.keyframe});
+  put_pose(out, lost.T_keyframe_camera);
+  put(out, lost.stamp_s);
+  put_prior(out, kept.prior);
   write_binary(into / "state.bin", kStateMagic, kVersion, out);
 }
 
@@ -346,6 +397,16 @@ Odometry load_odometry(const fs::path& folder, const OdometryConfig& config) {
   kept.last_moved.T_world_camera = take_pose(in, "the pose when the camera last moved");
   kept.located = in.take<std::uint32_t>("located") != 0;
   kept.timing = take_timing(in);
+  kept.is_stationary = in.take<std::uint32_t>("stationary") != 0;
+  kept.parts = in.take<int>("parts");
+  const bool is_lost = in.take<std::uint32_t>("the place of a loss") != 0;
+  LostPlace lost;
+  lost.keyframe = static_cast<std::size_t>(in.take<std::uint64_t>("the keyframe of a loss"));
+  lost.T_keyframe_camera = take_pose(in, "the pose of a loss");
+  lost.stamp_s = in.take_finite("the time of a loss");
+  if (is_lost && lost.keyframe >= keyframes) in.fail("the keyframe of a loss is not there");
+  if (is_lost) kept.lost = lost;
+  kept.prior = take_prior(in);
   if (in.left() != 0) in.fail(std::to_string(in.left()) + " bytes more than expected");
   return Odometry(config, std::move(kept));
 }

@@ -32,6 +32,11 @@ struct OdometryConfig {
   /// Min overlap with the current keyframe. Below it, another keyframe becomes the current one, or a keyframe
   /// is added.
   double keyframe_overlap = 0.7;
+  /// Begin a new part of the scan when tracking is lost. Otherwise, frames are lost until a known place is
+  /// recognised.
+  bool begin_parts = true;
+  /// Use recorded poses as a prior on the motion, see MotionPrior.
+  bool use_recorded_poses = false;
   int references = 2;  ///< max number of keyframes that a frame is aligned with
   /// Number of frames averaged into a keyframe's depth before its points and normals are recomputed.
   int improve_every = 5;
@@ -48,6 +53,7 @@ struct TrackedFrame {
   double stamp_s = 0.0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   TrackStatus status = TrackStatus::kDiverged;
+  int part = 0;          ///< see Keyframe::part; poses of different parts have no known relation
   bool trusted = false;  ///< true if the pose is accurate enough to fuse the frame's depth into the map
 };
 

@@ -31,6 +31,7 @@ Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySna
   const Eigen::Isometry3d T_new_old = kept.graph.keyframes[kept.current].T_world_camera * before.inverse();
   kept.T_world_last = T_new_old * kept.T_world_last;
   kept.last_moved.T_world_camera = T_new_old * kept.last_moved.T_world_camera;
+  if (kept.prior.T_world_recorded) kept.prior.T_world_recorded = T_new_old * *kept.prior.T_world_recorded;
   return T_new_old;
 }
 
@@ -141,12 +142,15 @@ void forget_frames_from(std::int64_t frame_index, OdometrySnapshot& kept) {
   kept.T_world_last = T_world_camera_of(kept, last);
   kept.T_last_next.setIdentity();
   kept.last_moved_grey.resize(0, 0);
+  interrupt_prior(kept.prior);
+  kept.lost.reset();
 }
 
 std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept) {
   std::vector<TrackedFrame> trajectory;
   for (const KeptFrame& f : kept.frames) {
-    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera_of(kept, f), f.status, f.trusted});
+    const int part = f.keyframe ? kept.graph.keyframes[*f.keyframe].part : 0;
+    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera_of(kept, f), f.status, part, f.trusted});
   }
   return trajectory;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "mapping/alignment/motion_prior.hpp"
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/odometry/keyframe_job.hpp"
@@ -24,6 +25,13 @@ struct KeptFrame {
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
   TrackStatus status = TrackStatus::kDiverged;
   bool trusted = false;
+};
+
+/// Where tracking was lost before the current part began.
+struct LostPlace {
+  std::size_t keyframe = 0;
+  Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
+  double stamp_s = 0.0;
 };
 
 struct OdometrySnapshot {
@@ -47,7 +55,12 @@ struct OdometrySnapshot {
   /// Intensity image of the last tracked frame in which the camera was not judged stationary. A lost frame
   /// leaves it unchanged; a frame with a degenerate pose empties it.
   Image<float> last_moved_grey;
-  Tracking last_moved;   ///< tracking result of the frame of last_moved_grey
+  bool is_stationary = false;  ///< the last frame's camera was judged stationary
+  Tracking last_moved;         ///< tracking result of the frame of last_moved_grey
+  int parts = 1;               ///< number of parts, see Keyframe::part
+  /// Set for 1 s after a loss: frames of the new part are also tried at this place.
+  std::optional<LostPlace> lost;
+  MotionPrior prior;     ///< recorded poses; used with OdometryConfig::use_recorded_poses
   bool located = false;  ///< true if poses are in the prior map's world frame
   TimingEstimate timing;
 };

@@ -60,7 +60,8 @@ bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking
 void Odometry::State::choose_keyframe(const Frame& frame, Tracking& tracking) {
   const bool little_in_common = tracking.overlap < config.keyframe_overlap;
   if (!little_in_common && !is_far_from(kept.current, tracking)) return;
-  const std::vector<std::size_t> near = keyframes_near(kept.graph.keyframes, tracking.T_world_camera, 1.0);
+  const std::vector<std::size_t> near = keyframes_near(kept.graph.keyframes, tracking.T_world_camera, 1.0,
+                                                       kept.graph.keyframes[kept.current].part);
   if (!near.empty() && near.front() != kept.current && !is_far_from(near.front(), tracking)) {
     take_up(near.front());
     return;
@@ -70,6 +71,10 @@ void Odometry::State::choose_keyframe(const Frame& frame, Tracking& tracking) {
 }
 
 void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking) {
+  add_keyframe(frame, tracking, kept.graph.keyframes.empty() ? 0 : kept.graph.keyframes[kept.current].part);
+}
+
+void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking, int part) {
   store_open();
   open = pyramid;
   open.grey.resize(0, 0);
@@ -77,7 +82,10 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking)
   kept.graph.keyframes.push_back(
       {frame.index, tracking.T_world_camera,
        std::make_shared<const PackedView>(packed(store(open, open_measured))), 0, kept.path_length_m,
-       velocity, mean_velocity(kept, tracking.T_world_camera, frame.stamp_s), kept.timing.current});
+       velocity, mean_velocity(kept, tracking.T_world_camera, frame.stamp_s), kept.timing.current,
+       config.use_recorded_poses ? frame.T_world_camera : std::nullopt, part, is_pose_by_flow,
+       kept.prior.stretch});
+  if (config.use_recorded_poses && frame.T_world_camera) kept.graph.recorded_sigma_m = kept.prior.sigma_m;
   first_frame = kept.graph.keyframes.size() == 1 ? frame : Frame{};
   ++kept.counts.keyframes;
   kept.current = kept.graph.keyframes.size() - 1;

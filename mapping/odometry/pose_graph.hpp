@@ -19,6 +19,7 @@ struct PoseConstraint {
   Matrix6d information = Matrix6d::Identity();
   /// True if the measurement may be an outlier, e.g. a loop closure. The solver then uses a robust kernel.
   bool robust = false;
+  bool recorded = false;  ///< measured by the recording's own poses, not by alignment
 };
 
 /// Measured pose of a camera in the world frame. The measurement may be an outlier, so the solver uses a

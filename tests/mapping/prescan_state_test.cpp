@@ -92,7 +92,7 @@ TEST(PrescanState, TheFirstPassKeepsWhatItKnowsOfUp) {
     Frame frame = seen_from(pose(i));
     frame.index = i;
     const Tracking tracking = pass.odometry.track(frame);
-    pass.up.add(frame, pose(i));
+    pass.up.front().add(frame, pose(i));
     pass.recorded.push_back({i, i / 30.0, tracking.T_world_camera});
     ++pass.counts.frames_read;
   }
@@ -101,7 +101,7 @@ TEST(PrescanState, TheFirstPassKeepsWhatItKnowsOfUp) {
   const TrackingPass resumed = read_tracking_pass({kTrackingStage, folder.path()}, {});
   EXPECT_EQ(resumed.counts.frames_read, 3);
   EXPECT_EQ(resumed.odometry.counts().frames, 3);
-  EXPECT_EQ(resumed.up.estimate().up_world, pass.up.estimate().up_world);
+  EXPECT_EQ(resumed.up.front().estimate().up_world, pass.up.front().estimate().up_world);
   ASSERT_EQ(resumed.recorded.size(), 3U);
 }
 

@@ -20,8 +20,8 @@ void add_recorded_room_options(CLI::App& command, FallthroughOptions& options) {
       ->type_name("DIR");
   add_poses_option(
       command, options.poses,
-      "localise the frame's camera in the map (tracked), or use the recording's pose (recorded)\n"
-      "(default: tracked)");
+      "localise the frame's camera in the map (auto, tracked), or use the recording's pose (recorded)\n"
+      "(default: auto)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
   command.add_option("--cell", options.cell_m, "edge of the grid's cells, metres (default: 0.1)")

@@ -22,7 +22,7 @@ struct FallthroughOptions {
   /// Folder of the map whose surface is the ground truth; empty: `map` is the ground truth.
   std::string reference;
   /// Origin of the frame's pose in the map: estimated or recorded.
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   /// Range of frames. Only its first frame is used. Unset: frame 0.
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().

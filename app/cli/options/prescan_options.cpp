@@ -45,8 +45,9 @@ void add_options(CLI::App& command, PrescanOptions& options) {
       "what the window does when the camera is lost: the picture's frame flashes, the terminal's\n"
       "bell rings, or both (default: flash)");
   add_poses_option(command, options.poses,
-                   "estimate the camera poses (tracked), or use those of the recording (recorded)\n"
-                   "(default: tracked)");
+                   "estimate the camera poses, with those of the recording, if any, as a prior on the motion that\n"
+                   "depth verifies (auto) or without them (tracked), or use those of the recording (recorded)\n"
+                   "(default: auto)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
   add_input_options(command, options.input);

@@ -41,7 +41,7 @@ struct PrescanOptions {
   /// Presets file; empty: see presets_file().
   std::string presets;
   /// Origin of the camera poses: estimated or recorded.
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   /// Range of frames to use; unset: all.
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().

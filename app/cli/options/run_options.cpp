@@ -21,8 +21,8 @@ void add_input_options(CLI::App& command, RunOptions& options) {
                   "camera are loaded; not modified (required unless SOURCE is a recorded session)")
       ->type_name("DIR");
   add_poses_option(command, options.poses,
-                   "localise the camera in the map (tracked), or use the recording's poses (recorded)\n"
-                   "(default: tracked)");
+                   "localise the camera in the map, with the recording's poses, if any, as a prior on its motion\n"
+                   "(auto) or without them (tracked), or use the recording's poses (recorded) (default: auto)");
   add_frames_option(command, options.frames);
   add_calibration_option(command, options.calibration);
   add_input_options(command, options.input);

@@ -26,7 +26,7 @@ struct RunOptions {
   /// Folder to read the map of a room or building from.
   std::string map;
   /// Origin of the camera poses: localised in the map (kTracked) or recorded.
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   /// Range of frames to process; unset: all.
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().

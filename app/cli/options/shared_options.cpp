@@ -17,8 +17,10 @@ void add_source_argument(CLI::App& command, std::string& source, const std::stri
 }
 
 void add_poses_option(CLI::App& command, PoseOrigin& poses, const std::string& help) {
-  add_choice(command, "--poses", poses,
-             {{"tracked", PoseOrigin::kTracked}, {"recorded", PoseOrigin::kRecorded}}, help);
+  add_choice(
+      command, "--poses", poses,
+      {{"auto", PoseOrigin::kAuto}, {"tracked", PoseOrigin::kTracked}, {"recorded", PoseOrigin::kRecorded}},
+      help);
 }
 
 void add_range_option(CLI::App& command, const std::string& name, std::optional<FrameRange>& range,

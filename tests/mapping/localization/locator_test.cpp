@@ -231,6 +231,28 @@ TEST(Locator, DoesNotSlideOnAlongAWallWithoutMarks) {
   EXPECT_LT(error_m(found, before_wall(0.3)), 0.03);
 }
 
+TEST(Locator, IsUncertainAfterAFewFramesBeforeAWallWithoutMarks) {
+  const auto before_wall = [](double x) { return test::looking_at({x, 0.4, 1.2}, {x, 2.5, 0.4}); };
+  Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
+  bare.locator.T_world_camera = before_wall(0.3);
+  int index = 0;
+  const auto find_at = [&](const Eigen::Isometry3d& T_world_camera) {
+    Frame frame = bare.seen_from(T_world_camera);
+    frame.colour.resize(0, 0);  // else the still picture would show that the camera stands
+    frame.stamp_s = index++ / 30.0;
+    return bare.find(frame);
+  };
+  for (int i = 0; i < 12; ++i) {
+    const Tracking found = find_at(before_wall(0.3 - 0.02 * i));  // depth does not show this motion
+    EXPECT_EQ(found.status, i < 5 ? TrackStatus::kDegenerate : TrackStatus::kUncertain) << i;
+    const PoseSigma sigma = pose_sigma(found);
+    EXPECT_GT(sigma.position_m.x(), sigma.position_m.y()) << i;
+    if (i > 0) {
+      EXPECT_GT(std::abs(sigma.least_certain_world.x()), 0.9) << i;
+    }
+  }
+}
+
 TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
   using namespace test;
   Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });

@@ -174,6 +174,20 @@ TEST(StationaryCamera, SeesAShiftOfHalfAPixelAndNotAHand) {
   EXPECT_TRUE(is_camera_stationary(before, before));
   EXPECT_TRUE(is_camera_stationary(before, with_hand));
   EXPECT_FALSE(is_camera_stationary(before, shifted));
+  // A person before half of the view leaves the camera stationary, and the more so if it was before.
+  Image<float> with_person = before, with_crowd = before;
+  for (int y = 0; y < 120; ++y) {
+    std::copy_n(shifted.row(y), 80, with_person.row(y));
+    std::copy_n(shifted.row(y), 115, with_crowd.row(y));
+  }
+  EXPECT_TRUE(is_camera_stationary(before, with_person));
+  EXPECT_FALSE(is_camera_stationary(before, with_crowd));
+  EXPECT_TRUE(is_camera_stationary(before, with_crowd, /*was_stationary=*/true));
+  EXPECT_FALSE(is_camera_stationary(before, shifted, /*was_stationary=*/true));
+  // A change of exposure is no motion.
+  Image<float> brighter = with_person;
+  for (float& level : brighter.pixels) level = 1.2F * level + 9.0F;
+  EXPECT_TRUE(is_camera_stationary(before, brighter));
   // No edges to compare.
   EXPECT_FALSE(is_camera_stationary(Image<float>(160, 120, 9.0F), Image<float>(160, 120, 9.0F)));
   EXPECT_FALSE(is_camera_stationary(before, Image<float>()));
