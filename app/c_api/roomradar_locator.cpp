@@ -13,7 +13,8 @@ using namespace roomradar::c_api;
 static_assert(static_cast<int>(TrackStatus::kTracked) == ROOMRADAR_TRACKED &&
               static_cast<int>(TrackStatus::kTooFewPoints) == ROOMRADAR_TOO_FEW_POINTS &&
               static_cast<int>(TrackStatus::kDegenerate) == ROOMRADAR_DEGENERATE &&
-              static_cast<int>(TrackStatus::kDiverged) == ROOMRADAR_DIVERGED);
+              static_cast<int>(TrackStatus::kDiverged) == ROOMRADAR_DIVERGED &&
+              static_cast<int>(TrackStatus::kUncertain) == ROOMRADAR_UNCERTAIN);
 
 roomradar_status roomradar_locator_open(const roomradar_map* map, roomradar_locator** locator) {
   return guarded("roomradar_locator_open", nullptr, [&] {

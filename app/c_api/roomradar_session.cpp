@@ -52,10 +52,12 @@ RunQuality quality_of(const char* words) {
 }
 
 SessionConfig config_of(const roomradar_session_options& options, const MapInfo& info) {
-  if (options.poses < ROOMRADAR_POSES_TRACKED || options.poses > ROOMRADAR_POSES_RECORDED)
-    refuse("options.poses = " + std::to_string(options.poses) + ": must be a roomradar_poses, 0..2");
+  if (options.poses < ROOMRADAR_POSES_TRACKED || options.poses > ROOMRADAR_POSES_AUTO)
+    refuse("options.poses = " + std::to_string(options.poses) + ": must be a roomradar_poses, 0..3");
   SessionConfig config;
-  config.poses = options.poses == ROOMRADAR_POSES_TRACKED ? PoseOrigin::kTracked : PoseOrigin::kRecorded;
+  config.poses = options.poses == ROOMRADAR_POSES_TRACKED ? PoseOrigin::kTracked
+                 : options.poses == ROOMRADAR_POSES_AUTO  ? PoseOrigin::kAuto
+                                                          : PoseOrigin::kRecorded;
   config.scene.surfaces = surfaces_of(options.surfaces);
   apply(quality_of(options.quality), config);
   config.make_picture = options.has_no_picture == 0;
@@ -72,6 +74,10 @@ void write_result(const FrameResult& from, const SessionState& state, double fra
                   roomradar_frame_result& to) {
   to.is_located = from.status == FrameStatus::kDone ? 1 : 0;
   to.tracking = static_cast<int32_t>(from.tracking);
+  for (int axis = 0; axis < 3; ++axis) {
+    to.sigma_m[axis] = from.sigma.position_m(axis);
+    to.sigma_rad[axis] = from.sigma.rotation_rad(axis);
+  }
   to.T_world_camera = pose_of(from.T_world_camera);
   to.picture_is_new = from.picture_is_new ? 1 : 0;
   to.contacts = from.contacts;

@@ -13,7 +13,8 @@ extern "C" {
 typedef enum roomradar_poses {
   ROOMRADAR_POSES_TRACKED = 0, /* found in the map, by depth and colour */
   ROOMRADAR_POSES_GIVEN = 1,   /* roomradar_frame::T_world_camera, in the map's world (an AR framework's) */
-  ROOMRADAR_POSES_RECORDED = 2 /* the same, in the world of the recording that was scanned */
+  ROOMRADAR_POSES_RECORDED = 2, /* the same, in the world of the recording that was scanned */
+  ROOMRADAR_POSES_AUTO = 3 /* found in the map; roomradar_frame::T_world_camera, in any world, predicts the motion */
 } roomradar_poses;
 
 /* Surfaces that objects can touch. */
@@ -62,6 +63,8 @@ typedef struct roomradar_frame_result {
   uint64_t room_version;    /* from 1; grows when the room's mesh changes */
   double frame_ms;          /* time of the whole frame */
   double contact_ms;        /* time until all objects had moved */
+  double sigma_m[3];        /* standard deviations of the camera's position along the map's axes; inf: unknown */
+  double sigma_rad[3];      /* and of its rotation about them, rad; both 0 without a pose */
 } roomradar_frame_result;
 
 /* Processes one frame: locates the camera, finds dynamic pixels, moves the objects, composes the picture.

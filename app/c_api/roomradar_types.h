@@ -134,7 +134,8 @@ typedef enum roomradar_tracking {
   ROOMRADAR_TRACKED = 0,
   ROOMRADAR_TOO_FEW_POINTS = 1, /* lost */
   ROOMRADAR_DEGENERATE = 2,     /* a pose, partly predicted: not all directions are constrained */
-  ROOMRADAR_DIVERGED = 3        /* lost */
+  ROOMRADAR_DIVERGED = 3,       /* lost */
+  ROOMRADAR_UNCERTAIN = 4       /* a guess that nothing has verified for more than 0.15 s */
 } roomradar_tracking;
 
 /* Kinds of surfaces that can be touched. */

@@ -76,8 +76,10 @@ RunnerPointer make_session(std::shared_ptr<Map> map, const std::string& poses, c
                            const std::string& unknown, bool make_picture, bool measure_penetration,
                            const QualityValues& quality) {
   SessionSettings settings;
-  if (poses != "tracked" && poses != "recorded")
-    throw py::value_error("poses: is \"" + required_text(poses, "poses") + "\"; must be tracked or recorded");
+  if (poses != "auto" && poses != "tracked" && poses != "recorded")
+    throw py::value_error("poses: is \"" + required_text(poses, "poses") +
+                          "\"; must be auto, tracked or recorded");
+  if (poses == "tracked") settings.poses = PoseOrigin::kTracked;
   if (poses == "recorded") {
     settings.poses = PoseOrigin::kRecorded;
     if (!knows_recorded_world(map->saved.info))
@@ -260,10 +262,11 @@ void bind_session(py::module_& module) {
       "for each other. A call that raises an exception changes nothing.");
   bind_object_calls(bound);
   bound
-      .def(py::init(&make_session), py::arg("map").none(false), py::kw_only(), py::arg("poses") = "tracked",
+      .def(py::init(&make_session), py::arg("map").none(false), py::kw_only(), py::arg("poses") = "auto",
            py::arg("surfaces") = "map", py::arg("unknown") = "solid", py::arg("make_picture") = true,
            py::arg("measure_penetration") = false, py::arg("quality") = QualityValues{},
-           "poses: tracked (localised in the map) or recorded\n"
+           "poses: auto (localised in the map, with those of frames as a prior), tracked (localised) or "
+           "recorded\n"
            "surfaces: what objects can touch: map, or this frame's depth alone: border, skirt or holes\n"
            "unknown: solid: objects cannot enter space that the scan has not observed; free: they can\n"
            "quality: fields of a run's quality, such as {\"depth_stride\": 2, \"radar\": \"sampled\"}; see "

@@ -26,7 +26,7 @@ RunQuality quality_with(RunQuality quality, const QualityValues& values);
 
 /// Settings of a session that cannot change after construction.
 struct SessionSettings {
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = true;  ///< has no effect unless `surfaces` is kMap
   bool make_picture = true;

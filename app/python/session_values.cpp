@@ -39,6 +39,7 @@ py::list departures_of(const FrameResult& result) {
 
 const char* status_of(const FrameResult& result) {
   return result.status == FrameStatus::kDone         ? "done"
+         : result.status == FrameStatus::kUncertain  ? "uncertain"
          : result.status == FrameStatus::kNotLocated ? "not located"
                                                      : "bad frame";
 }
@@ -115,18 +116,27 @@ ObjectSnapshot snapshot_of(const VirtualObject& object) {
 void bind_session_values(py::module_& module) {
   bind_objects(module);
   py::class_<FrameResult>(module, "FrameResult", "Result of Session.step(). True if the frame was processed.")
-      .def_property_readonly("status", &status_of,
-                             "\"done\", \"not located\" (objects did not move) or \"bad frame\" (see fault).")
+      .def_property_readonly(
+          "status", &status_of,
+          "\"done\", \"uncertain\" (the pose is a guess; objects did not move), \"not located\" (no pose;\n"
+          "objects did not move) or \"bad frame\" (see fault).")
       .def_property_readonly("fault", [](const FrameResult& result) { return std::string(result.fault); })
       .def_property_readonly(
           "tracking", [](const FrameResult& result) { return std::string(to_string(result.tracking)); })
       .def_property_readonly(
           "T_world_camera",
           [](const FrameResult& result) -> py::object {
-            return result.status == FrameStatus::kDone ? py::object(array_of(result.T_world_camera))
-                                                       : py::none();
+            const bool has_pose =
+                result.status == FrameStatus::kDone || result.status == FrameStatus::kUncertain;
+            return has_pose ? py::object(array_of(result.T_world_camera)) : py::none();
           },
-          "The depth camera's pose, (4, 4) float64, or None.")
+          "The depth camera's pose, (4, 4) float64, a guess if uncertain, or None.")
+      .def_property_readonly(
+          "sigma_m", [](const FrameResult& result) { return array_of(result.sigma.position_m); },
+          "Standard deviations of the camera's position along the world's axes, (3,); inf: not known.")
+      .def_property_readonly(
+          "sigma_rad", [](const FrameResult& result) { return array_of(result.sigma.rotation_rad); },
+          "Standard deviations of the camera's rotation about the world's axes, (3,); inf: not known.")
       .def_property_readonly("foreground", &foreground_of,
                              "Numbers of pixels: valid, moved, revealed, not_known.")
       .def_readonly("dynamic_triangles", &FrameResult::dynamic_triangles)

@@ -48,6 +48,33 @@ nlohmann::json json_of(const VirtualObject& object) {
   return json;
 }
 
+std::string_view located_word(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::kDone:
+      return "located";
+    case FrameStatus::kUncertain:
+      return "uncertain";
+    case FrameStatus::kNotLocated:
+    case FrameStatus::kBadFrame:
+      break;
+  }
+  return "lost";
+}
+
+/// Infinite standard deviations become null.
+nlohmann::json json_of(const PoseSigma& sigma) {
+  const auto numbers = [](const Eigen::Vector3d& v) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const double x : {v.x(), v.y(), v.z()})
+      json.push_back(std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr));
+    return json;
+  };
+  return {{"position_m", numbers(sigma.position_m)},
+          {"rotation_rad", numbers(sigma.rotation_rad)},
+          {"least_certain", sigma.least_certain_world.isZero() ? nlohmann::json(nullptr)
+                                                               : numbers(sigma.least_certain_world)}};
+}
+
 /// Returns JSON in one line. Names that are not UTF-8 get replacement characters.
 std::string text_of(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -106,6 +133,7 @@ FrameStream::FrameStream(const std::filesystem::path& path, const std::string& s
 void FrameStream::write(std::int64_t run_frame, double time_s, const Frame& frame, const FrameResult& result,
                         const Session& session, const StageTimes& times) {
   const bool is_located = result.status == FrameStatus::kDone;
+  const bool has_pose = is_located || result.status == FrameStatus::kUncertain;
   nlohmann::json stages = nlohmann::json::object();
   times.visit_newest([&](const std::string& stage, std::size_t count, float newest_ms) {
     if (timed_[stage] != count) stages[stage] = std::round(1e3 * static_cast<double>(newest_ms)) / 1e3;
@@ -133,7 +161,9 @@ void FrameStream::write(std::int64_t run_frame, double time_s, const Frame& fram
                          {"stamp_s", frame.stamp_s},
                          {"time_s", time_s},
                          {"tracking", to_string(result.tracking)},
-                         {"camera", is_located ? pose(result.T_world_camera) : nlohmann::json(nullptr)},
+                         {"located", located_word(result.status)},
+                         {"camera", has_pose ? pose(result.T_world_camera) : nlohmann::json(nullptr)},
+                         {"sigma", has_pose ? json_of(result.sigma) : nlohmann::json(nullptr)},
                          {"objects", objects},
                          {"moved", moved},
                          {"moved_mask", mask},

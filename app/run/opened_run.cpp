@@ -125,7 +125,7 @@ std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
     require_recorded_world(run.map.info, options.map, options.source);
   SourceOptions source_options = source_options_of(options.input);
   // Poses that are not used need not be compared with depth, which takes time before the first picture.
-  if (options.poses == PoseOrigin::kRecorded) source_options.questions = Questions::kDepth;
+  if (options.poses != PoseOrigin::kTracked) source_options.questions = Questions::kDepth;
   source_options.input = run.input;
   std::unique_ptr<FrameSource> opened =
       open_source(options.source, options.frames, options.calibration, source_options);

@@ -215,7 +215,9 @@ void RunLoop::step() {
   if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
   if (run_.host) run_.host->show(run_frame_, run_time_s_, frame_, result);
   keep(result);
-  progress_.step(is_located ? "located" : "not located");
+  progress_.step(is_located                                     ? "located"
+                 : result.status == FrameStatus::kUncertain ? "uncertain"
+                                                            : "not located");
 }
 
 /// Reports that an object fell out of the map, once with and once without its being set back.

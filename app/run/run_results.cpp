@@ -115,6 +115,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
     contacts_by_kind[std::string(to_string(static_cast<SurfaceKind>(kind)))] = totals.contacts_by_kind[kind];
   nlohmann::json results = {
       {"frames_located", totals.located},
+      {"frames_uncertain", totals.uncertain},
       {"frames_degenerate", totals.degenerate},
       {"lost", lost},
       {"frames_dropped", totals.dropped.count},

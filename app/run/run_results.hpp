@@ -16,12 +16,12 @@ namespace roomradar {
 
 /// Sums and maxima over the frames of a run.
 struct RunTotals {
-  /// Numbers of frames: read, skipped (unusable), located and degenerate. `contacts` counts contacts of
-  /// objects. `degenerate` counts localised frames whose depth does not constrain all six degrees of freedom.
-  /// `departures` counts objects that fell out of the map. `places_refused` counts events that were refused
-  /// because there was no free pose (PlaceRefused).
-  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0,
-               places_refused = 0;
+  /// Numbers of frames: read, skipped (unusable), located, uncertain (TrackStatus::kUncertain) and
+  /// degenerate. `contacts` counts contacts of objects. `degenerate` counts localised frames whose depth does
+  /// not constrain all six degrees of freedom. `departures` counts objects that fell out of the map.
+  /// `places_refused` counts events that were refused because there was no free pose (PlaceRefused).
+  std::int64_t read = 0, skipped = 0, located = 0, uncertain = 0, degenerate = 0, contacts = 0,
+               departures = 0, places_refused = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
   /// Sums over localised frames. dynamic_fraction is relative to the pixels with depth. static_triangles
   /// counts drawn triangles.
@@ -36,6 +36,7 @@ struct RunTotals {
 
   /// Adds the results of a frame.
   void add(const FrameResult& frame, const Session& session) {
+    if (frame.status == FrameStatus::kUncertain) ++uncertain;
     if (frame.status != FrameStatus::kDone) return;
     ++located;
     use.add(frame.use, session.objects());

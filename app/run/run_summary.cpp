@@ -66,6 +66,12 @@ void print_located(const RunTotals& totals) {
   }
   if (spans.size() > kShown) std::printf(" and %zu more spans", spans.size() - kShown);
   std::printf("\n");
+  if (totals.uncertain > 0)
+    std::printf(
+        "in %lld of these the pose was uncertain: depth did not constrain all directions for more than 0.15 "
+        "s. "
+        "Objects stood still meanwhile\n",
+        static_cast<long long>(totals.uncertain));
   if (totals.skipped > 0)
     std::printf("%lld frames could not be used; the last fault: %s\n", static_cast<long long>(totals.skipped),
                 totals.last_fault.c_str());

@@ -17,6 +17,9 @@ namespace roomradar {
 
 enum class FrameStatus {
   kDone,
+  /// The camera's pose is a guess that nothing has verified for more than 0.15 s (TrackStatus::kUncertain).
+  /// Objects stand still; the picture shows them from the guessed pose.
+  kUncertain,
   kNotLocated,  ///< no camera pose; objects do not move, and the picture does not show them
   kBadFrame,    ///< fault_of() rejects the frame's images; session and picture are unchanged
 };
@@ -24,7 +27,8 @@ enum class FrameStatus {
 struct FrameResult {
   FrameStatus status = FrameStatus::kNotLocated;
   std::string_view fault;  ///< reason for kBadFrame, from fault_of()
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< kDone only
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< kDone and kUncertain
+  PoseSigma sigma;  ///< of T_world_camera; 0 for recorded poses
   TrackStatus tracking = TrackStatus::kDiverged;
   ForegroundCounts foreground;
   std::size_t dynamic_triangles = 0;

@@ -47,7 +47,7 @@ struct MapUpdateConfig {
 void require_valid(const MapUpdateConfig& config);
 
 struct SessionConfig {
-  PoseOrigin poses = PoseOrigin::kTracked;
+  PoseOrigin poses = PoseOrigin::kAuto;
   FrameSceneConfig scene;
   RadarConfig radar;
   PhysicsConfig physics;

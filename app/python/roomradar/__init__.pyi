@@ -12,7 +12,7 @@ _Bytes = NDArray[np.uint8]
 _Floats = NDArray[np.float32]
 _Doubles = NDArray[np.float64]
 _Vector = Union[_Doubles, Sequence[float]]
-_Kinds = Literal["tracked", "recorded"]
+_Kinds = Literal["auto", "tracked", "recorded"]
 _Surfaces = Literal["map", "border", "skirt", "holes"]
 _Unknown = Literal["solid", "free"]
 _Axis = Literal["x", "y", "z", "-x", "-y", "-z"]
@@ -453,13 +453,17 @@ class ObjectState:
 
 class FrameResult:
     @property
-    def status(self) -> Literal["done", "not located", "bad frame"]: ...
+    def status(self) -> Literal["done", "uncertain", "not located", "bad frame"]: ...
     @property
     def fault(self) -> str: ...
     @property
     def tracking(self) -> str: ...
     @property
     def T_world_camera(self) -> Optional[_Doubles]: ...
+    @property
+    def sigma_m(self) -> _Doubles: ...
+    @property
+    def sigma_rad(self) -> _Doubles: ...
     @property
     def foreground(self) -> dict[str, int]: ...
     @property

@@ -33,6 +33,8 @@ void draw_run_state(const Area& area, bool has_two_rows, const Snapshot& shown, 
     look::pill(look::kWarn, "paused");
   else if (silent_s > kStall_s)
     look::pill(look::kBad, "no frame for " + std::to_string(static_cast<int>(silent_s)) + " s");
+  else if (result.status == FrameStatus::kUncertain)
+    look::pill(look::kWarn, "uncertain");
   else if (result.status != FrameStatus::kDone)
     look::pill(look::kBad, "not located");
   else if (shown.is_repeating)
