@@ -98,18 +98,20 @@ EdgeCounts count_edges(const Image<float>& before, const Image<float>& now, cons
 
 }  // namespace
 
-bool is_camera_stationary(const Image<float>& before, const Image<float>& now, bool was_stationary) {
-  constexpr int kFewest = 300;
+bool is_camera_stationary(const Image<float>& before, const Image<float>& now, int stood_frames) {
+  constexpr int kFewest = 300, kLong_frames = 5;
   constexpr double kMostPart = 0.6;
-  constexpr double kSpreadPart = 0.35, kStillPart = 0.18;  // of the edges, if they are spread over the image
+  constexpr double kSpreadPart = 0.4, kStillPart = 0.18;  // of the edges, if they are spread over the image
   constexpr double kSpreadCells = 0.3, kStillCells = 0.2;
   if (before.width != now.width || before.height != now.height) return false;
   EdgeCounts counts = count_edges(before, now, {});
   if (counts.edges < kFewest) return false;
   if (counts.unmoved_part() > kMostPart) return true;
+  if (stood_frames < 1) return false;
+  const bool stood_long = stood_frames >= kLong_frames;
   counts = count_edges(before, now, brightness_change(before, now));
-  return counts.unmoved_part_of_both() > (was_stationary ? kStillPart : kSpreadPart) &&
-         counts.unmoved_cells() > (was_stationary ? kStillCells : kSpreadCells);
+  return counts.unmoved_part_of_both() > (stood_long ? kStillPart : kSpreadPart) &&
+         counts.unmoved_cells() > (stood_long ? kStillCells : kSpreadCells);
 }
 
 }  // namespace roomradar

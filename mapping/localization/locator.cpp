@@ -8,7 +8,6 @@
 
 #include "mapping/alignment/feature_flow.hpp"
 #include "mapping/alignment/motion_prior.hpp"
-#include "mapping/alignment/stationary_camera.hpp"
 #include "mapping/localization/depth_agreement.hpp"
 #include "mapping/types/linear_algebra.hpp"
 
@@ -393,21 +392,6 @@ void add_motion_uncertainty(const Locator& locator, Tracking& tracking) {
   tracking.information += prior_information(sigma_m, Eigen::Isometry3d::Identity());
 }
 
-/// Returns the last pose if the colour image shows that the camera has not moved since.
-std::optional<Tracking> keep_stationary(Locator& locator, const Frame& frame) {
-  constexpr int kWidth_px = 320;
-  make_grey(frame.colour, kWidth_px, locator.buffers.grey);
-  const bool has_depth = locator.buffers.live.levels.front().size() >=
-                         static_cast<std::size_t>(std::max(locator.align.min_points, 1));
-  const bool is_still = locator.T_world_camera && has_depth && !locator.is_uncertain &&
-                        is_camera_stationary(locator.moved_grey, locator.buffers.grey, locator.is_stationary);
-  locator.is_stationary = is_still;
-  if (!is_still) return std::nullopt;
-  Tracking tracking = locator.moved;
-  tracking.T_world_camera = locator.T_world_moved;
-  return tracking;
-}
-
 }  // namespace
 
 Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
@@ -422,12 +406,11 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
 
   Tracking tracking;
   bool may_be_found = true;  // by a search; one per frame is enough
-  const std::optional<Tracking> still = keep_stationary(locator, frame);
   if (locator.T_world_camera) {
-    tracking = still ? *still : follow(locator, frame, dt_s, expected_depth);
+    tracking = follow(locator, frame, dt_s, expected_depth);
     if (has_pose(tracking))
       may_be_found = verify_tracking(locator, frame, keyframe_database, expected_depth, tracking);
-    if (has_pose(tracking) && !still)
+    if (has_pose(tracking))
       require_verified(locator, frame, keyframe_database, dt_s, expected_depth, tracking);
     if (!has_guess(tracking)) {
       locator.T_world_lost = locator.T_world_camera;
@@ -448,7 +431,6 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
 
   if (!has_guess(tracking)) {
     locator.T_last_now.setIdentity();
-    locator.moved_grey.resize(0, 0);
     return tracking;
   }
   if (tracking.status != TrackStatus::kTracked) add_motion_uncertainty(locator, tracking);
@@ -459,14 +441,6 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
   locator.T_world_camera = tracking.T_world_camera;
   if (locator.use_recorded_poses && frame.T_world_camera && tracking && !locator.prior.T_world_recorded)
     restart_prior(locator.prior, tracking.T_world_camera, *frame.T_world_camera);
-  if (!still) {
-    locator.moved = tracking;
-    locator.T_world_moved = tracking.T_world_camera;
-    if (tracking)
-      locator.moved_grey = locator.buffers.grey;
-    else
-      locator.moved_grey.resize(0, 0);
-  }
   return tracking;
 }
 

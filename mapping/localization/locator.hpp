@@ -32,7 +32,6 @@ struct LocatorBuffers {
   ViewPyramid live_pyramid, expected_pyramid;
   SourcePoints live;
   TargetView expected;
-  Image<float> grey;
 };
 
 /// Settings of locate(), and its state between frames.
@@ -58,12 +57,7 @@ struct Locator {
   double carried_s = 0.0;
   /// True after carried_s has exceeded 0.15 s, until a pose is verified.
   bool is_uncertain = false;
-  int uncertain_frames = 0;  ///< consecutive frames with is_uncertain
-  /// Image and pose of the last frame in which the camera was not judged stationary.
-  Image<float> moved_grey;
-  Tracking moved;  ///< result of the frame of moved_grey
-  Eigen::Isometry3d T_world_moved = Eigen::Isometry3d::Identity();
-  bool is_stationary = false;
+  int uncertain_frames = 0;   ///< consecutive frames with is_uncertain
   int unverified_frames = 0;  ///< number of consecutive frames whose depth contradicts the tracked pose
   /// Number of further frames whose depth must contradict the pose before the next search of the map.
   int recheck_cooldown_frames = 0;
@@ -89,7 +83,7 @@ struct Locator {
 ///
 /// If the status is kDegenerate, the pose equals the prediction in unconstrained directions. After 0.15 s of
 /// such poses the status is kUncertain: the pose is the best guess, and the map is searched until patches or
-/// depth verify a pose. A camera whose colour image shows that it stands still keeps its pose. A sensor that
+/// depth verify a pose. A sensor that
 /// recalibrates distorts its depth for a moment. If alignment mistakes the distortion for motion, locate()
 /// returns the previous frame's pose with kDegenerate.
 ///

@@ -9,8 +9,33 @@
 #include "mapping/alignment/stationary_camera.hpp"
 #include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/odometry_state.hpp"
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
+namespace {
+
+/// Returns for how many frames the camera has stood: since the first frame, or for at least five; else 0.
+int stood_frames(const OdometrySnapshot& kept) {
+  constexpr int kLong_frames = 5;
+  const std::vector<KeptFrame>& frames = kept.frames;
+  int count = 0;
+  while (count < static_cast<int>(frames.size()) && count < kLong_frames &&
+         frames[frames.size() - 1 - static_cast<std::size_t>(count)].T_keyframe_camera.matrix() ==
+             frames.back().T_keyframe_camera.matrix())
+    ++count;
+  return count == kLong_frames || count == static_cast<int>(frames.size()) ? count : 0;
+}
+
+/// Returns true if recorded poses say that the camera has moved since the last frame.
+bool moves_by_prior(const OdometryConfig& config, const OdometrySnapshot& kept, const Frame& frame) {
+  constexpr double kMoved_m = 0.004;  // or rad
+  if (!config.use_recorded_poses) return false;
+  const std::optional<Eigen::Isometry3d> T_prior = predicted_by(kept.prior, frame.T_world_camera);
+  return T_prior && motion_length_m(kept.T_world_last.inverse() * *T_prior) > kMoved_m;
+}
+
+}  // namespace
+
 Tracking Odometry::State::start(const Frame& frame) {
   Tracking tracking;
   if (live.levels.front().size() < static_cast<std::size_t>(std::max(config.align.min_points, 1))) {
@@ -108,8 +133,17 @@ std::optional<Tracking> Odometry::State::follow_recorded(const Frame& frame,
     return with_velocity(combine(kept.prior, *T_prior, aligned, predicted.dt_s));
 
   const DepthFit fit = depth_fit(live, references_near(first, *T_prior), *T_prior, config.align);
-  if (is_near && aligned.inlier_fraction > fit.inlier_fraction + kClearlyMore)
+  if (is_near && aligned.inlier_fraction > fit.inlier_fraction + kClearlyMore) {
+    // After a jump of the recorded world, the constant velocity predicts better than the recorded motion.
+    const Tracking without = align_near(kept.current, predicted.T_world_camera);
+    if (is_plausible(without, predicted.T_world_camera) && without &&
+        without.inlier_fraction >= aligned.inlier_fraction) {
+      ++kept.prior.contradicted;
+      interrupt_prior(kept.prior);
+      return with_velocity(without);
+    }
     return with_velocity(combine(kept.prior, *T_prior, aligned, predicted.dt_s));
+  }
   const bool may_be_wrong = fit.overlap > kMinOverlap && fit.inlier_fraction < kFewInliers;
   if (may_be_wrong) {
     const Tracking without = align_near(kept.current, predicted.T_world_camera);
@@ -154,7 +188,9 @@ Tracking Odometry::State::recover(const Frame& frame) {
 /// turns fast, corners are not where a global shutter would show them.
 void Odometry::State::constrain(const Frame& frame, const CameraVelocity& predicted, Tracking& tracking) {
   constexpr double kMost_px = 1.5;
+  constexpr std::size_t kTimingFrames = 30;  // the delay of colour is estimated in this time
   is_pose_by_flow = false;
+  if (kept.frames.size() < kTimingFrames) return;
   const SensorTiming& timing = kept.timing.current;
   const double late_s = 0.5 * timing.colour_readout_s + std::abs(timing.colour_delay_s);
   const double focal_px =
@@ -326,7 +362,8 @@ Tracking Odometry::track(const Frame& frame) {
   make_source_points(s.pyramid, s.live);
   const bool is_joining = s.job.valid() || s.joined;
   if (is_joining && ++s.job_frames >= s.config.apply_result_after_frames) s.take_over_job();
-  if (!first && is_camera_stationary(kept.last_moved_grey, s.pyramid.grey, kept.is_stationary)) {
+  if (!first && !moves_by_prior(s.config, kept, frame) &&
+      is_camera_stationary(kept.last_moved_grey, s.pyramid.grey, stood_frames(kept))) {
     kept.is_stationary = true;
     ++kept.counts.tracked;
     kept.T_world_last = kept.last_moved.T_world_camera;

@@ -180,14 +180,14 @@ TEST(StationaryCamera, SeesAShiftOfHalfAPixelAndNotAHand) {
     std::copy_n(shifted.row(y), 80, with_person.row(y));
     std::copy_n(shifted.row(y), 115, with_crowd.row(y));
   }
-  EXPECT_TRUE(is_camera_stationary(before, with_person));
-  EXPECT_FALSE(is_camera_stationary(before, with_crowd));
-  EXPECT_TRUE(is_camera_stationary(before, with_crowd, /*was_stationary=*/true));
-  EXPECT_FALSE(is_camera_stationary(before, shifted, /*was_stationary=*/true));
+  EXPECT_TRUE(is_camera_stationary(before, with_person, 1));
+  EXPECT_FALSE(is_camera_stationary(before, with_crowd, 1));
+  EXPECT_TRUE(is_camera_stationary(before, with_crowd, 5));
+  EXPECT_FALSE(is_camera_stationary(before, shifted, 5));
   // A change of exposure is no motion.
   Image<float> brighter = with_person;
   for (float& level : brighter.pixels) level = 1.2F * level + 9.0F;
-  EXPECT_TRUE(is_camera_stationary(before, brighter));
+  EXPECT_TRUE(is_camera_stationary(before, brighter, 1));
   // No edges to compare.
   EXPECT_FALSE(is_camera_stationary(Image<float>(160, 120, 9.0F), Image<float>(160, 120, 9.0F)));
   EXPECT_FALSE(is_camera_stationary(before, Image<float>()));
