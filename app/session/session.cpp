@@ -15,7 +15,7 @@ namespace roomradar {
 Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
     : map_(map),
       config_(config),
-      preparation_(prepare_room(map, config.poses == PoseOrigin::kTracked && !config.tiles)),
+      preparation_(prepare_room(map, config.poses != PoseOrigin::kRecorded && !config.tiles)),
       building_(config.tiles ? std::make_unique<BuildingTracker>(context_, *config.tiles) : nullptr),
       room_{.shape = Shape(context_), .tiles = building_ ? &building_->tiles() : nullptr},
       scene_(context_, room_.shape, config.scene),
@@ -24,6 +24,7 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   require_valid(config.physics);
   require_valid(config.picture);
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config.tracking_px;
+  locator_.use_recorded_poses = config.poses == PoseOrigin::kAuto;
   room_.shape.set(map.mesh, preparation_.tree.get());
   if (preparation_.patches.valid()) locator_.index.patches = preparation_.patches.get();
   set_extent(room_, map);
@@ -122,8 +123,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
     scene_.room_changed();
   while (building_ && building_->has_fault()) objects_.notify(building_->take_fault());
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });
-  if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate)
-    return pass_unlocated(whole, tracking.status);
+  if (!has_guess(tracking)) return pass_unlocated(whole, tracking.status);
   const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
   const ExpectedView& expected = times.timed("expected", [&]() -> const ExpectedView& {
     return scene_.render_expected(frame.depth_camera, T_world_camera);
@@ -140,11 +140,13 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
     scene_.mesh_surfaces(frame, T_world_camera, expected, foreground, objects_.fine_regions());
   });
   objects_.count_fine_cells();
-  if (!objects_.waiting_drops().empty())
+  const bool is_uncertain = tracking.status == TrackStatus::kUncertain;
+  if (!objects_.waiting_drops().empty() && !is_uncertain)
     times.timed("place",
                 [&] { objects_.release_waiting(frame, T_world_camera, expected, foreground, frames_); });
   begin(FramePart::kPhysics);  // Cyber Radar: R, M, L
-  const ContactCounts moved = times.timed("physics", [&] { return objects_.move(dt_s, frames_, times); });
+  const ContactCounts moved = times.timed(
+      "physics", [&] { return is_uncertain ? ContactCounts{} : objects_.move(dt_s, frames_, times); });
   std::vector<Departure> departures = objects_.end_departures();
   times.add_ms("contact", ms_since(handed_over));
   begin(FramePart::kCompose);
@@ -155,7 +157,8 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   composer_.end_frame(T_world_camera);
   ++frames_;
   FrameResult result;
-  result.status = FrameStatus::kDone;
+  result.status = is_uncertain ? FrameStatus::kUncertain : FrameStatus::kDone;
+  if (config_.poses != PoseOrigin::kRecorded) result.sigma = pose_sigma(tracking);
   result.tracking = tracking.status;
   result.picture_is_new = makes_picture;
   result.T_world_camera = T_world_camera;

@@ -46,9 +46,9 @@ void set_origin(RecordingFacts& facts, Origin origin, const std::string& source)
   facts.camera_source = source;
 }
 
-/// Returns true if a stated focal length is that of the device assumed until then, to 3 %. If not, the device is
-/// another one, and so is its colour camera. With a single matrix, as in the 3DMatch and TSDF-Fusion datasets,
-/// depth is registered to colour.
+/// Returns true if a stated focal length is that of the device assumed until then, to 3 %. If not, the device
+/// is another one, and so is its colour camera. With a single matrix, as in the 3DMatch and TSDF-Fusion
+/// datasets, depth is registered to colour.
 bool is_same_device(const Intrinsics& stated, const Intrinsics& assumed) {
   constexpr double kSame = 0.03;
   return std::abs(stated.fx_px / assumed.fx_px - 1.0) < kSame;
