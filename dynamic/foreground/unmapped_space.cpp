@@ -25,23 +25,23 @@ bool is_same_view(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T
 
 /// Gives blocks that no surface reached, between blocks that surfaces reached, the nearest one beside them.
 void close_cracks(const BlockGrid& grid, const std::vector<float>& model_m,
-                  const std::vector<BlockSurface>& from, std::vector<BlockSurface>& to) {
+                  std::vector<BlockSurface>& surfaces) {
   constexpr int kFewest = 5;  // of eight neighbours
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t i = grid.at(column, row);
-      if (model_m[i] > 0.0F || from[i].depth_m > 0.0F) continue;
+      if (model_m[i] > 0.0F || surfaces[i].depth_m > 0.0F) continue;
       const BlockSurface* nearest = nullptr;
       int around = 0;
       for (int v = std::max(row - 1, 0); v <= std::min(row + 1, grid.rows - 1); ++v) {
         for (int u = std::max(column - 1, 0); u <= std::min(column + 1, grid.columns - 1); ++u) {
-          const BlockSurface& beside = from[grid.at(u, v)];
+          const BlockSurface& beside = surfaces[grid.at(u, v)];
           if (!(beside.depth_m > 0.0F)) continue;
           ++around;
           if (nearest == nullptr || beside.depth_m < nearest->depth_m) nearest = &beside;
         }
       }
-      if (around >= kFewest) to[i] = *nearest;
+      if (around >= kFewest) surfaces[i] = *nearest;
     }
   }
 }
@@ -69,29 +69,44 @@ void warp_surfaces(const Intrinsics& camera, const Eigen::Isometry3f& T_camera_w
     target.depth_m = p.z();
     any = true;
   }
-  surfaces = reached;
-  if (any) close_cracks(grid, model_m, reached, surfaces);
+  surfaces.swap(reached);
+  if (any) close_cracks(grid, model_m, surfaces);
 }
 
-/// Warps the counts by the camera's rotation, since nothing has no distance.
-void warp_empty(const Intrinsics& camera, const Eigen::Matrix3f& R_before_now, UnmappedSpace& space) {
+/// Returns true for rows, or columns, that are not in the sensor's margin.
+bool is_inside_margin(const std::vector<std::uint8_t>& measures, int i) {
+  constexpr int kMargin = 8;  // the margin is at most an eighth of the image on either side
+  const int size = static_cast<int>(measures.size());
+  return measures[static_cast<std::size_t>(i)] != 0 || (kMargin * i >= size && kMargin * (size - i) > size);
+}
+
+/// Warps the counts by the camera's rotation, since nothing has no distance. What leaves the sensor's margin
+/// was not measured there, whatever it is.
+void warp_empty(const Intrinsics& camera, const Eigen::Matrix3f& R_before_now,
+                const std::vector<float>& model_m, UnmappedSpace& space) {
   const BlockGrid grid = space.grid;
   space.empty_before.swap(space.empty);
   const auto fx = static_cast<float>(camera.fx_px), fy = static_cast<float>(camera.fy_px);
   const auto cx = static_cast<float>(camera.cx_px), cy = static_cast<float>(camera.cy_px);
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
+      std::uint8_t& empty = space.empty[grid.at(column, row)];
+      empty = 0;
+      if (model_m[grid.at(column, row)] > 0.0F) continue;
       const auto x = static_cast<float>(column * kBlock_px + kBlock_px / 2);
       const auto y = static_cast<float>(row * kBlock_px + kBlock_px / 2);
       const Eigen::Vector3f ray = R_before_now * Eigen::Vector3f((x - cx) / fx, (y - cy) / fy, 1.0F);
-      std::uint8_t& empty = space.empty[grid.at(column, row)];
-      empty = 0;
       if (!(ray.z() > 0.05F)) continue;
       const float u = ray.x() / ray.z() * fx + cx + 0.5F, v = ray.y() / ray.z() * fy + cy + 0.5F;
       if (!(u >= 0.0F && v >= 0.0F && u < static_cast<float>(camera.width_px) &&
             v < static_cast<float>(camera.height_px)))
         continue;
-      empty = space.empty_before[grid.at(static_cast<int>(u) / kBlock_px, static_cast<int>(v) / kBlock_px)];
+      const int from_column = static_cast<int>(u) / kBlock_px, from_row = static_cast<int>(v) / kBlock_px;
+      const bool leaves_margin =
+          (is_inside_margin(space.column_measures, column) &&
+           !is_inside_margin(space.column_measures, from_column)) ||
+          (is_inside_margin(space.row_measures, row) && !is_inside_margin(space.row_measures, from_row));
+      if (!leaves_margin) empty = space.empty_before[grid.at(from_column, from_row)];
     }
   }
 }
@@ -126,13 +141,6 @@ float tolerance_at(float z_m, const DepthNoise& noise) {
   return kAnotherSurface * z_m + kSigmas * depth_sigma_m(noise, z_m);
 }
 
-/// Returns true for rows, or columns, that are not in the sensor's margin.
-bool is_inside_margin(const std::vector<std::uint8_t>& measures, int i) {
-  constexpr int kMargin = 8;  // the margin is at most an eighth of the image on either side
-  const int size = static_cast<int>(measures.size());
-  return measures[static_cast<std::size_t>(i)] != 0 || (kMargin * i >= size && kMargin * (size - i) > size);
-}
-
 /// Adds the rows and columns that measure anything in this frame, along every fourth row and column of
 /// blocks.
 void find_margin(const DepthImage& depth_m, UnmappedSpace& space) {
@@ -145,22 +153,29 @@ void find_margin(const DepthImage& depth_m, UnmappedSpace& space) {
       space.column_measures[x / kBlock_px] = depth_m.at(x, y) > 0.0F ? 1 : 0;
 }
 
-/// Returns true if a surface in a block continues the model, or one that has long been seen, within two
-/// blocks.
-bool continues_what_is_there(const UnmappedSpace& space, const std::vector<float>& model_m, int column,
+/// How the surface in a block goes on within two blocks around it.
+struct Continuation {
+  bool is_standing = false;  ///< the model, or a surface that has been there for a while
+  bool is_moving = false;    ///< a surface that has come and was dynamic in the last frame
+};
+
+Continuation continuation_of(const UnmappedSpace& space, const std::vector<float>& model_m, int column,
                              int row, float z_m, float tolerance_m) {
   constexpr int kReach = 2;
   const BlockGrid& grid = space.grid;
+  Continuation found;
   for (int v = std::max(row - kReach, 0); v <= std::min(row + kReach, grid.rows - 1); ++v) {
     for (int u = std::max(column - kReach, 0); u <= std::min(column + kReach, grid.columns - 1); ++u) {
       const std::size_t i = grid.at(u, v);
       const BlockSurface& seen = space.nearest[i];
-      const bool is_old = seen.has_come == 0 && seen.frames >= kStanding_frames;
-      const float there_m = model_m[i] > 0.0F ? model_m[i] : is_old ? seen.depth_m : 0.0F;
-      if (there_m > 0.0F && std::abs(there_m - z_m) <= tolerance_m) return true;
+      const float there_m = model_m[i] > 0.0F ? model_m[i] : seen.depth_m;
+      if (!(there_m > 0.0F && std::abs(there_m - z_m) <= tolerance_m)) continue;
+      found.is_standing |=
+          model_m[i] > 0.0F || (seen.has_come == 0 && seen.has_moved == 0 && seen.frames >= kStanding_frames);
+      found.is_moving |= !(model_m[i] > 0.0F) && seen.has_come != 0 && seen.has_moved != 0;
     }
   }
-  return false;
+  return found;
 }
 
 }  // namespace
@@ -175,13 +190,14 @@ void warp_unmapped(const Intrinsics& camera, const Eigen::Isometry3d& T_world_ca
     for (auto* surfaces : {&space.farthest, &space.nearest, &space.reached})
       surfaces->assign(grid.size(), {});
     for (auto* counts : {&space.empty, &space.empty_before}) counts->assign(grid.size(), 0);
+    space.measured_m.assign(grid.size(), 0.0F);
     space.row_measures.assign(static_cast<std::size_t>(grid.rows), 0);
     space.column_measures.assign(static_cast<std::size_t>(grid.columns), 0);
     return;
   }
   if (is_same_view(space.T_world_camera, T_world_camera)) return;
   warp_empty(camera, (space.T_world_camera.linear().transpose() * T_world_camera.linear()).cast<float>(),
-             space);
+             model_m, space);
   space.T_world_camera = T_world_camera;
   const Eigen::Isometry3f T_camera_world = T_world_camera.inverse().cast<float>();
   warp_surfaces(camera, T_camera_world, space.grid, model_m, space.reached, space.farthest);
@@ -203,6 +219,7 @@ void see_what_came(const DepthImage& depth_m, const std::vector<float>& model_m,
       const std::size_t i = grid.at(column, row);
       if (model_m[i] > 0.0F) continue;
       const BlockDepth depth = depth_of(depth_m, column, row);
+      space.measured_m[i] = depth.farthest_m;
       BlockSurface& seen = space.nearest[i];
       std::uint8_t& empty = space.empty[i];
       if (depth.measured == 0) {
@@ -219,14 +236,17 @@ void see_what_came(const DepthImage& depth_m, const std::vector<float>& model_m,
         seen.unseen = 0;
         if (seen.frames < kMostFrames) ++seen.frames;
       } else if (depth.measured >= kLeastMeasured || !was_there) {
-        // Behind a thing that has come is what was there before, if anything was: else, more of the thing.
-        const bool is_same_thing = seen.has_come != 0 && !(space.farthest[i].depth_m > 0.0F);
-        const bool was_empty = empty >= kEmpty_frames && is_inside_margin(space.row_measures, row) &&
-                               is_inside_margin(space.column_measures, column);
-        const bool has_come = depth.measured >= kLeastMeasured &&
-                              (was_there ? z_m < seen.depth_m || is_same_thing : was_empty) &&
-                              !continues_what_is_there(space, model_m, column, row, z_m, tolerance_m);
-        seen = {point_world(space, column, row, z_m), z_m, 0, 0, static_cast<std::uint8_t>(has_come)};
+        // What is nearer than a surface that was there is known from see_background(). Behind a thing that
+        // has come is what was there before, if anything was; else, more of the thing.
+        const Continuation on = continuation_of(space, model_m, column, row, z_m, tolerance_m);
+        const float behind_m = space.farthest[i].depth_m;
+        const bool is_behind = behind_m > 0.0F && z_m >= behind_m - tolerance_m;
+        const bool is_same_thing = (was_there && seen.has_come != 0) || on.is_moving;
+        const bool is_new = !was_there && empty >= kEmpty_frames;
+        const bool has_come =
+            depth.measured >= kLeastMeasured && !on.is_standing && (is_new || (is_same_thing && !is_behind));
+        seen = {point_world(space, column, row, z_m), z_m,           0, 0,
+                static_cast<std::uint8_t>(has_come),  seen.has_moved};
       }
       empty = 0;
     }
@@ -241,15 +261,17 @@ void see_background(const DepthImage& depth_m, const MaskImage& dynamic_mask,
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t i = grid.at(column, row);
       if (model_m[i] > 0.0F) continue;
-      const float farthest_m = depth_of(depth_m, column, row).farthest_m;
+      const float farthest_m = space.measured_m[i];
       if (!(farthest_m > 0.0F)) continue;
       const int x = std::min(column * kBlock_px + kBlock_px / 2, depth_m.width - 1);
       const int y = std::min(row * kBlock_px + kBlock_px / 2, depth_m.height - 1);
-      if (dynamic_mask.at(x, y) != 0) {
-        BlockSurface& nearest = space.nearest[i];
+      BlockSurface& nearest = space.nearest[i];
+      nearest.has_moved = dynamic_mask.at(x, y) != 0 ? 1 : 0;
+      if (nearest.has_moved != 0) {
         if (nearest.frames > 0 && space.frames % kSlowdown != 0) --nearest.frames;
         continue;
       }
+      if (nearest.has_come != 0) continue;
       BlockSurface& seen = space.farthest[i];
       const float apart_m = farthest_m - seen.depth_m;
       const float noise_m = kSigmas * depth_sigma_m(noise, farthest_m);

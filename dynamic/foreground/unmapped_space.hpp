@@ -16,10 +16,11 @@ namespace roomradar {
 /// A surface seen in one block of 4 x 4 pixels.
 struct BlockSurface {
   Eigen::Vector3f p_world_m = Eigen::Vector3f::Zero();
-  float depth_m = 0.0F;       ///< in the camera of UnmappedSpace; 0: none
-  std::uint8_t frames = 0;    ///< number of frames that agreed, up to a limit
-  std::uint8_t unseen = 0;    ///< number of frames without any measurement since
-  std::uint8_t has_come = 0;  ///< 1: it is nearer than what was there, or nothing was there
+  float depth_m = 0.0F;        ///< in the camera of UnmappedSpace; 0: none
+  std::uint8_t frames = 0;     ///< number of frames that agreed, up to a limit
+  std::uint8_t unseen = 0;     ///< number of frames without any measurement since
+  std::uint8_t has_come = 0;   ///< 1: it is nearer than what was there, or nothing was there
+  std::uint8_t has_moved = 0;  ///< 1: the last frame found it dynamic
 };
 
 /// Memory of one camera, ignored if the intrinsics change. All vectors have one value per block.
@@ -37,6 +38,7 @@ struct UnmappedSpace {
 
   std::vector<BlockSurface> reached;  // scratch
   std::vector<std::uint8_t> empty_before;
+  std::vector<float> measured_m;  // farthest measured depth of this frame, set by see_what_came()
 };
 
 /// Moves the memory into this frame's view. What leaves the view, or gets into a block with a model, is
@@ -46,9 +48,10 @@ void warp_unmapped(const Intrinsics& camera, const Eigen::Isometry3d& T_world_ca
                    const std::vector<float>& model_m, UnmappedSpace& space);
 
 /// Updates `nearest` and `empty` from this frame, in the blocks without any surface of the model. A surface
-/// has come if it is nearer than what was there, or if nothing was measured there in the last frames. But
-/// where it continues the model, or a surface that has been there for a while, it is a part of that, which
-/// was not measured before.
+/// has come if nothing was measured there in the last frames, or if it goes on with one that has come and was
+/// dynamic. But where it goes on with the model, or with a surface that has been there for a while, it is a
+/// part of that, which was not measured before.
+/// @param model_m  per block: depth of the static model; 0: none
 void see_what_came(const DepthImage& depth_m, const std::vector<float>& model_m, const DepthNoise& noise,
                    UnmappedSpace& space);
 
