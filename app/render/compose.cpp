@@ -142,7 +142,8 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
-                  std::span<const ShadowCaster> casters, const ComposeConfig& config, ColourImage& picture) {
+                  std::span<const ShadowCaster> casters, const ComposeConfig& config, ColourImage& picture,
+                  const MaskImage* is_decided) {
   require_size("the background", background, camera.width_px, camera.height_px);
   require_size("the real depth", real_depth_m, camera.width_px, camera.height_px);
   picture.width = background.width;
@@ -164,8 +165,12 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
   if (align_shadow_edges(background, rect, rect_depth_m, config.occlusion.edge_reach_px, light_left,
                          aligned_m)) {
     const Image<float> aligned_light_left = light_left_of(aligned_m);
-    for (std::size_t i = 0; i < aligned_m.pixels.size(); ++i)
-      if (aligned_m.pixels[i] > 0.0F) light_left.pixels[i] = aligned_light_left.pixels[i];
+    for (int y = 0; y < rect.height; ++y) {
+      for (int x = 0; x < rect.width; ++x) {
+        if (is_decided != nullptr && is_decided->at(rect.x + x, rect.y + y) != 0) continue;
+        if (aligned_m.at(x, y) > 0.0F) light_left.at(x, y) = aligned_light_left.at(x, y);
+      }
+    }
   }
   for (int y = 0; y < rect.height; ++y) {
     const float* left = light_left.row(y);

@@ -55,11 +55,15 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 ///                         shadow
 /// @param casters          objects that cast a shadow
 /// @param config           shadow_strength and occlusion.edge_reach_px are used
+/// @param is_decided       of the size of `camera`; not 0: real_depth_m agrees with the colours already.
+/// Null:
+///                         in no pixel
 /// @param[out] picture     resized to the size of `camera`; must not be `background`
 /// @throws Error if sizes differ
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
-                  std::span<const ShadowCaster> casters, const ComposeConfig& config, ColourImage& picture);
+                  std::span<const ShadowCaster> casters, const ComposeConfig& config, ColourImage& picture,
+                  const MaskImage* is_decided = nullptr);
 
 /// Blends the objects over an image that already contains their shadows.
 ///

@@ -28,6 +28,15 @@ Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eig
   return T_world_now * T_now_then;
 }
 
+/// Returns true if a pixel of the rectangle has no depth.
+bool has_gap(const DepthImage& depth_m, const PixelRect& rect) {
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    const float* row = depth_m.row(y) + rect.x;
+    if (std::any_of(row, row + rect.width, [](float z_m) { return !(z_m > 0.0F); })) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 PictureComposer::PictureComposer(GlContext& context, FrameScene& scene,
@@ -173,8 +182,16 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
   if (rect.width > 0 && rect.height > 0)
     scene_.render_surfaces(camera, T_world_view, rect, buffers_.real_depth_m);
+  const bool uses_measured = scene_.foreground().counts.moved > 0 || has_gap(buffers_.real_depth_m, rect);
+  if (uses_measured) {
+    view_measured(frame.depth_m, scene_.foreground().dynamic_mask, frame.depth_camera,
+                  T_world_view.inverse() * T_world_camera, camera, rect, buffers_.measured);
+    add_measured(buffers_.measured, frame.depth_noise, buffers_.real_depth_m);
+    bridge_gaps(buffers_.background, buffers_.measured, buffers_.real_depth_m);
+  }
+  const MaskImage* is_decided = uses_measured ? &buffers_.measured.is_decided : nullptr;
   cast_shadows(buffers_.background, camera, T_world_view, buffers_.real_depth_m, casters, config_.picture,
-               picture_);
+               picture_, is_decided);
   buffers_.patches.clear();
   for (const auto& object : objects_)
     if (rests_on_unknown(*object))

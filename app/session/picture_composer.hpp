@@ -12,6 +12,7 @@
 #include "app/render/draw.hpp"
 #include "app/render/hatched_patch.hpp"
 #include "app/render/light_estimate.hpp"
+#include "app/render/measured_view.hpp"
 #include "app/render/occlusion.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/session_config.hpp"
@@ -79,6 +80,7 @@ class PictureComposer {
   struct Buffers {
     /// Depth of the real surfaces in the picture's view, in the pixels around objects.
     DepthImage real_depth_m;
+    MeasuredView measured;              ///< what the frame measured, in the picture's view
     std::vector<HatchedPatch> patches;  ///< hatched areas under objects that rest on unknown space
     ObjectReaches reaches;              ///< in the order of the objects
     Feet feet;

@@ -302,11 +302,12 @@ TEST(Compose, AShadowEndsAtTheColourEdgeOfWhatStandsInIt) {
     const int depth_edge_px = kEdge_px + (y * 7) % 9 - 4;
     for (int x = depth_edge_px; x < 64; ++x) depth_m.at(x, y) = 0.6F;
   }
-  const auto wrong_pixels = [&](int edge_reach_px) {
+  const MaskImage all_decided(64, 48, 255);
+  const auto wrong_pixels = [&](int edge_reach_px, const MaskImage* is_decided = nullptr) {
     ComposeConfig config;
     config.occlusion.edge_reach_px = edge_reach_px;
     ColourImage picture;
-    cast_shadows(image, kCamera, T_world_camera, depth_m, {&caster, 1}, config, picture);
+    cast_shadows(image, kCamera, T_world_camera, depth_m, {&caster, 1}, config, picture, is_decided);
     int wrong = 0;
     for (int y = 20; y < 28; ++y) {
       for (int x = kEdge_px - 5; x < kEdge_px + 5; ++x) {
@@ -318,6 +319,7 @@ TEST(Compose, AShadowEndsAtTheColourEdgeOfWhatStandsInIt) {
   };
   EXPECT_GT(wrong_pixels(0), 10);
   EXPECT_EQ(wrong_pixels(5), 0);
+  EXPECT_EQ(wrong_pixels(5, &all_decided), wrong_pixels(0)) << "depth that is decided stays";
 
   // Without a difference of colour the shadow's edge stays within the band, and what has no depth stays lit.
   image = ColourImage(64, 48, kGrey);
