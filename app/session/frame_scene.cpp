@@ -1,9 +1,11 @@
 // frame_scene.cpp: expected depth, dynamic pixels and their mesh, frame by frame.
 #include "app/session/frame_scene.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "app/session/tiles/unloaded_space.hpp"
+#include "radar/gl/projection.hpp"
 
 namespace roomradar {
 namespace {
@@ -82,15 +84,37 @@ const FrameForeground& FrameScene::find_dynamic(const Frame& frame, const Expect
   return foreground_;
 }
 
+void FrameScene::find_touchable(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                                const LabelImage& labels, std::span<const FineRegion> objects) {
+  constexpr double kNear_m = 0.3;  // an object does not move farther in a frame
+  MaskImage& touchable = buffers_.touchable;
+  touchable = foreground_.dynamic_mask;
+  for (const FineRegion& object : objects) {
+    const double reach_m = object.radius_m + kNear_m;
+    const Eigen::Vector3d centre = T_world_camera.inverse() * object.centre_world;
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(reach_m);
+    const PixelRect rect = clamped(pixels_of(Eigen::AlignedBox3d(centre - reach, centre + reach),
+                                             frame.depth_camera, Eigen::Isometry3d::Identity(), 0.05),
+                                   labels.width, labels.height);
+    for (int y = rect.y; y < rect.y + rect.height; ++y)
+      for (int x = rect.x; x < rect.x + rect.width; ++x)
+        if (labels.at(x, y) == PixelLabel::kUnmapped &&
+            std::abs(frame.depth_m.at(x, y) - centre.z()) < reach_m)
+          touchable.at(x, y) = 255;
+  }
+}
+
 void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                                const ExpectedView& expected, const FrameForeground& foreground,
-                               std::span<const FineRegion> fine) {
+                               std::span<const FineRegion> fine, std::span<const FineRegion> objects) {
   if (config_.surfaces != SurfacePolicy::kMap) return mesh_all_pixels(frame, T_world_camera);
   config_.moved.noise = frame.depth_noise;
-  mesh_dynamic(frame.depth_m, foreground.dynamic_mask, expected.depth_m, frame.depth_camera, T_world_camera,
-               fine, config_.moved, buffers_.dynamic, dynamic_world_);
+  find_touchable(frame, T_world_camera, foreground.labels, objects);
+  const MaskImage& touchable = buffers_.touchable;
+  mesh_dynamic(frame.depth_m, touchable, expected.depth_m, frame.depth_camera, T_world_camera, fine,
+               config_.moved, buffers_.dynamic, dynamic_world_);
   points_world_.swap(last_points_world_);
-  dynamic_points(frame.depth_m, foreground.dynamic_mask, frame.depth_camera, T_world_camera, points_world_);
+  dynamic_points(frame.depth_m, touchable, frame.depth_camera, T_world_camera, points_world_);
   inferred_.build_in_order(dynamic_world_.inferred_world);
   moved_.set(dynamic_world_.seen_world, MeshUsage::kStreamed);
 }

@@ -76,12 +76,13 @@ class FrameScene {
   const MaskImage& previous_dynamic_mask(const Intrinsics& camera);
   /// Labels the frame's pixels from live depth, expected depth and the previous frame's labels.
   const FrameForeground& find_dynamic(const Frame& frame, const ExpectedView& expected);
-  /// With kMap, meshes the dynamic pixels and infers the back of the dynamic surface. The mesh has full
-  /// resolution in the regions `fine`. With other policies, meshes all pixels.
+  /// With kMap, meshes the dynamic pixels and infers the back of the dynamic surface. Pixels in front of space
+  /// that the map does not know are meshed, too, as far as they are near `objects`. The mesh has full resolution
+  /// in the regions `fine`. With other policies, meshes all pixels.
   /// @param expected, foreground  results of the previous steps for this frame
   void mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                      const ExpectedView& expected, const FrameForeground& foreground,
-                     std::span<const FineRegion> fine = {});
+                     std::span<const FineRegion> fine = {}, std::span<const FineRegion> objects = {});
   /// Meshes all pixels. Used by the policies other than kMap, which need no foreground.
   void mesh_all_pixels(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
@@ -127,6 +128,7 @@ class FrameScene {
   std::vector<Eigen::Vector3d> points_world_, last_points_world_;
   TriangleTree inferred_;  ///< inferred backs; can be touched, but are never drawn
   struct Buffers {
+    MaskImage touchable;  ///< pixels to mesh: those that moved, and those in front of unmapped space
     DepthMeshScratch mesh;
     DynamicSurfaceScratch dynamic;
     std::vector<MeshInstance> drawn;
@@ -134,6 +136,9 @@ class FrameScene {
   };
   Buffers buffers_;
 
+  /// Sets buffers_.touchable.
+  void find_touchable(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const LabelImage& labels,
+                      std::span<const FineRegion> objects);
   void add_room(std::vector<MeshInstance>& drawn);
   void hide_unloaded(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 };

@@ -244,6 +244,13 @@ std::vector<FineRegion> ObjectSet::fine_regions() const {
   return config_.fine_mesh ? roomradar::fine_regions(objects_) : std::vector<FineRegion>{};
 }
 
+std::vector<FineRegion> ObjectSet::bounding_balls() const {
+  constexpr double kEverything_m = 1e3;
+  std::vector<FineRegion> balls = roomradar::fine_regions(objects_);
+  if (!waiting_.empty()) balls.push_back({Eigen::Vector3d::Zero(), kEverything_m});
+  return balls;
+}
+
 void ObjectSet::count_fine_cells() {
   const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
   set_fine_cells(objects_, has_map ? scene_.dynamic_cells().fine_of_region : std::vector<std::uint32_t>{});

@@ -87,6 +87,8 @@ class ObjectSet {
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
   /// Returns balls in which the dynamic mesh gets full resolution; none unless config.fine_mesh.
   [[nodiscard]] std::vector<FineRegion> fine_regions() const;
+  /// Returns a ball around each object in the room; one around everything while a drop waits for a place.
+  [[nodiscard]] std::vector<FineRegion> bounding_balls() const;
   /// Sets VirtualObject::fine_cells of all objects from the scene's last dynamic mesh.
   void count_fine_cells();
 

@@ -137,7 +137,8 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
       static_cast<double>(foreground.counts.moved) / static_cast<double>(frame.depth_m.pixels.size());
   begin(FramePart::kMesh);
   times.timed("mesh", [&] {
-    scene_.mesh_surfaces(frame, T_world_camera, expected, foreground, objects_.fine_regions());
+    scene_.mesh_surfaces(frame, T_world_camera, expected, foreground, objects_.fine_regions(),
+                         objects_.bounding_balls());
   });
   objects_.count_fine_cells();
   const bool is_uncertain = tracking.status == TrackStatus::kUncertain;

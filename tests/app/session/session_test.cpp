@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 #include <tuple>
@@ -172,6 +173,69 @@ TEST(Session, WhatMovedNeedsNoColour) {
     EXPECT_EQ(result.foreground.moved, 40U * 50U) << has_colour;
     EXPECT_GT(result.dynamic_triangles, 0U) << has_colour;
     EXPECT_EQ(session.picture().width, has_colour ? 320 : 160);
+  }
+}
+
+TEST(Session, WhatIsMeasuredHidesAnObjectBehindItWhereTheMapKnowsNothing) {
+  // A man at 0.8 m fills the left half of a view without any map; a pot is held 1.5 m away, in the middle.
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  apply(session, event(Action::kAdd));
+  for (std::int64_t i = 0; i < 4; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    for (int y = 0; y < kCamera.height_px; ++y)
+      for (int x = 0; x < kCamera.width_px; ++x) frame.depth_m.at(x, y) = x < 80 ? 0.8F : 0.0F;
+    give_colour(frame);
+    session.carry("pot", kAtTheSky * Eigen::Vector3d(0.0, 0.0, 1.5));
+    static_cast<void>(session.step(frame, times));
+  }
+  int left = 0, right = 0;
+  for (int y = 0; y < 240; ++y)
+    for (int x = 0; x < 320; ++x)
+      if (const Rgb& pixel = session.picture().at(x, y); pixel.r > 40) (x < 157 ? left : right) += 1;
+  EXPECT_EQ(left, 0) << "drawn over the man";
+  EXPECT_GT(right, 100);
+}
+
+TEST(Session, WhatIsMeasuredHoldsAnObjectUpWhereTheMapKnowsNothing) {
+  // The floor's middle was not mapped, and is not measured. A box stands there that the map does not know.
+  SavedMap map = floor_map();
+  map.mesh.vertices = {{-2, -2, 0},   {-0.25, -2, 0}, {-0.25, 2, 0}, {-2, 2, 0},
+                       {0.25, -2, 0}, {2, -2, 0},     {2, 2, 0},     {0.25, 2, 0}};
+  map.mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  const test::Scene box = test::box({Eigen::Vector3d(-0.2, -0.2, 0.0), Eigen::Vector3d(0.2, 0.2, 0.5)});
+  for (const bool has_box : {true, false}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    apply(session, event(Action::kAdd));
+    Frame frame = depth_only(0, kAtTheFloor);
+    for (int y = 0; y < kCamera.height_px; ++y) {
+      for (int x = 0; x < kCamera.width_px; ++x) {
+        const Eigen::Vector3d ray = kAtTheFloor.linear() * back_project(kCamera, x, y, 1.0);
+        const Eigen::Vector3d eye = kAtTheFloor.translation();
+        const double box_m = has_box ? box(eye, ray) : test::kNoHit;
+        const double floor_m = test::plane({0, 0, 1}, 0.0)(eye, ray);
+        const bool is_hole = std::abs(eye.x() + floor_m * ray.x()) < 0.25;
+        const double z_m = std::min(box_m, is_hole ? test::kNoHit : floor_m);
+        frame.depth_m.at(x, y) = z_m < 5.0 ? static_cast<float>(z_m) : 0.0F;
+      }
+    }
+    const VirtualObject& pot = *session.objects().front();
+    double lowest_bottom_m = 1.0;
+    for (frame.index = 0; frame.index < 40; ++frame.index) {
+      frame.stamp_s = static_cast<double>(frame.index) / 30.0;
+      if (frame.index == 2) session.drop({.name = "pot", .position_world = Eigen::Vector3d(0.0, 0.0, 0.6)});
+      static_cast<void>(session.step(frame, times));
+      if (frame.index > 2)
+        lowest_bottom_m =
+            std::min(lowest_bottom_m, pot.body.T_world_object.translation().z() + lowest_m(pot));
+    }
+    if (has_box) {
+      EXPECT_GT(lowest_bottom_m, 0.48);
+    } else {
+      EXPECT_LT(lowest_bottom_m, 0.0) << "without the box nothing holds it up, or the test says nothing";
+    }
   }
 }
 
