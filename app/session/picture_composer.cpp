@@ -28,13 +28,17 @@ Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eig
   return T_world_now * T_now_then;
 }
 
-/// Returns true if a pixel of the rectangle has no depth.
-bool has_gap(const DepthImage& depth_m, const PixelRect& rect) {
+/// Returns the smallest rectangle of the pixels in `rect` that have no depth.
+PixelRect without_depth(const DepthImage& depth_m, const PixelRect& rect) {
+  PixelRect gaps;
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
-    const float* row = depth_m.row(y) + rect.x;
-    if (std::any_of(row, row + rect.width, [](float z_m) { return !(z_m > 0.0F); })) return true;
+    const float* row = depth_m.row(y);
+    int first = rect.x, last = rect.x + rect.width - 1;
+    while (first <= last && row[first] > 0.0F) ++first;
+    while (last > first && row[last] > 0.0F) --last;
+    if (first <= last) gaps = united(gaps, {first, y, last - first + 1, 1});
   }
-  return false;
+  return gaps;
 }
 
 }  // namespace
@@ -182,14 +186,16 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
   if (rect.width > 0 && rect.height > 0)
     scene_.render_surfaces(camera, T_world_view, rect, buffers_.real_depth_m);
-  const bool uses_measured = scene_.foreground().counts.moved > 0 || has_gap(buffers_.real_depth_m, rect);
-  if (uses_measured) {
+  // Without anything dynamic, measured depth matters only where the map has none.
+  const bool has_moved = scene_.foreground().counts.moved > 0;
+  const PixelRect measured = has_moved ? rect : without_depth(buffers_.real_depth_m, rect);
+  if (measured.width > 0) {
     view_measured(frame.depth_m, scene_.foreground().dynamic_mask, frame.depth_camera,
-                  T_world_view.inverse() * T_world_camera, camera, rect, buffers_.measured);
+                  T_world_view.inverse() * T_world_camera, camera, measured, buffers_.measured);
     add_measured(buffers_.measured, frame.depth_noise, buffers_.real_depth_m);
-    bridge_gaps(buffers_.background, buffers_.measured, buffers_.real_depth_m);
+    if (has_moved) bridge_gaps(buffers_.background, buffers_.measured, buffers_.real_depth_m);
   }
-  const MaskImage* is_decided = uses_measured ? &buffers_.measured.is_decided : nullptr;
+  const MaskImage* is_decided = has_moved && measured.width > 0 ? &buffers_.measured.is_decided : nullptr;
   cast_shadows(buffers_.background, camera, T_world_view, buffers_.real_depth_m, casters, config_.picture,
                picture_, is_decided);
   buffers_.patches.clear();

@@ -41,23 +41,53 @@ Belief belief_in(const ConnectedComponent& region, const Difference& difference,
   return is_large(region, camera, config) ? Belief::kMaybe : Belief::kNone;
 }
 
+// Returns true if evidence in a block is more than the flicker of an edge far away: the block has a model, or
+// all blocks around it have evidence as well.
+bool is_firm(const ForegroundState& state, int column, int row, std::uint8_t strong) {
+  const BlockGrid& grid = state.bounds.grid;
+  const std::vector<std::uint8_t>& evidence = state.evidence.blocks.evidence;
+  if ((evidence[grid.at(column, row)] & strong) == 0) return false;
+  if (state.bounds.model_m[grid.at(column, row)] > 0.0F) return true;
+  for (int v = std::max(row - 1, 0); v <= std::min(row + 1, grid.rows - 1); ++v)
+    for (int u = std::max(column - 1, 0); u <= std::min(column + 1, grid.columns - 1); ++u)
+      if ((evidence[grid.at(u, v)] & strong) == 0) return false;
+  return true;
+}
+
+// Sets state.firm: per region, whether any of its blocks has firm evidence.
+void find_firm_regions(const DepthImage& depth_m, std::uint8_t strong, ForegroundState& state) {
+  const auto width = static_cast<std::uint32_t>(depth_m.width);
+  state.firm.reserve(depth_m.pixels.size());
+  state.firm.assign(state.regions.runs.size(), 0);
+  for (const PixelRun& run : state.regions.runs) {
+    const std::uint32_t y = run.first / width;
+    for (std::uint32_t x = run.first - y * width; x <= run.last - y * width && state.firm[run.region] == 0;
+         x += kBlock_px)
+      state.firm[run.region] =
+          is_firm(state, static_cast<int>(x) / kBlock_px, static_cast<int>(y) / kBlock_px, strong) ? 1 : 0;
+  }
+}
+
 // Labels the accepted regions of one kind; returns their number of pixels.
 std::size_t label_regions(const DepthImage& depth_m, const Difference& difference, const Intrinsics& camera,
                           const ForegroundConfig& config, ForegroundState& state, LabelImage& labels) {
   find_components(depth_m, state.evidence.bits, difference.bits, camera, config.noise, config.max_gap_px,
                   state.regions);
+  const bool is_moved = difference.label == PixelLabel::kMoved;
+  if (is_moved) find_firm_regions(depth_m, difference.bits.strong, state);
   const auto width = static_cast<std::uint32_t>(depth_m.width);
   std::size_t labelled = 0;
   for (const PixelRun& run : state.regions.runs) {
     const ConnectedComponent& region = state.regions.regions[run.region];
-    const Belief belief = belief_in(region, difference, camera, config);
+    const bool is_firm = !is_moved || state.firm[run.region] != 0;
+    const Belief belief = is_firm ? belief_in(region, difference, camera, config) : Belief::kNone;
     if (belief == Belief::kSure) {
       std::fill(labels.pixels.begin() + run.first, labels.pixels.begin() + run.last + 1, difference.label);
       labelled += run.last - run.first + 1;
     } else {
       for (std::uint32_t i = run.first; i <= run.last; ++i)
         if ((state.evidence.bits[i] & difference.bits.strong) != 0) labels.pixels[i] = PixelLabel::kNotKnown;
-      if (difference.label == PixelLabel::kMoved && is_large(region, camera, config))
+      if (is_moved && is_large(region, camera, config))
         for (std::uint32_t i = run.first; i <= run.last; ++i)
           if ((state.evidence.bits[i] & kInHole) != 0 && labels.pixels[i] == PixelLabel::kNotKnown)
             labels.pixels[i] = PixelLabel::kUnmapped;

@@ -28,6 +28,7 @@ struct ForegroundState {
   std::vector<std::uint8_t> before;  // `memory` warped into this frame: bits per block
   PixelEvidence evidence;
   ConnectedComponents regions;
+  std::vector<std::uint8_t> firm;  // per region of `regions`: has evidence that no flickering edge has
 };
 
 struct ForegroundCounts {
@@ -62,7 +63,8 @@ struct ForegroundCounts {
 ///
 /// A region is accepted if it is large enough and has a sufficient fraction of strong pixels. Both thresholds
 /// are lower where the previous frame had a region. A new region of less than three times min_region_px or
-/// min_region_m2 is accepted only if it persists for a second frame.
+/// min_region_m2 is accepted only if it persists for a second frame. In holes, a region needs a core of
+/// evidence 12 pixels wide.
 ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
                                  const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                                  const ForegroundConfig& config, ForegroundState& state, LabelImage& labels,
