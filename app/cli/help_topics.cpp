@@ -102,6 +102,8 @@ constexpr std::string_view kSources =
                      pace=WORD   steady, slow, waits or leaves (steady)
                      noise=X     0: none; 1: a Kinect's (1)
                      crate=WORD  0, 1, comes or goes (0)
+                     moved=X     of `random`: share of the furniture that stands elsewhere, 0 to 1;
+                                 scanned on another path (0)
                      width=PX    width of the images (640)
                      colour=WORD registered, separate or none (registered)
                      faults=0|1  1: the cameras deviate from what they declare (0)

@@ -56,6 +56,7 @@ std::string description(const SimOptions& options) {
   json["movers"] = nlohmann::json::array();
   for (const MoverKind kind : options.movers) json["movers"].push_back(to_string(kind));
   json["crate"] = to_string(options.crate);
+  if (options.moved > 0.0) json["moved"] = options.moved;
   json["noise_scale"] = options.noise_scale;
   const Intrinsics& camera = options.depth_camera;
   json["depth_camera"] = {{"width_px", camera.width_px}, {"height_px", camera.height_px},

@@ -31,7 +31,7 @@ void require_room(std::string_view name) {
   throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known);
 }
 
-Room make_room(std::string_view name, bool crate, std::uint64_t seed) {
+Room make_room(std::string_view name, bool crate, std::uint64_t seed, double moved) {
   require_room(name);
   if (name == kBuildingRoom)
     throw Error("the simulated building is not a single room; use it as a source, sim:building");
@@ -43,7 +43,7 @@ Room make_room(std::string_view name, bool crate, std::uint64_t seed) {
   } else if (name == "wall") {
     room = make_wall_room();
   } else if (name == kRandomRoom) {
-    room = make_random_room(seed);
+    room = make_random_room(seed, {.half_m = {}, .doorways = {}, .moved = moved});
   } else if (name == kFlatRoom) {
     room = make_flat(seed);
   } else {

@@ -106,8 +106,9 @@ void require_room(std::string_view name);
 /// Builds the solids, materials and lamps of a named room.
 /// @param crate  true: adds a crate on the ball's path
 /// @param seed   selects the furniture of kRandomRoom and kFlatRoom; other rooms do not depend on it
+/// @param moved  share of the pieces of furniture of kRandomRoom that stand elsewhere than they do at 0
 /// @throws Error if `name` is unknown (listing the known names), or if it is kBuildingRoom
-Room make_room(std::string_view name, bool crate = false, std::uint64_t seed = 1);
+Room make_room(std::string_view name, bool crate = false, std::uint64_t seed = 1, double moved = 0.0);
 
 /// Size of the crate that make_room() can add.
 inline const Eigen::Vector3d kCrateSize_m{0.24, 0.18, 0.22};

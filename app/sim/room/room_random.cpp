@@ -17,12 +17,26 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// A piece of furniture with the things on it: Room::solids from `begin` up to `end`.
+struct Piece {
+  std::size_t begin = 0, end = 0;
+  Vector3d along = Vector3d::Zero();  ///< direction of the wall that it stands at; zero: it stands free
+};
+
 /// A room under construction: volumes kept free, and the random numbers it is drawn from.
 struct Furnishing {
   Room room;
   std::vector<Solid> kept_free;
   CounterRandom random;
   std::uint32_t next_look = 1000;
+  std::vector<Piece> pieces;  ///< in the order of Room::solids
+
+  /// Adds a piece that consists of what `furnish` puts into the room.
+  void add_piece(const Vector3d& along, const std::function<void()>& furnish) {
+    const std::size_t begin = room.solids.size();
+    furnish();
+    if (room.solids.size() > begin) pieces.push_back({begin, room.solids.size(), along});
+  }
 
   Material material(Pattern pattern, double darkest = 0.35) {
     const double light = random.uniform(darkest, 0.95), warm = random.uniform(-0.12, 0.12);
@@ -83,6 +97,7 @@ void put_things_on(Furnishing& f, const Eigen::Isometry3d& T_world_board, double
 
 /// Furnishes the centre with a table and chairs, a sofa and a low table, or crates; sets where movers may go.
 void furnish_middle(Furnishing& f) {
+  const Vector3d kFree = Vector3d::Zero();  // stands at no wall
   const double kind = f.random.uniform(), yaw_rad = f.random.uniform(-0.3, 0.3);
   const Material wood = f.material(Pattern::kWood), cloth = f.material(Pattern::kFabric);
   const double board_z = f.random.uniform(0.68, 0.78), board_y = f.random.uniform(0.7, 0.95),
@@ -94,15 +109,17 @@ void furnish_middle(Furnishing& f) {
   const Eigen::Isometry3d T_world_middle = standing_at(middle_x, middle_y, 0.0, yaw_rad);
   const Eigen::Isometry3d T_world_board = T_world_middle * standing_at(0, 0, board_m.z());
   f.room.focus_world = T_world_board * Vector3d(0.0, -0.5 * board_m.y() + 0.2, 0.0);
-  if (kind < 0.75) {
-    f.try_add([&](Room& room) { add_table(room, T_world_middle, board_m, wood); });
-  } else {
-    f.try_add([&](Room& room) {
-      add(room, T_world_middle, box({0, 0, 0.5 * board_m.z()}, board_m), f.material(Pattern::kPlanks));
-    });
-  }
-  f.kept_free.push_back(cylinder(f.room.focus_world + Vector3d(0, 0, 0.001), 0.13, 0.65));
-  put_things_on(f, T_world_board, board_m.x(), board_m.y(), 9);
+  f.add_piece(kFree, [&] {
+    if (kind < 0.75) {
+      f.try_add([&](Room& room) { add_table(room, T_world_middle, board_m, wood); });
+    } else {
+      f.try_add([&](Room& room) {
+        add(room, T_world_middle, box({0, 0, 0.5 * board_m.z()}, board_m), f.material(Pattern::kPlanks));
+      });
+    }
+    f.kept_free.push_back(cylinder(f.room.focus_world + Vector3d(0, 0, 0.001), 0.13, 0.65));
+    put_things_on(f, T_world_board, board_m.x(), board_m.y(), 9);
+  });
   if (kind < 0.5) {
     for (const double side : {-1.0, 1.0})
       for (double x = -0.5 * board_m.x() + 0.35; x < 0.5 * board_m.x(); x += 0.62) {
@@ -112,14 +129,17 @@ void furnish_middle(Furnishing& f) {
         const Eigen::Isometry3d T_world_chair =
             T_world_middle * standing_at(x + aside_m, side * (0.5 * board_m.y() + away_m), 0.0,
                                          (side > 0.0 ? std::numbers::pi : 0.0) + turn_rad);
-        f.try_add([&](Room& room) { add_chair(room, T_world_chair, wood, cloth); });
+        f.add_piece(kFree,
+                    [&] { f.try_add([&](Room& room) { add_chair(room, T_world_chair, wood, cloth); }); });
       }
   } else if (kind < 0.75) {
-    f.try_add([&](Room& room) {
-      const Material cushions = f.material(Pattern::kFabric);
-      const double wide_m = f.random.uniform(1.7, 2.1);
-      add_sofa(room, T_world_middle * standing_at(0.0, 0.5 * board_m.y() + 0.75, 0.0, 0.0), wide_m, cloth,
-               cushions);
+    f.add_piece(kFree, [&] {
+      f.try_add([&](Room& room) {
+        const Material cushions = f.material(Pattern::kFabric);
+        const double wide_m = f.random.uniform(1.7, 2.1);
+        add_sofa(room, T_world_middle * standing_at(0.0, 0.5 * board_m.y() + 0.75, 0.0, 0.0), wide_m, cloth,
+                 cushions);
+      });
     });
   } else {
     for (int i = 0; i < 3; ++i) {
@@ -130,7 +150,9 @@ void furnish_middle(Furnishing& f) {
                    x = f.random.uniform(-1.2, 1.2);
       const Eigen::Isometry3d T_world_crate = standing_at(x, y, 0.0, turn_rad);
       const Material planks = f.material(Pattern::kPlanks);
-      f.try_add([&](Room& room) { add(room, T_world_crate, box({0, 0, 0.5 * size.z()}, size), planks); });
+      f.add_piece(kFree, [&] {
+        f.try_add([&](Room& room) { add(room, T_world_crate, box({0, 0, 0.5 * size.z()}, size), planks); });
+      });
     }
   }
 }
@@ -180,6 +202,61 @@ void furnish_wall(Furnishing& f, int wall) {
   }
 }
 
+/// Moves this share of the pieces of furniture, with what is on them, by 0.3 m or more. Takes away those that
+/// fit nowhere else. The random numbers are others than those of the furniture.
+void move_furniture(Furnishing& f, double share, std::uint64_t seed) {
+  constexpr double kNearest_m = 0.3, kFarthest_m = 1.6, kMostTurn_rad = 0.6;
+  constexpr int kTries = 100;
+  CounterRandom random(seed, 0x6d6f7665);
+  std::vector<Piece> chosen = f.pieces;
+  const auto count =
+      static_cast<std::size_t>(std::ceil(std::min(share, 1.0) * static_cast<double>(chosen.size())));
+  while (chosen.size() > count)
+    chosen.erase(chosen.begin() +
+                 static_cast<std::ptrdiff_t>(random.uniform() * static_cast<double>(chosen.size())));
+
+  struct Taken {
+    std::vector<Solid> solids;
+    std::vector<Material> materials;
+    Vector3d along;
+  };
+  std::vector<Taken> taken;
+  const auto take_out = [](auto& all, const Piece& piece) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(piece.begin);
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(piece.end);
+    const std::remove_reference_t<decltype(all)> out(begin, end);
+    all.erase(begin, end);
+    return out;
+  };
+  for (auto piece = chosen.rbegin(); piece != chosen.rend(); ++piece)  // so that indices before it stay valid
+    taken.push_back({take_out(f.room.solids, *piece), take_out(f.room.materials, *piece), piece->along});
+
+  const Eigen::AlignedBox3d interior(f.room.interior_min_world, f.room.interior_max_world);
+  for (const Taken& piece : taken) {
+    Vector3d centre = Vector3d::Zero();
+    for (const Solid& solid : piece.solids)
+      centre += solid.T_world_solid.translation() / static_cast<double>(piece.solids.size());
+    for (int i = 0; i < kTries; ++i) {
+      const double way = random.uniform(kNearest_m, kFarthest_m), side = random.uniform() < 0.5 ? -1.0 : 1.0;
+      const double azimuth_rad = random.uniform(0.0, kFullTurn_rad),
+                   turn_rad = random.uniform(-kMostTurn_rad, kMostTurn_rad);
+      const bool is_free = piece.along.isZero();
+      const Vector3d shift =
+          way * (is_free ? Vector3d(std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0) : side * piece.along);
+      if (!interior.contains(centre + shift)) continue;
+      const Eigen::Isometry3d T_new_old = Eigen::Translation3d(centre + shift) *
+                                          Eigen::AngleAxisd(is_free ? turn_rad : 0.0, Vector3d::UnitZ()) *
+                                          Eigen::Translation3d(-centre);
+      const bool fits = f.try_add([&](Room& room) {
+        room.solids = piece.solids;
+        room.materials = piece.materials;
+        for (Solid& solid : room.solids) solid.T_world_solid = T_new_old * solid.T_world_solid;
+      });
+      if (fits) break;
+    }
+  }
+}
+
 void keep_doorways_free(Furnishing& f, const Vector3d& half, std::span<const Doorway> doorways) {
   constexpr double kDeep_m = 1.0, kAside_m = 0.1;
   const std::array<Vector3d, 4> outwards{Vector3d::UnitY(), -Vector3d::UnitY(), -Vector3d::UnitX(),
@@ -225,7 +302,11 @@ Room make_random_room(std::uint64_t seed, const RandomRoomShape& shape) {
 
   furnish_middle(f);
   const int pieces = 10 + static_cast<int>(8.0 * f.random.uniform());
-  for (int i = 0; i < pieces; ++i) furnish_wall(f, i % 4);
+  for (int i = 0; i < pieces; ++i) {
+    const bool along_x = i % 2 == 0;
+    f.add_piece(along_x ? Vector3d::UnitX() : Vector3d::UnitY(), [&] { furnish_wall(f, i % 4); });
+  }
+  if (shape.moved > 0.0) move_furniture(f, shape.moved, seed);
 
   room.view_azimuth_rad = -0.5 * std::numbers::pi;
   room.lamps = {{{-0.4 * half.x(), 0.0, room.interior_max_world.z() - 0.2}, 2.4F, 0.25},

@@ -14,6 +14,8 @@ namespace roomradar {
 struct RandomRoomShape {
   std::optional<Eigen::Vector2d> half_m;  ///< half the size of the interior along x and y; unset: random
   std::vector<Doorway> doorways;          ///< as in add_shell()
+  /// Share of the pieces of furniture that stand elsewhere than they do at 0, with what is on them, 0 to 1.
+  double moved = 0.0;
 };
 
 /// Makes a room with a random arrangement of furniture, determined by the seed. The room's middle is at x = y

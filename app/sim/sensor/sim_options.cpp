@@ -21,6 +21,7 @@ constexpr CameraPathKind kAllPaths[] = {CameraPathKind::kScan, CameraPathKind::k
 constexpr const char* kShutterRule = "a time in ms, 0 to 50";
 constexpr const char* kDelayRule = "a time in ms, -100 to 100";
 constexpr const char* kWalkRule = "ring, or a whole number, 0 to 9999";
+constexpr const char* kMovedRule = "a share of the furniture, 0 to 1";
 constexpr const char* kTurnRule = "degrees per second, 0 to 360";
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -94,6 +95,8 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
                                            [&](CrateKind kind) { return to_string(kind) == value; });
     if (found == std::end(kAllCrates)) refuse(key, value, "0, 1, comes or goes");
     options.crate = *found;
+  } else if (key == "moved") {
+    options.moved = number<double>(key, value, kMovedRule);
   } else if (key == "faults") {
     if (value != "0" && value != "1") refuse(key, value, "0 or 1");
     options.faults = value == "1";
@@ -124,8 +127,8 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
     options.turn_dps = number<double>(key, value, kTurnRule);
   } else {
     throw Error("sim: no option is called '" + std::string(key) +
-                "'; known are: seed, frames, rate, path, moving, pace, noise, crate, faults, width, colour, "
-                "shutter, delay, exposure, turn; of sim:building also rooms, floors, alike, walk");
+                "'; known are: seed, frames, rate, path, moving, pace, noise, crate, moved, faults, width, "
+                "colour, shutter, delay, exposure, turn; of sim:building also rooms, floors, alike, walk");
   }
 }
 
@@ -183,6 +186,7 @@ std::string sim_spec(const SimOptions& options) {
   for (const MoverKind kind : options.movers) append_with_comma(moving, to_string(kind), ",");
   if (!moving.empty()) say("moving", moving);
   if (options.crate != defaults.crate) say("crate", std::string(to_string(options.crate)));
+  if (options.moved != defaults.moved) say("moved", format_number(options.moved));
   if (options.pace != defaults.pace) say("pace", std::string(to_string(options.pace)));
   if (options.noise_scale != defaults.noise_scale) say("noise", format_number(options.noise_scale));
   if (options.depth_camera.width_px != defaults.depth_camera.width_px)
@@ -211,6 +215,10 @@ void require_valid(const SimOptions& options) {
     refuse("rate", format_number(options.rate_hz), "frames per second, 0.1 to 1000");
   if (!(options.noise_scale >= 0.0 && options.noise_scale <= 10.0))
     refuse("noise", format_number(options.noise_scale), "0 (off), 1 (a Kinect's) or another factor up to 10");
+  if (!(options.moved >= 0.0 && options.moved <= 1.0))
+    refuse("moved", format_number(options.moved), kMovedRule);
+  if (options.moved > 0.0 && options.room != kRandomRoom)
+    throw Error("sim: 'moved' is an option of sim:random only, not of sim:" + options.room);
   const SimTiming& timing = options.timing;
   if (!(timing.shutter_s >= 0.0 && timing.shutter_s <= 0.05))
     refuse("shutter", format_number(1e3 * timing.shutter_s), kShutterRule);

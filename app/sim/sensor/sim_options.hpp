@@ -52,6 +52,9 @@ struct SimOptions {
   /// Timing of all moving objects.
   Pace pace = Pace::kSteady;
   CrateKind crate = CrateKind::kNone;
+  /// Share of the pieces of furniture of a random room that stand elsewhere than they do at 0, 0 to 1. If >
+  /// 0, the camera path and the noise are others, too, as on another day.
+  double moved = 0.0;
   /// Factor on the Kinect's noise. 0: exact depth, without shadow or dropouts.
   double noise_scale = 1.0;
   Intrinsics depth_camera = kKinectDepthCamera;
@@ -70,7 +73,8 @@ struct SimOptions {
 /// Parses `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
 ///   seed, frames, rate, path (scan, view, swing), moving (hand, ball, person; several with commas), pace
 ///   (steady, slow, waits, leaves), noise (0: none, 1: as a Kinect), crate (0, 1: an additional crate; comes,
-///   goes: after half of the frames), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
+///   goes: after half of the frames), moved (0 to 1: share of a random room's furniture that stands
+///   elsewhere, scanned on another path), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
 ///   separate, none), faults (0, 1: the true cameras differ from those that frames declare), shutter (ms:
 ///   readout of depth and colour), delay (ms: colour after depth), exposure (ms: blur of colour), turn
 ///   (degrees/s: the camera swings this fast); and for the building rooms, floors, alike (rooms that look

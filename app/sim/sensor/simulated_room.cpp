@@ -12,7 +12,7 @@ namespace roomradar {
 
 Room room_of(const SimOptions& options) {
   const bool crate = options.crate == CrateKind::kStays;
-  if (options.room != kBuildingRoom) return make_room(options.room, crate, options.seed);
+  if (options.room != kBuildingRoom) return make_room(options.room, crate, options.seed, options.moved);
   return make_building(plan_building(options.seed, options.building), options.walk, crate);
 }
 
@@ -25,6 +25,7 @@ std::int64_t frames_of(const SimOptions& options, const Room& room) {
 }
 
 std::uint64_t path_seed(const SimOptions& options) {
+  if (options.moved > 0.0) return hash_of(options.seed, 0x6d6f7665);
   if (options.room != kBuildingRoom) return options.seed;
   return hash_of(options.seed, 0x77616c6b, static_cast<std::uint64_t>(options.walk));
 }

@@ -119,6 +119,32 @@ TEST(SimRandomRoom, SolidsDoNotOverlapAndThereIsRoomToWalkAndScan) {
   EXPECT_EQ(make_room(kRandomRoom, false, 3).solids.size(), make_room(kRandomRoom, false, 3).solids.size());
 }
 
+TEST(SimRandomRoom, AFifthOfTheFurnitureStandsElsewhereAndTheRestWhereItWas) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const Room before = make_room(kRandomRoom, false, seed), after = make_room(kRandomRoom, false, seed, 0.2);
+    EXPECT_EQ(make_room(kRandomRoom, false, seed, 0.2).solids.size(), after.solids.size());
+    EXPECT_EQ(before.interior_max_world, after.interior_max_world);
+    const auto is_in = [](const Room& room, const Solid& solid) {
+      return std::any_of(room.solids.begin(), room.solids.end(), [&](const Solid& other) {
+        return other.T_world_solid.isApprox(solid.T_world_solid, 1e-9);
+      });
+    };
+    std::size_t stayed = 0;
+    for (const Solid& solid : before.solids) stayed += is_in(after, solid) ? 1 : 0;
+    EXPECT_LT(stayed, before.solids.size() - 1);
+    EXPECT_GT(2 * stayed, before.solids.size());
+    double deepest_m = 0.0;
+    const Mesh mesh = room_mesh(after);
+    for (const Eigen::Vector3f& vertex : mesh.vertices)
+      deepest_m = std::min(deepest_m, signed_distance_m(after, mesh.origin + vertex.cast<double>()));
+    EXPECT_GT(deepest_m, -1e-6);
+    for (const Solid& solid : after.solids)
+      EXPECT_LT(solid.T_world_solid.translation().head<2>().cwiseAbs().maxCoeff(),
+                after.interior_max_world.head<2>().maxCoeff() + 0.5);
+  }
+}
+
 // The walk comes back to where it began, with the view, through all four rooms.
 TEST(SimFlat, SolidsDoNotOverlapAndTheWalkGoesThroughAllRoomsClearOfThem) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

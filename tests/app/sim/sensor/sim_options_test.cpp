@@ -28,8 +28,8 @@ TEST(SimSpec, ComesBackFromItsOptions) {
   for (const char* const spec :
        {"sim:table", "sim:wall?seed=12", "sim:shelf?seed=3&frames=90&path=view&moving=hand,person&noise=0.5",
         "sim:table?rate=15&width=160&colour=separate", "sim:table?moving=person&pace=leaves",
-        "sim:table?shutter=30&delay=-40&exposure=20&turn=90", "sim:table?crate=1", "sim:table?crate=comes",
-        "sim:table?crate=goes", "sim:building",
+        "sim:table?shutter=30&delay=-40&exposure=20&turn=90", "sim:random?moved=0.2", "sim:table?crate=1",
+        "sim:table?crate=comes", "sim:table?crate=goes", "sim:building",
         "sim:building?seed=2&frames=300&rooms=40&floors=3&alike=4&walk=12", "sim:building?walk=ring&rate=15"})
     EXPECT_EQ(sim_spec(parse_sim_spec(spec)), spec);
 }
@@ -80,6 +80,8 @@ TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
       {"sim:table?delay=-101", "-100 to 100"},
       {"sim:table?exposure=-1", "0 to 50"},
       {"sim:table?turn=361", "0 to 360"},
+      {"sim:random?moved=1.5", "0 to 1"},
+      {"sim:table?moved=0.2", "sim:random only"},
       {"sim:table?colour=red", "registered, separate or none"},
       {"sim:table?rooms=4", "of sim:building only"},
       {"sim:table?walk=0", "of sim:building only"},
