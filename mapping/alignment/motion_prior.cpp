@@ -50,6 +50,33 @@ Constrained constrained_by(const Matrix6d& information) {
 
 }  // namespace
 
+void note_recorded(MotionPrior& prior, double stamp_s, const Eigen::Isometry3d& T_recorded_camera) {
+  // Limits of a camera's acceleration, of a hand that shakes.
+  constexpr double kMost_mps2 = 6.0, kMost_radps2 = 20.0;
+  constexpr double kJump_m = 0.5;  // a larger step is a jump of the recorded world
+  constexpr double kPart = 0.05;   // of a new value in the mean square: about 20 frames
+  const std::optional<RecordedPose> first = prior.recorded[0], middle = prior.recorded[1];
+  prior.recorded = {middle, RecordedPose{stamp_s, T_recorded_camera}};
+  if (!first || !middle) return;
+  const double before_s = middle->stamp_s - first->stamp_s, after_s = stamp_s - middle->stamp_s;
+  if (!(before_s > 0.0 && after_s > 0.0)) return;
+  const double part = before_s / (before_s + after_s);
+  const Vector6d whole = local(first->T_recorded_camera.inverse() * T_recorded_camera);
+  const Vector6d off =
+      local((first->T_recorded_camera * retract(part * whole)).inverse() * middle->T_recorded_camera);
+  if (!off.allFinite() || off.head<3>().norm() > kJump_m) return;
+  const double lever_s2 = 0.5 * before_s * after_s;  // acceleration times this is the distance from the line
+  const double excess_m = std::max(0.0, off.head<3>().norm() - kMost_mps2 * lever_s2);
+  const double excess_rad = std::max(0.0, off.tail<3>().norm() - kMost_radps2 * lever_s2);
+  // Of noise with standard deviation s per axis, the distance has the variance 3 s^2 (1 + part^2 + (1 -
+  // part)^2).
+  const double gain = 3.0 * (1.0 + part * part + (1.0 - part) * (1.0 - part));
+  const double square =
+      std::max(excess_m * excess_m, kPriorLever_m * kPriorLever_m * excess_rad * excess_rad) / gain;
+  prior.jitter_m = std::sqrt((1.0 - kPart) * prior.jitter_m * prior.jitter_m + kPart * square);
+  prior.sigma_m = std::max(prior.sigma_m, prior.jitter_m);
+}
+
 std::optional<Eigen::Isometry3d> predicted_by(const MotionPrior& prior,
                                               const std::optional<Eigen::Isometry3d>& T_recorded_camera) {
   if (!prior.T_world_recorded || !T_recorded_camera) return std::nullopt;
@@ -119,7 +146,7 @@ Tracking combine(MotionPrior& prior, const Eigen::Isometry3d& T_world_prior, con
                                   : (1.0 - kPart) * prior.mean_difference_m + kPart * mean_m;
     const double spread_m = kSigmaOfMean * prior.mean_difference_m;
     const double square = spread_m * spread_m - kAlignmentBias_m * kAlignmentBias_m;
-    prior.sigma_m = std::sqrt(std::max(square, kLeastSigma_m * kLeastSigma_m));
+    prior.sigma_m = std::max(std::sqrt(std::max(square, kLeastSigma_m * kLeastSigma_m)), prior.jitter_m);
   }
   return result;
 }

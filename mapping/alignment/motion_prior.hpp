@@ -1,6 +1,7 @@
 // motion_prior.hpp: combines the recorded motion of a camera with poses from alignment.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -11,6 +12,11 @@ namespace roomradar {
 /// Distance at which an error of rotation is measured as a length: 1 rad counts as this many m.
 inline constexpr double kPriorLever_m = 1.5;
 
+struct RecordedPose {
+  double stamp_s = 0.0;
+  Eigen::Isometry3d T_recorded_camera = Eigen::Isometry3d::Identity();
+};
+
 /// Recorded poses (of a phone, a robot, motion capture) as a prior on the camera's motion. Only relative
 /// recorded poses are used: a slowly varying correction maps the recorded world to the tracker's world, so
 /// that drift of the recorded poses is followed. The noise of a recorded pose is estimated from its
@@ -19,8 +25,13 @@ struct MotionPrior {
   /// Maps points of the recorded world to the tracker's world; unset until a frame with a recorded pose is
   /// tracked, and after an interruption.
   std::optional<Eigen::Isometry3d> T_world_recorded;
-  /// Standard deviation of a recorded pose, m; a rotation counts as kPriorLever_m per rad.
+  /// Standard deviation of a recorded pose, m; a rotation counts as kPriorLever_m per rad. At least jitter_m.
   double sigma_m = 0.003;
+  /// Standard deviation of the noise from frame to frame, m, from accelerations that no hand and no robot
+  /// has, see note_recorded(). 0: none, or the frames are too far apart to tell.
+  double jitter_m = 0.0;
+  /// The last two recorded poses, the newer one second; unset before them.
+  std::array<std::optional<RecordedPose>, 2> recorded;
   /// Exponential mean of the absolute difference between prior and alignment per constrained direction, m;
   /// < 0: none yet.
   double mean_difference_m = -1.0;
@@ -29,6 +40,10 @@ struct MotionPrior {
   std::int64_t used = 0;          ///< number of frames whose pose the prior has constrained
   std::int64_t contradicted = 0;  ///< number of frames whose depth contradicted the prior
 };
+
+/// Updates jitter_m. Call once per frame with a recorded pose, in order. Three consecutive poses of a camera
+/// whose acceleration is limited are nearly on a line; what exceeds the limit is noise of the poses.
+void note_recorded(MotionPrior& prior, double stamp_s, const Eigen::Isometry3d& T_recorded_camera);
 
 /// Returns the pose that the prior predicts; nullopt without T_world_recorded or recorded pose.
 std::optional<Eigen::Isometry3d> predicted_by(const MotionPrior& prior,

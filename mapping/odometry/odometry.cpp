@@ -28,10 +28,10 @@ int stood_frames(const OdometrySnapshot& kept) {
 
 /// Returns true if recorded poses say that the camera has moved since the last frame.
 bool moves_by_prior(const OdometryConfig& config, const OdometrySnapshot& kept, const Frame& frame) {
-  constexpr double kMoved_m = 0.004;  // or rad
+  const double moved_m = std::max(0.004, 2.0 * kept.prior.jitter_m);  // or rad
   if (!config.use_recorded_poses) return false;
   const std::optional<Eigen::Isometry3d> T_prior = predicted_by(kept.prior, frame.T_world_camera);
-  return T_prior && motion_length_m(kept.T_world_last.inverse() * *T_prior) > kMoved_m;
+  return T_prior && motion_length_m(kept.T_world_last.inverse() * *T_prior) > moved_m;
 }
 
 }  // namespace
@@ -357,6 +357,8 @@ Tracking Odometry::track(const Frame& frame) {
   ++kept.counts.frames;
   const bool first = kept.graph.keyframes.empty();
   if (kept.counts.frames == 1) kept.timing = start_estimate(s.config.timing.value_or(frame.timing));
+  if (s.config.use_recorded_poses && frame.T_world_camera)
+    note_recorded(kept.prior, frame.stamp_s, *frame.T_world_camera);
   const PredictedMotion predicted = predict(kept, frame.stamp_s);
   make_pyramid(frame, s.config.view, s.pyramid, {predicted.velocity, kept.timing.current});
   make_source_points(s.pyramid, s.live);

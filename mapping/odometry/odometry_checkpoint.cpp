@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kStateMagic = "RRODOMET", kViewMagic = "RRKEYFRM";
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 constexpr int kMaxSide_px = 8192;
 
 fs::path view_name(std::size_t number, std::uint32_t revision) {
@@ -54,6 +54,11 @@ void put_prior(std::string& out, const MotionPrior& prior) {
   put_optional_pose(out, prior.T_world_recorded);
   put(out, prior.sigma_m);
   put(out, prior.mean_difference_m);
+  put(out, prior.jitter_m);
+  for (const std::optional<RecordedPose>& pose : prior.recorded) {
+    put(out, pose ? pose->stamp_s : 0.0);
+    put_optional_pose(out, pose ? std::optional(pose->T_recorded_camera) : std::nullopt);
+  }
   for (const std::int64_t count : {prior.stretch, prior.used, prior.contradicted}) put(out, count);
 }
 
@@ -62,6 +67,11 @@ MotionPrior take_prior(BinaryReader& in) {
   prior.T_world_recorded = take_optional_pose(in, "the recorded world's pose");
   prior.sigma_m = in.take_finite("standard deviation of recorded poses");
   prior.mean_difference_m = in.take_finite("mean difference of recorded poses");
+  prior.jitter_m = in.take_finite("jitter of recorded poses");
+  for (std::optional<RecordedPose>& pose : prior.recorded) {
+    const double stamp_s = in.take_finite("stamp of a recorded pose");
+    if (const auto T = take_optional_pose(in, "a recorded pose")) pose = RecordedPose{stamp_s, *T};
+  }
   if (!(prior.sigma_m > 0.0)) in.fail("the standard deviation of recorded poses is not positive");
   for (std::int64_t* count : {&prior.stretch, &prior.used, &prior.contradicted})
     *count = in.take<std::int64_t>("counts of recorded poses");

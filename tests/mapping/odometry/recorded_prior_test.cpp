@@ -1,8 +1,11 @@
 // recorded_prior_test.cpp: recorded poses predict and constrain the motion; depth verifies them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
+#include "mapping/types/system/counter_random.hpp"
 #include "tests/support/noisy_room.hpp"
 
 namespace roomradar::recorded_prior_test {
@@ -91,6 +94,39 @@ TEST(RecordedPrior, FramesWithoutAPoseAreTrackedAsEver) {
     return i % 3 == 0 ? std::optional(T) : std::nullopt;
   });
   EXPECT_LT(worst_m, 0.015);  // while turning round, the camera counts as stationary for 1 cm
+}
+
+TEST(RecordedPrior, NoisyPosesAreNotFollowed) {
+  constexpr double kNoise_m = 0.03;
+  const auto noisy = [](int i, Eigen::Isometry3d T) {
+    for (int k = 0; k < 3; ++k) T.translation()(k) += kNoise_m * gaussian(hash_of(7, i, k));
+    return T;
+  };
+  Odometry odometry(with_prior());
+  // The first pose defines the world, and is as noisy as the others.
+  EXPECT_LT(worst_error_m(odometry, noisy), 0.02);
+  EXPECT_GT(odometry.state().prior.jitter_m, 0.5 * kNoise_m);
+  EXPECT_GE(odometry.state().prior.sigma_m, odometry.state().prior.jitter_m);
+}
+
+TEST(RecordedPrior, JitterIsWhatNoHandDoes) {
+  MotionPrior prior;
+  // Shaken by hand: 3 cm at 2 Hz, 4.7 m/s^2.
+  for (int i = 0; i < 60; ++i) {
+    const double t_s = i / 30.0;
+    note_recorded(prior, t_s, Eigen::Isometry3d(Eigen::Translation3d(0.03 * std::sin(12.57 * t_s), t_s, 0)));
+  }
+  EXPECT_EQ(prior.jitter_m, 0.0);
+  // A jump counts as none, nor do equal stamps or NaN.
+  note_recorded(prior, 2.0, Eigen::Isometry3d(Eigen::Translation3d(5, 0, 0)));
+  note_recorded(prior, 2.0, Eigen::Isometry3d(Eigen::Translation3d(5, 0.1, 0)));
+  note_recorded(prior, 2.1, Eigen::Isometry3d(Eigen::Translation3d(NAN, 0, 0)));
+  EXPECT_EQ(prior.jitter_m, 0.0);
+  // Seconds between frames leave room for any motion.
+  MotionPrior slow;
+  for (int i = 0; i < 20; ++i)
+    note_recorded(slow, i, Eigen::Isometry3d(Eigen::Translation3d(0.2 * (i % 2), 0, 0)));
+  EXPECT_EQ(slow.jitter_m, 0.0);
 }
 
 }  // namespace
