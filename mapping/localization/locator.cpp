@@ -249,8 +249,14 @@ Tracking with_recorded(Locator& locator, const Frame& frame, const Eigen::Isomet
   return aligned;
 }
 
+/// A pose tracked from the last one.
+struct FollowedPose {
+  Tracking tracking;
+  bool is_bent = false;  ///< see is_bend_not_motion(); the pose is then the last one
+};
+
 /// Tracks from the last pose and motion, or from the recorded motion.
-Tracking follow(Locator& locator, const Frame& frame, double dt_s, const ExpectedDepth& expected_depth) {
+FollowedPose follow(Locator& locator, const Frame& frame, double dt_s, const ExpectedDepth& expected_depth) {
   // This near, the view rendered at the last pose shows the same surfaces, and it exists already.
   constexpr double kNear_m = 0.04, kNear_rad = 0.04;
   const Eigen::Isometry3d& T_world_last = *locator.T_world_camera;
@@ -261,13 +267,15 @@ Tracking follow(Locator& locator, const Frame& frame, double dt_s, const Expecte
       locator, locator.align, frame.depth_camera,
       is_near(T_world_last, T_world_predicted, kNear_m, kNear_rad) ? T_world_last : T_world_predicted,
       T_world_predicted, expected_depth);
-  if (T_world_prior) return with_recorded(locator, frame, *T_world_prior, tracking, dt_s, expected_depth);
-  if (has_pose(tracking) &&
-      is_bend_not_motion(tracking, T_world_predicted, T_world_last, frame.depth_m, expected_depth)) {
+  if (T_world_prior)
+    return {with_recorded(locator, frame, *T_world_prior, tracking, dt_s, expected_depth), false};
+  const bool is_bent = has_pose(tracking) && is_bend_not_motion(tracking, T_world_predicted, T_world_last,
+                                                                frame.depth_m, expected_depth);
+  if (is_bent) {
     tracking.status = TrackStatus::kDegenerate;
     tracking.T_world_camera = T_world_last;
   }
-  return tracking;
+  return {tracking, is_bent};
 }
 
 /// Returns true if enough patches of the frame coincide with known ones and look like them.
@@ -330,7 +338,7 @@ bool verify_tracking(Locator& locator, const Frame& frame, const KeyframeDatabas
   return true;
 }
 
-/// Returns true if depth, or depth and patches, prove the pose.
+/// Returns true if depth, or depth and patches, prove the pose or one near it that explains the depth better.
 bool is_proven(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                const Eigen::Isometry3d& T_world_camera, const ExpectedDepth& expected_depth,
                Tracking& tracking) {
@@ -344,15 +352,18 @@ bool is_proven(Locator& locator, const Frame& frame, const KeyframeDatabase& key
     tracking = search_by_features(locator, frame, keyframe_database, expected_depth);
     return has_pose(tracking) && is_near(tracking.T_world_camera, T_world_camera, 0.3, 0.3);
   }
+  if (is_bend_not_motion(hypothesis.tracking, T_world_camera, T_world_camera, frame.depth_m, expected_depth))
+    return false;
   tracking = hypothesis.tracking;
   tracking.status = TrackStatus::kTracked;  // patches constrain what depth does not
   return true;
 }
 
 /// Decides whether a followed pose counts as located. Directions that depth does not constrain are predicted
-/// for kLongest_s at most. Then a pose must be proven at or near the predicted one, or found by a search.
+/// for kLongest_s at most. Then a pose must be proven at or near the predicted one, or found by a search. If
+/// the depth is bent, patches suffice, since the camera stands.
 void require_verified(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
-                      double dt_s, const ExpectedDepth& expected_depth, Tracking& tracking) {
+                      double dt_s, bool is_bent, const ExpectedDepth& expected_depth, Tracking& tracking) {
   constexpr double kLongest_s = 0.15;
   constexpr int kEvery = 3, kSearchEvery = 9;  // frames between two proofs, and between two searches
   if (tracking.status == TrackStatus::kTracked && !locator.is_uncertain) {
@@ -362,8 +373,10 @@ void require_verified(Locator& locator, const Frame& frame, const KeyframeDataba
   locator.carried_s += dt_s;
   if (!locator.is_uncertain && locator.carried_s <= kLongest_s) return;
   Tracking proven;
-  if (locator.uncertain_frames % kEvery == 0 &&
-      is_proven(locator, frame, keyframe_database, tracking.T_world_camera, expected_depth, proven)) {
+  if (is_bent && is_verified_by_appearance(locator, frame, keyframe_database, tracking.T_world_camera)) {
+    proven = tracking;
+  } else if (locator.uncertain_frames % kEvery == 0 &&
+             is_proven(locator, frame, keyframe_database, tracking.T_world_camera, expected_depth, proven)) {
     tracking = proven;
   } else if (locator.uncertain_frames % kSearchEvery == kSearchEvery - 1) {
     look_at_all(locator);
@@ -404,14 +417,17 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
       std::clamp(frame.stamp_s - std::exchange(locator.last_stamp_s, frame.stamp_s).value_or(frame.stamp_s),
                  0.0, kLongestStep_s);
 
+  if (locator.use_recorded_poses && frame.T_world_camera)
+    note_recorded(locator.prior, frame.stamp_s, *frame.T_world_camera);
   Tracking tracking;
   bool may_be_found = true;  // by a search; one per frame is enough
   if (locator.T_world_camera) {
-    tracking = follow(locator, frame, dt_s, expected_depth);
+    const FollowedPose followed = follow(locator, frame, dt_s, expected_depth);
+    tracking = followed.tracking;
     if (has_pose(tracking))
       may_be_found = verify_tracking(locator, frame, keyframe_database, expected_depth, tracking);
     if (has_pose(tracking))
-      require_verified(locator, frame, keyframe_database, dt_s, expected_depth, tracking);
+      require_verified(locator, frame, keyframe_database, dt_s, followed.is_bent, expected_depth, tracking);
     if (!has_guess(tracking)) {
       locator.T_world_lost = locator.T_world_camera;
       locator.T_world_camera.reset();
