@@ -92,6 +92,7 @@ void ScanView::after_frame(const Frame& frame, const Tracking& tracking, const O
   work.frame = std::make_shared<Frame>(frame);
   work.tracking = tracking;
   work.facts = facts_of(frame, tracking);
+  work.facts.is_apart = state.lost.has_value();
   work.facts.speed_mps = scan_.speed_mps;
   work.facts.speed_rad_s = scan_.speed_rad_s;
   if (tracking) work.anchor = anchor_for(frame.index, tracking.T_world_camera, state, scan_.anchors);

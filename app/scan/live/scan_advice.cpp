@@ -13,7 +13,7 @@ bool is_true(ScanFault fault, const ScanFacts& facts) {
     case ScanFault::kSilent:
       return false;
     case ScanFault::kLost:
-      return is_lost;
+      return is_lost || facts.is_apart;
     case ScanFault::kTooNear:
       // Nearer than its range a Kinect measures nothing, so the view is partly near and partly without depth.
       return missing + facts.near_fraction > 0.7 && facts.near_fraction > 0.05 && facts.far_fraction < 0.05;

@@ -15,7 +15,7 @@ enum class ScanFault : std::uint8_t {
   kSilent,    ///< the device delivers no frames
   kTooNear,   ///< most surfaces in view are too near to be measured
   kTooFar,    ///< most surfaces in view are too far, or have no depth
-  kLost,      ///< the camera's pose is unknown
+  kLost,      ///< the camera's pose is unknown, or unknown relative to what was seen before
   kOneWall,   ///< the geometry in view does not constrain all degrees of freedom of the pose
   kTooFast,   ///< the camera moves too fast for the tracking
   kMovement,  ///< something moves in view
@@ -34,6 +34,8 @@ struct ScanFacts {
   double brightness = -1.0;     ///< mean of the colour picture, 0..255; < 0: no picture
   double moved_fraction = 0.0;  ///< fraction of the pixels that show an object in space that was free before
   TrackStatus status = TrackStatus::kTracked;
+  bool is_apart =
+      false;  ///< a new part of the scan began after a loss, and may still join what was seen before
   double speed_mps = 0.0, speed_rad_s = 0.0;  ///< speed of the camera, smoothed; 0 if unknown
 };
 
