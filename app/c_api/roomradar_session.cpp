@@ -74,10 +74,6 @@ void write_result(const FrameResult& from, const SessionState& state, double fra
                   roomradar_frame_result& to) {
   to.is_located = from.status == FrameStatus::kDone ? 1 : 0;
   to.tracking = static_cast<int32_t>(from.tracking);
-  for (int axis = 0; axis < 3; ++axis) {
-    to.sigma_m[axis] = from.sigma.position_m(axis);
-    to.sigma_rad[axis] = from.sigma.rotation_rad(axis);
-  }
   to.T_world_camera = pose_of(from.T_world_camera);
   to.picture_is_new = from.picture_is_new ? 1 : 0;
   to.contacts = from.contacts;
@@ -143,9 +139,21 @@ roomradar_status roomradar_session_step(roomradar_session* session, const roomra
     state.run([&](Session& live) { stepped = live.step(state.frame, state.times); });
     if (stepped.status == FrameStatus::kBadFrame) refuse(std::string(stepped.fault));
     if (stepped.status == FrameStatus::kDone) ++state.located_frames;
+    state.sigma = stepped.sigma;
     state.keep(stepped.notices);
     state.look_for_new_room();
     if (result != nullptr) write_result(stepped, state, ms_since(start), *result);
+  });
+}
+
+roomradar_status roomradar_session_pose_sigma(roomradar_session* session, double sigma_m[3],
+                                              double sigma_rad[3]) {
+  return with<SessionState>("roomradar_session_pose_sigma", session, [&](SessionState& state) {
+    require_given(sigma_m, "sigma_m");
+    for (int axis = 0; axis < 3; ++axis) {
+      sigma_m[axis] = state.sigma.position_m(axis);
+      if (sigma_rad != nullptr) sigma_rad[axis] = state.sigma.rotation_rad(axis);
+    }
   });
 }
 

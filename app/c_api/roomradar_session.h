@@ -63,8 +63,6 @@ typedef struct roomradar_frame_result {
   uint64_t room_version;    /* from 1; grows when the room's mesh changes */
   double frame_ms;          /* time of the whole frame */
   double contact_ms;        /* time until all objects had moved */
-  double sigma_m[3];        /* standard deviations of the camera's position along the map's axes; inf: unknown */
-  double sigma_rad[3];      /* and of its rotation about them, rad; both 0 without a pose */
 } roomradar_frame_result;
 
 /* Processes one frame: locates the camera, finds dynamic pixels, moves the objects, composes the picture.
@@ -73,6 +71,13 @@ typedef struct roomradar_frame_result {
 ROOMRADAR_API roomradar_status roomradar_session_step(roomradar_session* session,
                                                       const roomradar_frame* frame,
                                                       roomradar_frame_result* result);
+
+/* Returns the standard deviations of the last frame's camera pose along the map's axes, and of its rotation
+ * about them; inf: not known. Both are 0 without a pose.
+ * @param sigma_m    m
+ * @param sigma_rad  rad; may be null */
+ROOMRADAR_API roomradar_status roomradar_session_pose_sigma(roomradar_session* session, double sigma_m[3],
+                                                            double sigma_rad[3]);
 
 /* Returns the picture with the objects.
  * @param rgb       height x width x 3, sRGB

@@ -24,6 +24,7 @@ struct SessionState : Handled {
   Frame frame;  ///< buffer
   StageTimes times;
   std::uint64_t located_frames = 0;
+  PoseSigma sigma;                   ///< of the last frame's pose
   std::vector<std::string> notices;  ///< messages that the caller has not fetched
   std::uint64_t room_version = 1;
   std::uint64_t room_revision = 0;    ///< revision of the radar's tree when room_version last changed

@@ -30,7 +30,8 @@ std::vector<Element> fetched(const Call& call) {
 
 TEST(CSession, EveryFrameIsThatOfTheSessionInCpp) {
   const SavedMap saved = load_map(CRoom::get().map_folder);
-  SessionConfig config;  // tracked poses
+  SessionConfig config;
+  config.poses = PoseOrigin::kTracked;
   Session expected(saved, config);
   const OpenMap map;
   const OpenSession session(map.handle, ROOMRADAR_POSES_TRACKED);
@@ -46,6 +47,12 @@ TEST(CSession, EveryFrameIsThatOfTheSessionInCpp) {
     ASSERT_EQ(got.is_located, wanted.status == FrameStatus::kDone);
     const roomradar_pose T_world_camera = c_api::pose_of(wanted.T_world_camera);
     EXPECT_EQ(std::memcmp(&got.T_world_camera, &T_world_camera, sizeof T_world_camera), 0);
+    double sigma_m[3] = {-1, -1, -1}, sigma_rad[3] = {-1, -1, -1};
+    expect_ok(roomradar_session_pose_sigma(session.handle, sigma_m, sigma_rad));
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(sigma_m[axis], wanted.sigma.position_m(axis));
+      EXPECT_EQ(sigma_rad[axis], wanted.sigma.rotation_rad(axis));
+    }
     EXPECT_EQ(got.contacts, wanted.contacts);
     const roomradar_object_state pot = session.object("pot");
     const Body& body = expected.objects().front()->body;
