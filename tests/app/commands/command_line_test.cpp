@@ -579,7 +579,8 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
     expect_fault(roomradar(prescan + " --max-memory " + number), 2, "10000000 (megabytes)");
     expect_fault(roomradar(prescan + " --checkpoint-every " + number), 2, "86400 (seconds)");
   }
-  expect_fault(roomradar(prescan + " --poses guessed"), 2, "--poses guessed: must be recorded or tracked");
+  expect_fault(roomradar(prescan + " --poses guessed"), 2,
+               "--poses guessed: must be auto, recorded or tracked");
   const std::string run = "run sim:table --map " + map();
   expect_fault(roomradar(run + " --radar roughly"), 2, "--radar roughly: must be exact or sampled");
   expect_fault(roomradar(run + " --object teapot --script s.txt"), 2, "--script says which objects");
@@ -792,7 +793,8 @@ TEST_F(CommandLine, MapInfoListsTheLevelSurfaces) {
 
 TEST_F(CommandLine, ARecordingInPlaceOfAMapIsPointedToCheck) {
   const fs::path recording = folder_ / "a recording";
-  ASSERT_EQ(roomradar("record 'sim:table?frames=3&width=64' '" + recording.string() + "' --format tum").status, 0);
+  ASSERT_EQ(
+      roomradar("record 'sim:table?frames=3&width=64' '" + recording.string() + "' --format tum").status, 0);
   const std::string quoted = "'" + recording.string() + "'";
   for (const std::string& command :
        {"map info " + quoted, "map info --json " + quoted, "map verify " + quoted,
@@ -941,7 +943,7 @@ TEST_F(CommandLine, RecordedPosesAreNotTakenForThoseOfAMapThatKnowsNone) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const fs::path blind = broken_copy();
   nlohmann::json info = nlohmann::json::parse(read_text(blind / "map.json"));
-  ASSERT_EQ(info["settings"]["poses"], "tracked");
+  ASSERT_EQ(info["settings"]["poses"], "auto");
   for (int i = 0; i < 16; ++i) info["T_world_recorded"][i] = i % 5 == 0 ? 1.0 : 0.0;
   std::ofstream(blind / "map.json") << info;
   const std::string run = "run 'sim:table?frames=2&width=160' --map " + blind.string() + " --poses ";
