@@ -97,14 +97,18 @@ void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Ei
     ChangeObject& object = clusters.objects[object_of(clusters.cells, clusters.cell_of[i])];
     ++object.points;
     object.seen_points += points[i].as_it_was ? 1 : 0;
+    object.known_points += points[i].before_map ? 1 : 0;
   }
   const float min_core = kind == LastingKind::kWent ? config.min_core_fraction : 0.0F;
+  const float min_known = kind == LastingKind::kCame ? config.min_known_fraction : 0.0F;
   for (ChangeObject& object : clusters.objects) {
     if (object.cells < config.min_cells ||
         static_cast<float>(object.core_cells) < min_core * static_cast<float>(object.cells) ||
         static_cast<float>(object.steady_cells) <
             config.min_steady_fraction * static_cast<float>(object.cells) ||
-        static_cast<float>(object.seen_points) < config.min_seen_fraction * static_cast<float>(object.points))
+        static_cast<float>(object.seen_points) <
+            config.min_seen_fraction * static_cast<float>(object.points) ||
+        static_cast<float>(object.known_points) < min_known * static_cast<float>(object.points))
       continue;
     changes.push_back({.kind = kind, .points_world = {}, .ids = {}});
     object.change = changes.size();

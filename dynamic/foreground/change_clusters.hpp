@@ -38,7 +38,8 @@ struct ChangePoint {
   std::uint16_t sightings = 1;  ///< number of frames averaged into position
   /// +2 per contradicting frame, -1 per confirming one; above 7, the point is dropped.
   std::uint8_t contradiction = 0;
-  bool as_it_was = true;  ///< confirmed by the last frame
+  bool as_it_was = true;    ///< confirmed by the last frame
+  bool before_map = false;  ///< a frame that confirmed it saw it in front of a surface of the map
   LastingKind kind = LastingKind::kCame;
 };
 
@@ -51,10 +52,10 @@ struct ChangeCell {
 };
 
 /// Sums over the connected cells of one object. Steady cells have ChangeCell::steady set, core cells have at
-/// least 7 neighbours, and seen points were confirmed by the last frame.
+/// least 7 neighbours, seen points were confirmed by the last frame, and known points are before_map.
 struct ChangeObject {
   int cells = 0, steady_cells = 0, core_cells = 0;
-  std::size_t points = 0, seen_points = 0;
+  std::size_t points = 0, seen_points = 0, known_points = 0;
   std::size_t change = 0;  ///< 1 + index among the changes found; 0: rejected
 };
 
@@ -76,8 +77,8 @@ void sort_into_cells(std::span<const ChangePoint> points, LastingKind kind, floa
                      ChangeClusters& clusters);
 
 /// Appends the objects that reach the thresholds of ChangeTrackerConfig: min_cells, and the min fractions of
-/// steady cells, core cells (kWent only) and seen points. Call after sort_into_cells() with the same points
-/// and kind.
+/// steady cells, core cells (kWent only), seen points and known points (kCame only). Call after
+/// sort_into_cells() with the same points and kind.
 void add_objects(std::span<const ChangePoint> points, LastingKind kind, const Eigen::Vector3d& origin_world,
                  const ChangeTrackerConfig& config, ChangeClusters& clusters,
                  std::vector<LastingChange>& changes);

@@ -155,6 +155,7 @@ bool ChangeTracker::review(const View& view, float dt_s, ChangePoint& point) {
     return point.contradiction <= kMaxContradiction;
   }
   point.as_it_was = true;
+  point.before_map |= model > tolerance;  // false for NaN
   point.steady_s += dt_s;
   point.contradiction = static_cast<std::uint8_t>(std::max(point.contradiction - kConfirmation, 0));
   if (came && std::abs(live_here - z) <= tolerance && live_here > 0.0F) {

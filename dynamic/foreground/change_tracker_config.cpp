@@ -26,6 +26,7 @@ void require_valid(const ChangeTrackerConfig& config) {
   require(part(config.min_steady_fraction), "min_steady_fraction", config.min_steady_fraction, "in 0..1");
   require(part(config.min_core_fraction), "min_core_fraction", config.min_core_fraction, "in 0..1");
   require(part(config.min_seen_fraction), "min_seen_fraction", config.min_seen_fraction, "in 0..1");
+  require(part(config.min_known_fraction), "min_known_fraction", config.min_known_fraction, "in 0..1");
   require(config.forget_after_s > 0.0F, "forget_after_s", config.forget_after_s, "> 0");
   require(config.max_points >= 1 && config.max_points <= 10'000'000, "max_points",
           static_cast<double>(config.max_points), "in 1..10000000");

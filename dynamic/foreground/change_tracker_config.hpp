@@ -26,6 +26,9 @@ struct ChangeTrackerConfig {
   /// surface at an edge of the map look removed, but only in a strip one or two cells wide.
   float min_core_fraction = 0.15F;
   float min_seen_fraction = 0.5F;  ///< min fraction of an object's points confirmed by the last frame
+  /// Min fraction of an added object's points that were seen in front of a surface of the map. Where the map
+  /// knows nothing, what stands there may always have stood there.
+  float min_known_fraction = 0.5F;
   float forget_after_s = 60.0F;    ///< max ChangePoint::unseen_s; points above it are dropped
   std::size_t max_points = 20000;  ///< max number of points over all objects
 };

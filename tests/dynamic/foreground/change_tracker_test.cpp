@@ -96,6 +96,29 @@ TEST(ChangeTracker, WhatStaysIsFoundAfterItsTimeAndNotBefore) {
   EXPECT_GT(watched.tracker.seen_now(changes[0]), 0.7);
 }
 
+TEST(ChangeTracker, NothingHasComeWhereTheMapKnowsNothing) {
+  // The crate is dynamic in all of these; of the map behind it, this share of the image is known.
+  const auto found = [](double known) {
+    ChangeTracker tracker;
+    for (double t_s = 0.0; t_s < 3.0; t_s += kStep_s) {
+      const Eigen::Isometry3d T_world_camera = pose_at(t_s);
+      const DepthImage depth_m =
+          test::exact_frame(test::nearest_of(room(), crate_at({0, 0, 0})), kCamera, T_world_camera).depth_m;
+      DepthImage expected_m = test::exact_frame(room(), kCamera, T_world_camera).depth_m;
+      const LabelImage labels = labels_of(depth_m, expected_m);
+      for (int y = 0; y < expected_m.height; ++y)
+        for (int x = static_cast<int>(known * expected_m.width); x < expected_m.width; ++x)
+          expected_m.at(x, y) = 0.0F;
+      tracker.update(depth_m, expected_m, labels, kCamera, T_world_camera, t_s);
+    }
+    return tracker.lasting_changes(2.0).size();
+  };
+  EXPECT_EQ(found(0.0), 0U);
+  EXPECT_EQ(found(0.4), 0U);
+  EXPECT_EQ(found(0.6), 1U);
+  EXPECT_EQ(found(1.0), 1U);
+}
+
 TEST(ChangeTracker, WhatWasTakenAwayIsFound) {
   Watched watched(test::nearest_of(room(), crate_at({0, 0, 0})));
   watched.run(0.0, 1.7, room());
