@@ -195,6 +195,7 @@ void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, 
     const float* above = bounds.farthest_m.data() + grid.at(0, std::max(row - 1, 0));
     const float* below = bounds.farthest_m.data() + grid.at(0, std::min(row + 1, grid.rows - 1));
     const float* nearest_in_block = bounds.nearest_m.data() + grid.at(0, row);
+    const float* background = bounds.background_m.data() + grid.at(0, row);
     const int* reach = bounds.reach.data() + grid.at(0, row);
     float* sigma = bounds.sigma_m.data() + grid.at(0, row);
     float* nearest = bounds.nearest_in_reach_m.data() + grid.at(0, row);
@@ -220,7 +221,10 @@ void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, 
       const float misfit = misfit_per_m * z * z;
       const float slope = std::min(std::abs(slope_u) + std::abs(slope_v), kGrazing * z / focal_px);
       const float pose = slope * focal_px * (config.pose_sigma_rad + config.pose_sigma_m / (z + 1e-6F));
-      sigma[column] = std::sqrt(sensor * sensor + model * model + misfit * misfit + pose * pose);
+      // One depth stands for a whole block of the background, and is up to half a block off.
+      const float block = background[column] > 0.0F ? 0.5F * kBlock_px * slope : 0.0F;
+      sigma[column] =
+          std::sqrt(sensor * sensor + model * model + misfit * misfit + pose * pose + block * block);
 
       // A plane's inverse depth is linear in the image; over this many pixels it changes by at most this
       // much.

@@ -71,7 +71,9 @@ void find_firm_regions(const DepthImage& depth_m, std::uint8_t strong, Foregroun
 // Labels the accepted regions of one kind; returns their number of pixels.
 std::size_t label_regions(const DepthImage& depth_m, const Difference& difference, const Intrinsics& camera,
                           const ForegroundConfig& config, ForegroundState& state, LabelImage& labels) {
-  find_components(depth_m, state.evidence.bits, difference.bits, camera, config.noise, config.max_gap_px,
+  const int max_gap_px =
+      std::min(256, static_cast<int>(config.max_gap_rad * static_cast<float>(camera.fx_px)));
+  find_components(depth_m, state.evidence.bits, difference.bits, camera, config.noise, max_gap_px,
                   state.regions);
   const bool is_moved = difference.label == PixelLabel::kMoved;
   if (is_moved) find_firm_regions(depth_m, difference.bits.strong, state);

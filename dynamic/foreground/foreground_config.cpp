@@ -31,7 +31,8 @@ void require_valid(const ForegroundConfig& config) {
           "in 0..256");
   require(config.hole_reach_px >= 0 && config.hole_reach_px <= 256, "hole_reach_px", config.hole_reach_px,
           "in 0..256");
-  require(config.max_gap_px >= 0 && config.max_gap_px <= 256, "max_gap_px", config.max_gap_px, "in 0..256");
+  require(config.max_gap_rad >= 0.0F && config.max_gap_rad <= 1.0F, "max_gap_rad", config.max_gap_rad,
+          "in 0..1");
   require(config.min_region_px >= 0, "min_region_px", config.min_region_px, ">= 0");
   require(config.min_region_m2 >= 0.0F && std::isfinite(config.min_region_m2), "min_region_m2",
           config.min_region_m2, ">= 0");

@@ -26,8 +26,9 @@ struct ForegroundConfig {
   /// large enough for a region's contour, but smaller than a misplaced table or chair that touches the
   /// region. All weak pixels of the table would count against the region.
   int weak_reach_px = 20;
-  /// Pixels of a row or column on one surface are one region across up to this many unmeasured pixels.
-  int max_gap_px = 16;
+  /// Pixels of a row or column on one surface are one region across a gap without depth of up to this angle:
+  /// 16 pixels of a Kinect.
+  float max_gap_rad = 0.0274F;
   int min_region_px = 60;         ///< min pixels of a region; smaller regions are noise
   float min_region_m2 = 0.0003F;  ///< min area of a region in the world: 3 cm2
   /// Min fraction of a region's pixels that are strong. In regions caused by a distorted map or a wrong pose,
