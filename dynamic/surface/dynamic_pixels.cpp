@@ -33,7 +33,8 @@ std::uint64_t take_word(const std::uint8_t* mask, const float* depth_m, int coun
 }
 
 /// Sets the unmeasured pixels between pixel (x, y) and the next dynamic pixel along (dx, dy), if these are at
-/// most kMostGap_px pixels on one surface. A plane's inverse depth is linear between the two.
+/// most kMostGap_px pixels on one surface, which goes on at one end. Two specks are no surface. A plane's
+/// inverse depth is linear between the two.
 void bridge(const DepthImage& depth_m, int x, int y, int dx, int dy, DynamicPixels& pixels) {
   constexpr int kMostGap_px = 4;
   constexpr float kOneSurface = 0.03F;  // max relative difference of depth
@@ -47,6 +48,7 @@ void bridge(const DepthImage& depth_m, int x, int y, int dx, int dy, DynamicPixe
   const float here = pixels.inverse_depth[depth_m.index(x, y)];
   const float there = pixels.inverse_depth[depth_m.index(end_x, end_y)];
   if (std::abs(here - there) > kOneSurface * std::min(here, there)) return;
+  if (!pixels.measured.at(x - dx, y - dy) && !pixels.measured.at(end_x + dx, end_y + dy)) return;
   for (int k = 1; k < apart; ++k) {
     const int u = x + k * dx, v = y + k * dy;
     pixels.measured.row(v)[u >> 6] |= std::uint64_t{1} << (u & 63);
