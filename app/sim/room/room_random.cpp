@@ -275,7 +275,7 @@ void keep_doorways_free(Furnishing& f, const Vector3d& half, std::span<const Doo
 // Every random value is drawn into a variable of its own statement: the evaluation order of function
 // arguments depends on the compiler.
 Room make_random_room(std::uint64_t seed, const RandomRoomShape& shape) {
-  Furnishing f{{}, {}, CounterRandom(seed, 0x726f6f6d)};
+  Furnishing f{{}, {}, CounterRandom(seed, 0x726f6f6d), 1000, {}};
   Room& room = f.room;
   room.name = kRandomRoom;
   const double half_y = f.random.uniform(2.3, 2.8), half_x = f.random.uniform(2.5, 3.2);

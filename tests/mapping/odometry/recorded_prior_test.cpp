@@ -28,15 +28,16 @@ Eigen::Isometry3d recorded_world() {
 
 Eigen::Isometry3d truth(int i) { return on_path(0, 60).inverse() * on_path(i, 60); }
 
-/// Largest distance of tracked positions from the truth.
+/// Largest distance of tracked positions from the truth, from frame `first` on.
 template <typename Record>
-double worst_error_m(Odometry& odometry, const Record& record) {
+double worst_error_m(Odometry& odometry, const Record& record, int first = 0) {
   double worst_m = 0.0;
   for (int i = 0; i < kFrames; ++i) {
     Frame frame = frame_at(on_path(i, 60), i);
     frame.T_world_camera = record(i, recorded_world() * on_path(i, 60));
     const Tracking tracking = odometry.track(frame);
     EXPECT_TRUE(tracking) << i;
+    if (i < first) continue;
     worst_m = std::max(worst_m, (tracking.T_world_camera.translation() - truth(i).translation()).norm());
   }
   return worst_m;
@@ -103,8 +104,8 @@ TEST(RecordedPrior, NoisyPosesAreNotFollowed) {
     return T;
   };
   Odometry odometry(with_prior());
-  // The first pose defines the world, and is as noisy as the others.
-  EXPECT_LT(worst_error_m(odometry, noisy), 0.02);
+  // Three poses tell that they are noisy. The first defines the world, and is as noisy as the others.
+  EXPECT_LT(worst_error_m(odometry, noisy, 3), 0.02);
   EXPECT_GT(odometry.state().prior.jitter_m, 0.5 * kNoise_m);
   EXPECT_GE(odometry.state().prior.sigma_m, odometry.state().prior.jitter_m);
 }
