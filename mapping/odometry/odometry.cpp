@@ -185,9 +185,10 @@ Tracking Odometry::State::recover(const Frame& frame) {
 }
 
 /// Where depth constrains the pose weakly, such as over a bare floor, corners constrain it. While the camera
-/// turns fast, corners are not where a global shutter would show them.
+/// turns, corners are not where a global shutter would show them. They are not used if the camera turns
+/// otherwise than when they were taken.
 void Odometry::State::constrain(const Frame& frame, const CameraVelocity& predicted, Tracking& tracking) {
-  constexpr double kMost_px = 1.5;
+  constexpr double kMost_px = 0.75;
   constexpr std::size_t kTimingFrames = 30;  // the delay of colour is estimated in this time
   is_pose_by_flow = false;
   if (kept.frames.size() < kTimingFrames) return;
@@ -195,7 +196,8 @@ void Odometry::State::constrain(const Frame& frame, const CameraVelocity& predic
   const double late_s = 0.5 * timing.colour_readout_s + std::abs(timing.colour_delay_s);
   const double focal_px =
       frame.colour.empty() ? 0.0 : frame.colour_camera.fx_px * pyramid.grey.width / frame.colour.width;
-  if (predicted.angular_radps.norm() * late_s * focal_px > kMost_px) return;
+  const double turns_radps = (predicted.angular_radps - flow_velocity.angular_radps).norm();
+  if (turns_radps * late_s * focal_px > kMost_px) return;
   if (!has_pose(tracking) || flow.corners_px.empty() || !is_weak(tracking)) return;
   if (kept.graph.keyframes[flow_keyframe].part != kept.graph.keyframes[kept.current].part) return;
   const Eigen::Isometry3d T_world_flow = kept.graph.keyframes[flow_keyframe].T_world_camera * T_keyframe_flow;
@@ -215,6 +217,7 @@ void Odometry::State::renew_flow(const Frame& frame, const Tracking& tracking) {
   }
   flow = make_flow_reference(frame, pyramid.grey);
   flow_keyframe = kept.current;
+  flow_velocity = velocity;
   T_keyframe_flow = kept.graph.keyframes[kept.current].T_world_camera.inverse() * tracking.T_world_camera;
 }
 

@@ -36,6 +36,7 @@ struct Odometry::State {
   FlowReference flow;             ///< corners followed where depth constrains the pose weakly
   std::size_t flow_keyframe = 0;  ///< keyframe to which the pose of `flow` is relative
   Eigen::Isometry3d T_keyframe_flow = Eigen::Isometry3d::Identity();
+  CameraVelocity flow_velocity;  ///< of the camera when the corners of `flow` were taken
   bool is_pose_by_flow = false;  ///< of the current frame
   Frame first_frame;             ///< empty once the first keyframe's velocity is known
   PairAligner pairs;             ///< alignments of keyframes for optimise()
@@ -54,6 +55,7 @@ struct Odometry::State {
   void improve_current(const Tracking& tracking);
   void cache_open(std::size_t keyframe);
   [[nodiscard]] bool is_far_from(std::size_t keyframe, const Tracking& tracking) const;
+  [[nodiscard]] bool has_other_view(std::size_t keyframe, const Tracking& tracking) const;
   void choose_keyframe(const Frame& frame, Tracking& tracking);
   void add_keyframe(const Frame& frame, const Tracking& tracking);
   void add_keyframe(const Frame& frame, const Tracking& tracking, int part);
