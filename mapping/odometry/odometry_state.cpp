@@ -57,8 +57,25 @@ bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking
          Eigen::AngleAxisd(T.linear()).angle() > config.keyframe_angle_deg * std::numbers::pi / 180.0;
 }
 
+/// Returns true if the view has changed since the keyframe: by a few degrees, or by as much parallax. A frame
+/// that has little in common with a keyframe of the same view, such as at the near end of the sensor's range,
+/// or with a hand in front, would have as little in common with a new keyframe.
+bool Odometry::State::has_other_view(std::size_t keyframe, const Tracking& tracking) const {
+  constexpr double kOther_rad = 0.05;
+  std::vector<float> inverse_depths = pyramid.levels.back().inverse_depth_per_m.pixels;
+  std::erase_if(inverse_depths, [](float q) { return !(q > 0.0F); });
+  if (inverse_depths.empty()) return true;
+  const auto middle = inverse_depths.begin() + static_cast<std::ptrdiff_t>(inverse_depths.size() / 2);
+  std::nth_element(inverse_depths.begin(), middle, inverse_depths.end());
+  const Eigen::Isometry3d T =
+      kept.graph.keyframes[keyframe].T_world_camera.inverse() * tracking.T_world_camera;
+  return T.translation().norm() * static_cast<double>(*middle) + Eigen::AngleAxisd(T.linear()).angle() >
+         kOther_rad;
+}
+
 void Odometry::State::choose_keyframe(const Frame& frame, Tracking& tracking) {
-  const bool little_in_common = tracking.overlap < config.keyframe_overlap;
+  const bool little_in_common =
+      tracking.overlap < config.keyframe_overlap && has_other_view(kept.current, tracking);
   if (!little_in_common && !is_far_from(kept.current, tracking)) return;
   const std::vector<std::size_t> near = keyframes_near(kept.graph.keyframes, tracking.T_world_camera, 1.0,
                                                        kept.graph.keyframes[kept.current].part);

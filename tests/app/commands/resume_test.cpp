@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSource = "sim:table?frames=40&width=128";
 // Shorter: closing loops takes a time that grows with the square of the frames.
-constexpr const char* kTrackedSource = "sim:table?frames=30&width=128";
+constexpr const char* kTrackedSource = "sim:table?frames=30&width=160";
 
 bool is_long_test() { return std::getenv("ROOMRADAR_LONG_TESTS") != nullptr; }
 

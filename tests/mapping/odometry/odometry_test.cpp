@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/sim/sensor/simulated_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
 #include "mapping/alignment/stationary_camera.hpp"
 #include "mapping/types/trajectory.hpp"
@@ -46,6 +47,25 @@ TEST(Odometry, StandsStillWhileThingsMoveBeforeIt) {
     EXPECT_TRUE(tracking) << i;
     EXPECT_LT(tracking.T_world_camera.translation().norm(), 1e-9) << i;
   }
+}
+
+TEST(Odometry, NearThingsMakeFewKeyframes) {
+  constexpr double kScale =
+      0.2;  // a doll's house, 20 to 60 cm away: in the next frame much has left the range
+  SimulatedSource source(parse_sim_spec("sim:table?frames=30&width=320&path=scan"));
+  Odometry odometry;
+  Eigen::Isometry3d T_first_world = Eigen::Isometry3d::Identity();
+  Frame frame;
+  for (int i = 0; source.next(frame).status == ReadStatus::kFrame; ++i) {
+    for (float& z_m : frame.depth_m.pixels) z_m *= static_cast<float>(kScale);
+    const Eigen::Isometry3d& T_world_camera = *frame.T_world_camera;
+    if (i == 0) T_first_world = T_world_camera.inverse();
+    const Tracking tracking = odometry.track(frame);
+    ASSERT_TRUE(tracking) << i;
+    const Eigen::Vector3d truth = kScale * (T_first_world * T_world_camera).translation();
+    EXPECT_LT((tracking.T_world_camera.translation() - truth).norm(), 0.003) << i;
+  }
+  EXPECT_LE(odometry.counts().keyframes, 8);
 }
 
 TEST(Odometry, ComesBackAfterALossByKnowingThePlace) {
