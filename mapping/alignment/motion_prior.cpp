@@ -54,7 +54,6 @@ void note_recorded(MotionPrior& prior, double stamp_s, const Eigen::Isometry3d& 
   // Limits of a camera's acceleration, of a hand that shakes.
   constexpr double kMost_mps2 = 6.0, kMost_radps2 = 20.0;
   constexpr double kJump_m = 0.5;  // a larger step is a jump of the recorded world
-  constexpr double kPart = 0.05;   // of a new value in the mean square: about 20 frames
   const std::optional<RecordedPose> first = prior.recorded[0], middle = prior.recorded[1];
   prior.recorded = {middle, RecordedPose{stamp_s, T_recorded_camera}};
   if (!first || !middle) return;
@@ -68,12 +67,15 @@ void note_recorded(MotionPrior& prior, double stamp_s, const Eigen::Isometry3d& 
   const double lever_s2 = 0.5 * before_s * after_s;  // acceleration times this is the distance from the line
   const double excess_m = std::max(0.0, off.head<3>().norm() - kMost_mps2 * lever_s2);
   const double excess_rad = std::max(0.0, off.tail<3>().norm() - kMost_radps2 * lever_s2);
-  // Of noise with standard deviation s per axis, the distance has the variance 3 s^2 (1 + part^2 + (1 -
-  // part)^2).
-  const double gain = 3.0 * (1.0 + part * part + (1.0 - part) * (1.0 - part));
-  const double square =
-      std::max(excess_m * excess_m, kPriorLever_m * kPriorLever_m * excess_rad * excess_rad) / gain;
-  prior.jitter_m = std::sqrt((1.0 - kPart) * prior.jitter_m * prior.jitter_m + kPart * square);
+  prior.excess_m[static_cast<std::size_t>(prior.excesses++) % prior.excess_m.size()] =
+      std::max(excess_m, kPriorLever_m * excess_rad);
+  std::array<double, 15> sorted = prior.excess_m;
+  const auto end = sorted.begin() + std::min<std::int64_t>(prior.excesses, sorted.size());
+  const auto median = sorted.begin() + (end - sorted.begin()) / 2;
+  std::nth_element(sorted.begin(), median, end);
+  // Of noise with standard deviation s per axis, the distance has the variance 1 + part^2 + (1 - part)^2
+  // times s^2 per axis, and the median 1.54 times its square root. Of single jumps, the median is 0.
+  prior.jitter_m = *median / (1.54 * std::sqrt(1.0 + part * part + (1.0 - part) * (1.0 - part)));
   prior.sigma_m = std::max(prior.sigma_m, prior.jitter_m);
 }
 
@@ -110,6 +112,7 @@ Tracking combine(MotionPrior& prior, const Eigen::Isometry3d& T_world_prior, con
   const double difference_m = constrained_difference_m(T_world_prior, aligned);
   const bool is_off = contradicts(prior, difference_m);
   prior.contradicted += is_off ? 1 : 0;
+  if (!is_off) prior.contradicted_in_a_row = 0;
   const double sigma_m = is_off ? std::max(difference_m, prior.sigma_m) : prior.sigma_m;
   const double prior_weight = 1.0 / (sigma_m * sigma_m);
   const double follow = std::clamp(dt_s / kDriftTime_s, 0.0, 0.2);
@@ -151,7 +154,14 @@ Tracking combine(MotionPrior& prior, const Eigen::Isometry3d& T_world_prior, con
   return result;
 }
 
+void count_contradiction(MotionPrior& prior) {
+  constexpr std::int64_t kJumped = 3;
+  ++prior.contradicted;
+  if (++prior.contradicted_in_a_row >= kJumped) interrupt_prior(prior);
+}
+
 void interrupt_prior(MotionPrior& prior) {
+  prior.contradicted_in_a_row = 0;
   prior.T_world_recorded.reset();
   ++prior.stretch;
 }

@@ -32,13 +32,18 @@ struct MotionPrior {
   double jitter_m = 0.0;
   /// The last two recorded poses, the newer one second; unset before them.
   std::array<std::optional<RecordedPose>, 2> recorded;
+  /// Ring of the last distances, m, by which a pose was farther from the line between its neighbours than a
+  /// camera's acceleration allows.
+  std::array<double, 15> excess_m{};
+  std::int64_t excesses = 0;  ///< number of distances so far; the next one goes to excesses % 15
   /// Exponential mean of the absolute difference between prior and alignment per constrained direction, m;
   /// < 0: none yet.
   double mean_difference_m = -1.0;
   /// Number of the current uninterrupted stretch of recorded poses. Relative poses are only used within one.
   std::int64_t stretch = 0;
-  std::int64_t used = 0;          ///< number of frames whose pose the prior has constrained
-  std::int64_t contradicted = 0;  ///< number of frames whose depth contradicted the prior
+  std::int64_t used = 0;                   ///< number of frames whose pose the prior has constrained
+  std::int64_t contradicted = 0;           ///< number of frames whose depth contradicted the prior
+  std::int64_t contradicted_in_a_row = 0;  ///< number of those up to now without one that agreed
 };
 
 /// Updates jitter_m. Call once per frame with a recorded pose, in order. Three consecutive poses of a camera
@@ -65,6 +70,10 @@ double constrained_difference_m(const Eigen::Isometry3d& T_world_prior, const Tr
 
 /// Returns true if a constrained_difference_m() is more than 3 cm plus five standard deviations.
 bool contradicts(const MotionPrior& prior, double difference_m);
+
+/// Counts a frame whose depth contradicts the prior, which is then not to be used in it. A single frame may
+/// have a bad pose or bad depth. At the third in a row, the recorded world has jumped: interrupts the prior.
+void count_contradiction(MotionPrior& prior);
 
 /// Ends the current stretch: recorded poses before and after have no known relation. The next tracked frame
 /// with a recorded pose begins a new stretch, see restart_prior().

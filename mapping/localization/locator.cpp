@@ -244,8 +244,7 @@ Tracking with_recorded(Locator& locator, const Frame& frame, const Eigen::Isomet
     tracking.information = prior_information(locator.prior.sigma_m, Eigen::Isometry3d::Identity());
     return tracking;
   }
-  ++locator.prior.contradicted;
-  interrupt_prior(locator.prior);
+  count_contradiction(locator.prior);
   return aligned;
 }
 

@@ -112,8 +112,7 @@ std::optional<Tracking> Odometry::State::follow_recorded(const Frame& frame,
   if (!T_prior) return std::nullopt;
   const double step_m = (kept.T_world_last.inverse() * *T_prior).translation().norm();
   if (!(step_m < kMostStep_m + kMostSpeed_mps * std::clamp(predicted.dt_s, 0.0, 2.0))) {
-    ++kept.prior.contradicted;
-    interrupt_prior(kept.prior);
+    count_contradiction(kept.prior);
     return std::nullopt;
   }
   const auto with_velocity = [&](const Tracking& tracking) {
@@ -138,8 +137,7 @@ std::optional<Tracking> Odometry::State::follow_recorded(const Frame& frame,
     const Tracking without = align_near(kept.current, predicted.T_world_camera);
     if (is_plausible(without, predicted.T_world_camera) && without &&
         without.inlier_fraction >= aligned.inlier_fraction) {
-      ++kept.prior.contradicted;
-      interrupt_prior(kept.prior);
+      count_contradiction(kept.prior);
       return with_velocity(without);
     }
     return with_velocity(combine(kept.prior, *T_prior, aligned, predicted.dt_s));
@@ -149,8 +147,7 @@ std::optional<Tracking> Odometry::State::follow_recorded(const Frame& frame,
     const Tracking without = align_near(kept.current, predicted.T_world_camera);
     if (is_plausible(without, predicted.T_world_camera) && without && without.overlap > kMinOverlap &&
         without.inlier_fraction > kManyInliers) {
-      ++kept.prior.contradicted;
-      interrupt_prior(kept.prior);
+      count_contradiction(kept.prior);
       return with_velocity(without);
     }
   }

@@ -59,7 +59,11 @@ void put_prior(std::string& out, const MotionPrior& prior) {
     put(out, pose ? pose->stamp_s : 0.0);
     put_optional_pose(out, pose ? std::optional(pose->T_recorded_camera) : std::nullopt);
   }
-  for (const std::int64_t count : {prior.stretch, prior.used, prior.contradicted}) put(out, count);
+  put(out, prior.excess_m.data(), prior.excess_m.size());
+  put(out, prior.excesses);
+  for (const std::int64_t count :
+       {prior.stretch, prior.used, prior.contradicted, prior.contradicted_in_a_row})
+    put(out, count);
 }
 
 MotionPrior take_prior(BinaryReader& in) {
@@ -72,8 +76,11 @@ MotionPrior take_prior(BinaryReader& in) {
     const double stamp_s = in.take_finite("stamp of a recorded pose");
     if (const auto T = take_optional_pose(in, "a recorded pose")) pose = RecordedPose{stamp_s, *T};
   }
+  for (double& distance_m : prior.excess_m) distance_m = in.take_finite("distance of a recorded pose");
+  prior.excesses = in.take<std::int64_t>("number of distances of recorded poses");
+  if (prior.excesses < 0) in.fail("the number of distances of recorded poses is negative");
   if (!(prior.sigma_m > 0.0)) in.fail("the standard deviation of recorded poses is not positive");
-  for (std::int64_t* count : {&prior.stretch, &prior.used, &prior.contradicted})
+  for (std::int64_t* count : {&prior.stretch, &prior.used, &prior.contradicted, &prior.contradicted_in_a_row})
     *count = in.take<std::int64_t>("counts of recorded poses");
   return prior;
 }

@@ -96,12 +96,12 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking,
   open = pyramid;
   open.grey.resize(0, 0);
   open_measured.resize(open.levels.front().camera.width_px, open.levels.front().camera.height_px, 1);
+  const bool use_recorded = config.use_recorded_poses && kept.prior.contradicted_in_a_row == 0;
   kept.graph.keyframes.push_back(
       {frame.index, tracking.T_world_camera,
        std::make_shared<const PackedView>(packed(store(open, open_measured))), 0, kept.path_length_m,
        velocity, mean_velocity(kept, tracking.T_world_camera, frame.stamp_s), kept.timing.current,
-       config.use_recorded_poses ? frame.T_world_camera : std::nullopt, part, is_pose_by_flow,
-       kept.prior.stretch});
+       use_recorded ? frame.T_world_camera : std::nullopt, part, is_pose_by_flow, kept.prior.stretch});
   if (config.use_recorded_poses && frame.T_world_camera) kept.graph.recorded_sigma_m = kept.prior.sigma_m;
   first_frame = kept.graph.keyframes.size() == 1 ? frame : Frame{};
   ++kept.counts.keyframes;
