@@ -8,8 +8,8 @@ namespace roomradar {
 struct DepthAgreement {
   int valid = 0;  ///< number of pixels with a measurement
   int both = 0;   ///< number of valid pixels at which the map's model has a surface, too
-  /// Number of pixels in `both` whose two inverse depths differ by less than 0.02 / m. The tolerance covers
-  /// sensor noise and distortion of the map.
+  /// Number of pixels in `both` whose two inverse depths differ by less than 0.02 / m, or whose depths differ
+  /// by less than 6 mm. The tolerance covers sensor noise, voxels and distortion of the map.
   int alike = 0;
   /// Number of pixels in `both` whose measured depth is beyond the model's surface by more than the tolerance
   /// of `alike`.

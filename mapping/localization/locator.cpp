@@ -152,7 +152,7 @@ Tracking search_by_features(const Locator& locator, const Frame& frame,
                             const KeyframeDatabase& keyframe_database, const ExpectedDepth& expected_depth) {
   constexpr int kMany = 100;
   constexpr double kElsewhere_m = 0.5, kElsewhere_rad = 0.5;  // keyframes this near show the same place
-  constexpr double kMinKeyframeAgreement = 0.85, kMinAlike = 0.6, kMaxFarther = 0.15, kMinCovered = 0.2;
+  constexpr double kMinKeyframeAgreement = 0.85, kMinAlike = 0.45, kMaxFarther = 0.2, kMinCovered = 0.2;
   const Relocalisation found = relocalise(frame, keyframe_database, locator.relocalise);
   if (!found || found.feature_inliers < kMany || found.depth_agreement < kMinKeyframeAgreement) return {};
   // A second place that looks the same makes the first uncertain.

@@ -273,6 +273,9 @@ TEST(DepthAgreement, CountsWhatFitsAndWhatIsSeenThrough) {
   EXPECT_EQ(half.alike, 50);
   EXPECT_EQ(half.farther, 25);
   EXPECT_DOUBLE_EQ(half.score(), 0.0);
+  // A door handle 24 cm away: voxels of 1 cm are coarser than the sensor.
+  EXPECT_EQ(depth_agreement_of(DepthImage(40, 40, 0.24F), DepthImage(40, 40, 0.236F)).alike_part(), 1.0);
+  EXPECT_EQ(depth_agreement_of(DepthImage(40, 40, 0.24F), DepthImage(40, 40, 0.233F)).farther_part(), 1.0);
   const DepthAgreement none = depth_agreement_of(DepthImage(40, 40), expected);
   EXPECT_EQ(none.valid, 0);
   EXPECT_EQ(none.score(), 0.0);
