@@ -258,6 +258,8 @@ struct FollowedPose {
 FollowedPose follow(Locator& locator, const Frame& frame, double dt_s, const ExpectedDepth& expected_depth) {
   // This near, the view rendered at the last pose shows the same surfaces, and it exists already.
   constexpr double kNear_m = 0.04, kNear_rad = 0.04;
+  // No hand changes its motion by more between two frames.
+  constexpr double kLeastOff_m = 0.05, kMostSpeed_mps = 3.0, kLeastOff_rad = 0.1, kMostTurn_radps = 4.0;
   const Eigen::Isometry3d& T_world_last = *locator.T_world_camera;
   const std::optional<Eigen::Isometry3d> T_world_prior =
       locator.use_recorded_poses ? predicted_by(locator.prior, frame.T_world_camera) : std::nullopt;
@@ -268,6 +270,10 @@ FollowedPose follow(Locator& locator, const Frame& frame, double dt_s, const Exp
       T_world_predicted, expected_depth);
   if (T_world_prior)
     return {with_recorded(locator, frame, *T_world_prior, tracking, dt_s, expected_depth), false};
+  if (has_pose(tracking) &&
+      !is_near(T_world_predicted, tracking.T_world_camera, kLeastOff_m + kMostSpeed_mps * dt_s,
+               kLeastOff_rad + kMostTurn_radps * dt_s))
+    tracking.status = TrackStatus::kDiverged;
   const bool is_bent = has_pose(tracking) && is_bend_not_motion(tracking, T_world_predicted, T_world_last,
                                                                 frame.depth_m, expected_depth);
   if (is_bent) {

@@ -98,6 +98,24 @@ TEST(Locator, IsMendedWithinFiveFramesWhenTheCameraIsCarriedAway) {
   }
 }
 
+TEST(Locator, AJumpThatNoHandMakesIsNotAMotion) {
+  for (const auto& [step_s, may_be_followed] : {std::pair{1.0 / 30.0, false}, std::pair{0.2, true}}) {
+    Mapped mapped(room());
+    const Eigen::Isometry3d there = walk(3) * Eigen::Translation3d(0.18, 0.0, 0.0);
+    double stamp_s = 0.0;
+    const auto find_at = [&](const Eigen::Isometry3d& truth) {
+      Frame frame = mapped.seen_from(truth);
+      frame.stamp_s = stamp_s;
+      return mapped.find(frame);
+    };
+    for (int i = 0; i < 3; ++i, stamp_s += step_s) ASSERT_TRUE(has_pose(find_at(walk(3)))) << i;
+    const Tracking found = find_at(there);
+    ASSERT_TRUE(has_pose(found)) << step_s;
+    EXPECT_LT(error_m(found, there), 0.02) << step_s;
+    EXPECT_EQ(mapped.locator.T_last_now.translation().norm() > 0.1, may_be_followed) << step_s;
+  }
+}
+
 TEST(Locator, SaysSoWhileTheLensIsCoveredAndGoesOnAfterwards) {
   Mapped mapped(room());
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(has_pose(mapped.find(mapped.seen_from(walk(i)))));
