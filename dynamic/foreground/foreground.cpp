@@ -81,8 +81,8 @@ std::size_t label_regions(const DepthImage& depth_m, const Difference& differenc
   std::size_t labelled = 0;
   for (const PixelRun& run : state.regions.runs) {
     const ConnectedComponent& region = state.regions.regions[run.region];
-    const bool is_firm = !is_moved || state.firm[run.region] != 0;
-    const Belief belief = is_firm ? belief_in(region, difference, camera, config) : Belief::kNone;
+    const bool is_flicker = is_moved && state.firm[run.region] == 0;
+    const Belief belief = is_flicker ? Belief::kNone : belief_in(region, difference, camera, config);
     if (belief == Belief::kSure) {
       std::fill(labels.pixels.begin() + run.first, labels.pixels.begin() + run.last + 1, difference.label);
       labelled += run.last - run.first + 1;

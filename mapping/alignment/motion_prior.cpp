@@ -69,7 +69,7 @@ void note_recorded(MotionPrior& prior, double stamp_s, const Eigen::Isometry3d& 
   const double excess_rad = std::max(0.0, off.tail<3>().norm() - kMost_radps2 * lever_s2);
   prior.excess_m[static_cast<std::size_t>(prior.excesses++) % prior.excess_m.size()] =
       std::max(excess_m, kPriorLever_m * excess_rad);
-  std::array<double, 15> sorted = prior.excess_m;
+  auto sorted = prior.excess_m;
   const auto end = sorted.begin() + std::min<std::int64_t>(prior.excesses, sorted.size());
   const auto median = sorted.begin() + (end - sorted.begin()) / 2;
   std::nth_element(sorted.begin(), median, end);

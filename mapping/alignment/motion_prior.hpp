@@ -35,7 +35,7 @@ struct MotionPrior {
   /// Ring of the last distances, m, by which a pose was farther from the line between its neighbours than a
   /// camera's acceleration allows.
   std::array<double, 15> excess_m{};
-  std::int64_t excesses = 0;  ///< number of distances so far; the next one goes to excesses % 15
+  std::int64_t excesses = 0;  ///< number of distances so far; the next one goes to excesses % excess_m.size()
   /// Exponential mean of the absolute difference between prior and alignment per constrained direction, m;
   /// < 0: none yet.
   double mean_difference_m = -1.0;

@@ -34,8 +34,8 @@ struct ScanFacts {
   double brightness = -1.0;     ///< mean of the colour picture, 0..255; < 0: no picture
   double moved_fraction = 0.0;  ///< fraction of the pixels that show an object in space that was free before
   TrackStatus status = TrackStatus::kTracked;
-  bool is_apart =
-      false;  ///< a new part of the scan began after a loss, and may still join what was seen before
+  /// A new part of the scan began after a loss, and may still join what was seen before.
+  bool is_apart = false;
   double speed_mps = 0.0, speed_rad_s = 0.0;  ///< speed of the camera, smoothed; 0 if unknown
 };
 

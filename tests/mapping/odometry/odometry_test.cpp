@@ -50,8 +50,8 @@ TEST(Odometry, StandsStillWhileThingsMoveBeforeIt) {
 }
 
 TEST(Odometry, NearThingsMakeFewKeyframes) {
-  constexpr double kScale =
-      0.2;  // a doll's house, 20 to 60 cm away: in the next frame much has left the range
+  // A doll's house, 20 to 60 cm away: in the next frame much has left the view.
+  constexpr double kScale = 0.2;
   SimulatedSource source(parse_sim_spec("sim:table?frames=30&width=320&path=scan"));
   Odometry odometry;
   Eigen::Isometry3d T_first_world = Eigen::Isometry3d::Identity();
