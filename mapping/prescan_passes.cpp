@@ -263,13 +263,19 @@ Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEst
   RegistrationConfig located;
   located.min_overlap = 0.01;
   // Many keyframes were localised in the map, so it is the same room, in which things may have moved.
-  constexpr std::int64_t kManyAnchored = 5;
+  constexpr std::size_t kManyAnchored = 5;
   constexpr double kMovedThings = 0.5;
-  if (odometry.state().counts.anchored >= kManyAnchored) located.min_agreement = kMovedThings;
-  const Registration placed =
-      odometry.state().located
-          ? verify_registration(map.octree, surface, Eigen::Isometry3d::Identity(), located)
-          : register_to(map.octree, map.keyframe_database, found.keyframe_database, surface);
+  if (agreeing_anchors(odometry.state().graph).size() >= kManyAnchored) located.min_agreement = kMovedThings;
+  Registration placed;
+  if (odometry.state().located)
+    placed = refine_registration(map.octree, surface, Eigen::Isometry3d::Identity(), located);
+  if (!placed) {
+    RegistrationConfig anew;
+    anew.up_b = found.up.up_world;
+    const Registration found_anew =
+        register_to(map.octree, map.keyframe_database, found.keyframe_database, surface, anew);
+    if (found_anew || !odometry.state().located) placed = found_anew;
+  }
   if (!placed)
     throw Error(source + ": cannot be registered to the map that it is to be added to: " + describe(placed) +
                 "; the map is unchanged. Begin where the map was scanned, or save as another map");

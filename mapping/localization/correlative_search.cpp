@@ -247,25 +247,21 @@ void keep_distinct(std::size_t count, std::vector<ShapeCandidate>& candidates) {
   candidates = std::move(distinct);
 }
 
-}  // namespace
-
-ShapeIndex shape_index(const KeyframeDatabase& keyframe_database) {
-  const std::vector<Vector3f> points = points_of(keyframe_database);
-  if (points.empty()) return {};
-  Eigen::AlignedBox3f box;
-  for (const Vector3f& p : points) box.extend(p);
-  double coarse_m = kCoarse_m;
-  const auto cells = [&] { return cells_across(box.sizes().cast<double>(), coarse_m).prod(); };
-  while (cells() > kMostCells) coarse_m *= std::max(1.02, std::cbrt(cells() / kMostCells));
-  return {grid_of(points, box, coarse_m), grid_of(points, box, 0.5 * coarse_m)};
+/// Returns at most `count` of the points, evenly spread.
+std::vector<Vector3f> thinned(const std::vector<Vector3f>& points, std::size_t count) {
+  std::vector<Vector3f> chosen;
+  const std::size_t kept = std::min(points.size(), count);
+  for (std::size_t i = 0; i < kept; ++i) chosen.push_back(points[i * points.size() / kept]);
+  return chosen;
 }
 
-std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Intrinsics& camera,
-                                            const Vector3d& down_camera, const ShapeIndex& known,
-                                            std::size_t most) {
+/// Searches by few points on the coarse grid, then refines by more on the fine one.
+/// @param points  at most 257: their nearness is summed in 16 bits
+std::vector<ShapeCandidate> search(const std::vector<Vector3f>& points,
+                                   const std::vector<Vector3f>& more_points, const Vector3d& down_camera,
+                                   const ShapeIndex& known, std::size_t most) {
   constexpr std::size_t kMinPoints = 30, kSettled = 200;
   std::vector<ShapeCandidate> candidates;
-  const std::vector<Vector3f> points = points_of(depth_m, camera, 10, 8);
   if (points.size() < kMinPoints || known.empty() || !(std::abs(down_camera.norm() - 1.0) < 0.1))
     return candidates;
   const Eigen::Matrix3d R_level_camera = rotation_between(down_camera, -Vector3d::UnitZ()).toRotationMatrix();
@@ -290,7 +286,6 @@ std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Int
                    [](const Vote& a, const Vote& b) { return a.score > b.score; });
   votes.resize(std::min(votes.size(), kSettled));
 
-  const std::vector<Vector3f> more_points = points_of(depth_m, camera, 20, 15);
   for (const Vote& vote : votes) {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     T_world_camera.linear() = R_world_camera(vote.heading);
@@ -307,6 +302,32 @@ std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Int
   }
   keep_distinct(most, candidates);
   return candidates;
+}
+
+}  // namespace
+
+ShapeIndex shape_index(const KeyframeDatabase& keyframe_database) {
+  const std::vector<Vector3f> points = points_of(keyframe_database);
+  if (points.empty()) return {};
+  Eigen::AlignedBox3f box;
+  for (const Vector3f& p : points) box.extend(p);
+  double coarse_m = kCoarse_m;
+  const auto cells = [&] { return cells_across(box.sizes().cast<double>(), coarse_m).prod(); };
+  while (cells() > kMostCells) coarse_m *= std::max(1.02, std::cbrt(cells() / kMostCells));
+  return {grid_of(points, box, coarse_m), grid_of(points, box, 0.5 * coarse_m)};
+}
+
+std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Intrinsics& camera,
+                                            const Vector3d& down_camera, const ShapeIndex& known,
+                                            std::size_t most) {
+  return search(points_of(depth_m, camera, 10, 8), points_of(depth_m, camera, 20, 15), down_camera, known,
+                most);
+}
+
+std::vector<ShapeCandidate> search_by_shape(const std::vector<Vector3f>& points, const Vector3d& down,
+                                            const ShapeIndex& known, std::size_t most) {
+  constexpr std::size_t kFew = 240, kMany = 2000;
+  return search(thinned(points, kFew), thinned(points, kMany), down, known, most);
 }
 
 }  // namespace roomradar

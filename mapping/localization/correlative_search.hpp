@@ -47,4 +47,12 @@ std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Int
                                             const Eigen::Vector3d& down_camera, const ShapeIndex& known,
                                             std::size_t most);
 
+/// The same for a point cloud, such as the surface of a whole scan, instead of an image.
+/// @param points  relative to a position within the known room, e.g. of a camera, m
+/// @param down    unit direction of gravity in the points' frame
+/// @return poses of the points' frame in the world frame
+std::vector<ShapeCandidate> search_by_shape(const std::vector<Eigen::Vector3f>& points,
+                                            const Eigen::Vector3d& down, const ShapeIndex& known,
+                                            std::size_t most);
+
 }  // namespace roomradar

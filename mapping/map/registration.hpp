@@ -16,10 +16,12 @@ struct RegistrationConfig {
   int candidates = 3;        ///< number of keyframes of a that are compared with each keyframe of b
   int min_inliers = 20;      ///< min number of features that agree on the relative pose of two keyframes
   int min_agreeing = 3;      ///< min number of keyframes of b that agree on T_a_b
+  int hypotheses = 4;        ///< max number of transforms that the surface tests
   double min_overlap = 0.1;  ///< min fraction of b's surface that is in space known to a
   /// Min fraction of b's surface in space known to a that is on a's surface, not in a's free space. The
   /// default tolerates moved objects, but rejects another room with the same picture on its wall.
   double min_agreement = 0.75;
+  Eigen::Vector3d up_b = Eigen::Vector3d::UnitZ();  ///< unit direction in b's world frame; a's is +z
   std::size_t points = 12'000;  ///< number of points of b's surface that are tested
 };
 
@@ -46,15 +48,22 @@ struct [[nodiscard]] Registration {
 /// the number of agreeing keyframes, overlap and agreement. A reason includes the value that was too low.
 std::string describe(const Registration& registration);
 
-/// Computes T_a_b. Each keyframe of b that matches a keyframe of a votes for a transform. The transform on
-/// which most keyframes agree is refined by aligning b's surface with a's signed distances. In directions
-/// that the surfaces do not constrain, the keyframes' transform is kept. The result must then agree with a's
-/// surface and free space. Deterministic.
+/// Computes T_a_b. Each keyframe of b that matches a keyframe of a votes for a transform, and the transforms
+/// on which most keyframes agree are tried. All matching keyframes may show furniture that was moved, so the
+/// room's shape proposes further transforms (correlative matching of the surfaces), which count if the
+/// keyframes' patches look alike there. Each transform is refined by aligning b's surface with a's signed
+/// distances; in directions that the surfaces do not constrain, it is kept. The result is the transform that
+/// agrees best with a's surface and free space. Deterministic.
 ///
 /// @param surface_b  points sampled uniformly on b's surface (sample_surface()), in b's world frame
 Registration register_to(const StaticMap& octree_a, const KeyframeDatabase& database_a,
                          const KeyframeDatabase& database_b, std::span<const Eigen::Vector3d> surface_b,
                          const RegistrationConfig& config = {});
+
+/// Refines an approximate T_a_b by aligning b's surface with a's, and verifies the result like
+/// verify_registration(). Returns the approximate transform if that agrees better.
+Registration refine_registration(const StaticMap& octree_a, std::span<const Eigen::Vector3d> surface_b,
+                                 const Eigen::Isometry3d& T_a_b, const RegistrationConfig& config = {});
 
 /// Verifies T_a_b by testing b's surface against a's surface and free space. Returns kRegistered, kNoOverlap
 /// or kContradicted, and sets overlap and agreement.

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <unordered_set>
+
+#include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
 
@@ -40,22 +43,25 @@ std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count)
 
 std::vector<Eigen::Vector3d> surface_of(const KeyframeDatabase& keyframe_database, std::size_t count) {
   constexpr std::uint16_t kFarthest_mm = 3000;  // farther measurements are off by 1.5 cm and more
-  std::size_t pixels = 0;
-  for (const MapKeyframe& place : keyframe_database.keyframes) pixels += place.preview_depth_mm.pixels.size();
-  const std::size_t stride = 1 + pixels / std::max<std::size_t>(count, 1);
+  constexpr double kCell_m = 0.03;
+  std::unordered_set<std::uint64_t> cells;
   std::vector<Eigen::Vector3d> points;
-  std::size_t at = 0;
   for (const MapKeyframe& place : keyframe_database.keyframes) {
-    const auto width = static_cast<std::size_t>(std::max(place.preview_depth_mm.width, 1));
-    for (; at < place.preview_depth_mm.pixels.size(); at += stride) {
-      const std::uint16_t depth_mm = place.preview_depth_mm.pixels[at];
-      if (depth_mm == 0 || depth_mm > kFarthest_mm) continue;
-      points.push_back(place.T_world_camera * back_project(place.preview_camera,
-                                                           static_cast<double>(at % width),
-                                                           static_cast<double>(at / width), 1e-3 * depth_mm));
+    for (int y = 0; y < place.preview_depth_mm.height; ++y) {
+      for (int x = 0; x < place.preview_depth_mm.width; ++x) {
+        const std::uint16_t depth_mm = place.preview_depth_mm.at(x, y);
+        if (depth_mm == 0 || depth_mm > kFarthest_mm) continue;
+        const Eigen::Vector3d p =
+            place.T_world_camera * back_project(place.preview_camera, x, y, 1e-3 * depth_mm);
+        const Eigen::Array3d cell = (p / kCell_m).array().floor();
+        if (!(cell.abs() < 1e6).all()) continue;  // a damaged camera
+        if (cells.insert(voxel_key(cell.matrix().cast<int>())).second) points.push_back(p);
+      }
     }
-    at -= place.preview_depth_mm.pixels.size();
   }
+  const std::size_t stride = 1 + points.size() / std::max<std::size_t>(count, 1);
+  for (std::size_t i = 0; i * stride < points.size(); ++i) points[i] = points[i * stride];
+  points.resize((points.size() + stride - 1) / stride);
   return points;
 }
 

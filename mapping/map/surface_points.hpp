@@ -13,7 +13,8 @@ namespace roomradar {
 std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count);
 
 /// Returns at most `count` surface points from the keyframes' depth previews (downsampled depth images), in
-/// the keyframes' world frame. Uses depths up to 3 m.
+/// the keyframes' world frame. Uses depths up to 3 m, and one point per cube of 3 cm, so that what many
+/// keyframes show does not count more.
 std::vector<Eigen::Vector3d> surface_of(const KeyframeDatabase& keyframe_database, std::size_t count);
 
 }  // namespace roomradar

@@ -2,6 +2,7 @@
 #include "mapping/odometry/keyframe_graph.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <span>
 #include <utility>
@@ -40,17 +41,18 @@ void solve_free(KeyframeGraph& graph, const std::vector<PoseConstraint>& constra
 }
 
 /// Holds the first pose of each part constant, unless anchors locate the part in the world.
-void hold_first_of_parts(const KeyframeGraph& graph, std::vector<bool>& constant) {
+void hold_first_of_parts(const KeyframeGraph& graph, const std::vector<PoseAnchor>& anchors,
+                         std::vector<bool>& constant) {
   std::map<int, bool> is_held;  // by part
-  for (const PoseAnchor& anchor : graph.anchors) is_held[graph.keyframes[anchor.pose].part] = true;
+  for (const PoseAnchor& anchor : anchors) is_held[graph.keyframes[anchor.pose].part] = true;
   for (std::size_t i = 0; i < graph.keyframes.size(); ++i) {
     if (!std::exchange(is_held[graph.keyframes[i].part], true)) constant[i] = true;
   }
 }
 
-std::vector<bool> first_constant(const KeyframeGraph& graph) {
+std::vector<bool> first_constant(const KeyframeGraph& graph, const std::vector<PoseAnchor>& anchors) {
   std::vector<bool> constant(graph.keyframes.size(), false);
-  hold_first_of_parts(graph, constant);
+  hold_first_of_parts(graph, anchors, constant);
   return constant;
 }
 
@@ -80,6 +82,21 @@ PoseConstraint weighed_by_likeness(PoseConstraint constraint) {
 }
 
 }  // namespace
+
+bool agrees(const PoseAnchor& anchor, const Keyframe& keyframe, const Eigen::Isometry3d& T_known_world) {
+  constexpr double kNear_m = 0.15, kNear_rad = 0.1;
+  const Eigen::Isometry3d gap = anchor.T_world_camera.inverse() * T_known_world * keyframe.T_world_camera;
+  return gap.translation().norm() < kNear_m && Eigen::AngleAxisd(gap.linear()).angle() < kNear_rad;
+}
+
+std::vector<PoseAnchor> agreeing_anchors(const KeyframeGraph& graph) {
+  std::vector<PoseAnchor> agreeing;
+  std::copy_if(graph.anchors.begin(), graph.anchors.end(), std::back_inserter(agreeing),
+               [&](const PoseAnchor& anchor) {
+                 return agrees(anchor, graph.keyframes[anchor.pose], Eigen::Isometry3d::Identity());
+               });
+  return agreeing;
+}
 
 std::vector<std::size_t> keyframes_near(std::span<const Keyframe> keyframes,
                                         const Eigen::Isometry3d& T_world_camera, double furthest, int part) {
@@ -172,7 +189,8 @@ void connect_recorded(KeyframeGraph& graph, std::size_t keyframe) {
 }
 
 void solve(KeyframeGraph& graph) {
-  solve_free(graph, graph.constraints, graph.anchors, first_constant(graph));
+  const std::vector<PoseAnchor> anchors = agreeing_anchors(graph);
+  solve_free(graph, graph.constraints, anchors, first_constant(graph, anchors));
 }
 
 void solve_positions_then_turns(KeyframeGraph& graph) {
@@ -182,18 +200,19 @@ void solve_positions_then_turns(KeyframeGraph& graph) {
   weighed.reserve(graph.constraints.size());
   for (const PoseConstraint& constraint : graph.constraints)
     weighed.push_back(weighed_by_likeness(constraint));
-  solve_free(graph, weighed, graph.anchors, first_constant(graph));
+  const std::vector<PoseAnchor> known = agreeing_anchors(graph);
+  solve_free(graph, weighed, known, first_constant(graph, known));
 
   // No pose is constant now: a constant first pose would keep its rotation from the first step.
   constexpr double kSigma_m = 1e-4;  // not 0: many consistent alignments may still move a position
   Matrix6d position = Matrix6d::Zero();
   position.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
-  std::vector<PoseAnchor> anchors = graph.anchors;
+  std::vector<PoseAnchor> anchors = known;
   for (std::size_t i = 0; i < graph.keyframes.size(); ++i)
     anchors.push_back({i, graph.keyframes[i].T_world_camera, position});
   const std::vector<bool> none_constant(graph.keyframes.size(), false);
   solve_free(graph, graph.constraints, anchors, none_constant);
-  if (!graph.anchors.empty()) return;
+  if (!known.empty()) return;
   const Eigen::Isometry3d T_before_after = T_world_first * graph.keyframes.front().T_world_camera.inverse();
   for (Keyframe& keyframe : graph.keyframes)
     keyframe.T_world_camera = T_before_after * keyframe.T_world_camera;
@@ -205,8 +224,9 @@ void solve_near_newest(KeyframeGraph& graph, double furthest) {
   for (const std::size_t i : keyframes_near(graph.keyframes, graph.keyframes.back().T_world_camera, furthest,
                                             graph.keyframes.back().part))
     constant[i] = false;
-  hold_first_of_parts(graph, constant);
-  solve_free(graph, graph.constraints, graph.anchors, constant);
+  const std::vector<PoseAnchor> anchors = agreeing_anchors(graph);
+  hold_first_of_parts(graph, anchors, constant);
+  solve_free(graph, graph.constraints, anchors, constant);
 }
 
 }  // namespace roomradar

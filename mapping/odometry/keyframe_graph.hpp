@@ -36,7 +36,9 @@ struct KeyframeGraph {
   std::vector<PoseConstraint> constraints;
   /// Standard deviation of recorded poses (MotionPrior::sigma_m), which connect consecutive keyframes.
   double recorded_sigma_m = 0.0;
-  std::vector<PoseAnchor> anchors;  ///< measured poses of keyframes in the world frame of a known map
+  /// Measured poses of keyframes in the world frame of a known map. Some may be wrong: see
+  /// agreeing_anchors().
+  std::vector<PoseAnchor> anchors;
   /// Number of connected pairs that are at least three keyframes apart in sequence.
   std::int64_t loops_found = 0;
   std::int64_t loops_rejected = 0;
@@ -48,6 +50,13 @@ struct ConnectConfig {
   AlignConfig align;
   KeyframeGraphConfig graph;
 };
+
+/// Returns true if a keyframe, moved by T_known_world, is within 0.15 m and 0.1 rad of the anchor.
+bool agrees(const PoseAnchor& anchor, const Keyframe& keyframe, const Eigen::Isometry3d& T_known_world);
+
+/// Returns the anchors that agree with the keyframes' present poses. Only these constrain the poses: a view
+/// of moved furniture alone is recognised where the furniture stood.
+std::vector<PoseAnchor> agreeing_anchors(const KeyframeGraph& graph);
 
 /// Returns the indices of all keyframes of a part whose view_distance() to a camera pose is less than
 /// `furthest`, nearest first.

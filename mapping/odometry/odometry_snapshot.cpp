@@ -11,12 +11,38 @@ namespace roomradar {
 namespace {
 
 void anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera, OdometrySnapshot& kept) {
-  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // standard deviations of a relocalised pose
+  // Standard deviations of a relocalised pose. Its error is nearer to 0.02 m, but is common to keyframes that
+  // show the same moved furniture, while the alignments between keyframes are accurate.
+  constexpr double kSigma_m = 0.1, kSigma_rad = 0.05;
   Matrix6d information = Matrix6d::Zero();
   information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
   information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
   kept.graph.anchors.push_back({keyframe, T_known_camera, information});
   ++kept.counts.anchored;
+}
+
+/// Returns the transform on which most anchors of a part agree, from the part's present world frame to the
+/// known map's. Returns identity if no other transform has more anchors. A view of furniture alone is
+/// recognised where the furniture stood, so a single anchor may be wrong.
+Eigen::Isometry3d agreed_transform(const OdometrySnapshot& kept, int part) {
+  std::vector<std::pair<const PoseAnchor*, const Keyframe*>> anchored;
+  for (const PoseAnchor& anchor : kept.graph.anchors)
+    if (const Keyframe& keyframe = kept.graph.keyframes[anchor.pose]; keyframe.part == part)
+      anchored.emplace_back(&anchor, &keyframe);
+  const auto count_agreeing = [&](const Eigen::Isometry3d& T_known_world) {
+    return std::count_if(anchored.begin(), anchored.end(),
+                         [&](const auto& of) { return agrees(*of.first, *of.second, T_known_world); });
+  };
+  Eigen::Isometry3d best = Eigen::Isometry3d::Identity();
+  auto most = kept.located ? count_agreeing(best) : 0;
+  for (const auto& [anchor, keyframe] : anchored) {
+    const Eigen::Isometry3d T_known_world = anchor->T_world_camera * keyframe->T_world_camera.inverse();
+    const auto agreeing = count_agreeing(T_known_world);
+    if (agreeing <= most) continue;
+    most = agreeing;
+    best = T_known_world;
+  }
+  return best;
 }
 
 }  // namespace
@@ -43,15 +69,15 @@ Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
   kept.keyframe_database.keyframes.push_back(std::move(result.place));
   Eigen::Isometry3d T_new_old = move_keyframes(result.graph.keyframes, kept);
   if (result.T_known_camera) {
-    if (!kept.located) {
-      const Eigen::Isometry3d T_known_world =
-          *result.T_known_camera * kept.graph.keyframes[newest].T_world_camera.inverse();
-      std::vector<Keyframe> moved = kept.graph.keyframes;
-      for (Keyframe& keyframe : moved) keyframe.T_world_camera = T_known_world * keyframe.T_world_camera;
-      T_new_old = move_keyframes(moved, kept) * T_new_old;
-      kept.located = true;
-    }
     anchor(newest, *result.T_known_camera, kept);
+    const int part = kept.graph.keyframes[newest].part;
+    const Eigen::Isometry3d T_known_world = agreed_transform(kept, part);
+    std::vector<Keyframe> moved = kept.graph.keyframes;
+    for (Keyframe& keyframe : moved)
+      if (!kept.located || keyframe.part == part)
+        keyframe.T_world_camera = T_known_world * keyframe.T_world_camera;
+    T_new_old = move_keyframes(moved, kept) * T_new_old;
+    kept.located = true;
   }
   return T_new_old;
 }

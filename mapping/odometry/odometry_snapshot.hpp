@@ -94,8 +94,8 @@ PredictedMotion predict(const OdometrySnapshot& kept, double stamp_s);
 Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept);
 
 /// Applies the background thread's result. Returns the correction of the current keyframe, as
-/// move_keyframes() does. If the newest keyframe was localised in the prior map, adds an anchor for it. The
-/// first anchor also moves all poses into the prior map's world frame.
+/// move_keyframes() does. If the newest keyframe was localised in the prior map, adds an anchor for it, and
+/// moves all poses to where most anchors agree: the first one into the prior map's world frame.
 Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);
 
 /// Adds a frame with a given pose; see Odometry::add_posed().

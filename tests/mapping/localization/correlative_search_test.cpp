@@ -52,6 +52,26 @@ const std::array kViews{test::looking_at({1.1, -0.9, 1.0}, {-1.2, 1.6, 0.5}),
                         test::looking_at({-1.3, -1.6, 1.7}, {1.0, 1.0, 0.2}),
                         test::looking_at({0.8, 0.9, 0.7}, {-1.5, 0.9, 0.5}, {0.1, 0.1, 0.9})};
 
+TEST(ShapeSearch, FindsAWholeScanInAnother) {
+  const KeyframeDatabase keyframes = scanned();
+  const Eigen::Isometry3d T_world_scan =
+      Eigen::Translation3d(0.3, -0.2, 1.1) * Eigen::AngleAxisd(2.1, Eigen::Vector3d::UnitZ());
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Isometry3d& view : kViews) {
+    const Frame frame = seen_from(view);
+    for (int y = 0; y < kCamera.height_px; y += 4)
+      for (int x = 0; x < kCamera.width_px; x += 4)
+        if (const double depth_m = frame.depth_m.at(x, y); depth_m > 0.0)
+          points.emplace_back(
+              (T_world_scan.inverse() * view * back_project(kCamera, x, y, depth_m)).cast<float>());
+  }
+  const auto found = search_by_shape(points, -Eigen::Vector3d::UnitZ(), shape_index(keyframes), 2);
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(error_m(found.front().T_world_camera, T_world_scan), 0.03);
+  EXPECT_LT(error_rad(found.front().T_world_camera, T_world_scan), 0.02);
+  EXPECT_TRUE(search_by_shape({}, -Eigen::Vector3d::UnitZ(), shape_index(keyframes), 2).empty());
+}
+
 TEST(ShapeSearch, FindsViewsOfThingsFromWhereNobodyWas) {
   const ShapeIndex known = shape_index(scanned());
   for (const Eigen::Isometry3d& truth : kViews) {

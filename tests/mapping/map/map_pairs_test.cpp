@@ -40,8 +40,10 @@ Scene with(const Scene& scene, const Eigen::AlignedBox3d& thing) {
 const Eigen::AlignedBox3d kThing(Vector3d(0.2, 1.0, 0.0), Vector3d(0.5, 1.25, 0.3));
 
 /// A map as a prescan makes it, in its own world frame.
-SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& T_own_world, unsigned seed,
-              double voxel_m = kVoxel_m) {
+/// @param grey_of  grey level of a world point
+template <typename Grey>
+SavedMap scan_painted(const Grey& grey_of, const Scene& scene, double from_m, double to_m,
+                      const Isometry3d& T_own_world, unsigned seed, double voxel_m = kVoxel_m) {
   SavedMap map;
   map.octree = StaticMap(voxel_m);
   for (int i = 0; i < 16; ++i) {
@@ -49,7 +51,7 @@ SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& 
     const Isometry3d T_world_camera =
         test::looking_at(Vector3d(along, -0.6 + 0.2 * std::sin(i), 1.4), Vector3d(along + 0.4, 1.7, 0.5));
     Frame frame = test::exact_frame(scene, kCamera, T_world_camera);
-    test::paint(frame, T_world_camera);
+    test::paint_with(grey_of, frame, T_world_camera);
     if (seed > 0) test::add_depth_noise(frame, seed + static_cast<unsigned>(i));
     frame.index = i;
     const Isometry3d T_own_camera = T_own_world * T_world_camera;
@@ -61,6 +63,11 @@ SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& 
   map.info.source = "painted";
   map.info.frames_read = map.info.frames_fused = 16;
   return map;
+}
+
+SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& T_own_world, unsigned seed,
+              double voxel_m = kVoxel_m) {
+  return scan_painted(test::cube_grey, scene, from_m, to_m, T_own_world, seed, voxel_m);
 }
 
 Isometry3d turned(double angle_rad, const Vector3d& shift_m) {
@@ -132,6 +139,30 @@ TEST_F(MapPairs, AnotherRoomIsRefused) {
                                        test::plane(Vector3d::UnitZ(), -0.3));
   const Registration found = register_maps(a(), scan(other, -0.6, 0.8, Isometry3d::Identity(), 7));
   EXPECT_FALSE(found) << describe(found);
+}
+
+/// The room with a painted table; everything else has hardly any contrast, so only the table has features.
+SavedMap scan_with_table(const Vector3d& shift_m, const Isometry3d& T_own_world, unsigned seed) {
+  const Eigen::AlignedBox3d table(Vector3d(-0.2, 0.9, 0.0) + shift_m, Vector3d(0.7, 1.5, 0.8) + shift_m);
+  Eigen::AlignedBox3d painted = table;
+  painted.min() -= Vector3d::Constant(0.01);
+  painted.max() += Vector3d::Constant(0.01);
+  const auto grey_of = [=](const Vector3d& p_world) {
+    const bool is_table = painted.contains(p_world) && p_world.z() > 0.02;
+    return is_table ? 1.0 * test::cube_grey(p_world - shift_m) : 110.0 + 0.15 * test::cube_grey(p_world);
+  };
+  return scan_painted(grey_of, with(room(), table), -0.6, 0.8, T_own_world, seed);
+}
+
+TEST_F(MapPairs, ATableThatWasMovedDoesNotMoveTheRoom) {
+  Isometry3d T_b_world = Isometry3d::Identity();
+  T_b_world.linear() = Eigen::AngleAxisd(0.7, Vector3d::UnitZ()).matrix();
+  T_b_world.translation() = Vector3d(1.3, -0.4, 0.0);
+  const SavedMap before = scan_with_table(Vector3d::Zero(), Isometry3d::Identity(), 1);
+  const SavedMap after = scan_with_table({-0.3, -0.25, 0.0}, T_b_world, 1000);
+  const Registration found = register_maps(before, after);
+  ASSERT_TRUE(found) << describe(found);
+  EXPECT_LT(gap_m(found.T_a_b * T_b_world, Isometry3d::Identity()), 0.5 * kVoxel_m) << describe(found);
 }
 
 TEST_F(MapPairs, ALookAlikeIsRefused) {

@@ -179,6 +179,40 @@ TEST(OdometryThatKnowsAMap, IsInTheMapsWorldFromTheFirstFrameOn) {
   }
 }
 
+/// Adds a keyframe along x in the tracker's world, localised in the known map at T_known_world times its
+/// pose.
+void add_anchored(double x_m, const Eigen::Isometry3d& T_known_world, OdometrySnapshot& kept) {
+  const Eigen::Isometry3d T_tracker_camera(Eigen::Translation3d(x_m, 0.0, 0.0));
+  const Eigen::Isometry3d T_world_tracker =
+      kept.graph.keyframes.empty() ? Eigen::Isometry3d::Identity() : kept.graph.keyframes[0].T_world_camera;
+  Keyframe keyframe;
+  keyframe.T_world_camera = T_world_tracker * T_tracker_camera;
+  kept.graph.keyframes.push_back(keyframe);
+  kept.current = kept.graph.keyframes.size() - 1;
+  KeyframeJobResult result;
+  result.graph = kept.graph;
+  result.T_known_camera = T_known_world * T_tracker_camera;
+  take_over(std::move(result), kept);
+}
+
+TEST(OdometryThatKnowsAMap, TheFirstAnchorIsOutvotedByTwoThatAgree) {
+  const Eigen::Isometry3d T_known_world(Eigen::Translation3d(2.0, 1.0, 0.0) *
+                                        Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
+  const Eigen::Isometry3d by_moved_table = Eigen::Translation3d(0.6, -0.2, 0.0) * T_known_world;
+  OdometrySnapshot kept;
+  add_anchored(0.0, by_moved_table, kept);
+  EXPECT_TRUE(kept.graph.keyframes[0].T_world_camera.isApprox(by_moved_table));
+  add_anchored(0.5, T_known_world, kept);
+  EXPECT_TRUE(kept.graph.keyframes[0].T_world_camera.isApprox(by_moved_table));  // one against one
+  EXPECT_EQ(agreeing_anchors(kept.graph).size(), 1U);
+  add_anchored(1.0, T_known_world, kept);
+  EXPECT_TRUE(kept.graph.keyframes[0].T_world_camera.isApprox(T_known_world));
+  EXPECT_EQ(agreeing_anchors(kept.graph).size(), 2U);
+  add_anchored(1.5, by_moved_table, kept);  // two against two: nothing moves
+  EXPECT_TRUE(kept.graph.keyframes[0].T_world_camera.isApprox(T_known_world));
+  EXPECT_EQ(kept.counts.anchored, 4);
+}
+
 TEST(OdometryThatKnowsAMap, AnotherRoomIsTrackedInAWorldOfItsOwn) {
   const test::Scene other =
       test::nearest_of(test::plane({0, 0, 1}, -0.3),
