@@ -8,12 +8,16 @@
 
 #include "mapping/alignment/feature_flow.hpp"
 #include "mapping/alignment/motion_prior.hpp"
+#include "mapping/alignment/stationary_camera.hpp"
 #include "mapping/localization/depth_agreement.hpp"
 #include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
 
+/// Standard deviation along a direction up to which depth alone constrains it: that of the systematic errors
+/// of an alignment. Where the noise says more, poses were 5 to 25 cm off.
+constexpr double kMostUncertain_m = 0.006;
 constexpr int kLiveStep_px = 1;  // all pixels of the finest level: less pose jitter
 
 /// Returns true if the depth bent because the Kinect recalibrates, and the camera did not move. Alignment
@@ -51,25 +55,37 @@ Tracking align_with_model(Locator& locator, const AlignConfig& config, const Int
   return tracking;
 }
 
-/// Moves an aligned pose in the directions that depth leaves unconstrained, to bring patches onto their
-/// matches. Solves the least squares of both.
-void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPair>& pairs,
-          Tracking& tracking) {
-  constexpr double kIndependent = 0.25;  // patches share corners, and neighbours share depth errors
-  constexpr double kFarthest = 0.3;      // m and rad; beyond it, the pairs do not constrain the pose either
-  Eigen::Matrix<double, 6, 6> H = by_depth;
+/// Normal equation of a least-squares correction of a camera pose.
+struct NormalEquation {
+  Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+};
+
+/// Returns the constraint of matched patches on the camera's twist.
+NormalEquation constraint_of(const std::vector<PointPair>& pairs, const Eigen::Isometry3d& T_world_camera) {
+  constexpr double kIndependent = 0.25;  // patches share corners, and neighbours share depth errors
+  NormalEquation by_patches;
   for (const PointPair& pair : pairs) {
     Eigen::Matrix<double, 3, 6> J;  // Jacobian of a point in the camera by the camera's twist
     J.leftCols<3>().setIdentity();
     for (int k = 0; k < 3; ++k) J.col(3 + k) = Eigen::Vector3d::Unit(k).cross(pair.b);
-    const Eigen::Vector3d gap = tracking.T_world_camera.inverse() * pair.a - pair.b;
+    const Eigen::Vector3d gap = T_world_camera.inverse() * pair.a - pair.b;
     // A gate is three standard deviations.
     const double weight = kIndependent * 9.0 / (pair.gate_m * pair.gate_m);
-    H += weight * J.transpose() * J;
-    g += weight * J.transpose() * gap;
+    by_patches.H += weight * J.transpose() * J;
+    by_patches.g += weight * J.transpose() * gap;
   }
-  const Eigen::Matrix<double, 6, 1> twist = solve_symmetric(H, g);
+  return by_patches;
+}
+
+/// Moves an aligned pose in the directions that depth leaves unconstrained, to bring patches onto their
+/// matches. Solves the least squares of both.
+void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPair>& pairs,
+          Tracking& tracking) {
+  constexpr double kFarthest = 0.3;  // m and rad; beyond it, the pairs do not constrain the pose either
+  const NormalEquation by_patches = constraint_of(pairs, tracking.T_world_camera);
+  const Eigen::Matrix<double, 6, 6> H = by_depth + by_patches.H;
+  const Eigen::Matrix<double, 6, 1> twist = solve_symmetric(H, by_patches.g);
   if (!(twist.norm() < kFarthest)) return;
   tracking.T_world_camera = tracking.T_world_camera * retract(twist);
   tracking.information = H;
@@ -248,6 +264,31 @@ Tracking with_recorded(Locator& locator, const Frame& frame, const Eigen::Isomet
   return aligned;
 }
 
+/// Resets an aligned pose to the predicted one in the directions that depth constrains weakly. The pose is
+/// then kDegenerate.
+void predict_weak_directions(const Eigen::Isometry3d& T_world_predicted, Tracking& tracking) {
+  Vector6d lever;  // m per m, and m per rad
+  lever << 1.0, 1.0, 1.0, kPriorLever_m, kPriorLever_m, kPriorLever_m;
+  const Vector6d inverse = lever.cwiseInverse();
+  const SymmetricEigen<6> known =
+      symmetric_eigen(Matrix6d(inverse.asDiagonal() * tracking.information * inverse.asDiagonal()));
+  constexpr double kLeast = 1.0 / (kMostUncertain_m * kMostUncertain_m);
+  if (!known.converged || known.values(0) >= kLeast) return;
+  const Vector6d difference =
+      lever.cwiseProduct(local(T_world_predicted.inverse() * tracking.T_world_camera));
+  Vector6d step = Vector6d::Zero();
+  Matrix6d information = Matrix6d::Zero();
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d direction = known.vectors.col(i);
+    if (known.values(i) < kLeast) continue;
+    step += direction * direction.dot(difference);
+    information += known.values(i) * direction * direction.transpose();
+  }
+  tracking.T_world_camera = T_world_predicted * retract(step.cwiseProduct(inverse));
+  tracking.information = lever.asDiagonal() * information * lever.asDiagonal();
+  tracking.status = TrackStatus::kDegenerate;
+}
+
 /// A pose tracked from the last one.
 struct FollowedPose {
   Tracking tracking;
@@ -259,7 +300,8 @@ FollowedPose follow(Locator& locator, const Frame& frame, double dt_s, const Exp
   // This near, the view rendered at the last pose shows the same surfaces, and it exists already.
   constexpr double kNear_m = 0.04, kNear_rad = 0.04;
   // No hand changes its motion by more between two frames.
-  constexpr double kLeastOff_m = 0.05, kMostSpeed_mps = 3.0, kLeastOff_rad = 0.1, kMostTurn_radps = 4.0;
+  constexpr double kLeastOff_m = 0.02, kMostSpeed_mps = 1.0, kLeastOff_rad = 0.05, kMostTurn_radps = 3.0;
+  constexpr double kStood_m = 0.01, kStood_rad = 0.01;
   const Eigen::Isometry3d& T_world_last = *locator.T_world_camera;
   const std::optional<Eigen::Isometry3d> T_world_prior =
       locator.use_recorded_poses ? predicted_by(locator.prior, frame.T_world_camera) : std::nullopt;
@@ -274,8 +316,11 @@ FollowedPose follow(Locator& locator, const Frame& frame, double dt_s, const Exp
       !is_near(T_world_predicted, tracking.T_world_camera, kLeastOff_m + kMostSpeed_mps * dt_s,
                kLeastOff_rad + kMostTurn_radps * dt_s))
     tracking.status = TrackStatus::kDiverged;
-  const bool is_bent = has_pose(tracking) && is_bend_not_motion(tracking, T_world_predicted, T_world_last,
-                                                                frame.depth_m, expected_depth);
+  if (has_pose(tracking)) predict_weak_directions(T_world_predicted, tracking);
+  const bool stood = is_near(Eigen::Isometry3d::Identity(), locator.T_last_now, kStood_m, kStood_rad);
+  const bool is_bent =
+      has_pose(tracking) && stood &&
+      is_bend_not_motion(tracking, T_world_predicted, T_world_last, frame.depth_m, expected_depth);
   if (is_bent) {
     tracking.status = TrackStatus::kDegenerate;
     tracking.T_world_camera = T_world_last;
@@ -283,14 +328,19 @@ FollowedPose follow(Locator& locator, const Frame& frame, double dt_s, const Exp
   return {tracking, is_bent};
 }
 
-/// Returns true if enough patches of the frame coincide with known ones and look like them.
+/// Returns true if enough patches of the frame coincide with known ones and look like them, and depth and
+/// these patches constrain the camera's position. Patches many metres away look alike from decimetres aside,
+/// too.
 bool is_verified_by_appearance(Locator& locator, const Frame& frame,
-                               const KeyframeDatabase& keyframe_database,
-                               const Eigen::Isometry3d& T_world_camera) {
+                               const KeyframeDatabase& keyframe_database, const Tracking& tracking) {
+  constexpr double kMostUncertainByBoth_m = 0.015;
   if (locator.index.patches.empty()) locator.index.patches = build_patch_index(keyframe_database);
-  const PatchAgreement appearance = match_patches_at(
-      describe_patches(frame, locator.relocalise.place.patches), locator.index.patches, T_world_camera);
-  return is_supported_by_patches(appearance);
+  const PatchAgreement appearance =
+      match_patches_at(describe_patches(frame, locator.relocalise.place.patches), locator.index.patches,
+                       tracking.T_world_camera);
+  Tracking by_both = tracking;
+  by_both.information += constraint_of(appearance.alike, tracking.T_world_camera).H;
+  return is_supported_by_patches(appearance) && uncertainty_m(by_both) < kMostUncertainByBoth_m;
 }
 
 /// Resumes at the pose at which tracking was lost some frames ago, such as when a hand covered the lens. In
@@ -306,8 +356,7 @@ Tracking resume(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
   const bool holds = has_pose(tracking) && 2 * agreement.both > agreement.valid &&
                      agreement.alike_part() > kMinAlike && agreement.farther_part() < kMaxFarther;
   const bool is_open = tracking.status == TrackStatus::kDegenerate;
-  if (!holds ||
-      (is_open && !is_verified_by_appearance(locator, frame, keyframe_database, tracking.T_world_camera)))
+  if (!holds || (is_open && !is_verified_by_appearance(locator, frame, keyframe_database, tracking)))
     return {};
   return tracking;
 }
@@ -343,25 +392,26 @@ bool verify_tracking(Locator& locator, const Frame& frame, const KeyframeDatabas
   return true;
 }
 
-/// Returns true if depth, or depth and patches, prove the pose or one near it that explains the depth better.
-bool is_proven(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
-               const Eigen::Isometry3d& T_world_camera, const ExpectedDepth& expected_depth,
-               Tracking& tracking) {
+/// Returns the pose, or one near it that explains the depth better, if depth, or depth and patches, prove it.
+/// Otherwise returns the pose that many features of one keyframe prove, near or not. Has no pose if nothing
+/// is proven.
+Tracking prove(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+               const Eigen::Isometry3d& T_world_camera, const ExpectedDepth& expected_depth) {
   if (locator.index.patches.empty() && !keyframe_database.keyframes.empty())
     locator.index.patches = build_patch_index(keyframe_database);
   const std::vector<SurfacePatch> seen = describe_patches(frame, locator.relocalise.place.patches);
   const PoseHypothesis hypothesis = tried(locator, frame, seen, {T_world_camera, 0, {}}, expected_depth);
-  const bool is_constrained = !is_weak(hypothesis.tracking) || is_verified_by_patches(hypothesis);
-  if (!is_constrained || !is_certain(hypothesis)) {
-    if (frame.colour.empty()) return false;
-    tracking = search_by_features(locator, frame, keyframe_database, expected_depth);
-    return has_pose(tracking) && is_near(tracking.T_world_camera, T_world_camera, 0.3, 0.3);
+  const bool is_constrained_by_depth =
+      !is_weak(hypothesis.tracking) && hypothesis.uncertainty_m < kMostUncertain_m;
+  if (!(is_constrained_by_depth || is_verified_by_patches(hypothesis)) || !is_certain(hypothesis)) {
+    if (frame.colour.empty()) return {};
+    return search_by_features(locator, frame, keyframe_database, expected_depth);
   }
   if (is_bend_not_motion(hypothesis.tracking, T_world_camera, T_world_camera, frame.depth_m, expected_depth))
-    return false;
-  tracking = hypothesis.tracking;
-  tracking.status = TrackStatus::kTracked;  // patches constrain what depth does not
-  return true;
+    return {};
+  Tracking proven = hypothesis.tracking;
+  proven.status = TrackStatus::kTracked;  // patches constrain what depth does not
+  return proven;
 }
 
 /// Decides whether a followed pose counts as located. Directions that depth does not constrain are predicted
@@ -378,21 +428,19 @@ void require_verified(Locator& locator, const Frame& frame, const KeyframeDataba
   locator.carried_s += dt_s;
   if (!locator.is_uncertain && locator.carried_s <= kLongest_s) return;
   Tracking proven;
-  if (is_bent && is_verified_by_appearance(locator, frame, keyframe_database, tracking.T_world_camera)) {
+  if (is_bent && is_verified_by_appearance(locator, frame, keyframe_database, tracking)) {
     proven = tracking;
-  } else if (locator.uncertain_frames % kEvery == 0 &&
-             is_proven(locator, frame, keyframe_database, tracking.T_world_camera, expected_depth, proven)) {
-    tracking = proven;
+  } else if (locator.uncertain_frames % kEvery == 0) {
+    proven = prove(locator, frame, keyframe_database, tracking.T_world_camera, expected_depth);
   } else if (locator.uncertain_frames % kSearchEvery == kSearchEvery - 1) {
     look_at_all(locator);
     proven = search(locator, frame, keyframe_database, expected_depth);
-    if (has_pose(proven)) {
-      tracking = proven;
-      tracking.status = TrackStatus::kTracked;
-      locator.T_world_camera.reset();  // the jump is not a motion
-    }
+    proven.status = has_pose(proven) ? TrackStatus::kTracked : proven.status;
   }
   if (has_pose(proven)) {
+    if (!is_same_pose(proven.T_world_camera, tracking.T_world_camera))
+      locator.T_world_camera.reset();  // the jump is not a motion
+    tracking = proven;
     locator.carried_s = 0.0;
     locator.is_uncertain = false;
     locator.uncertain_frames = 0;
@@ -401,6 +449,31 @@ void require_verified(Locator& locator, const Frame& frame, const KeyframeDataba
   locator.is_uncertain = true;
   ++locator.uncertain_frames;
   tracking.status = TrackStatus::kUncertain;
+}
+
+/// Returns true if the images show that the camera has hardly moved since the last frame in which it moved.
+bool stands(Locator& locator, const Frame& frame) {
+  constexpr int kWidest_px = 320, kLong_frames = 5;
+  make_grey(frame.colour, kWidest_px, locator.buffers.grey);
+  const int stood_frames = locator.stood_frames < kLong_frames ? 0 : locator.stood_frames;
+  if (is_camera_stationary(locator.moved_grey, locator.buffers.grey, stood_frames)) {
+    ++locator.stood_frames;
+    return true;
+  }
+  locator.stood_frames = 0;
+  std::swap(locator.moved_grey, locator.buffers.grey);
+  return false;
+}
+
+/// Returns the motion that is expected until the next frame: the mean of the last two, since a single one has
+/// the noise of two poses. An uncertain camera is expected to slow down. The correction of an uncertain pose
+/// is no motion.
+Eigen::Isometry3d next_motion(const Locator& locator, const Tracking& tracking, bool was_uncertain) {
+  if (!locator.T_world_camera) return Eigen::Isometry3d::Identity();
+  if (was_uncertain && has_pose(tracking)) return locator.T_last_now;
+  const Eigen::Isometry3d T_last_now = locator.T_world_camera->inverse() * tracking.T_world_camera;
+  if (!has_pose(tracking)) return expected_motion(tracking, T_last_now);
+  return retract(0.5 * (local(T_last_now) + local(locator.T_last_now)));
 }
 
 /// Adds the uncertainty of predicted directions: a hand moves by up to 0.5 m/s.
@@ -417,27 +490,41 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
   make_pyramid(frame.depth_m, frame.depth_camera, locator.live_view, locator.buffers.live_pyramid,
                frame.depth_noise);
   make_source_points(locator.buffers.live_pyramid, locator.buffers.live, dynamic_mask, kLiveStep_px);
-  constexpr double kLongestStep_s = 1.0;
+  constexpr double kShortestStep_s = 1.0 / 60.0, kLongestStep_s = 1.0;  // stamps may be equal
+  const std::optional<double> last_stamp_s = std::exchange(locator.last_stamp_s, frame.stamp_s);
   const double dt_s =
-      std::clamp(frame.stamp_s - std::exchange(locator.last_stamp_s, frame.stamp_s).value_or(frame.stamp_s),
-                 0.0, kLongestStep_s);
+      last_stamp_s ? std::clamp(frame.stamp_s - *last_stamp_s, kShortestStep_s, kLongestStep_s) : 0.0;
 
   if (locator.use_recorded_poses && frame.T_world_camera)
     note_recorded(locator.prior, frame.stamp_s, *frame.T_world_camera);
+  const bool was_uncertain = locator.is_uncertain;
   Tracking tracking;
   bool may_be_found = true;  // by a search; one per frame is enough
+  // Images show rotations better than depth does, and depth shows an orbit round what is in the middle of the
+  // image: if both say that the camera stands, the difference of the poses is noise.
+  constexpr double kNoise_m = 0.008, kNoise_rad = 0.006;
+  const bool is_standing = stands(locator, frame);
+  bool is_held = false;
   if (locator.T_world_camera) {
+    if (is_standing) locator.T_last_now.setIdentity();
     const FollowedPose followed = follow(locator, frame, dt_s, expected_depth);
     tracking = followed.tracking;
+    is_held = is_standing && !locator.is_uncertain && has_pose(tracking) &&
+              !(locator.use_recorded_poses && frame.T_world_camera) &&
+              is_near(*locator.T_world_camera, tracking.T_world_camera, kNoise_m, kNoise_rad);
+    if (is_held) {
+      tracking = locator.last_tracking;
+      tracking.T_world_camera = *locator.T_world_camera;
+    }
     if (has_pose(tracking))
       may_be_found = verify_tracking(locator, frame, keyframe_database, expected_depth, tracking);
-    if (has_pose(tracking))
+    if (has_pose(tracking) && !is_held)
       require_verified(locator, frame, keyframe_database, dt_s, followed.is_bent, expected_depth, tracking);
-    if (!has_guess(tracking)) {
-      locator.T_world_lost = locator.T_world_camera;
-      locator.T_world_camera.reset();
-      locator.lost_frames = locator.unverified_frames = locator.recheck_cooldown_frames = 0;
-    }
+  }
+  if (locator.T_world_camera && !has_guess(tracking)) {
+    locator.T_world_lost = locator.T_world_camera;
+    locator.T_world_camera.reset();
+    locator.lost_frames = locator.unverified_frames = locator.recheck_cooldown_frames = 0;
   }
   if (!has_guess(tracking)) {
     look_at_all(locator);
@@ -454,12 +541,10 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
     locator.T_last_now.setIdentity();
     return tracking;
   }
-  if (tracking.status != TrackStatus::kTracked) add_motion_uncertainty(locator, tracking);
-  locator.T_last_now =
-      locator.T_world_camera
-          ? expected_motion(tracking, locator.T_world_camera->inverse() * tracking.T_world_camera)
-          : Eigen::Isometry3d::Identity();
+  if (tracking.status != TrackStatus::kTracked && !is_held) add_motion_uncertainty(locator, tracking);
+  locator.T_last_now = next_motion(locator, tracking, was_uncertain);
   locator.T_world_camera = tracking.T_world_camera;
+  locator.last_tracking = tracking;
   if (locator.use_recorded_poses && frame.T_world_camera && tracking && !locator.prior.T_world_recorded)
     restart_prior(locator.prior, tracking.T_world_camera, *frame.T_world_camera);
   return tracking;

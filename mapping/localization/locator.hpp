@@ -32,6 +32,7 @@ struct LocatorBuffers {
   ViewPyramid live_pyramid, expected_pyramid;
   SourcePoints live;
   TargetView expected;
+  Image<float> grey;
 };
 
 /// Settings of locate(), and its state between frames.
@@ -53,6 +54,9 @@ struct Locator {
   bool use_recorded_poses = false;
   MotionPrior prior;
   std::optional<double> last_stamp_s;
+  Tracking last_tracking;   ///< result of the previous frame
+  Image<float> moved_grey;  ///< intensity image of the last frame before which the camera moved
+  int stood_frames = 0;     ///< consecutive frames whose images show that the camera stands
   /// Time for which unconstrained directions were only predicted, s.
   double carried_s = 0.0;
   /// True after carried_s has exceeded 0.15 s, until a pose is verified.
@@ -83,9 +87,9 @@ struct Locator {
 ///
 /// If the status is kDegenerate, the pose equals the prediction in unconstrained directions. After 0.15 s of
 /// such poses the status is kUncertain: the pose is the best guess, and the map is searched until patches or
-/// depth verify a pose. A sensor that
-/// recalibrates distorts its depth for a moment. If alignment mistakes the distortion for motion, locate()
-/// returns the previous frame's pose with kDegenerate.
+/// depth verify a pose. If two images show that the camera stands (is_camera_stationary()), and depth does
+/// not contradict it, the pose stays as it is. A sensor that recalibrates distorts its depth for a moment. If
+/// alignment mistakes the distortion for motion, locate() returns the previous frame's pose with kDegenerate.
 ///
 /// @param dynamic_mask  empty, or of the depth image's size. Non-zero pixels showed a moving object in the
 ///                      previous frame and are ignored

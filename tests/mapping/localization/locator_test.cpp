@@ -112,7 +112,7 @@ TEST(Locator, AJumpThatNoHandMakesIsNotAMotion) {
     const Tracking found = find_at(there);
     ASSERT_TRUE(has_pose(found)) << step_s;
     EXPECT_LT(error_m(found, there), 0.02) << step_s;
-    EXPECT_EQ(mapped.locator.T_last_now.translation().norm() > 0.1, may_be_followed) << step_s;
+    EXPECT_EQ(mapped.locator.T_last_now.translation().norm() > 0.05, may_be_followed) << step_s;
   }
 }
 
@@ -242,11 +242,57 @@ TEST(Locator, DoesNotSlideOnAlongAWallWithoutMarks) {
   bare.locator.T_last_now.translation().x() = 0.01;  // last motion; the camera has stopped since
   Tracking found;
   for (int i = 0; i < 60; ++i) {
-    found = bare.find(bare.seen_from(before_wall(0.3)));
-    ASSERT_TRUE(has_pose(found)) << i;
+    Frame frame = bare.seen_from(before_wall(0.3));
+    frame.stamp_s = i / 30.0;
+    found = bare.find(frame);
+    ASSERT_TRUE(has_guess(found)) << i;
   }
-  EXPECT_EQ(found.status, TrackStatus::kDegenerate);
-  EXPECT_LT(error_m(found, before_wall(0.3)), 0.03);
+  EXPECT_EQ(found.status, TrackStatus::kUncertain);
+  EXPECT_LT(error_m(found, before_wall(0.3)), 0.08);  // 0.15 s at 0.3 m/s, then slower
+}
+
+TEST(Locator, PassesAShortStretchOfBareWallByItsMotion) {
+  // Depth shows only the distances to the wall and the floor.
+  const auto passing = [](int i) {
+    return test::looking_at({0.3 - 0.02 * i, 0.4, 1.2}, {0.3 - 0.02 * i, 2.5, 0.4});
+  };
+  Mapped mapped(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
+  mapped.locator.T_world_camera = passing(0);
+  mapped.locator.T_last_now = passing(0).inverse() * passing(1);
+  for (int i = 1; i <= 4; ++i) {
+    Frame frame = mapped.seen_from(passing(i));
+    frame.stamp_s = i / 30.0;
+    const Tracking found = mapped.find(frame);
+    EXPECT_EQ(found.status, TrackStatus::kDegenerate) << i;
+    EXPECT_LT(error_m(found, passing(i)), 0.02) << i;
+  }
+}
+
+TEST(Locator, ACameraThatStandsIsNotMovedByNoise) {
+  Mapped mapped(room());
+  Tracking first;
+  for (int i = 0; i < 20; ++i) {
+    Frame frame = mapped.seen_from(walk(3));
+    test::add_depth_noise(frame, 100 + static_cast<unsigned>(i));
+    frame.stamp_s = i / 30.0;
+    const Tracking found = mapped.find(frame);
+    ASSERT_TRUE(found) << i;
+    if (i == 0) first = found;
+    EXPECT_EQ(found.T_world_camera.matrix(), first.T_world_camera.matrix()) << i;
+  }
+}
+
+TEST(Locator, AFrozenPictureDoesNotHoldACameraWhoseDepthMoves) {
+  Mapped mapped(room());
+  const Frame frozen = mapped.seen_from(walk(0));
+  Tracking found;
+  for (int i = 0; i < 20; ++i) {
+    Frame frame = mapped.seen_from(walk(i));
+    frame.colour = frozen.colour;
+    frame.stamp_s = i / 30.0;
+    found = mapped.find(frame);
+  }
+  EXPECT_TRUE(!has_pose(found) || error_m(found, walk(19)) < 0.05);
 }
 
 TEST(Locator, IsUncertainAfterAFewFramesBeforeAWallWithoutMarks) {
