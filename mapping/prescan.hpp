@@ -90,8 +90,9 @@ struct PrescanInput {
 /// With tracked poses, the origin is on the floor below the first camera. If no level surface is measured,
 /// the origin is at the height of the first camera. With start.map, the map's world frame is kept.
 ///
-/// Stages timed: read, track, optimise, fuse, ghosts, surface, coverage, save_octree, texture, checkpoint
-/// (time during which the work is blocked), and frame (track plus fuse of one frame, without reading).
+/// Stages timed: read, track, optimise, join, fuse, ghosts, surface, coverage, save_octree, texture,
+/// checkpoint (time during which the work is blocked), and frame (track plus fuse of one frame, without
+/// reading).
 ///
 /// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface. Also
 ///         throws if start.map shows another room, or overlaps the source too little for a reliable

@@ -55,9 +55,8 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 ///                         shadow
 /// @param casters          objects that cast a shadow
 /// @param config           shadow_strength and occlusion.edge_reach_px are used
-/// @param is_decided       of the size of `camera`; not 0: real_depth_m agrees with the colours already.
-/// Null:
-///                         in no pixel
+/// @param is_decided       of the size of `camera`; not 0 where real_depth_m agrees with the colours already.
+///                         Null: nowhere
 /// @param[out] picture     resized to the size of `camera`; must not be `background`
 /// @throws Error if sizes differ
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,

@@ -47,8 +47,9 @@ class FrameScene {
  public:
   /// @param room     static mesh of the room, in the world
   /// @param unknown  surface between observed and unobserved space, which can be touched but is not drawn.
-  ///                 Null: unknown space is free Context, room and unknown must outlive the scene. Throws
-  ///                 Error if `config` is invalid.
+  ///                 Null: unknown space is free.
+  /// `context`, `room` and `unknown` must outlive the scene.
+  /// @throws Error if `config` is invalid
   FrameScene(GlContext& context, const Shape& room, const FrameSceneConfig& config,
              const TriangleTree* unknown = nullptr);
 

@@ -31,13 +31,13 @@ inline constexpr std::size_t kBlockTriangles = 6000;  ///< a block of this size 
 /// unchanged.
 ///
 /// A mesh of more than block_triangles (>= 1) triangles is split into blocks of at most block_triangles,
-/// which two threads process. Vertices on seams between blocks are constrained, so no cracks appear. Small
-/// blocks fit the cache, and repeating one block is cheap. Large blocks have fewer constrained vertices.
-/// Components, holes and handles are preserved, and an edge shared by two triangles stays shared by two.
-/// Colours and normals are averaged over merged vertices. Collapses that would create triangles less than 0.1
-/// mm high are rejected. Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics,
-/// SIGGRAPH 1997; bound: Klein, Liebich, Strasser, Mesh reduction with error control, IEEE Visualization
-/// 1996.
+/// which all hardware threads process. Vertices on seams between blocks are constrained, so no cracks appear.
+/// Small blocks fit the cache, and repeating one block is cheap. Large blocks have fewer constrained
+/// vertices. Components, holes and handles are preserved, and an edge shared by two triangles stays shared by
+/// two. Colours and normals are averaged over merged vertices. Collapses that would create triangles less
+/// than 0.1 mm high are rejected. Source: Garland and Heckbert, Surface Simplification Using Quadric Error
+/// Metrics, SIGGRAPH 1997; bound: Klein, Liebich, Strasser, Mesh reduction with error control, IEEE
+/// Visualization 1996.
 /// @param fixed  per vertex: true if it must stay unchanged; empty: none
 SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m,
                           std::size_t block_triangles = kBlockTriangles, std::vector<bool> fixed = {});

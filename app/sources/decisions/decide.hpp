@@ -60,8 +60,8 @@ struct DecidedRecording {
 /// - poses: `options`, else camera.json, else the convention of the format or, with Questions::kDepth, one
 ///   under which the depth of nearby frames agrees
 /// - with Questions::kDepth: questions whether unit, focal length and poses can be right, see
-/// depth_evidence.hpp Each decision becomes one line of the report. Decisions that are only confirmed are not
-/// reported.
+///   depth_evidence.hpp
+/// Each decision becomes one line of the report. Decisions that are only confirmed are not reported.
 /// @param folder  folder in which camera.json and camera-intrinsics.txt are looked for; may be a file
 /// @throws Error if the recording has no frames, none of its depth images can be read, or cameras do not fit
 ///         the images

@@ -1,4 +1,4 @@
-// frame_images.cpp: compresses planes of pixel differences with zstd.
+// frame_images.cpp: compresses depth, and differences of colours, with zstd.
 #include "app/sources/recordings/frame_images.hpp"
 
 #include <zstd.h>
