@@ -23,6 +23,7 @@ struct ScanQuality {
 struct RunQuality {
   int depth_stride = 1;
   int tracking_px = 160;
+  int verify_every_n_frames = 1;
   double mesh_tolerance_sigmas = 0.8;
   bool fine_mesh = false;
   RadarMode radar = RadarMode::kExact;
@@ -31,6 +32,7 @@ struct RunQuality {
   int move_every_n_frames = 1;
   double object_error_px = 0.7;
   bool soft_edges = true;
+  bool bridge_gaps = true;
   bool shadows = true;
   int shadow_every_n_frames = 1;
   int picture_every_n_frames = 1;
@@ -81,6 +83,12 @@ void visit_fields(Quality& quality, Visit&& visit) {
                      "max width of the images for localisation, pixels (default: 160)", 40, 640},
         quality.tracking_px);
   visit(
+      QualityField{"verify_every_n_frames", "--verify-every", "N",
+                   "compare the measured with the expected depth in every Nth frame, to notice a wrong pose\n"
+                   "(default: 1)",
+                   1, 1000},
+      quality.verify_every_n_frames);
+  visit(
       QualityField{
           "mesh_tolerance_sigmas", "--mesh-tolerance-sigmas", "X",
           "max deviation of the dynamic mesh from the measured depth, in standard deviations of the\n"
@@ -118,6 +126,10 @@ void visit_fields(Quality& quality, Visit&& visit) {
                      "occlude objects along edges of the colour image (on) or of the depth image (off)\n"
                      "(default: on)"},
         quality.soft_edges);
+  visit(QualityField{"bridge_gaps", "--bridge-gaps", "on|off",
+                     "let what moved hide objects also where its depth has gaps, up to edges of the colour\n"
+                     "image (default: on)"},
+        quality.bridge_gaps);
   visit(QualityField{"shadows", "--shadows", "on|off",
                      "draw shadows of objects on the surface below them (default: on)"},
         quality.shadows);

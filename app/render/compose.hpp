@@ -14,6 +14,7 @@ namespace roomradar {
 
 struct ComposeConfig {
   OcclusionConfig occlusion;
+  bool bridge_gaps = true;  ///< see bridge_gaps() in measured_view.hpp
   /// Darkness of shadows, 0 to 1. 0: no shadows. 1: points from which objects occlude the whole sky are
   /// black.
   float shadow_strength = 0.75F;

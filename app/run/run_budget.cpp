@@ -34,11 +34,12 @@ bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
                       q.picture_every_n_frames > 1);
   };
   const auto of_compose = [](const RunQuality& q) {
-    return std::tie(q.object_error_px, q.soft_edges, q.shadows, q.shadow_every_n_frames);
+    return std::tie(q.object_error_px, q.soft_edges, q.bridge_gaps, q.shadows, q.shadow_every_n_frames);
   };
   switch (part) {
     case FramePart::kLocate:
-      return a.depth_stride == b.depth_stride && a.tracking_px == b.tracking_px;
+      return a.depth_stride == b.depth_stride && a.tracking_px == b.tracking_px &&
+             a.verify_every_n_frames == b.verify_every_n_frames;
     case FramePart::kMesh:
       return of_mesh(a) == of_mesh(b);
     case FramePart::kPhysics:  // its cost depends on the mesh

@@ -8,6 +8,7 @@ namespace roomradar {
 void apply(const RunQuality& quality, SessionConfig& config) {
   config.depth_stride = quality.depth_stride;
   config.tracking_px = quality.tracking_px;
+  config.verify_every_n_frames = quality.verify_every_n_frames;
   // Pixel limits are defined for unreduced depth images.
   const ForegroundConfig whole;
   ForegroundConfig& foreground = config.scene.foreground;
@@ -24,6 +25,7 @@ void apply(const RunQuality& quality, SessionConfig& config) {
   config.move_every_n_frames = quality.move_every_n_frames;
   config.object_error_px = quality.object_error_px;
   config.picture.occlusion.edge_reach_px = quality.soft_edges ? OcclusionConfig{}.edge_reach_px : 0;
+  config.picture.bridge_gaps = quality.bridge_gaps;
   config.picture.shadow_strength = quality.shadows ? ComposeConfig{}.shadow_strength : 0.0F;
   config.shadow_every_n_frames = quality.shadow_every_n_frames;
   config.picture_every_n_frames = quality.picture_every_n_frames;

@@ -24,6 +24,7 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   require_valid(config.physics);
   require_valid(config.picture);
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config.tracking_px;
+  locator_.verify_every_n_frames = config.verify_every_n_frames;
   locator_.use_recorded_poses = config.poses == PoseOrigin::kAuto;
   room_.shape.set(map.mesh, preparation_.tree.get());
   if (preparation_.patches.valid()) locator_.index.patches = preparation_.patches.get();
@@ -84,6 +85,7 @@ void Session::set_quality(const RunQuality& quality) {
   if (!(config_.radar == radar)) set_radar(config_.radar);
   scene_.set_fineness(config_.scene);
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config_.tracking_px;
+  locator_.verify_every_n_frames = config_.verify_every_n_frames;
 }
 
 void Session::set_quality_from(FramePart part, const RunQuality& quality) {

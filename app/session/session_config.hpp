@@ -59,6 +59,7 @@ struct SessionConfig {
   /// RunQuality.
   int depth_stride = 1;         ///< 1, 2 or 4: factor by which depth images are reduced (reduce_depth)
   int tracking_px = 160;        ///< max width of the images used for localisation
+  int verify_every_n_frames = 1;  ///< see Locator::verify_every_n_frames
   bool fine_mesh = false;       ///< true: the dynamic mesh has the image's full resolution near objects
   int move_every_n_frames = 1;  ///< each object is advanced in every n-th frame; objects alternate
   /// Max deviation, in pixels, of the drawn level of detail from the full mesh.

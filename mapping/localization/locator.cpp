@@ -369,6 +369,8 @@ bool verify_tracking(Locator& locator, const Frame& frame, const KeyframeDatabas
                      const ExpectedDepth& expected_depth, Tracking& tracking) {
   constexpr double kMinAlike = 0.3, kMaxFarther = 0.25, kHopeless = 0.3;
   constexpr int kPatience_frames = 3, kSure_frames = 30;
+  if (locator.unverified_frames == 0 && locator.followed_frames++ % locator.verify_every_n_frames != 0)
+    return true;
   const DepthAgreement agreement = depth_agreement_of(frame.depth_m, expected_depth(tracking.T_world_camera));
   const bool is_doubtful = agreement.alike_part() < kMinAlike || agreement.farther_part() > kMaxFarther;
   locator.unverified_frames = is_doubtful ? locator.unverified_frames + 1 : 0;
@@ -509,13 +511,12 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
     if (is_standing) locator.T_last_now.setIdentity();
     const FollowedPose followed = follow(locator, frame, dt_s, expected_depth);
     tracking = followed.tracking;
-    is_held = is_standing && !locator.is_uncertain && has_pose(tracking) &&
+    // The caller may have set T_world_camera meanwhile.
+    const bool is_known = locator.last_tracking.T_world_camera.matrix() == locator.T_world_camera->matrix();
+    is_held = is_standing && is_known && !locator.is_uncertain && has_pose(tracking) &&
               !(locator.use_recorded_poses && frame.T_world_camera) &&
               is_near(*locator.T_world_camera, tracking.T_world_camera, kNoise_m, kNoise_rad);
-    if (is_held) {
-      tracking = locator.last_tracking;
-      tracking.T_world_camera = *locator.T_world_camera;
-    }
+    if (is_held) tracking = locator.last_tracking;
     if (has_pose(tracking))
       may_be_found = verify_tracking(locator, frame, keyframe_database, expected_depth, tracking);
     if (has_pose(tracking) && !is_held)

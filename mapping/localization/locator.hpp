@@ -47,6 +47,7 @@ struct Locator {
   /// more than a third of the matching patches no longer match.
   AlignConfig strict_align{.min_constraint = 0.01F};
   RelocaliseConfig relocalise;
+  int verify_every_n_frames = 1;  ///< frames between two comparisons of measured with expected depth
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< pose of the previous frame; unset while lost
   /// Predicted motion from the previous frame to the next.
   Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
@@ -62,6 +63,7 @@ struct Locator {
   /// True after carried_s has exceeded 0.15 s, until a pose is verified.
   bool is_uncertain = false;
   int uncertain_frames = 0;   ///< consecutive frames with is_uncertain
+  int followed_frames = 0;    ///< number of frames followed so far
   int unverified_frames = 0;  ///< number of consecutive frames whose depth contradicts the tracked pose
   /// Number of further frames whose depth must contradict the pose before the next search of the map.
   int recheck_cooldown_frames = 0;

@@ -92,6 +92,7 @@ std::vector<Parameter> run_parameters(int objects) {
   std::vector<Parameter> parameters = {
       {"depth_stride", {"4", "2", "1"}, 2},
       {"tracking_px", {"80", "160", "320"}, 1},
+      {"verify_every_n_frames", {"30", "5", "1"}, 2},
       {"mesh_tolerance_sigmas", {"3.2", "1.6", "0.8", "0.4"}, 2},
       {"fine_mesh", {"off", "on"}, 0},
       {"radar", {"sampled", "exact"}, 1},
@@ -99,6 +100,7 @@ std::vector<Parameter> run_parameters(int objects) {
       {"move_every_n_frames", {"8", "4", "2", "1"}, 3},
       {"object_error_px", {"6", "3", "2", "1", "0.7", "0.35"}, 4},
       {"soft_edges", {"off", "on"}, 1},
+      {"bridge_gaps", {"off", "on"}, 1},
       {"shadows", {"off", "on"}, 1},
       {"shadow_every_n_frames", {"1000", "8", "3", "1"}, 3},
       {"picture_every_n_frames", {"2", "1"}, 1},

@@ -110,6 +110,8 @@ Tracking BuildingTracker::locate(Locator& locator, const Frame& frame,
     tiles_.follow(frame, tracking.T_world_camera);
   else if (T_world_place_)
     tiles_.follow(frame, *T_world_place_);
+  else if (has_guess(tracking))
+    tiles_.follow(frame, tracking.T_world_camera);
   return tracking;
 }
 

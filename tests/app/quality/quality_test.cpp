@@ -15,6 +15,7 @@ namespace {
 RunQuality coarse() {
   return {.depth_stride = 4,
           .tracking_px = 80,
+          .verify_every_n_frames = 5,
           .mesh_tolerance_sigmas = 1.0 / 3.0,
           .fine_mesh = true,
           .radar = RadarMode::kSampled,
@@ -23,6 +24,7 @@ RunQuality coarse() {
           .move_every_n_frames = 3,
           .object_error_px = 2.0,
           .soft_edges = false,
+          .bridge_gaps = false,
           .shadows = false,
           .shadow_every_n_frames = 8,
           .picture_every_n_frames = 2};
@@ -33,7 +35,7 @@ TEST(Quality, EveryFieldIsInTheListOnce) {
   RunQuality made;
   set_fields(made, words_of(coarse()));
   EXPECT_EQ(made, coarse());
-  EXPECT_EQ(words_of(coarse()).size(), 13U);
+  EXPECT_EQ(words_of(coarse()).size(), 15U);
   const ScanQuality scan{.resolution_m = 0.05, .deviation_m = 0.1, .tracking_px = 160, .fuse_every = 3};
   ScanQuality made_scan;
   set_fields(made_scan, words_of(scan));

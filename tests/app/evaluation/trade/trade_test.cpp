@@ -118,7 +118,7 @@ TEST(DrawSettings, SingleTurnsTowardsWhatIsFasterComeFirst) {
   std::size_t faster = 0, faster_drawn = 0;
   for (const Parameter& parameter : parameters)
     if (!parameter.is_load) faster += parameter.defaults;
-  for (const Setting& setting : draw_settings(parameters, 3 * faster / 2, 1)) {
+  for (const Setting& setting : draw_settings(parameters, (3 * faster + 1) / 2, 1)) {
     int turned = 0, towards_faster = 0;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       turned += setting[k] != defaults[k] ? 1 : 0;
