@@ -131,7 +131,7 @@ std::string prescan_text(const DecidedRecording& recording, const SampledFrames&
   if (sampled.with_pose > 0)
     text += evidence.poses_disagree && !recording.poses_are_used
                 ? "; the recorded poses cannot be used"
-                : "; with --poses recorded it would use the recorded poses instead";
+                : "; the recorded poses predict and constrain the motion [--poses auto]";
   if (evidence.is_camera_still) text += "; the camera does not move, so only what it sees is mapped";
   return text;
 }

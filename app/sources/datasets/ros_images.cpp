@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "app/sources/containers/rvl_depth.hpp"
 #include "app/sources/formats/image_file.hpp"
+#include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/formats/raw_pixels.hpp"
 #include "mapping/types/system/error.hpp"
 
@@ -164,18 +166,37 @@ std::vector<Candidate> candidates_of(const MessageLog& log) {
   return candidates;
 }
 
-[[noreturn]] void fail_without_depth(const MessageLog& log, const std::vector<Candidate>& candidates) {
-  for (const Candidate& candidate : candidates) {
-    const RosStream& stream = candidate.stream;
-    if (candidate.is_depth)
-      throw Error(log.name + ": contains no camera_info of " + std::to_string(stream.width_px) + " x " + std::to_string(stream.height_px) +
-                  " for its depth images on " + log.topics[stream.topic].name + "; record that topic too");
-  }
+[[noreturn]] void fail_without_depth(const MessageLog& log) {
   std::string topics;
   for (const MessageTopic& topic : log.topics)
     if (topics.size() < 400) topics += (topics.empty() ? "" : ", ") + topic.name;
   throw Error(log.name + ": contains no depth images (16UC1, 32FC1 or compressedDepth); its topics are " +
               (topics.empty() ? "none" : topics));
+}
+
+/// Returns the best topics of depth and colour, with assumed cameras.
+RosStreams streams_without_cameras(const MessageLog& log, const std::vector<Candidate>& candidates) {
+  RosStreams streams;
+  streams.are_cameras_assumed = true;
+  bool has_depth = false;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.is_depth && std::exchange(has_depth, true))
+      streams.other_depth.push_back(log.topics[candidate.stream.topic].name);
+    else if (candidate.is_depth)
+      streams.depth = candidate.stream;
+    else if (!streams.colour && candidate.score >= 0)
+      streams.colour = candidate.stream;
+  }
+  if (!has_depth) fail_without_depth(log);
+  const auto size_of = [](const RosStream& stream) { return ImageSize{stream.width_px, stream.height_px}; };
+  const std::optional<ImageSize> colour_size =
+      streams.colour ? std::optional(size_of(*streams.colour)) : std::nullopt;
+  const CameraRig rig = nominal_rig(NominalRig::kNumbered, size_of(streams.depth), colour_size);
+  streams.depth.camera = rig.depth_camera;
+  if (streams.colour)
+    streams.colour->camera = streams.depth.is_registered ? fitted_to(rig.depth_camera, *colour_size)
+                                                         : rig.colour_camera.value_or(rig.depth_camera);
+  return streams;
 }
 
 /// Decodes compressedDepth: the kind of compression and two floats, then 16 bit as PNG or RVL. 32FC1 holds a
@@ -224,8 +245,8 @@ RosStreams find_streams(const MessageLog& log) {
     else if (candidate.is_depth)
       others.push_back(log.topics[candidate.stream.topic].name);
   }
-  if (!depth) fail_without_depth(log, candidates);
-  return {std::move(*depth), std::move(colour), std::move(others)};
+  if (!depth) return streams_without_cameras(log, candidates);
+  return {std::move(*depth), std::move(colour), false, std::move(others)};
 }
 
 std::optional<double> stated_depth_unit_m(const MessageLog& log, const RosStream& depth) {

@@ -29,13 +29,14 @@ struct RosStream {
 struct RosStreams {
   RosStream depth;
   std::optional<RosStream> colour;  ///< unset: no colour topic has a camera_info
+  /// True: no depth topic has a camera_info. The cameras are those of NominalRig::kNumbered.
+  bool are_cameras_assumed = false;
   std::vector<std::string> other_depth{};  ///< names of further topics of depth images
 };
 
 /// Returns a topic of depth images (16UC1, mono16, 32FC1 or compressedDepth) and, if there is one, a topic of
 /// colour images. Of several depth topics, prefers one that is registered to colour.
-/// @throws Error naming the topics that were found if there is no depth topic, or the depth topic has no
-///         camera_info
+/// @throws Error naming the topics that were found if there is no depth topic
 RosStreams find_streams(const MessageLog& log);
 
 /// Returns the length of a unit of 16 bit depth, m, that the option Depth Units of a RealSense states.

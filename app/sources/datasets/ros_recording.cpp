@@ -160,13 +160,18 @@ StatedPose exact_pose_at(const MessageLog& log, const std::vector<MessageEntry>&
 }  // namespace
 
 RecordingFacts index_ros_recording(const std::shared_ptr<const MessageLog>& log) {
-  auto [depth, colour, other_depth] = find_streams(*log);
+  auto [depth, colour, are_cameras_assumed, other_depth] = find_streams(*log);
   const auto transforms = std::make_shared<const RosTransforms>(*log);
   const Sensor depth_sensor{log->topics[depth.topic].name, depth.frame_id};
 
   RecordingFacts facts{.name = log->name, .depth_lens = depth.lens};
   facts.rig.depth_camera = depth.camera;
   facts.camera_source = "its camera_info";
+  if (are_cameras_assumed) {
+    facts.camera_origin = Origin::kAssumed;
+    facts.camera_source = nominal_name(NominalRig::kNumbered);
+    facts.is_registered_if_given = depth.is_registered;
+  }
   if (depth_sensor.topic.starts_with("/device_")) facts.rig.depth_noise = kRealSenseNoise;
   for (const StatedTime& time : times_of(*log, depth.messages)) facts.frames.push_back({.time = time});
   if (colour) {

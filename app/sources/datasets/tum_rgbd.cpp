@@ -219,39 +219,97 @@ bool has_stamped_depth(const fs::path& folder) {
   return false;
 }
 
-/// Reads rows of `count` numbers, the first a stamp. Skips rows with a number that is not finite, which mean
-/// that nothing was measured.
-std::vector<std::vector<double>> read_rows(const fs::path& folder, const char* name, std::size_t count,
-                                           RecordingFacts& facts) {
+/// Returns the rows of numbers of a file; empty if there is none. All rows have as many numbers as the first,
+/// which is one of `counts`; other lines are reported in the facts. Rows with a number that is not finite
+/// mean that nothing was measured, and are left out.
+std::vector<std::vector<double>> read_rows(const fs::path& folder, const char* name, const char* subject,
+                                           std::vector<std::size_t> counts, RecordingFacts& facts) {
   std::vector<std::vector<double>> rows;
   std::error_code ignored;
   if (!fs::exists(folder / name, ignored)) return rows;
+  const auto is_known = [&](std::size_t count) {
+    return std::find(counts.begin(), counts.end(), count) != counts.end();
+  };
   BadLines bad;
   bool is_at_first = true;
   for_each_line(folder / name, [&](std::string_view line, const std::string& where) {
     std::vector<double> row;
-    row.reserve(count);
     std::string text(line);
     std::replace(text.begin(), text.end(), ';', ' ');
-    if (split_words(text).size() != count)
-      std::replace(text.begin(), text.end(), ',', ' ');
-    else
-      std::replace(text.begin(), text.end(), ',', text.find('.') == std::string::npos ? '.' : ' ');
+    const bool has_decimal_commas = is_known(split_words(text).size()) && text.find('.') == std::string::npos;
+    std::replace(text.begin(), text.end(), ',', has_decimal_commas ? '.' : ' ');
     const bool is_first = std::exchange(is_at_first, false);
     for (const std::string_view word : split_words(text)) {
       const auto value = parse_number(word);
-      if (!value && is_first && row.empty() && std::isalpha(static_cast<unsigned char>(word[0]))) return;  // a heading
+      if (!value && is_first && row.empty() && std::isalpha(static_cast<unsigned char>(word[0])))
+        return;  // a heading
       if (!value) return bad.add(where + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
       row.push_back(*value);
     }
-    if (row.size() != count)
+    if (!is_known(row.size()))
       return bad.add(where + ": has " + std::to_string(row.size()) + " numbers instead of " +
-                     std::to_string(count));
+                     std::to_string(counts.front()));
+    counts = {row.size()};
     if (std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
       rows.push_back(std::move(row));
   });
-  bad.report(count == 8 ? "poses" : "gravity", name, facts);
+  bad.report(subject, name, facts);
   return rows;
+}
+
+/// Form of the lines of a list of poses, by its number of numbers.
+struct PoseForm {
+  std::size_t numbers;
+  std::size_t pose_at;  ///< index of the first number of the pose; 0: the lines have no stamps
+  bool is_matrix;       ///< rows of a matrix; false: translation and quaternion x y z w
+  const char* words;
+};
+constexpr std::array kPoseForms{
+    PoseForm{8, 1, false, "a stamp, a translation and a quaternion"},
+    PoseForm{9, 1, false, "a stamp, a translation, a quaternion and a number that is not used"},
+    PoseForm{13, 1, true, "a stamp and the rows of a 3 x 4 matrix"},
+    PoseForm{17, 1, true, "a stamp and the rows of a 4 x 4 matrix"},
+    PoseForm{7, 0, false, "a translation and a quaternion without a stamp, one per depth image"},
+    PoseForm{12, 0, true, "the rows of a 3 x 4 matrix without a stamp, one per depth image"},
+    PoseForm{16, 0, true, "the rows of a 4 x 4 matrix without a stamp, one per depth image"}};
+
+std::optional<Eigen::Isometry3d> pose_of(const std::vector<double>& row, const PoseForm& form) {
+  const double* p = row.data() + form.pose_at;
+  if (!form.is_matrix) return rigid_pose({p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]});
+  return rigid_transform(Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(p));
+}
+
+/// Reads groundtruth.txt, in whose place people put poses of other programs in forms of their own.
+void read_poses(const fs::path& folder, const std::vector<ListedImage>& depth, RecordingFacts& facts) {
+  constexpr const char* kName = "groundtruth.txt";
+  facts.pose_track = std::make_shared<std::vector<StampedPose>>();
+  std::vector<std::size_t> counts;
+  for (const PoseForm& form : kPoseForms) counts.push_back(form.numbers);
+  const auto rows = read_rows(folder, kName, "poses", counts, facts);
+  if (rows.empty()) return;
+  const PoseForm& form = *std::find_if(kPoseForms.begin(), kPoseForms.end(), [&](const PoseForm& known) {
+    return known.numbers == rows.front().size();
+  });
+  if (form.pose_at == 0 && rows.size() != depth.size()) {
+    facts.notes.push_back({"poses",
+                           std::string(kName) + " has " + std::to_string(form.numbers) +
+                               " numbers per line, so no stamps, and " + std::to_string(rows.size()) +
+                               " lines for " + std::to_string(depth.size()) +
+                               " depth images; the poses are not used. Begin each line with a stamp",
+                           std::ssize(rows)});
+    return;
+  }
+  if (form.numbers != kPoseForms.front().numbers)
+    facts.notes.push_back({"poses",
+                           std::string(kName) + " has " + std::to_string(form.numbers) +
+                               " numbers per line, taken as " + form.words,
+                           std::ssize(rows)});
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (const auto T = pose_of(rows[i], form))
+      facts.pose_track->push_back({form.pose_at == 0 ? depth[i].stamp : rows[i][0], *T});
+    else
+      ++facts.lost_track_poses;
+  }
 }
 
 /// Returns the direction of gravity by the reading nearest in time.
@@ -319,15 +377,9 @@ RecordingFacts index_tum_rgbd(const fs::path& folder) {
   facts.depth_unit_m = depth_unit_m(DepthEncoding::kTum);
   facts.unit_source = "1/5000 m, by the TUM RGB-D format";
 
-  facts.pose_track = std::make_shared<std::vector<StampedPose>>();
-  for (const auto& row : read_rows(folder, "groundtruth.txt", 8, facts)) {
-    if (const auto T = rigid_pose({row[1], row[2], row[3]}, {row[4], row[5], row[6], row[7]}))
-      facts.pose_track->push_back({row[0], *T});
-    else
-      ++facts.lost_track_poses;
-  }
+  read_poses(folder, *depth, facts);
   facts.acceleration_track = std::make_shared<std::vector<StampedAcceleration>>();
-  for (const auto& row : read_rows(folder, "accelerometer.txt", 4, facts))
+  for (const auto& row : read_rows(folder, "accelerometer.txt", "gravity", {4}, facts))
     facts.acceleration_track->push_back({row[0], {row[1], row[2], row[3]}});
 
   facts.read_depth = [depth](std::size_t frame, double unit_m, DepthImage& depth_m) {

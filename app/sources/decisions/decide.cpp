@@ -266,11 +266,11 @@ void advise_on_rate(const DecidedRecording& recording) {
     return;
   }
   const bool has_poses = recording.evidence->pose_disagreement && recording.poses_are_used;
-  recording.report->add(
-      {"time",
-       "frames are " + format_readable(*middle, 2) + " s apart, so tracking may lose the camera" +
-           (has_poses ? "; the recorded poses agree with the depth and can be used instead" : ""),
-       0, has_poses ? "--poses recorded" : "", true});
+  recording.report->add({"time",
+                         "frames are " + format_readable(*middle, 2) +
+                             " s apart, so tracking may lose the camera" +
+                             (has_poses ? "; the recorded poses agree with the depth and help" : ""),
+                         0, has_poses ? "--poses auto" : "", true});
 }
 
 }  // namespace

@@ -234,11 +234,14 @@ TEST(Ros2Bag, RefusesADatabaseOfAnotherKind) {
   EXPECT_TRUE(contains(error_of([&] { (void)open_folder(path); }), "lacks the tables topics and messages"));
   write_db3(folder.path() / "b.db3", some_messages());
   const std::string whole = read_bytes(folder.path() / "b.db3", "a bag");
+  const Intrinsics camera = read_all(*open_folder(folder.path() / "b.db3")).frames.front().depth_camera;
   for (std::size_t size = 20; size < whole.size(); size += 1000) {
     write_text(path, whole.substr(0, size));
     EXPECT_GT(error_of([&] {
                 const auto source = open_folder(path);
-                if (read_all(*source).frames.size() < kFrames) throw Error("fewer frames are left");
+                const auto frames = read_all(*source).frames;
+                if (frames.size() < kFrames) throw Error("fewer frames are left");
+                if (!(frames.front().depth_camera == camera)) throw Error("the camera is an assumed one");
               }).size(),
               10U)
         << size;

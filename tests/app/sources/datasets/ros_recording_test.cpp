@@ -263,15 +263,24 @@ TEST(RosBag, SaysWhatIsMissing) {
   }
   EXPECT_TRUE(contains(message_of(), "no depth images")) << message_of();
   EXPECT_TRUE(contains(message_of(), "/scan"));
-  {
-    WrittenBag bag(path);
-    bag.write("/depth", "sensor_msgs/Image", 1, ros_image(1, "", 1, 1, "16UC1", 2, "ab"));
-    bag.close();
-  }
-  EXPECT_TRUE(contains(message_of(), "no camera_info of 1 x 1 for its depth images on /depth"))
-      << message_of();
   write_text(path, "#ROSBAG V1.2\n");
   EXPECT_TRUE(contains(message_of(), "a version other than 2.0"));
+}
+
+TEST(RosBag, WithoutCameraInfoCamerasAreAssumedAndNamed) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.bag";
+  WrittenBag bag(path);
+  const std::string millimetre(std::size_t{2} * 8 * 6, '\x04');  // 0x0404
+  bag.write("/depth", "sensor_msgs/Image", 1, ros_image(1, "", 8, 6, "16UC1", 2, millimetre));
+  bag.close();
+  test::ReadAll all;
+  const std::string said =
+      test::decisions_about([&](const SourceOptions& options) { return open_folder(path, options); }, &all);
+  ASSERT_EQ(all.frames.size(), 1U) << said;
+  EXPECT_NEAR(all.frames[0].depth_m.at(0, 0), 1.028, 1e-4);
+  EXPECT_GT(all.frames[0].depth_camera.fx_px, 0.0);
+  EXPECT_TRUE(contains(said, "--camera")) << said;
 }
 
 TEST(RosBag, ReadsABagThatWasCutShortUpToItsLastWholeChunk) {

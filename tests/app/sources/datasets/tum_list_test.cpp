@@ -188,6 +188,50 @@ TEST(TumList, PosesOfAnotherClockAreNamed) {
   EXPECT_FALSE(contains(said, "gravity")) << said;
 }
 
+TEST(TumList, PosesInOtherFormsAreReadAndNamed) {
+  struct Form {
+    std::string words;
+    std::function<std::string(const std::string& stamp, const std::string& x)> line;
+  };
+  const std::vector<Form> forms{
+      {"9 numbers per line", [](auto& s, auto& x) { return s + " " + x + " 0 0 0 0 0 1 0.5"; }},
+      {"13 numbers per line", [](auto& s, auto& x) { return s + " 1 0 0 " + x + " 0 1 0 0 0 0 1 0"; }},
+      {"17 numbers per line",
+       [](auto& s, auto& x) { return s + " 1 0 0 " + x + " 0 1 0 0 0 0 1 0 0 0 0 1"; }},
+      {"7 numbers per line", [](auto&, auto& x) { return x + " 0 0 0 0 0 1"; }},
+      {"12 numbers per line", [](auto&, auto& x) { return "1 0 0 " + x + " 0 1 0 0 0 0 1 0"; }},
+      {"16 numbers per line", [](auto&, auto& x) { return "1 0 0 " + x + " 0 1 0 0 0 0 1 0 0 0 0 1"; }}};
+  for (const Form& form : forms) {
+    const TemporaryFolder folder;
+    write_tum(folder.path(), {});
+    std::string text;
+    for (int i = 0; i < kFrames; ++i)
+      text += form.line(std::to_string(kBegin_s + i / 30.0), std::to_string(i)) + "\n";
+    write_text(folder.path() / "groundtruth.txt", text);
+    ReadAll all;
+    const std::string said = decisions_about(
+        [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+    EXPECT_TRUE(contains(said, form.words)) << said;
+    ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames)) << said;
+    for (int i = 0; i < kFrames; ++i) {
+      const Frame& frame = all.frames[static_cast<std::size_t>(i)];
+      ASSERT_TRUE(frame.T_world_camera) << form.words;
+      EXPECT_NEAR(frame.T_world_camera->translation().x(), i, 1e-3) << form.words;
+    }
+  }
+}
+
+TEST(TumList, PosesWithoutStampsAreNotGuessedIfTheirNumberDiffers) {
+  const TemporaryFolder folder;
+  write_tum(folder.path(), {});
+  write_text(folder.path() / "groundtruth.txt", "1 0 0 0 0 0 1\n2 0 0 0 0 0 1\n");
+  ReadAll all;
+  const std::string said = decisions_about(
+      [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+  EXPECT_TRUE(contains(said, "2 lines for 40 depth images; the poses are not used")) << said;
+  EXPECT_FALSE(all.frames.front().T_world_camera);
+}
+
 TEST(TumList, BonnsDatasetHasItsOwnCamera) {
   const TemporaryFolder folder;
   const fs::path recording = folder.path() / "rgbd_bonn_balloon";
