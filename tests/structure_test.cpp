@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The rooms from the bottom up, a line per floor. A room may include itself, rooms of lower floors, and
-/// nothing else.
-const std::vector<std::vector<std::string>> kFloors = {
+/// The modules (folders) from the bottom up, one entry per layer. A module may include itself and modules of
+/// lower layers only.
+const std::vector<std::vector<std::string>> kLayers = {
     {"mapping/types/system", "mapping/types/json"},
     {"mapping/types"},
     {"mapping/types/codecs"},
@@ -25,14 +25,15 @@ const std::vector<std::vector<std::string>> kFloors = {
      "dynamic/surface", "app/sources/formats", "app/sources/containers", "app/sources/video",
      "app/sim/solids"},
     {"app/sources/datasets", "app/sim/room"},
-    {"mapping/surface", "mapping/surface/unknown", "mapping/revision", "mapping/localization", "mapping/coverage", "mapping/texture",
-     "radar/exact", "radar/gl", "app/sources/decisions", "app/calibration", "app/sim/building"},
+    {"mapping/surface", "mapping/surface/unknown", "mapping/revision", "mapping/localization",
+     "mapping/coverage", "mapping/texture", "radar/exact", "radar/gl", "app/sources/decisions",
+     "app/calibration", "app/sim/building"},
     {"app/sources/recordings"},
     {"mapping/odometry", "mapping/map", "radar/motion", "radar/depth", "radar/batch", "app/sources/kinect",
      "app/sim/sensor", "app/quality", "app/models"},
     {"mapping/building"},
-    {"mapping", "app/sim/scenarios", "app/sim", "app/physics", "app/physics/placement",
-     "app/render", "app/media", "app/page", "app/farm"},
+    {"mapping", "app/sim/scenarios", "app/sim", "app/physics", "app/physics/placement", "app/render",
+     "app/media", "app/page", "app/farm"},
     {"app/objects", "app/evaluation", "app/evaluation/pareto", "app/scan/live"},
     {"app/session/tiles"},
     {"app/session"},
@@ -48,7 +49,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"app"},
 };
 
-/// Folders that include only themselves and the folders named: finer than the floors.
+/// Folders that include only themselves and the folders named: finer than the layers.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"mapping", {"mapping"}},
     {"radar", {"radar", "mapping/types"}},
@@ -69,11 +70,11 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 
 struct Source {
   std::string path;  // relative to the project
-  std::string room;
+  std::string module;
   std::vector<std::string> includes{};  // of the project, relative to it
 };
 
-std::vector<Source> sources_of_the_house() {
+std::vector<Source> all_sources() {
   const fs::path root = ROOMRADAR_SOURCE_DIR;
   std::vector<Source> sources;
   for (const char* top : {"mapping", "radar", "dynamic", "app"}) {
@@ -91,7 +92,7 @@ std::vector<Source> sources_of_the_house() {
             line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
         // Headers for C name those beside them, as they are installed.
         const bool is_beside = extension == ".h" && named.find('/') == std::string::npos;
-        source.includes.push_back(is_beside ? source.room + "/" + named : named);
+        source.includes.push_back(is_beside ? source.module + "/" + named : named);
       }
       sources.push_back(std::move(source));
     }
@@ -99,35 +100,37 @@ std::vector<Source> sources_of_the_house() {
   return sources;
 }
 
-std::map<std::string, std::size_t> floor_of_rooms() {
-  std::map<std::string, std::size_t> floors;
-  for (std::size_t floor = 0; floor < kFloors.size(); ++floor)
-    for (const std::string& room : kFloors[floor]) floors[room] = floor;
-  return floors;
+std::map<std::string, std::size_t> layer_of_modules() {
+  std::map<std::string, std::size_t> layers;
+  for (std::size_t layer = 0; layer < kLayers.size(); ++layer)
+    for (const std::string& module : kLayers[layer]) layers[module] = layer;
+  return layers;
 }
 
-bool is_within(const std::string& room, const std::string& folder) {
-  return room == folder || room.rfind(folder + "/", 0) == 0;
+bool is_within(const std::string& module, const std::string& folder) {
+  return module == folder || module.rfind(folder + "/", 0) == 0;
 }
 
-TEST(Structure, EveryRoomHasAFloor) {
-  const auto floors = floor_of_rooms();
-  std::set<std::string> rooms;
-  for (const Source& source : sources_of_the_house()) rooms.insert(source.room);
-  for (const std::string& room : rooms) EXPECT_TRUE(floors.contains(room)) << room << " is not in kFloors";
-  for (const auto& [room, floor] : floors) EXPECT_TRUE(rooms.contains(room)) << room << " holds no source";
+TEST(Structure, EveryModuleHasALayer) {
+  const auto layers = layer_of_modules();
+  std::set<std::string> modules;
+  for (const Source& source : all_sources()) modules.insert(source.module);
+  for (const std::string& module : modules)
+    EXPECT_TRUE(layers.contains(module)) << module << " is not in kLayers";
+  for (const auto& [module, layer] : layers)
+    EXPECT_TRUE(modules.contains(module)) << module << " holds no source";
 }
 
-TEST(Structure, EveryIncludeGoesToALowerFloor) {
-  const auto floors = floor_of_rooms();
-  for (const Source& source : sources_of_the_house()) {
+TEST(Structure, EveryIncludeGoesToALowerLayer) {
+  const auto layers = layer_of_modules();
+  for (const Source& source : all_sources()) {
     for (const std::string& include : source.includes) {
       const std::string to = fs::path(include).parent_path().generic_string();
-      if (to == source.room) continue;
-      ASSERT_TRUE(floors.contains(to)) << source.path << " includes " << include << ", which is in no room";
-      EXPECT_LT(floors.at(to), floors.at(source.room)) << source.path << " includes " << include;
+      if (to == source.module) continue;
+      ASSERT_TRUE(layers.contains(to)) << source.path << " includes " << include << ", which is in no module";
+      EXPECT_LT(layers.at(to), layers.at(source.module)) << source.path << " includes " << include;
       for (const auto& [folder, allowed] : kMayInclude) {
-        if (!is_within(source.room, folder)) continue;
+        if (!is_within(source.module, folder)) continue;
         EXPECT_TRUE(
             std::any_of(allowed.begin(), allowed.end(), [&](const auto& a) { return is_within(to, a); }))
             << source.path << " includes " << include << "; " << folder << " may not";
@@ -137,8 +140,9 @@ TEST(Structure, EveryIncludeGoesToALowerFloor) {
 }
 
 TEST(Structure, TheRadarWithoutGlIncludesNoGl) {
-  for (const Source& source : sources_of_the_house()) {
-    if (source.room != "radar/geometry" && source.room != "radar/exact" && source.room != "radar/motion")
+  for (const Source& source : all_sources()) {
+    if (source.module != "radar/geometry" && source.module != "radar/exact" &&
+        source.module != "radar/motion")
       continue;
     for (const std::string& include : source.includes)
       EXPECT_FALSE(is_within(fs::path(include).parent_path().generic_string(), "radar/gl"))
