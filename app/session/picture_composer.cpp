@@ -188,17 +188,15 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
     scene_.render_surfaces(camera, T_world_view, rect, buffers_.real_depth_m);
   // Without anything dynamic, measured depth matters only where the map has none.
   const bool has_moved = scene_.foreground().counts.moved > 0;
+  const bool bridges = has_moved && config_.picture.bridge_gaps;
   const PixelRect measured = has_moved ? rect : without_depth(buffers_.real_depth_m, rect);
   if (measured.width > 0) {
     view_measured(frame.depth_m, scene_.foreground().dynamic_mask, frame.depth_camera,
                   T_world_view.inverse() * T_world_camera, camera, measured, buffers_.measured);
     add_measured(buffers_.measured, frame.depth_noise, buffers_.real_depth_m);
-    if (has_moved && config_.picture.bridge_gaps)
-      bridge_gaps(buffers_.background, buffers_.measured, buffers_.real_depth_m);
+    if (bridges) bridge_gaps(buffers_.background, buffers_.measured, buffers_.real_depth_m);
   }
-  const MaskImage* is_decided = has_moved && measured.width > 0 && config_.picture.bridge_gaps
-                                    ? &buffers_.measured.is_decided
-                                    : nullptr;
+  const MaskImage* is_decided = bridges && measured.width > 0 ? &buffers_.measured.is_decided : nullptr;
   cast_shadows(buffers_.background, camera, T_world_view, buffers_.real_depth_m, casters, config_.picture,
                picture_, is_decided);
   buffers_.patches.clear();

@@ -12,6 +12,16 @@
 
 namespace roomradar {
 
+namespace {
+
+/// Sets the locator's settings that may change from frame to frame.
+void apply_quality(const SessionConfig& config, Locator& locator) {
+  locator.live_view.finest_width_px = locator.expected_view.finest_width_px = config.tracking_px;
+  locator.verify_every_n_frames = config.verify_every_n_frames;
+}
+
+}  // namespace
+
 Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
     : map_(map),
       config_(config),
@@ -23,8 +33,7 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
       composer_(context_, scene_, objects_.all(), config_) {
   require_valid(config.physics);
   require_valid(config.picture);
-  locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config.tracking_px;
-  locator_.verify_every_n_frames = config.verify_every_n_frames;
+  apply_quality(config_, locator_);
   locator_.use_recorded_poses = config.poses == PoseOrigin::kAuto;
   room_.shape.set(map.mesh, preparation_.tree.get());
   if (preparation_.patches.valid()) locator_.index.patches = preparation_.patches.get();
@@ -84,8 +93,7 @@ void Session::set_quality(const RunQuality& quality) {
   roomradar::apply(quality, config_);
   if (!(config_.radar == radar)) set_radar(config_.radar);
   scene_.set_fineness(config_.scene);
-  locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config_.tracking_px;
-  locator_.verify_every_n_frames = config_.verify_every_n_frames;
+  apply_quality(config_, locator_);
 }
 
 void Session::set_quality_from(FramePart part, const RunQuality& quality) {

@@ -10,6 +10,7 @@
 #include "mapping/localization/correlative_search.hpp"
 #include "mapping/localization/patch_matching.hpp"
 #include "mapping/localization/place_matching.hpp"
+#include "mapping/localization/pose_hypothesis.hpp"
 #include "mapping/map/tsdf_interpolation.hpp"
 #include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/classic_locale.hpp"
@@ -51,15 +52,7 @@ std::vector<Vote> collect_votes(const KeyframeDatabase& a, const KeyframeDatabas
 /// Returns true if two transforms give a view of b nearly the same pose in a.
 bool agree(const Vote& vote, const Eigen::Isometry3d& T_a_b, const MapKeyframe& view) {
   constexpr double kNear_m = 0.15, kNear_rad = 0.1;
-  const Eigen::Isometry3d gap = (vote.T_a_b * view.T_world_camera).inverse() * T_a_b * view.T_world_camera;
-  return gap.translation().norm() < kNear_m && Eigen::AngleAxisd(gap.linear()).angle() < kNear_rad;
-}
-
-/// Returns true if two transforms are nearly the same; the lever arm is a room's size.
-bool is_near(const Eigen::Isometry3d& T_a_b, const Eigen::Isometry3d& other) {
-  constexpr double kNear_m = 0.3, kNear_rad = 0.1;
-  const Eigen::Isometry3d gap = T_a_b.inverse() * other;
-  return gap.translation().norm() < kNear_m && Eigen::AngleAxisd(gap.linear()).angle() < kNear_rad;
+  return is_near(vote.T_a_b * view.T_world_camera, T_a_b * view.T_world_camera, kNear_m, kNear_rad);
 }
 
 /// Counts the views of b that agree with a transform, each view once.
@@ -239,16 +232,17 @@ Registration best_by_shape(const StaticMap& octree_a, const KeyframeDatabase& a,
   constexpr std::size_t kCandidates = 6;
   constexpr std::size_t kEvery = 8;  // points, to compare candidates
   constexpr double kMinLead = 1.1;
+  constexpr double kNear_m = 0.3, kNear_rad = 0.1;  // the same transform, of a and b
   std::vector<Eigen::Vector3d> few;
   for (std::size_t i = 0; i < surface_b.size(); i += kEvery) few.push_back(surface_b[i]);
   const PatchIndex patches_a = build_patch_index(a);
   Registration best, other;
   for (const Eigen::Isometry3d& T_a_b : find_by_shape(a, b, surface_b, config.up_b, kCandidates)) {
-    if (by_views && is_near(by_views.T_a_b, T_a_b)) continue;
+    if (by_views && is_near(by_views.T_a_b, T_a_b, kNear_m, kNear_rad)) continue;
     const Registration candidate = aligned(octree_a, few, T_a_b, config);
     if (explained(candidate) <= explained(other)) continue;
     if (!is_supported_by_patches(b, patches_a, candidate.T_a_b)) continue;
-    const bool is_same = is_near(best.T_a_b, candidate.T_a_b);
+    const bool is_same = is_near(best.T_a_b, candidate.T_a_b, kNear_m, kNear_rad);
     if (explained(candidate) <= explained(best)) {
       if (!is_same) other = candidate;
       continue;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mapping/alignment/motion_prior.hpp"
+#include "mapping/localization/pose_hypothesis.hpp"
 #include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
@@ -85,8 +86,7 @@ PoseConstraint weighed_by_likeness(PoseConstraint constraint) {
 
 bool agrees(const PoseAnchor& anchor, const Keyframe& keyframe, const Eigen::Isometry3d& T_known_world) {
   constexpr double kNear_m = 0.15, kNear_rad = 0.1;
-  const Eigen::Isometry3d gap = anchor.T_world_camera.inverse() * T_known_world * keyframe.T_world_camera;
-  return gap.translation().norm() < kNear_m && Eigen::AngleAxisd(gap.linear()).angle() < kNear_rad;
+  return is_near(anchor.T_world_camera, T_known_world * keyframe.T_world_camera, kNear_m, kNear_rad);
 }
 
 std::vector<PoseAnchor> agreeing_anchors(const KeyframeGraph& graph) {
