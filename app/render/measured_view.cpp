@@ -209,8 +209,9 @@ void add_measured(const MeasuredView& view, const DepthNoise& noise, DepthImage&
       int supported = 0;
       for (int v = std::max(y - 2, rect.y); v <= std::min(y + 2, y_end - 1); ++v)
         for (int u = std::max(x - 2, rect.x); u <= std::min(x + 2, x_end - 1); ++u)
-          supported += is_nearer(view.depth_m.at(u, v), real_depth_m.at(u, v)) &&
-                               is_one_surface(view.depth_m.at(u, v), seen_m[x])
+          supported += is_one_surface(view.depth_m.at(u, v), seen_m[x]) &&
+                               (view.is_dynamic.at(u, v) != 0 ||
+                                is_nearer(view.depth_m.at(u, v), real_depth_m.at(u, v)))
                            ? 1
                            : 0;
       if (supported >= kFewest) nearer.push_back(view.depth_m.index(x, y));
@@ -226,6 +227,9 @@ void bridge_gaps(const ColourImage& camera_image, MeasuredView& view, DepthImage
   const PixelRect& rect = view.rect;
   if (!find_near_dynamic(kGapReach_px, view)) return;
   const int x_end = rect.x + rect.width, y_end = rect.y + rect.height;
+  for (int y = rect.y; y < y_end; ++y)
+    for (int x = rect.x; x < x_end; ++x)
+      if (view.depth_m.at(x, y) > 0.0F && view.is_dynamic.at(x, y) != 0) view.is_decided.at(x, y) = 255;
   std::vector<ColourSample> samples;
   const auto find_samples = [&](int x, int y) {
     samples.clear();

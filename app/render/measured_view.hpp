@@ -16,7 +16,8 @@ struct MeasuredView {
   PixelRect rect;
   DepthImage depth_m;    ///< along that camera's optical axis; 0: nothing was measured there
   MaskImage is_dynamic;  ///< not 0: the measured surface is not the static room
-  /// Not 0: an unmeasured pixel whose surface bridge_gaps() has decided by its colour.
+  /// Set by bridge_gaps(). Not 0: a measured dynamic pixel, or an unmeasured one whose surface was decided by
+  /// colour.
   MaskImage is_decided;
   // Scratch of bridge_gaps().
   MaskImage is_near;
@@ -34,9 +35,9 @@ void view_measured(const DepthImage& depth_m, const MaskImage& dynamic_mask, con
                    const PixelRect& rect, MeasuredView& view);
 
 /// Adds what was measured to the depth of the modelled surfaces, which are smoother and complete. A
-/// measurement counts where there is no model, and where it is nearer than the model by more than its error,
-/// as several of its neighbours are. So a surface hides what is behind it, whether or not it belongs to any
-/// model.
+/// measurement counts where there is no model, and where it is nearer than the model by more than its error
+/// and several of its neighbours on the same surface are nearer, too, or dynamic. So a surface hides what is
+/// behind it, whether or not it belongs to any model.
 /// @param noise   of the sensor
 /// @param[in,out] real_depth_m  depth of the modelled surfaces in the view, with its size, 0: none
 void add_measured(const MeasuredView& view, const DepthNoise& noise, DepthImage& real_depth_m);
@@ -46,7 +47,7 @@ void add_measured(const MeasuredView& view, const DepthNoise& noise, DepthImage&
 /// light, nothing is measured either. Each unmeasured pixel within 20 pixels of a dynamic one is compared
 /// with the measured pixels around it, weighted by similarity of colour and by distance. It joins the dynamic
 /// pixels if these are more alike and nearer than the model. Else it keeps the model's depth.
-/// In both cases the pixel is decided in the view.
+/// In both cases the pixel is decided in the view, as are the measured dynamic pixels.
 /// @param camera_image  colour image of the view
 /// @param[in,out] real_depth_m  result of add_measured()
 ///

@@ -88,6 +88,27 @@ TEST(MeasuredView, NoiseAndSpecksOfDepthAreNoSurfaces) {
   for (const float z_m : real_m.pixels) ASSERT_EQ(z_m, 2.0F);
 }
 
+/// Not 0 where the depth is that of the square.
+MaskImage mask_of_square(const DepthImage& depth_m) {
+  MaskImage mask(depth_m.width, depth_m.height);
+  for (std::size_t i = 0; i < depth_m.pixels.size(); ++i)
+    mask.pixels[i] = depth_m.pixels[i] > 0.0F && depth_m.pixels[i] < 1.0F ? 255 : 0;
+  return mask;
+}
+
+TEST(MeasuredView, DynamicPixelsBesideTheirMeshCount) {
+  // The model has the square's mesh without its border, whose pixels are measured.
+  const DepthImage depth_m = square_before_wall(0.8F, 2.0F);
+  DepthImage real_m(kDepth.width_px, kDepth.height_px, 2.0F);
+  for (int y = 41; y < 79; ++y)
+    for (int x = 61; x < 99; ++x) real_m.at(x, y) = 0.79F;
+  MeasuredView view = seen(depth_m, mask_of_square(depth_m));
+  add_measured(view, {}, real_m);
+  for (int y = 40; y < 80; ++y)
+    for (int x = 60; x < 100; ++x) ASSERT_LT(real_m.at(x, y), 0.81F) << x << ' ' << y;
+  EXPECT_EQ(real_m.at(59, 60), 2.0F);
+}
+
 constexpr Rgb kSkin{205, 150, 125}, kTable{165, 125, 85};
 
 /// A skin-coloured square on a table, with a texture of +-8.
@@ -115,10 +136,7 @@ TEST(MeasuredView, GapsAreBridgedAsFarAsTheColoursReach) {
         if (std::bernoulli_distribution(part)(random))
           for (int v = y; v < y + block_px; ++v)
             for (int u = x; u < x + block_px; ++u) depth_m.at(u, v) = 0.0F;
-    MaskImage dynamic_mask(kDepth.width_px, kDepth.height_px);
-    for (std::size_t i = 0; i < depth_m.pixels.size(); ++i)
-      dynamic_mask.pixels[i] = depth_m.pixels[i] > 0.0F && depth_m.pixels[i] < 1.0F ? 255 : 0;
-    MeasuredView view = seen(depth_m, dynamic_mask);
+    MeasuredView view = seen(depth_m, mask_of_square(depth_m));
     DepthImage real_m(kDepth.width_px, kDepth.height_px, 2.0F);
     add_measured(view, {}, real_m);
     bridge_gaps(square_on_table(), view, real_m);
@@ -139,15 +157,17 @@ TEST(MeasuredView, WithoutColoursTheMajorityAroundAGapDecides) {
   DepthImage depth_m = square_before_wall(0.8F, 2.0F);
   for (int y = 54; y < 62; ++y)
     for (int x = 74; x < 82; ++x) depth_m.at(x, y) = 0.0F;
-  MaskImage dynamic_mask(kDepth.width_px, kDepth.height_px);
-  for (std::size_t i = 0; i < depth_m.pixels.size(); ++i)
-    dynamic_mask.pixels[i] = depth_m.pixels[i] > 0.0F && depth_m.pixels[i] < 1.0F ? 255 : 0;
-  MeasuredView view = seen(depth_m, dynamic_mask);
+  MeasuredView view = seen(depth_m, mask_of_square(depth_m));
   DepthImage real_m(kDepth.width_px, kDepth.height_px, 2.0F);
   add_measured(view, {}, real_m);
   bridge_gaps(ColourImage(kDepth.width_px, kDepth.height_px, kTable), view, real_m);
   EXPECT_NEAR(real_m.at(77, 57), 0.8F, 1e-3F);
   EXPECT_EQ(real_m.at(105, 60), 2.0F) << "the sensor's shadow, of which the far side is nearer";
+  // A shadow that falls on the table must not be aligned into the square: its pixels are decided, measured or
+  // not.
+  EXPECT_NE(view.is_decided.at(77, 57), 0);
+  EXPECT_NE(view.is_decided.at(70, 50), 0);
+  EXPECT_EQ(view.is_decided.at(50, 60), 0);
 }
 
 }  // namespace
