@@ -69,7 +69,7 @@ constexpr std::string_view kSources =
                      TUM RGB-D   depth.txt, rgb.txt, groundtruth.txt, accelerometer.txt
                      fakenect    INDEX.txt and the raw images of a Kinect
                      numbered    depth/00000.png (mm), color/00000.jpg; also pose/0.txt and intrinsic/ of
-                                 ScanNet's exports
+                                 ScanNet's exports, and traj.txt or poses.txt with a pose per line
                      Record3D    an export "EXR + RGB": metadata, depth/0.exr (m), rgb/0.jpg
                      ROS 1       FILE.bag with depth, colour and camera_info; poses from tf, gravity from an IMU
                      ROS 2       FILE.db3, FILE.mcap or their folder, as ROS 1
@@ -84,8 +84,8 @@ constexpr std::string_view kSources =
                    A camera.json in it describes the cameras, a calibration.json their errors. camera.json
                    may also state "depth_unit_m" and "poses_convention", for any kind of recording.
                    `roomradar check RECORDING` says what a recording states, whether its depth agrees with
-                   that, and what was decided. --depth-unit, --camera, --poses-convention and --stamps
-                   overrule it.
+                   that, and what was decided. --depth-unit, --camera, --poses-convention, --stamps
+                   and --depth-topic overrule it.
   SESSION          a folder that `run --record-session` wrote: replayed with identical results
   kinect:N         a Kinect v1, numbered from 0. It continues until Ctrl-C is pressed once. kinect:0?depth=mm
                    and kinect:0?depth=registered let libfreenect convert or register the depth.

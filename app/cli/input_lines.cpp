@@ -21,6 +21,7 @@ void add_to(nlohmann::json& settings, const InputOptions& options) {
   if (!options.camera.empty()) settings["camera"] = options.camera;
   if (options.poses_convention) settings["poses_convention"] = to_string(*options.poses_convention);
   if (options.stamps != StampChoice::kAuto) settings["stamps"] = to_string(options.stamps);
+  if (!options.depth_topic.empty()) settings["depth_topic"] = options.depth_topic;
 }
 
 }  // namespace roomradar

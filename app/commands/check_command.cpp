@@ -230,7 +230,8 @@ int run(const CheckOptions& options) {
   SourceOptions source_options = source_options_of(options.input);
   source_options.questions = Questions::kDepth;
   source_options.input = std::make_shared<InputReport>();
-  const DecidedRecording recording = decide(read_facts(options.recording), options.recording, source_options);
+  const DecidedRecording recording =
+      decide(read_facts(options.recording, source_options.depth_topic), options.recording, source_options);
   const SampledFrames sampled = sample(recording);
   std::vector<InputDecision> decisions = source_options.input->decisions();
   if (sampled.unreadable > 0)

@@ -108,11 +108,12 @@ std::unique_ptr<Source> open(const std::filesystem::path& source,
                              const std::filesystem::path& calibration,
                              const std::optional<Intrinsics>& depth_camera, bool keep_all, bool cache,
                              const std::optional<double>& depth_unit_m, const std::filesystem::path& camera,
-                             const std::string& poses_convention) {
+                             const std::string& poses_convention, const std::string& depth_topic) {
   SourceOptions options;
   options.depth_camera = depth_camera;
   options.depth_unit_m = depth_unit_m;
   options.camera_file = camera;
+  options.depth_topic = depth_topic;
   if (!poses_convention.empty()) {
     options.pose_convention = parse_pose_convention(poses_convention);
     if (!options.pose_convention)
@@ -200,7 +201,7 @@ void bind_sources(py::module_& module) {
       "open_source", &open, py::arg("source"), py::kw_only(), py::arg("frames") = py::none(),
       py::arg("calibration") = "", py::arg("depth_camera") = py::none(), py::arg("keep_all") = false,
       py::arg("cache") = false, py::arg("depth_unit_m") = py::none(), py::arg("camera") = "",
-      py::arg("poses_convention") = "",
+      py::arg("poses_convention") = "", py::arg("depth_topic") = "",
       "Opens a recording (folder or file), a device (kinect:N, openni:N) or a simulated one (sim:ROOM).\n\n"
       "frames: first and last frame, both included; None: all\n"
       "calibration: file of `roomradar calibrate`; empty: that of the recording, if any\n"
@@ -209,7 +210,8 @@ void bind_sources(py::module_& module) {
       "cache: simulated frames are kept on disk, for callers that read them several times\n"
       "depth_unit_m: length of a unit of the recorded depth; None: as the recording states\n"
       "camera: a camera.json, or a text file with the depth camera's 3 x 3 matrix\n"
-      "poses_convention: stated, or a list of inverse, opengl, wxyz, mm, cm; empty: recognised");
+      "poses_convention: stated, or a list of inverse, opengl, wxyz, mm, cm; empty: recognised\n"
+      "depth_topic: topic of a ROS recording with the depth images; empty: chosen");
 }
 
 }  // namespace roomradar::python

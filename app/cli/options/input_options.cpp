@@ -55,6 +55,11 @@ void add_input_options(CLI::App& command, InputOptions& options) {
       "times of the recorded images: their stamps, repaired where they cannot be right (auto);\n"
       "times of reception; image numbers at 30 per second (index); or stamps in this unit\n"
       "(default: auto)");
+  command
+      .add_option("--depth-topic", options.depth_topic,
+                  "topic of a ROS recording with the depth images (default: one that is registered to\n"
+                  "colour and has a camera_info, if there is one)")
+      ->type_name("NAME");
 }
 
 SourceOptions source_options_of(const InputOptions& options) {
@@ -63,6 +68,7 @@ SourceOptions source_options_of(const InputOptions& options) {
   source.camera_file = options.camera;
   source.pose_convention = options.poses_convention;
   source.stamps = options.stamps;
+  source.depth_topic = options.depth_topic;
   return source;
 }
 
@@ -72,6 +78,7 @@ std::string words_of(const InputOptions& options) {
   if (!options.camera.empty()) words += " --camera " + options.camera;
   if (options.poses_convention) words += " --poses-convention " + to_string(*options.poses_convention);
   if (options.stamps != StampChoice::kAuto) words += " --stamps " + to_string(options.stamps);
+  if (!options.depth_topic.empty()) words += " --depth-topic " + options.depth_topic;
   return words;
 }
 

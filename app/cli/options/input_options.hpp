@@ -19,9 +19,11 @@ struct InputOptions {
   /// Convention of the recorded poses; unset: recognised.
   std::optional<PoseConvention> poses_convention;
   StampChoice stamps = StampChoice::kAuto;
+  /// Topic of a ROS recording with depth images; empty: chosen.
+  std::string depth_topic;
 };
 
-/// Adds --depth-unit, --camera, --poses-convention and --stamps.
+/// Adds --depth-unit, --camera, --poses-convention, --stamps and --depth-topic.
 /// @param options  receives the values; must outlive the parsing
 void add_input_options(CLI::App& command, InputOptions& options);
 

@@ -589,6 +589,7 @@ def open_source(
     depth_unit_m: Optional[float] = ...,
     camera: _Path = ...,
     poses_convention: str = ...,
+    depth_topic: str = ...,
 ) -> Source: ...
 def simulate(
     folder: _Path,

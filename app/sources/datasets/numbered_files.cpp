@@ -74,6 +74,24 @@ std::map<std::int64_t, fs::path> numbered_files(const fs::path& folder,
   return files;
 }
 
+fs::path folder_named(const fs::path& folder, std::initializer_list<std::string_view> names) {
+  std::error_code ignored;
+  const std::vector<fs::path> entries = entries_of(folder, ignored);
+  for (const std::string_view name : names)
+    for (const fs::path& entry : entries)
+      if (lower_case(entry.filename().string()) == name && fs::is_directory(entry, ignored)) return entry;
+  return {};
+}
+
+fs::path depth_folder(const fs::path& folder) {
+  return folder_named(folder, {"depth", "depths", "depth_images", "depth_image", "depth_raw", "depthimages"});
+}
+
+fs::path colour_folder(const fs::path& folder) {
+  return folder_named(folder, {"color", "colour", "rgb", "image", "images", "colors", "colours",
+                               "color_images", "colour_images", "rgb_images", "color_image", "rgb_image"});
+}
+
 ImageSize size_of_images(const std::vector<fs::path>& files, const fs::path& where) {
   constexpr std::size_t kSampled = 9;
   constexpr std::uintmax_t kMaxImage_bytes = 1U << 30U;

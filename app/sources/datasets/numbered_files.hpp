@@ -24,6 +24,15 @@ namespace roomradar {
 std::map<std::int64_t, std::filesystem::path> numbered_files(
     const std::filesystem::path& folder, std::initializer_list<std::string_view> extensions);
 
+/// Returns the first folder in `folder` with one of these names (lower case, which stand for upper case too),
+/// in the order of the names; empty if there is none.
+std::filesystem::path folder_named(const std::filesystem::path& folder,
+                                   std::initializer_list<std::string_view> names);
+/// Returns the folder of depth images: depth, Depth, depth_images and so on; empty if there is none.
+std::filesystem::path depth_folder(const std::filesystem::path& folder);
+/// Returns the folder of colour images: color, rgb, image and so on; empty if there is none.
+std::filesystem::path colour_folder(const std::filesystem::path& folder);
+
 /// Returns the size that most of nine images have, which are spread over the list. If none of these can be
 /// read, that of the first that can. Throws Error naming `where` if there is none.
 ImageSize size_of_images(const std::vector<std::filesystem::path>& files, const std::filesystem::path& where);

@@ -1,6 +1,7 @@
 // numbered_images.cpp: images, poses and matrices by the number in their names.
 #include "app/sources/datasets/numbered_images.hpp"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -9,6 +10,7 @@
 
 #include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/datasets/seven_scenes.hpp"
+#include "app/sources/datasets/text_lists.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
@@ -22,12 +24,39 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the first of these folders that exists; empty if there is none.
-fs::path first_folder(const fs::path& folder, std::initializer_list<const char*> names) {
+/// Sets the frames' poses by a list of poses beside the images, such as traj.txt: one pose per depth image,
+/// or poses that begin with the images' numbers.
+void read_listed_poses(const fs::path& folder, const std::vector<std::int64_t>& numbers,
+                       RecordingFacts& facts) {
   std::error_code ignored;
-  for (const char* name : names)
-    if (fs::is_directory(folder / name, ignored)) return folder / name;
-  return {};
+  fs::path file;
+  for (const char* name :
+       {"groundtruth.txt", "traj.txt", "trajectory.txt", "poses.txt", "pose.txt", "camera_poses.txt"})
+    if (file.empty() && fs::is_regular_file(folder / name, ignored)) file = folder / name;
+  if (file.empty()) return;
+  const ListedPoses listed = read_pose_list(file, std::ssize(numbers), facts);
+  std::int64_t without_image = 0;
+  for (std::size_t i = 0; i < listed.poses.size(); ++i) {
+    std::size_t frame = i;
+    if (listed.are_stamped) {
+      const auto place = std::lower_bound(
+          numbers.begin(), numbers.end(), listed.poses[i].stamp,
+          [](std::int64_t number, double stamp) { return static_cast<double>(number) < stamp; });
+      frame = static_cast<std::size_t>(place - numbers.begin());
+      if (frame == numbers.size() || static_cast<double>(numbers[frame]) != listed.poses[i].stamp) {
+        ++without_image;
+        continue;
+      }
+    }
+    facts.frames[frame].T_world_camera = listed.poses[i].T_world_camera;
+    if (!listed.poses[i].T_world_camera) facts.frames[frame].pose_fault = "is no rigid transform";
+  }
+  if (without_image > 0)
+    facts.notes.push_back({"poses",
+                           std::to_string(without_image) + " of " + std::to_string(listed.poses.size()) +
+                               " poses of " + file.filename().string() +
+                               " begin with no number of a depth image; they are left out",
+                           without_image, "", true});
 }
 
 /// Reads the camera of a 4 x 4 or 3 x 3 matrix. The matrix states no size: if its principal point is far from
@@ -84,18 +113,14 @@ void read_scannet_cameras(const fs::path& intrinsic, ImageSize depth, std::optio
 
 }  // namespace
 
-bool is_numbered_images(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::is_directory(folder / "depth", ignored);
-}
+bool is_numbered_images(const fs::path& folder) { return !depth_folder(folder).empty(); }
 
 RecordingFacts index_numbered_images(const fs::path& folder) {
   RecordingFacts facts{.name = fs::canonical(folder).string(), .has_no_clock = true};
-  const fs::path colour_folder =
-      first_folder(folder, {"color", "colour", "rgb", "image", "images", "colors", "Color", "RGB"});
-  const auto colour_files = numbered_files(colour_folder, {".jpg", ".jpeg", ".png"});
-  const auto pose_files = numbered_files(first_folder(folder, {"pose", "poses"}), {".txt"});
-  const auto depth_files = numbered_files(folder / "depth", {".png", ".pgm"});
+  const fs::path depth_images = depth_folder(folder), colour_images = colour_folder(folder);
+  const auto colour_files = numbered_files(colour_images, {".jpg", ".jpeg", ".png"});
+  const auto pose_files = numbered_files(folder_named(folder, {"pose", "poses"}), {".txt"});
+  const auto depth_files = numbered_files(depth_images, {".png", ".pgm"});
   // Numbers of ten digits and more are times.
   constexpr std::int64_t kLeastTime = 1'000'000'000;
   const bool are_times = !depth_files.empty() && depth_files.begin()->first >= kLeastTime;
@@ -103,6 +128,7 @@ RecordingFacts index_numbered_images(const fs::path& folder) {
   facts.stamps_have_no_unit = are_times;
   std::vector<fs::path> depths, colours;
   std::vector<std::string> poses;
+  std::vector<std::int64_t> numbers;
   std::int64_t without_colour = 0, first_without_colour = -1;
   std::error_code ignored;
   if (are_times)
@@ -123,20 +149,22 @@ RecordingFacts index_numbered_images(const fs::path& folder) {
     const auto pose = pose_files.find(number);
     poses.push_back(pose == pose_files.end() ? "" : pose->second.string());
     depths.push_back(file);
+    numbers.push_back(number);
     facts.frames.push_back(std::move(frame));
   }
   if (facts.frames.empty()) {
-    for (const fs::path& file : entries_of(folder / "depth"))
+    for (const fs::path& file : entries_of(depth_images))
       if (file.has_extension())
-        throw Error(file.string() + ": is not read as depth; depth must be 16 bit grey images depth/NNNNN.png or " +
-                    ".pgm, so convert them");
+        throw Error(file.string() + ": is not read as depth; depth must be 16 bit grey images " +
+                    depth_images.filename().string() + "/NNNNN.png or .pgm, so convert them");
     return facts;
   }
-  if (colours.empty() && !colour_folder.empty() && !is_empty_folder(colour_folder, ignored))
-    facts.notes.push_back({"images",
-                           "no file in " + colour_folder.filename().string() +
-                               " is a .jpg or .png with the number of a depth image; depth is used without colour",
-                           static_cast<std::int64_t>(depths.size()), "", true});
+  if (colours.empty() && !colour_images.empty() && !is_empty_folder(colour_images, ignored))
+    facts.notes.push_back(
+        {"images",
+         "no file in " + colour_images.filename().string() +
+             " is a .jpg or .png with the number of a depth image; depth is used without colour",
+         static_cast<std::int64_t>(depths.size()), "", true});
   if (!colours.empty() && without_colour > 0)
     facts.notes.push_back({"images",
                            "the colour image of " + std::to_string(without_colour) + " of " +
@@ -164,6 +192,8 @@ RecordingFacts index_numbered_images(const fs::path& folder) {
     facts.read_pose = [poses](std::size_t frame, double) {
       return poses[frame].empty() ? StatedPose{} : read_pose_file(poses[frame]);
     };
+  else
+    read_listed_poses(folder, numbers, facts);
   return facts;
 }
 

@@ -41,12 +41,6 @@ fs::path intrinsics_file(const fs::path& folder) {
   return {};
 }
 
-fs::path colour_images(const fs::path& folder) {
-  for (const char* name : {"color", "colour", "image", "rgb"})
-    if (fs::is_directory(folder / name)) return folder / name;
-  return {};
-}
-
 /// Calls use(numbers, where) per line that is not empty and no comment.
 template <typename Use>
 void for_each_numbers(const fs::path& path, const Use& use) {
@@ -194,12 +188,12 @@ Open3dIntrinsics read_open3d_intrinsics(const fs::path& path) {
 }
 
 /// States registered images without cameras and poses. `numbers` receives the number of each frame.
-RecordingFacts registered_images(const fs::path& folder, const fs::path& colour_folder,
+RecordingFacts registered_images(const fs::path& folder, const fs::path& colour_images,
                                  DepthEncoding encoding, std::vector<std::int64_t>& numbers) {
   RecordingFacts facts{.name = fs::canonical(folder).string()};
-  const auto colours = numbered_files(colour_folder, {".jpg", ".jpeg", ".png"});
+  const auto colours = numbered_files(colour_images, {".jpg", ".jpeg", ".png"});
   std::vector<fs::path> depth_paths, colour_paths;
-  for (const auto& [number, path] : numbered_files(folder / "depth", {".png"})) {
+  for (const auto& [number, path] : numbered_files(depth_folder(folder), {".png"})) {
     const auto colour = colours.find(number);
     facts.frames.push_back({.time = {.stamp_s = static_cast<double>(number) / kNominalRate_hz}});
     if (colour != colours.end()) {
@@ -250,8 +244,7 @@ void read_pose_files(const fs::path& folder, const std::vector<std::int64_t>& nu
 }  // namespace
 
 bool is_redwood(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::is_directory(folder / "depth", ignored) && !colour_images(folder).empty() &&
+  return !depth_folder(folder).empty() && !colour_folder(folder).empty() &&
          (!trajectory_log(folder).empty() || !intrinsics_file(folder).empty());
 }
 
@@ -259,7 +252,7 @@ RecordingFacts index_redwood(const fs::path& folder) {
   constexpr Intrinsics kPrimeSense{640, 480, 525.0, 525.0, 319.5, 239.5};
   std::vector<std::int64_t> numbers;
   RecordingFacts facts =
-      registered_images(folder, colour_images(folder), DepthEncoding::kMillimetres, numbers);
+      registered_images(folder, colour_folder(folder), DepthEncoding::kMillimetres, numbers);
   const fs::path file = intrinsics_file(folder);
   if (file.empty()) {
     set_registered_camera(facts, kPrimeSense);

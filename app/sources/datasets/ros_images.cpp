@@ -33,15 +33,19 @@ std::optional<ColourPixels> colour_pixels_of(const std::string& encoding) {
   return found == kKnown.end() ? std::nullopt : std::optional(found->second);
 }
 
-bool is_depth_encoding(const std::string& encoding) {
-  return encoding == "16UC1" || encoding == "mono16" || encoding == "32FC1";
-}
-
 /// Of ASCII, whatever the locale.
 std::string lower(std::string text) {
   for (char& c : text)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   return text;
+}
+
+/// Depth in metres; the others are of 16 bit.
+bool is_float_encoding(const std::string& encoding) { return encoding == "32FC1" || encoding == "64FC1"; }
+
+bool is_depth_encoding(const std::string& encoding) {
+  return encoding == "16UC1" || encoding == "16SC1" || encoding == "mono16" || lower(encoding) == "z16" ||
+         is_float_encoding(encoding);
 }
 
 bool names(const std::string& topic, std::initializer_list<std::string_view> words) {
@@ -71,7 +75,7 @@ std::optional<Candidate> candidate_of(const MessageLog& log, std::uint32_t topic
     if (is_image) {
       const RosImage image = read_image(message(log, bytes, topic));
       candidate.is_depth = is_depth_encoding(image.encoding);
-      candidate.stream.is_float = image.encoding == "32FC1";
+      candidate.stream.is_float = is_float_encoding(image.encoding);
       if (!candidate.is_depth && !colour_pixels_of(image.encoding)) return std::nullopt;
       candidate.stream.frame_id = image.header.frame_id;
       candidate.stream.width_px = static_cast<int>(std::min(image.width, 100'000U));
@@ -170,8 +174,27 @@ std::vector<Candidate> candidates_of(const MessageLog& log) {
   std::string topics;
   for (const MessageTopic& topic : log.topics)
     if (topics.size() < 400) topics += (topics.empty() ? "" : ", ") + topic.name;
-  throw Error(log.name + ": contains no depth images (16UC1, 32FC1 or compressedDepth); its topics are " +
+  throw Error(log.name +
+              ": contains no depth images (16UC1, 16SC1, Z16, mono16, 32FC1, 64FC1 or compressedDepth); its "
+              "topics are " +
               (topics.empty() ? "none" : topics));
+}
+
+/// Removes all topics of depth except this one. Throws Error naming those that there are if it is none.
+void keep_depth_topic(const MessageLog& log, const std::string& depth_topic,
+                      std::vector<Candidate>& candidates) {
+  const auto name_of = [&](const Candidate& candidate) { return log.topics[candidate.stream.topic].name; };
+  std::string known;
+  for (const Candidate& candidate : candidates)
+    if (candidate.is_depth) known += (known.empty() ? "" : ", ") + name_of(candidate);
+  if (known.empty()) fail_without_depth(log);
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    return candidate.is_depth && name_of(candidate) != depth_topic;
+  });
+  if (std::none_of(candidates.begin(), candidates.end(),
+                   [](const Candidate& candidate) { return candidate.is_depth; }))
+    throw Error(log.name + ": has no depth images on the topic " + depth_topic +
+                "; --depth-topic must be one of " + known);
 }
 
 /// Returns the best topics of depth and colour, with assumed cameras.
@@ -233,10 +256,11 @@ RawLayout layout_of(const RosImage& image) {
 
 }  // namespace
 
-RosStreams find_streams(const MessageLog& log) {
+RosStreams find_streams(const MessageLog& log, const std::string& depth_topic) {
   std::optional<RosStream> depth, colour;
   std::vector<std::string> others;
   std::vector<Candidate> candidates = candidates_of(log);
+  if (!depth_topic.empty()) keep_depth_topic(log, depth_topic, candidates);
   for (Candidate& candidate : candidates) {
     std::optional<RosStream>& wanted = candidate.is_depth ? depth : colour;
     const bool is_colour_of_infrared = !candidate.is_depth && candidate.score < 0;
@@ -276,13 +300,18 @@ void decode_ros_depth(const MessageLog& log, const RosStream& stream, const Mess
   const RosImage image = read_image(from);
   if (!is_depth_encoding(image.encoding))
     throw Error(from.where + ": its encoding is '" + image.encoding.substr(0, 40) + "', not depth");
-  if (image.encoding == "32FC1") {
+  if (is_float_encoding(image.encoding)) {
     if (image.is_big_endian) throw Error(from.where + ": its floats are big-endian, which is not read");
-    return convert_depth(image.data, layout_of(image), DepthPixels::kFloat32, stream.is_float ? unit_m : 1.0, from.where, depth_m);
+    const DepthPixels pixels = image.encoding == "64FC1" ? DepthPixels::kFloat64 : DepthPixels::kFloat32;
+    return convert_depth(image.data, layout_of(image), pixels, stream.is_float ? unit_m : 1.0, from.where,
+                         depth_m);
   }
   convert_depth(image.data, layout_of(image),
                 image.is_big_endian ? DepthPixels::kUint16BigEndian : DepthPixels::kUint16, unit_m,
                 from.where, depth_m);
+  if (image.encoding == "16SC1")  // negative: no measurement
+    for (float& depth : depth_m.pixels)
+      if (depth >= static_cast<float>(32768 * unit_m)) depth = 0.0F;
 }
 
 void decode_ros_colour(const MessageLog& log, const RosStream& stream, const MessageEntry& entry,

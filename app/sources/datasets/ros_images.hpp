@@ -17,7 +17,7 @@ namespace roomradar {
 struct RosStream {
   std::uint32_t topic = 0;
   bool is_compressed = false;
-  bool is_float = false;       ///< depth in 32FC1, m
+  bool is_float = false;       ///< depth in 32FC1 or 64FC1, m
   bool is_registered = false;  ///< depth that its topic's name calls aligned or registered to colour
   std::string frame_id{};  ///< coordinate frame of the camera
   int width_px = 0, height_px = 0;
@@ -34,10 +34,11 @@ struct RosStreams {
   std::vector<std::string> other_depth{};  ///< names of further topics of depth images
 };
 
-/// Returns a topic of depth images (16UC1, mono16, 32FC1 or compressedDepth) and, if there is one, a topic of
-/// colour images. Of several depth topics, prefers one that is registered to colour.
-/// @throws Error naming the topics that were found if there is no depth topic
-RosStreams find_streams(const MessageLog& log);
+/// Returns a topic of depth images (16UC1, 16SC1, Z16, mono16, 32FC1, 64FC1 or compressedDepth) and, if there
+/// is one, a topic of colour images. Of several depth topics, returns `depth_topic` if it is not empty, else
+/// one that is registered to colour and has a camera_info, if there is one.
+/// @throws Error naming the topics that were found if there is no depth topic, or none of that name
+RosStreams find_streams(const MessageLog& log, const std::string& depth_topic);
 
 /// Returns the length of a unit of 16 bit depth, m, that the option Depth Units of a RealSense states.
 std::optional<double> stated_depth_unit_m(const MessageLog& log, const RosStream& depth);

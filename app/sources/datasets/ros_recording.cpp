@@ -159,8 +159,9 @@ StatedPose exact_pose_at(const MessageLog& log, const std::vector<MessageEntry>&
 
 }  // namespace
 
-RecordingFacts index_ros_recording(const std::shared_ptr<const MessageLog>& log) {
-  auto [depth, colour, are_cameras_assumed, other_depth] = find_streams(*log);
+RecordingFacts index_ros_recording(const std::shared_ptr<const MessageLog>& log,
+                                   const std::string& depth_topic) {
+  auto [depth, colour, are_cameras_assumed, other_depth] = find_streams(*log, depth_topic);
   const auto transforms = std::make_shared<const RosTransforms>(*log);
   const Sensor depth_sensor{log->topics[depth.topic].name, depth.frame_id};
 
@@ -191,10 +192,10 @@ RecordingFacts index_ros_recording(const std::shared_ptr<const MessageLog>& log)
                                depth_sensor.topic + " is used" +
                                (depth.is_registered ? ", which is registered to colour" : "") + "; not " +
                                other_depth.front() + (other_depth.size() > 1 ? ", ..." : ""),
-                           static_cast<std::int64_t>(other_depth.size())});
+                           static_cast<std::int64_t>(other_depth.size()), "--depth-topic NAME"});
 
   facts.depth_unit_m = depth.is_float ? 1.0 : 0.001;
-  facts.unit_source = depth.is_float ? "metres, by 32FC1" : "millimetres, by 16UC1";
+  facts.unit_source = depth.is_float ? "metres, by its encoding" : "millimetres, by its encoding";
   if (const auto unit_m = stated_depth_unit_m(*log, depth); unit_m && !depth.is_float) {
     facts.depth_unit_m = *unit_m;
     facts.unit_origin = Origin::kRecording;
@@ -224,12 +225,12 @@ RecordingFacts index_ros_recording(const std::shared_ptr<const MessageLog>& log)
   return facts;
 }
 
-RecordingFacts index_ros1_bag(const std::filesystem::path& path) {
-  return index_ros_recording(std::make_shared<const MessageLog>(open_ros_bag(path)));
+RecordingFacts index_ros1_bag(const std::filesystem::path& path, const std::string& depth_topic) {
+  return index_ros_recording(std::make_shared<const MessageLog>(open_ros_bag(path)), depth_topic);
 }
 
-RecordingFacts index_ros2_bag(const std::filesystem::path& path) {
-  return index_ros_recording(std::make_shared<const MessageLog>(open_ros2_bag(path)));
+RecordingFacts index_ros2_bag(const std::filesystem::path& path, const std::string& depth_topic) {
+  return index_ros_recording(std::make_shared<const MessageLog>(open_ros2_bag(path)), depth_topic);
 }
 
 }  // namespace roomradar

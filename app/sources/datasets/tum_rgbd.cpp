@@ -8,13 +8,13 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "app/sources/datasets/numbered_files.hpp"
+#include "app/sources/datasets/text_lists.hpp"
 #include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/kinect_units.hpp"
 #include "app/sources/formats/nominal_rig.hpp"
@@ -29,45 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxList_bytes = std::uintmax_t{1} << 30;
 constexpr double kLongestPoseGap_s = 0.050;  // a hand-held camera's path is not straight for longer
 constexpr double kGravityWithin_s = 0.050;
-
-/// Calls use(line, where) for each line that is neither empty nor a comment; `where` names file and line.
-template <typename Use>
-void for_each_line(const fs::path& path, const Use& use) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  std::string text = read_bytes(path, "a list of stamps", kMaxList_bytes);
-  if (text.starts_with("\xff\xfe")) std::erase(text.erase(0, 2), '\0');  // UTF-16 of plain characters
-  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
-  std::string_view rest = text;
-  if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
-  for (int line_number = 1; !rest.empty(); ++line_number) {
-    const std::size_t end = rest.find('\n');
-    const std::string_view line = rest.substr(0, end);
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first != std::string_view::npos && line[first] != '#')
-      use(line.substr(first), path.string() + ", line " + std::to_string(line_number));
-    if (end == std::string_view::npos) break;
-    rest.remove_prefix(end + 1);
-  }
-}
-
-/// Lines that were left out of a list.
-struct BadLines {
-  std::size_t count = 0;
-  std::string first;
-  void add(const std::string& fault) {
-    if (count++ == 0) first = fault;
-  }
-  void report(const char* topic, const std::string& name, RecordingFacts& facts) const {
-    if (count == 0) return;
-    facts.notes.push_back({topic,
-                           std::to_string(count) + (count == 1 ? " line of " : " lines of ") + name +
-                               (count == 1 ? " is left out: " : " are left out, the first: ") + first,
-                           static_cast<std::int64_t>(count)});
-  }
-};
 
 struct ListedImage {
   double stamp = kNoStamp;
@@ -219,99 +182,6 @@ bool has_stamped_depth(const fs::path& folder) {
   return false;
 }
 
-/// Returns the rows of numbers of a file; empty if there is none. All rows have as many numbers as the first,
-/// which is one of `counts`; other lines are reported in the facts. Rows with a number that is not finite
-/// mean that nothing was measured, and are left out.
-std::vector<std::vector<double>> read_rows(const fs::path& folder, const char* name, const char* subject,
-                                           std::vector<std::size_t> counts, RecordingFacts& facts) {
-  std::vector<std::vector<double>> rows;
-  std::error_code ignored;
-  if (!fs::exists(folder / name, ignored)) return rows;
-  const auto is_known = [&](std::size_t count) {
-    return std::find(counts.begin(), counts.end(), count) != counts.end();
-  };
-  BadLines bad;
-  bool is_at_first = true;
-  for_each_line(folder / name, [&](std::string_view line, const std::string& where) {
-    std::vector<double> row;
-    std::string text(line);
-    std::replace(text.begin(), text.end(), ';', ' ');
-    const bool has_decimal_commas = is_known(split_words(text).size()) && text.find('.') == std::string::npos;
-    std::replace(text.begin(), text.end(), ',', has_decimal_commas ? '.' : ' ');
-    const bool is_first = std::exchange(is_at_first, false);
-    for (const std::string_view word : split_words(text)) {
-      const auto value = parse_number(word);
-      if (!value && is_first && row.empty() && std::isalpha(static_cast<unsigned char>(word[0])))
-        return;  // a heading
-      if (!value) return bad.add(where + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
-      row.push_back(*value);
-    }
-    if (!is_known(row.size()))
-      return bad.add(where + ": has " + std::to_string(row.size()) + " numbers instead of " +
-                     std::to_string(counts.front()));
-    counts = {row.size()};
-    if (std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
-      rows.push_back(std::move(row));
-  });
-  bad.report(subject, name, facts);
-  return rows;
-}
-
-/// Form of the lines of a list of poses, by its number of numbers.
-struct PoseForm {
-  std::size_t numbers;
-  std::size_t pose_at;  ///< index of the first number of the pose; 0: the lines have no stamps
-  bool is_matrix;       ///< rows of a matrix; false: translation and quaternion x y z w
-  const char* words;
-};
-constexpr std::array kPoseForms{
-    PoseForm{8, 1, false, "a stamp, a translation and a quaternion"},
-    PoseForm{9, 1, false, "a stamp, a translation, a quaternion and a number that is not used"},
-    PoseForm{13, 1, true, "a stamp and the rows of a 3 x 4 matrix"},
-    PoseForm{17, 1, true, "a stamp and the rows of a 4 x 4 matrix"},
-    PoseForm{7, 0, false, "a translation and a quaternion without a stamp, one per depth image"},
-    PoseForm{12, 0, true, "the rows of a 3 x 4 matrix without a stamp, one per depth image"},
-    PoseForm{16, 0, true, "the rows of a 4 x 4 matrix without a stamp, one per depth image"}};
-
-std::optional<Eigen::Isometry3d> pose_of(const std::vector<double>& row, const PoseForm& form) {
-  const double* p = row.data() + form.pose_at;
-  if (!form.is_matrix) return rigid_pose({p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]});
-  return rigid_transform(Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(p));
-}
-
-/// Reads groundtruth.txt, in whose place people put poses of other programs in forms of their own.
-void read_poses(const fs::path& folder, const std::vector<ListedImage>& depth, RecordingFacts& facts) {
-  constexpr const char* kName = "groundtruth.txt";
-  facts.pose_track = std::make_shared<std::vector<StampedPose>>();
-  std::vector<std::size_t> counts;
-  for (const PoseForm& form : kPoseForms) counts.push_back(form.numbers);
-  const auto rows = read_rows(folder, kName, "poses", counts, facts);
-  if (rows.empty()) return;
-  const PoseForm& form = *std::find_if(kPoseForms.begin(), kPoseForms.end(), [&](const PoseForm& known) {
-    return known.numbers == rows.front().size();
-  });
-  if (form.pose_at == 0 && rows.size() != depth.size()) {
-    facts.notes.push_back({"poses",
-                           std::string(kName) + " has " + std::to_string(form.numbers) +
-                               " numbers per line, so no stamps, and " + std::to_string(rows.size()) +
-                               " lines for " + std::to_string(depth.size()) +
-                               " depth images; the poses are not used. Begin each line with a stamp",
-                           std::ssize(rows)});
-    return;
-  }
-  if (form.numbers != kPoseForms.front().numbers)
-    facts.notes.push_back({"poses",
-                           std::string(kName) + " has " + std::to_string(form.numbers) +
-                               " numbers per line, taken as " + form.words,
-                           std::ssize(rows)});
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (const auto T = pose_of(rows[i], form))
-      facts.pose_track->push_back({form.pose_at == 0 ? depth[i].stamp : rows[i][0], *T});
-    else
-      ++facts.lost_track_poses;
-  }
-}
-
 /// Returns the direction of gravity by the reading nearest in time.
 std::optional<Eigen::Vector3d> gravity_near(double stamp_s,
                                             const std::vector<StampedAcceleration>& readings) {
@@ -377,9 +247,18 @@ RecordingFacts index_tum_rgbd(const fs::path& folder) {
   facts.depth_unit_m = depth_unit_m(DepthEncoding::kTum);
   facts.unit_source = "1/5000 m, by the TUM RGB-D format";
 
-  read_poses(folder, *depth, facts);
+  std::vector<double> stamps;
+  for (const ListedImage& image : *depth) stamps.push_back(image.stamp);
+  facts.pose_track = std::make_shared<std::vector<StampedPose>>();
+  const ListedPoses listed = read_pose_list(folder / "groundtruth.txt", std::ssize(stamps), facts);
+  for (std::size_t i = 0; i < listed.poses.size(); ++i)
+    if (listed.poses[i].T_world_camera)
+      facts.pose_track->push_back(
+          {listed.are_stamped ? listed.poses[i].stamp : stamps[i], *listed.poses[i].T_world_camera});
+    else
+      ++facts.lost_track_poses;
   facts.acceleration_track = std::make_shared<std::vector<StampedAcceleration>>();
-  for (const auto& row : read_rows(folder, "accelerometer.txt", "gravity", {4}, facts))
+  for (const auto& row : read_rows(folder / "accelerometer.txt", "gravity", {4}, facts))
     facts.acceleration_track->push_back({row[0], {row[1], row[2], row[3]}});
 
   facts.read_depth = [depth](std::size_t frame, double unit_m, DepthImage& depth_m) {

@@ -40,7 +40,9 @@ void convert_depth(std::string_view bytes, const RawLayout& layout, DepthPixels 
                    const std::string& where, DepthImage& depth_m) {
   require_sides(layout, where);
   if (!(unit_m > 0.0 && std::isfinite(unit_m))) throw Error(where + ": its unit of depth is not > 0 m");
-  const std::size_t pixel_bytes = pixels == DepthPixels::kFloat32 ? 4 : 2;
+  const std::size_t pixel_bytes = pixels == DepthPixels::kFloat64   ? 8
+                                  : pixels == DepthPixels::kFloat32 ? 4
+                                                                    : 2;
   const auto width = static_cast<std::size_t>(layout.width_px);
   const std::size_t stride = checked_row_bytes(bytes, layout, width * pixel_bytes,
                                                static_cast<std::size_t>(layout.height_px), where);
@@ -55,7 +57,12 @@ void convert_depth(std::string_view bytes, const RawLayout& layout, DepthPixels 
         reinterpret_cast<const std::uint8_t*>(bytes.data()) + static_cast<std::size_t>(y) * stride;
     float* to = depth_m.row(y);
     for (std::size_t x = 0; x < width; ++x) {
-      if (pixels == DepthPixels::kFloat32) {
+      if (pixels == DepthPixels::kFloat64) {
+        double value = 0.0;
+        std::memcpy(&value, from + 8 * x, sizeof value);
+        const auto depth = static_cast<float>(value * unit_m);
+        to[x] = std::isfinite(depth) && depth > 0.0F ? depth : 0.0F;
+      } else if (pixels == DepthPixels::kFloat32) {
         float value = 0.0F;
         std::memcpy(&value, from + 4 * x, sizeof value);
         value *= factor;

@@ -13,6 +13,7 @@ enum class DepthPixels {
   kUint16,           ///< little-endian; 0 and 65535: no measurement
   kUint16BigEndian,  ///< as kUint16, big-endian
   kFloat32,          ///< little-endian; not finite or <= 0: no measurement
+  kFloat64,          ///< as kFloat32
 };
 
 enum class ColourPixels { kRgb8, kBgr8, kRgba8, kBgra8, kMono8, kYuyv, kUyvy, kNv12 };

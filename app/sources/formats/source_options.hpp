@@ -64,6 +64,8 @@ struct SourceOptions {
   std::optional<PoseConvention> pose_convention;
   /// Where the images' times are taken from.
   StampChoice stamps = StampChoice::kAuto;
+  /// Topic of a ROS recording with depth images; empty: chosen by find_streams().
+  std::string depth_topic;
   Questions questions = Questions::kNone;
   /// Receives the decisions about a recording. Null: they are passed to `say`.
   std::shared_ptr<InputReport> input;

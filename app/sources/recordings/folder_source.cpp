@@ -8,7 +8,7 @@
 namespace roomradar {
 
 std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder, const SourceOptions& options) {
-  return recording_source(decide(read_facts(folder), folder, options));
+  return recording_source(decide(read_facts(folder, options.depth_topic), folder, options));
 }
 
 }  // namespace roomradar

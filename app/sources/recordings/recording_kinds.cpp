@@ -13,6 +13,7 @@
 #include "app/sources/datasets/azure_recording.hpp"
 #include "app/sources/datasets/fakenect_dump.hpp"
 #include "app/sources/datasets/klg.hpp"
+#include "app/sources/datasets/numbered_files.hpp"
 #include "app/sources/datasets/numbered_images.hpp"
 #include "app/sources/datasets/oni_recording.hpp"
 #include "app/sources/datasets/record3d.hpp"
@@ -36,14 +37,21 @@ struct Kind {
   bool (*is_kind)(const fs::path&);
   RecordingFacts (*read)(const fs::path&);
   bool is_foreign = true;
+  RecordingFacts (*read_topic)(const fs::path&,
+                               const std::string& depth_topic) = nullptr;  ///< of several topics
 };
+
+template <RecordingFacts (*Read)(const fs::path&, const std::string&)>
+constexpr Kind kind_of_ros(const char* name, bool (*is_kind)(const fs::path&)) {
+  return {name, is_kind, [](const fs::path& path) { return Read(path, ""); }, true, Read};
+}
 
 /// In this order: a folder that looks like several kinds is of the first.
 constexpr std::array kKinds = {
     Kind{"Record3D export", is_record3d, index_record3d},
     Kind{"Azure Kinect recording", is_matroska, index_azure_recording},
-    Kind{"ROS 1 bag", is_ros_bag, index_ros1_bag},
-    Kind{"ROS 2 bag", is_ros2_bag, index_ros2_bag},
+    kind_of_ros<index_ros1_bag>("ROS 1 bag", is_ros_bag),
+    kind_of_ros<index_ros2_bag>("ROS 2 bag", is_ros2_bag),
     Kind{"OpenNI recording", is_oni, index_oni_recording},
     Kind{"RTAB-Map database", is_rtabmap, index_rtabmap},
     Kind{"ScanNet recording", is_scannet_sens, index_scannet_sens},
@@ -68,8 +76,9 @@ const Kind* kind_of(const fs::path& path) {
 /// holds a recording in files of its own.
 fs::path file_in(const fs::path& path) {
   std::error_code fault;
-  for (const char* own : {"depth.txt", "rgb.txt", "INDEX.txt", "depth"})
+  for (const char* own : {"depth.txt", "rgb.txt", "INDEX.txt"})
     if (fs::exists(path / own, fault)) return path;
+  if (!depth_folder(path).empty()) return path;
   fs::path found;
   constexpr int kMaxFiles = 30;  // a folder of images has more
   int files = 0;
@@ -156,12 +165,14 @@ bool is_foreign_recording(const fs::path& path) {
   return kind && kind->is_foreign;
 }
 
-RecordingFacts read_facts(const fs::path& path) {
+RecordingFacts read_facts(const fs::path& path, const std::string& depth_topic) {
   try {
     fs::path file;
     const Kind* kind = kind_of(path, file);
     if (!kind) fail_unknown(path);
-    RecordingFacts facts = kind->read(file);
+    if (!depth_topic.empty() && !kind->read_topic)
+      throw Error(path.string() + ": is a " + kind->name + ", which has no topics; leave out --depth-topic");
+    RecordingFacts facts = depth_topic.empty() ? kind->read(file) : kind->read_topic(file, depth_topic);
     facts.kind = kind->name;
     if (file != path) facts.name = fs::canonical(path).string();
     if (file != path && fs::is_directory(file)) facts.entered = file.string();

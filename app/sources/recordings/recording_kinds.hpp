@@ -16,8 +16,9 @@ namespace roomradar {
 [[nodiscard]] bool is_foreign_recording(const std::filesystem::path& path);
 
 /// Returns what a recording states. Reads lists and headers of some images only.
+/// @param depth_topic  topic of a ROS recording with depth images; empty: chosen by find_streams()
 /// @throws Error naming the file if the recording is of no known kind (the message lists the kinds), is
-///         damaged, or lacks depth images or cameras
-RecordingFacts read_facts(const std::filesystem::path& path);
+///         damaged, lacks depth images or cameras, or has no such topic
+RecordingFacts read_facts(const std::filesystem::path& path, const std::string& depth_topic = {});
 
 }  // namespace roomradar

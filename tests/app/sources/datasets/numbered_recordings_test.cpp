@@ -115,6 +115,51 @@ TEST(NumberedImages, DepthOfAnotherFormIsNamed) {
   EXPECT_TRUE(contains(error_of([&] { (void)open_folder(folder.path()); }), "depth must be 16 bit grey images"));
 }
 
+TEST(NumberedImages, FoldersMayHaveOtherNames) {
+  for (const auto& [depth, colour] :
+       {std::pair("Depth", "RGB"), {"depth_images", "rgb_images"}, {"depths", "colors"}}) {
+    const TemporaryFolder folder;
+    write_numbered(folder.path(), [](int i) { return Written{padded(i) + ".png", padded(i) + ".png"}; });
+    fs::rename(folder.path() / "depth", folder.path() / "moved");
+    fs::rename(folder.path() / "moved", folder.path() / depth);
+    fs::rename(folder.path() / "color", folder.path() / "moved");
+    fs::rename(folder.path() / "moved", folder.path() / colour);
+    (void)expect_twelve(folder.path());
+  }
+}
+
+TEST(NumberedImages, AListOfPosesBesideThemIsRead) {
+  const auto read = [](const std::string& first, int lines) {
+    const TemporaryFolder folder;
+    write_numbered(folder.path(), [](int i) { return Written{padded(i) + ".png", padded(i) + ".png"}; });
+    std::string text;
+    for (int i = 0; i < lines; ++i)
+      text += (first.empty() ? "" : std::to_string(i + std::stoi(first)) + " ") + "1 0 0 " +
+              std::to_string(0.1 * i) + " 0 1 0 0 0 0 1 0 0 0 0 1\n";
+    write_text(folder.path() / "traj.txt", text);
+    ReadAll all;
+    const std::string said = decisions_about(
+        [&](const SourceOptions& options) { return open_folder(folder.path(), options); }, &all);
+    EXPECT_EQ(all.frames.size(), 12U) << said;
+    std::vector<double> x_m;
+    for (const Frame& frame : all.frames)
+      if (frame.T_world_camera) x_m.push_back(frame.T_world_camera->translation().x());
+    return std::pair(said, x_m);
+  };
+  for (const char* first : {"", "0"}) {
+    const auto [said, x_m] = read(first, 12);
+    ASSERT_EQ(x_m.size(), 12U) << said;
+    for (std::size_t i = 0; i < 12; ++i) EXPECT_NEAR(x_m[i] - x_m[0], 0.1 * static_cast<double>(i), 1e-9);
+  }
+  const auto [said_of_eleven, of_eleven] = read("", 11);
+  EXPECT_TRUE(of_eleven.empty() &&
+              contains(said_of_eleven, "11 lines for 12 depth images; the poses are not used"))
+      << said_of_eleven;
+  const auto [said_of_late, of_late] = read("4", 12);  // numbers 4 to 15
+  EXPECT_TRUE(of_late.size() == 8 && contains(said_of_late, "4 of 12 poses of traj.txt begin with no number"))
+      << said_of_late;
+}
+
 // ---- Stray Scanner ----
 
 constexpr int kVideoFrames = 30;

@@ -283,6 +283,61 @@ TEST(RosBag, WithoutCameraInfoCamerasAreAssumedAndNamed) {
   EXPECT_TRUE(contains(said, "--camera")) << said;
 }
 
+TEST(RosBag, ReadsDepthInTheEncodingsOfOtherDrivers) {
+  const auto depth_of = [](const char* encoding, int pixel_bytes, const auto& first, const auto& second) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.bag";
+    std::string pixels;
+    for (int i = 0; i < 6; ++i)
+      for (const auto& value : {first, second})
+        pixels.append(reinterpret_cast<const char*>(&value), static_cast<std::size_t>(pixel_bytes));
+    WrittenBag bag(path);
+    bag.write("/depth", "sensor_msgs/Image", 1, ros_image(1, "", 4, 3, encoding, pixel_bytes, pixels));
+    bag.close();
+    const test::ReadAll all = read_all(*open_folder(path));
+    EXPECT_EQ(all.frames.size(), 1U) << encoding;
+    return all.frames.empty() ? std::pair(0.0F, 0.0F)
+                              : std::pair(all.frames[0].depth_m.at(0, 0), all.frames[0].depth_m.at(1, 0));
+  };
+  EXPECT_EQ(depth_of("16SC1", 2, std::int16_t{1500}, std::int16_t{-1}), std::pair(1.5F, 0.0F));
+  EXPECT_EQ(depth_of("Z16", 2, std::uint16_t{1500}, std::uint16_t{40000}), std::pair(1.5F, 40.0F));
+  EXPECT_EQ(depth_of("64FC1", 8, 1.5, std::numeric_limits<double>::quiet_NaN()), std::pair(1.5F, 0.0F));
+}
+
+TEST(RosBag, TheTopicOfDepthCanBeChosen) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.bag";
+  {
+    WrittenBag bag(path);
+    for (const char camera : {'1', '2'}) {
+      const std::string name = std::string("/camera") + camera + "/depth";
+      bag.write(name + "/camera_info", "sensor_msgs/CameraInfo", 1,
+                ros_camera_info(1, 4, 3, camera == '1' ? 5 : 6));
+      bag.write(name + "/image", "sensor_msgs/Image", 1,
+                ros_image(1, "d", 4, 3, "16UC1", 2, std::string(24, camera == '1' ? '\4' : '\5')));
+    }
+    bag.close();
+  }
+  SourceOptions options;
+  for (const auto& [topic, depth_m, f_px] : {std::tuple("", 1.028F, 5.0),
+                                             {"/camera1/depth/image", 1.028F, 5.0},
+                                             {"/camera2/depth/image", 1.285F, 6.0}}) {
+    options.depth_topic = topic;
+    const test::ReadAll all = read_all(*open_folder(path, options));
+    ASSERT_EQ(all.frames.size(), 1U) << topic;
+    EXPECT_NEAR(all.frames[0].depth_m.at(0, 0), depth_m, 1e-4);
+    EXPECT_EQ(all.frames[0].depth_camera.fx_px, f_px);
+  }
+  options.depth_topic = "/camera3/depth/image";
+  const std::string said = error_of([&] { (void)open_folder(path, options); });
+  EXPECT_TRUE(contains(said, "--depth-topic must be one of /camera1/depth/image, /camera2/depth/image"))
+      << said;
+  const fs::path images = folder.path() / "images";
+  fs::create_directories(images / "depth");
+  EXPECT_TRUE(contains(error_of([&] { (void)open_folder(images, options); }),
+                       "has no topics; leave out --depth-topic"));
+}
+
 TEST(RosBag, ReadsABagThatWasCutShortUpToItsLastWholeChunk) {
   const TemporaryFolder folder, second;
   const std::string whole = read_bytes(write_own_bag(folder.path()), "a bag");
