@@ -8,6 +8,7 @@
 #include "radar/exact/contact_patch.hpp"
 #include "radar/exact/object_front.hpp"
 #include "radar/exact/overlap_depth.hpp"
+#include "radar/exact/radar.hpp"
 #include "radar/exact/radar_query.hpp"
 #include "radar/exact/scene_in_frame.hpp"
 #include "radar/exact/scene_queue.hpp"
@@ -68,7 +69,7 @@ struct RadarSearch;
 /// to their centroid. At most ContactPatch::kMaxPieces pairs of triangles contribute.
 ///
 /// Uses no OpenGL. Not thread safe: use one radar per thread; trees and images may be shared.
-class CyberRadar {
+class CyberRadar final : public Radar {
  public:
   explicit CyberRadar(const RadarConfig& config = {});
 
@@ -81,7 +82,7 @@ class CyberRadar {
   /// stride is below 1, or a jump limit is negative or NaN. Sampled mode stops once it has found a contact,
   /// has run kSampledExactTests exact tests, and the lower bounds of all untested surfaces are at least 0.
   /// Exact mode stops once no untested surface can be nearer.
-  Contact query(const RadarQuery& query, const RadarScene& scene);
+  Contact query(const RadarQuery& query, const RadarScene& scene) override;
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }
   /// Returns the number of bounds that all queries so far have computed from the planes of
