@@ -30,7 +30,7 @@ the file: an event that stands below a later one waits for it. Positions are in 
   time 7     commit                           # what stands still in view becomes part of the room
   frame 200  surfaces skirt                   # holes, skirt, border or map
   frame 210  unknown solid                    # or free
-  frame 220  radar sampled 64                 # exact or sampled; pixels
+  frame 220  radar sampled 64                 # exact, sampled or passes; pixels
   frame 225  quality depth_stride 2 shadows off   # others get their defaults; options keep theirs
   frame 230  camera hold                      # go, rewind, loop, stay or resume
   frame 300  quit

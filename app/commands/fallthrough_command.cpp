@@ -29,6 +29,7 @@
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/folder_entries.hpp"
 #include "mapping/types/system/make_folder.hpp"
+#include "radar/batch/passes_radar.hpp"
 
 namespace roomradar {
 namespace {
@@ -56,8 +57,8 @@ ScenarioNumbers numbers_of(const FallthroughOptions& options) {
 
 /// Runs the scenarios under all policies, with `threads` scenarios prepared ahead. Ends at the first error,
 /// with the rows so far.
-std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughOptions& options, int threads,
-                                       DeferredErrors& faults) {
+std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, Radar& radar, const FallthroughOptions& options,
+                                       int threads, DeferredErrors& faults) {
   std::deque<std::future<std::unique_ptr<PreparedScenario>>> ahead;
   std::int64_t next = numbers_of(options).begin;
   const auto prepare_next = [&] {
@@ -70,7 +71,6 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughOpti
   const ScenarioNumbers numbers = numbers_of(options);
   Progress progress("scenarios", numbers.end - numbers.begin);
   std::vector<ScenarioRow> rows;
-  CyberRadar radar;
   const auto run_scenario = [&](std::int64_t number) {
     while (next < numbers.end && ahead.size() < static_cast<std::size_t>(threads)) prepare_next();
     const std::unique_ptr<PreparedScenario> prepared = ahead.front().get();
@@ -95,11 +95,10 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughOpti
 }
 
 /// Draws a limited number of each policy's failures, last policies first.
-std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vector<ScenarioRow>& rows,
-                                             std::uint64_t seed) {
+std::vector<FailurePicture> picture_failures(const Rooms& rooms, Radar& radar,
+                                             const std::vector<ScenarioRow>& rows, std::uint64_t seed) {
   constexpr std::size_t kMostOfMaps = 24, kMostOfOthers = 4;
   std::vector<FailurePicture> pictures;
-  CyberRadar radar;
   for (std::size_t i = kPolicyCount; i-- > 0;) {
     const bool is_map = kFallthroughPolicies[i].surfaces == SurfacePolicy::kMap;
     std::size_t left = is_map ? kMostOfMaps : kMostOfOthers;
@@ -133,10 +132,10 @@ int replay(const FallthroughOptions& options, const RoomScan& scan) {
   GlContext context;
   const Rooms rooms = map_rooms(context, one, scan, 1);
   PreparedScenario prepared(rooms.front()->scanned.simulated, options.seed, turn.number);
-  CyberRadar radar;
-  write_replay(prepared, *rooms.front(), radar, video);
+  const std::unique_ptr<Radar> radar = make_radar({.mode = options.radar}, context);
+  write_replay(prepared, *rooms.front(), *radar, video);
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
-    const Trial trial = run_trial(prepared, *rooms.front(), i, radar);
+    const Trial trial = run_trial(prepared, *rooms.front(), i, *radar);
     std::printf("%-11s %-10s %+7.1f mm, rested on: %s\n", std::string(kFallthroughPolicies[i].name).c_str(),
                 std::string(to_string(trial.verdict.outcome)).c_str(), 1e3 * trial.verdict.error_m,
                 std::string(to_string(trial.rested_on)).c_str());
@@ -156,8 +155,8 @@ std::unique_ptr<RoomsInUse> rooms_of(const FallthroughOptions& options, const Ro
 }
 
 /// Prints and writes the results. Results that cannot be written do not keep others from being written.
-void publish(const FallthroughOptions& options, const std::vector<ScenarioRow>& rows,
-             const RoomsInUse& in_use, Report& report, DeferredErrors& faults) {
+void publish(const FallthroughOptions& options, const std::vector<ScenarioRow>& rows, RoomsInUse& in_use,
+             Report& report, DeferredErrors& faults) {
   const ScenarioNumbers numbers = numbers_of(options);
   const int done = static_cast<int>(rows.size());
   const auto totals = totals_of(rows);
@@ -178,8 +177,9 @@ void publish(const FallthroughOptions& options, const std::vector<ScenarioRow>& 
   });
   faults.attempt([&] { write_csv(rows, options.csv); });
   faults.attempt([&] {
-    if (!options.html.empty())
-      write_page(rows, about, picture_failures(in_use.rooms, rows, options.seed), options.html);
+    if (options.html.empty()) return;
+    const std::unique_ptr<Radar> radar = make_radar({.mode = options.radar}, in_use.context);
+    write_page(rows, about, picture_failures(in_use.rooms, *radar, rows, options.seed), options.html);
   });
   faults.attempt([&] { write_report(report, options.report); });
   faults.throw_first();
@@ -216,15 +216,20 @@ int run(const FallthroughOptions& options) {
   Report report;
   report.command = "fallthrough";
   report.source = "simulated rooms";
-  report.settings = {
-      {"scenarios", options.scenarios},    {"seed", options.seed}, {"random_rooms", options.random_rooms},
-      {"resolution_m", scan.resolution_m}, {"maps", options.maps}, {"threads", threads}};
+  report.settings = {{"scenarios", options.scenarios},
+                     {"seed", options.seed},
+                     {"random_rooms", options.random_rooms},
+                     {"resolution_m", scan.resolution_m},
+                     {"maps", options.maps},
+                     {"threads", threads},
+                     {"radar", std::string(to_string(options.radar))}};
   if (!options.jobs.empty()) return run_jobs(options, report);
 
   const auto in_use = report.times.timed("prescan", [&] { return rooms_of(options, scan, threads); });
+  const std::unique_ptr<Radar> radar = make_radar({.mode = options.radar}, in_use->context);
   DeferredErrors faults;  // earlier results are written all the same
-  const std::vector<ScenarioRow> rows =
-      report.times.timed("scenarios", [&] { return run_scenarios(in_use->rooms, options, threads, faults); });
+  const std::vector<ScenarioRow> rows = report.times.timed(
+      "scenarios", [&] { return run_scenarios(in_use->rooms, *radar, options, threads, faults); });
   if (rows.empty()) faults.throw_first();
   publish(options, rows, *in_use, report, faults);
   return 0;

@@ -88,6 +88,7 @@ int run_grid(const FallthroughOptions& options) {
   report.frames_read = 1;
   GridConfig config;
   config.cell_m = options.cell_m;
+  config.radar = options.radar;
   const Grid grid = report.times.timed(
       "drops", [&] { return drop_over_grid(context, map, frame, T_world_camera, reference_world, config); });
 
@@ -100,6 +101,7 @@ int run_grid(const FallthroughOptions& options) {
                      {"reference", options.reference.empty() ? options.map : options.reference},
                      {"poses", to_string(options.poses)},
                      {"cell_m", config.cell_m},
+                     {"radar", std::string(to_string(config.radar))},
                      {"radius_m", config.radius_m}};
   if (!options.calibration.empty()) report.settings["calibration"] = options.calibration;
   if (options.frames) report.settings["frames"] = {options.frames->first, options.frames->last};

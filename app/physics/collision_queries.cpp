@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-CollisionQueries make_collision_queries(CyberRadar& radar, const TriangleTree& object,
-                                        const RadarScene& scene, std::atomic<double>* spent_ms) {
+CollisionQueries make_collision_queries(Radar& radar, const TriangleTree& object, const RadarScene& scene,
+                                        std::atomic<double>* spent_ms) {
   struct Spent {
     std::atomic<double>* spent_ms;
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();

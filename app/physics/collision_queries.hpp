@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/physics/body.hpp"
-#include "radar/exact/cyber_radar.hpp"
+#include "radar/exact/radar.hpp"
 #include "radar/geometry/contact.hpp"
 #include "radar/motion/local_surface.hpp"
 #include "radar/motion/proximity.hpp"
@@ -16,7 +16,7 @@
 namespace roomradar {
 
 /// Returns the first contact of the object as it is translated from T_world_object by up to distance_m along
-/// a unit direction. Implemented by CyberRadar::query(); tests substitute an analytic room.
+/// a unit direction. Implemented by Radar::query(); tests substitute an analytic room.
 using DistanceQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
                                             const Eigen::Vector3d& direction_world, double distance_m)>;
 
@@ -55,7 +55,7 @@ struct CollisionQueries {
 /// Returns queries of `object` against `scene`. All arguments passed by reference must outlive the returned
 /// queries.
 /// @param spent_ms  incremented by the duration of each query, on whichever thread; may be null
-CollisionQueries make_collision_queries(CyberRadar& radar, const TriangleTree& object,
-                                        const RadarScene& scene, std::atomic<double>* spent_ms = nullptr);
+CollisionQueries make_collision_queries(Radar& radar, const TriangleTree& object, const RadarScene& scene,
+                                        std::atomic<double>* spent_ms = nullptr);
 
 }  // namespace roomradar

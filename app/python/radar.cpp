@@ -2,6 +2,7 @@
 #include "app/python/radar.hpp"
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,9 @@
 #include "app/python/long_calls.hpp"
 #include "mapping/types/system/format_number.hpp"
 #include "mapping/types/validity.hpp"
+#include "radar/batch/passes_radar.hpp"
+#include "radar/gl/gl_context.hpp"
+#include "radar/gl/gl_thread.hpp"
 
 namespace roomradar::python {
 
@@ -42,23 +46,56 @@ void Scene::require_unread() const {
 
 namespace {
 
-/// A radar, used by one call at a time.
-struct Radar {
-  CyberRadar radar;
+/// A radar, used by one call at a time. That of RadarMode::kPasses has a thread for its OpenGL context.
+class PythonRadar {
+ public:
+  explicit PythonRadar(const RadarConfig& config) {
+    if (config.mode != RadarMode::kPasses) {
+      radar_ = std::make_unique<CyberRadar>(config);
+      return;
+    }
+    thread_ = std::make_unique<GlThread>();
+    thread_->run([&] {
+      context_ = std::make_unique<GlContext>();
+      radar_ = roomradar::make_radar(config, *context_);
+    });
+  }
+  ~PythonRadar() {
+    if (!thread_) return;
+    thread_->run([&] {
+      radar_.reset();
+      context_.reset();
+    });
+  }
+  PythonRadar(const PythonRadar&) = delete;
+  PythonRadar& operator=(const PythonRadar&) = delete;
+
+  Contact query(const RadarQuery& query, const RadarScene& scene) {
+    if (!thread_) return radar_->query(query, scene);
+    Contact contact;
+    thread_->run([&] { contact = radar_->query(query, scene); });
+    return contact;
+  }
   UseFlag use;
 
-  explicit Radar(const RadarConfig& config) : radar(config) {}
+ private:
+  std::unique_ptr<GlThread> thread_;
+  std::unique_ptr<GlContext> context_;
+  std::unique_ptr<Radar> radar_;
 };
 
-std::unique_ptr<Radar> make_radar(const std::string& mode, int resolution_px) {
+std::unique_ptr<PythonRadar> make_radar(const std::string& mode, int resolution_px) {
   RadarConfig config;
   config.resolution_px = resolution_px;
   if (mode == to_string(RadarMode::kSampled))
     config.mode = RadarMode::kSampled;
+  else if (mode == to_string(RadarMode::kPasses))
+    config.mode = RadarMode::kPasses;
   else if (mode != to_string(RadarMode::kExact))
-    throw py::value_error("mode: is \"" + required_text(mode, "mode") + "\"; must be exact or sampled");
+    throw py::value_error("mode: is \"" + required_text(mode, "mode") +
+                          "\"; must be exact, sampled or passes");
   require_valid(config);
-  return std::make_unique<Radar>(config);
+  return without_gil([&] { return std::make_unique<PythonRadar>(config); });
 }
 
 std::shared_ptr<TriangleTree> make_tree(const Mesh& mesh) {
@@ -88,7 +125,7 @@ std::size_t own_index(const std::optional<std::size_t>& own_tree, const Scene& s
   return *own_tree;
 }
 
-Contact query(Radar& radar, const TriangleTree& object, const py::object& T_world_object,
+Contact query(PythonRadar& radar, const TriangleTree& object, const py::object& T_world_object,
               const py::object& direction_world, double distance_m, const Scene& scene, double margin_m,
               const std::optional<std::size_t>& own_tree) {
   const UseFlag::Lock lock(radar.use, "the radar");
@@ -97,7 +134,7 @@ Contact query(Radar& radar, const TriangleTree& object, const py::object& T_worl
                       distance_m,
                       margin_m,
                       own_index(own_tree, scene)};
-  return require_answer(radar.radar.query(of, scene.radar_scene()));
+  return require_answer(radar.query(of, scene.radar_scene()));
 }
 
 /// Results of many queries, an array per field of Contact.
@@ -149,7 +186,7 @@ Eigen::Isometry3d pose_at(const double* poses, std::size_t i) {
   return T;
 }
 
-Contacts query_many(Radar& radar, const TriangleTree& object, const py::object& T_world_object,
+Contacts query_many(PythonRadar& radar, const TriangleTree& object, const py::object& T_world_object,
                     const py::object& direction_world, double distance_m, Scene& scene, double margin_m,
                     const std::optional<std::size_t>& own_tree) {
   const UseFlag::Lock lock(radar.use, "the radar");
@@ -170,7 +207,7 @@ Contacts query_many(Radar& radar, const TriangleTree& object, const py::object& 
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       of.object.T_world_mesh = pose_at(T, i);
       of.direction_world = Eigen::Map<const Eigen::Vector3d>(u + 3 * i);
-      const Contact contact = radar.radar.query(of, surfaces);
+      const Contact contact = radar.query(of, surfaces);
       if (contact.status == ContactStatus::kInvalidInput)
         throw py::value_error("row " + std::to_string(i) +
                               ": the radar rejects the query: direction_world must be finite and not zero, "
@@ -287,12 +324,14 @@ void bind_radar(py::module_& module) {
           py::arg("index"), py::arg("T_world_mesh"))
       .def("__len__", method(&Scene::size));
 
-  py::class_<Radar>(
+  py::class_<PythonRadar>(
       module, "CyberRadar",
       "How far an object can move along a line before it touches something. Use one per thread.")
       .def(py::init(&make_radar), py::kw_only(), py::arg("mode") = "exact",
            py::arg("resolution_px") = RadarConfig{}.resolution_px,
-           "mode: exact, or sampled: faster, lower_m and upper_m may differ by the depth within a pixel")
+           "mode: exact; sampled: faster, lower_m and upper_m may differ by the depth within a pixel; or "
+           "passes: as\n"
+           "sampled, by two depth passes rendered with OpenGL")
       .def("query", &query, py::arg("object"), py::arg("T_world_object"), py::arg("direction_world"),
            py::arg("distance_m"), py::arg("scene"), py::kw_only(), py::arg("margin_m") = 0.0,
            py::arg("own_tree") = py::none(),

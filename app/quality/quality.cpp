@@ -29,7 +29,9 @@ bool read(std::string_view word, bool& value) {
   return value || word == "off";
 }
 bool read(std::string_view word, RadarMode& value) {
-  value = word == to_string(RadarMode::kSampled) ? RadarMode::kSampled : RadarMode::kExact;
+  value = word == to_string(RadarMode::kSampled)  ? RadarMode::kSampled
+          : word == to_string(RadarMode::kPasses) ? RadarMode::kPasses
+                                                  : RadarMode::kExact;
   return word == to_string(value);
 }
 

@@ -101,9 +101,12 @@ void visit_fields(Quality& quality, Visit&& visit) {
           "make every dynamic pixel near virtual objects a vertex, which helps if depth has less noise\n"
           "than a Kinect's (default: off)"},
       quality.fine_mesh);
-  visit(QualityField{"radar", "--radar", "exact|sampled",
-                     "distance to contact: exact, or between bounds about a pixel apart (default: exact)"},
-        quality.radar);
+  visit(
+      QualityField{
+          "radar", "--radar", "exact|sampled|passes",
+          "distance to contact: exact; between bounds about a pixel apart (sampled); or, between such\n"
+          "bounds, from Cyber Radar's two rendered depth passes (passes) (default: exact)"},
+      quality.radar);
   visit(
       QualityField{"radar_px", "--radar-px", "N",
                    "pixels along the longer side of the object's outline; the exact radar's results do not\n"

@@ -91,7 +91,7 @@ Mesh side_of(Mesh mesh, const Eigen::Vector3d& point_world, const Eigen::Vector3
 
 /// Returns the depth by which the surfaces on one side of the object's middle overlap it; 0 without overlap.
 double depth_m(const Mesh& side, const Eigen::Vector3d& shift_world, const VirtualObject& object,
-               const Eigen::Vector3d& direction, CyberRadar& radar) {
+               const Eigen::Vector3d& direction, Radar& radar) {
   TriangleTree tree;
   tree.build_in_order(side);
   SceneTree surface{{&tree, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic};
@@ -104,7 +104,7 @@ double depth_m(const Mesh& side, const Eigen::Vector3d& shift_world, const Virtu
 /// If dynamic surfaces overlap the object from two opposite sides, as two fingers do: sets its velocity to
 /// theirs, and to the middle between them. Returns false otherwise.
 bool grip(const SurfaceSweep& sweep, const Eigen::Vector3d& shift_world, const DynamicSurface& surfaces,
-          const DueObject& one, double dt_s, CyberRadar& radar) {
+          const DueObject& one, double dt_s, Radar& radar) {
   constexpr double kDeepest_m = 0.03;  // fingers may be this deep in the object
   constexpr double kCentred = 0.3;     // fraction of the way to the middle, per call
   VirtualObject& object = *one.object;
@@ -128,7 +128,7 @@ bool grip(const SurfaceSweep& sweep, const Eigen::Vector3d& shift_world, const D
 
 /// Removes the inferred back from the object's scene if it engulfs the object.
 void leave_out_engulfing_back(DueObject& one, const AdvancedBody& advanced, PhysicsConfig config,
-                              CyberRadar& radar, std::atomic<double>& radar_ms) {
+                              Radar& radar, std::atomic<double>& radar_ms) {
   const auto back = std::find_if(one.scene.begin(), one.scene.end(), [](const SceneTree& surface) {
     return surface.kind == SurfaceKind::kInferredBack;
   });
@@ -207,7 +207,7 @@ bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scen
 }
 
 void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
-                     CyberRadar& radar, ContactSystem& contacts, ContactCounts& counts,
+                     Radar& radar, ContactSystem& contacts, ContactCounts& counts,
                      std::atomic<double>& radar_ms) {
   std::vector<RadarScene> scenes;
   std::vector<CollisionQueries> probes;

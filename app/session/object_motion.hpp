@@ -72,7 +72,7 @@ bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scen
 /// @param counts    incremented by the contacts of this call
 /// @param radar_ms  incremented by the duration of the radar's queries, ms
 void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
-                     CyberRadar& radar, ContactSystem& contacts, ContactCounts& counts,
+                     Radar& radar, ContactSystem& contacts, ContactCounts& counts,
                      std::atomic<double>& radar_ms);
 
 /// Returns one ball around each object in the room. Inside the balls, the dynamic mesh gets full resolution.

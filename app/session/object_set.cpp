@@ -13,7 +13,9 @@
 namespace roomradar {
 ObjectSet::ObjectSet(GlContext& context, const FrameScene& scene, const SessionRoom& room,
                      const SessionConfig& config)
-    : context_(context), scene_(scene), room_(room), config_(config), radar_(config.radar) {}
+    : context_(context), scene_(scene), room_(room), config_(config), radar_(config.radar) {
+  set_radar(config.radar);
+}
 
 VirtualObject& ObjectSet::named(const std::string& name) {
   if (VirtualObject* found = find_object(objects_, name)) return *found;
@@ -183,7 +185,8 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
     one.bodies = bodies_in(one.scene, objects_, *one.object);
   }
   ContactCounts counts;
-  advance_objects(due, has_map ? &scene_ : nullptr, config_.physics, radar_, contact_system_, counts,
+  Radar& radar = passes_ ? static_cast<Radar&>(*passes_) : radar_;
+  advance_objects(due, has_map ? &scene_ : nullptr, config_.physics, radar, contact_system_, counts,
                   radar_ms);
   const bool is_any_overlapped =  // an object shifted out of an overlap may overlap others now
       std::any_of(due.begin(), due.end(), [](const DueObject& one) { return one.was_overlapped; });
@@ -258,6 +261,10 @@ void ObjectSet::count_fine_cells() {
 
 void ObjectSet::set_radar(const RadarConfig& config) {
   CyberRadar radar(config);
+  if (config.mode == RadarMode::kPasses)
+    passes_ = std::make_unique<PassesRadar>(context_, config.resolution_px);
+  else
+    passes_.reset();
   tested_before_ += radar_.static_triangles_tested();
   radar_ = std::move(radar);
 }

@@ -19,6 +19,7 @@
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
 #include "mapping/types/system/stage_times.hpp"
+#include "radar/batch/passes_radar.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/motion/proximity.hpp"
 
@@ -92,6 +93,7 @@ class ObjectSet {
   /// Sets VirtualObject::fine_cells of all objects from the scene's last dynamic mesh.
   void count_fine_cells();
 
+  /// Throws Error, and changes nothing, if the renderer lacks a feature that RadarMode::kPasses needs.
   void set_radar(const RadarConfig& config);
   /// Sum of CyberRadar::static_triangles_tested() since construction.
   [[nodiscard]] std::uint64_t static_triangles_tested() const {
@@ -110,6 +112,7 @@ class ObjectSet {
   std::vector<std::unique_ptr<VirtualObject>> objects_;
   std::vector<WaitingDrop> waiting_;
   CyberRadar radar_;
+  std::unique_ptr<PassesRadar> passes_;  ///< moves the objects instead of radar_ in RadarMode::kPasses
   std::uint64_t tested_before_ = 0;  ///< static triangles tested before the last set_radar()
   std::vector<ObjectNotice> notices_;
   ContactSystem contact_system_;  ///< buffers of advance_objects()

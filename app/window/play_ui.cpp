@@ -281,7 +281,9 @@ bool PlayUi::press_scene_key(int key) {
       link_.ask(unknown_command(shown_.unknown_is_solid));
       return true;
     case GLFW_KEY_X:
-      shown_.radar.mode = shown_.radar.mode == RadarMode::kExact ? RadarMode::kSampled : RadarMode::kExact;
+      shown_.radar.mode = shown_.radar.mode == RadarMode::kExact     ? RadarMode::kSampled
+                          : shown_.radar.mode == RadarMode::kSampled ? RadarMode::kPasses
+                                                                     : RadarMode::kExact;
       link_.ask(radar_command(shown_.radar));
       return true;
     default:

@@ -32,7 +32,8 @@ Contact nearer_of(const Contact& a, const Contact& b) {
 PassesRadar::PassesRadar(GlContext& context, int resolution_px)
     : context_(context), passes_(context, {.resolution_px = resolution_px}) {}
 
-/// Returns the tree's mesh in OpenGL buffers. Replaces a mesh that the last queries have not used, if there is one.
+/// Returns the tree's mesh in OpenGL buffers. Replaces a mesh that the last queries have not used, if there
+/// is one.
 const GpuMesh& PassesRadar::mesh_of(const TriangleTree& tree) {
   constexpr std::uint64_t kKept_queries = 256;
   Uploaded* place = nullptr;
@@ -41,10 +42,12 @@ const GpuMesh& PassesRadar::mesh_of(const TriangleTree& tree) {
       each.last_query = queries_;
       return *each.mesh;
     }
-    if (each.last_query + kKept_queries < queries_ && (place == nullptr || each.last_query < place->last_query))
+    if (each.last_query + kKept_queries < queries_ &&
+        (place == nullptr || each.last_query < place->last_query))
       place = &each;
   }
-  if (place == nullptr) place = &uploaded_.emplace_back(Uploaded{.mesh = std::make_unique<GpuMesh>(context_)});
+  if (place == nullptr)
+    place = &uploaded_.emplace_back(Uploaded{.mesh = std::make_unique<GpuMesh>(context_)});
   place->revision = 0;  // in case the upload fails
   Mesh mesh;
   mesh.origin = tree.origin();
@@ -85,6 +88,13 @@ Contact PassesRadar::query_passes(const RadarQuery& query, const RadarScene& sce
                        .distance_m = query.distance_m};
   Contact contact;
   passes_.query_all({&passes, 1}, meshes_, {&contact, 1});
+  const bool is_doubtful =
+      contact.status == ContactStatus::kContact || contact.status == ContactStatus::kNoTarget;
+  if (is_doubtful && contact.lower_m < std::min(contact.pixel_m, query.distance_m) &&
+      contact.upper_m > contact.lower_m) {
+    ++exact_queries_;
+    return exact_.query(query, scene);
+  }
   if (one_sided_.empty()) return contact;
   RadarQuery of_one_sided = query;
   of_one_sided.own_tree = RadarQuery::kNotInScene;

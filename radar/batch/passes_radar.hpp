@@ -10,13 +10,15 @@
 
 namespace roomradar {
 
-/// Answers queries with GlRadar: R and M are rendered, L is their gap per pixel. lower_m and upper_m bound the true
-/// distance, so objects that move by lower_m never pass a surface. Trees are uploaded when a query first sees them.
+/// Answers queries with GlRadar: R and M are rendered, L is their gap per pixel. lower_m and upper_m bound
+/// the true distance, so objects that move by lower_m never pass a surface. Trees are uploaded when a query
+/// first sees them.
 ///
-/// CyberRadar answers what the passes cannot: queries with a margin, scenes with depth images, one-sided surfaces
-/// (is_one_sided()), and queries whose lower_m the passes cannot raise above 0 (GlRadarConfig::exact_fallback).
-/// Returns kNoAnswer if the renderer fails. Not thread safe: call all functions, and the constructor, on the thread of
-/// the context.
+/// CyberRadar answers what the passes cannot: queries with a margin, scenes with depth images, one-sided
+/// surfaces (is_one_sided()), and queries whose lower_m is less than a pixel, where the passes cannot tell a
+/// surface ahead from one beside the object. So an object comes to rest where it does with the exact radar.
+/// Returns kNoAnswer if the renderer fails. Not thread safe: call all functions, and the constructor, on the
+/// thread of the context.
 class PassesRadar final : public Radar {
  public:
   /// @param context  must outlive the radar
@@ -25,6 +27,9 @@ class PassesRadar final : public Radar {
   PassesRadar(GlContext& context, int resolution_px);
 
   Contact query(const RadarQuery& query, const RadarScene& scene) override;
+  /// Returns the number of queries since construction that were left to CyberRadar because lower_m was less
+  /// than a pixel.
+  [[nodiscard]] std::uint64_t exact_queries() const { return exact_queries_; }
   /// Returns the number of triangles uploaded since construction.
   [[nodiscard]] std::uint64_t uploaded_triangles() const { return uploaded_triangles_; }
 
@@ -38,7 +43,7 @@ class PassesRadar final : public Radar {
   GlRadar passes_;
   CyberRadar exact_;
   std::vector<Uploaded> uploaded_;
-  std::uint64_t queries_ = 0, uploaded_triangles_ = 0;
+  std::uint64_t queries_ = 0, exact_queries_ = 0, uploaded_triangles_ = 0;
   // Scratch memory of one query.
   std::vector<GpuSceneMesh> meshes_;
   std::vector<SceneTree> one_sided_;
@@ -47,7 +52,8 @@ class PassesRadar final : public Radar {
   Contact query_passes(const RadarQuery& query, const RadarScene& scene);
 };
 
-/// Returns the radar that config.mode names. `context` is used by RadarMode::kPasses only, and must outlive the radar.
+/// Returns the radar that config.mode names. `context` is used by RadarMode::kPasses only, and must outlive
+/// the radar.
 /// @throws Error as the radars' constructors do
 std::unique_ptr<Radar> make_radar(const RadarConfig& config, GlContext& context);
 

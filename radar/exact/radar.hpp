@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// Distance to contact of an object that moves along a line. Implemented by CyberRadar (exact or sampled, on the
-/// processor) and PassesRadar (two rendered depth passes).
+/// Distance to contact of an object that moves along a line. Implemented by CyberRadar (exact or sampled, on
+/// the processor) and PassesRadar (two rendered depth passes).
 class Radar {
  public:
   virtual ~Radar() = default;

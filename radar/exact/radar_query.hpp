@@ -13,7 +13,8 @@ enum class RadarMode {
   kSampled,
   /// Runs exact tests until lower_m = upper_m = contact_distance_m.
   kExact,
-  /// Renders the two depth passes of the Cyber Radar paper, see PassesRadar. lower_m and upper_m differ by the depth
+  /// Renders the two depth passes of the Cyber Radar paper, see PassesRadar. lower_m and upper_m differ by
+  /// the depth
   /// range within a pixel. CyberRadar itself answers as in kExact.
   kPasses
 };
@@ -23,12 +24,12 @@ constexpr std::string_view to_string(RadarMode mode) {
 
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
-  /// Number of pixels along the longer side of the object's height map M, 1 to 4096; of the rendered passes in
-  /// kPasses. Determines Contact::pixel_m and, in sampled mode and passes, the difference of lower_m and upper_m. Sampled mode first uses at
-  /// most 40 pixels per side, or 64 for an object of fewer than 500 triangles. Sampled mode changes to a
-  /// finer map, up to this resolution, once repeated queries with one direction in the object's frame have
-  /// cost more than half as much as building that map. Exact mode chooses M's resolution for speed, without
-  /// effect on the result.
+  /// Number of pixels along the longer side of the object's height map M, 1 to 4096; of the rendered passes
+  /// in kPasses. Determines Contact::pixel_m and, in sampled mode and passes, the difference of lower_m and
+  /// upper_m. Sampled mode first uses at most 40 pixels per side, or 64 for an object of fewer than 500
+  /// triangles. Sampled mode changes to a finer map, up to this resolution, once repeated queries with one
+  /// direction in the object's frame have cost more than half as much as building that map. Exact mode
+  /// chooses M's resolution for speed, without effect on the result.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };

@@ -33,6 +33,14 @@ void add_recorded_room_options(CLI::App& command, FallthroughOptions& options) {
       ->type_name("FILE.png");
 }
 
+void add_radar_option(CLI::App& command, FallthroughOptions& options) {
+  add_choice<RadarMode>(
+      command, "--radar", options.radar,
+      {{"exact", RadarMode::kExact}, {"sampled", RadarMode::kSampled}, {"passes", RadarMode::kPasses}},
+      "distance to contact: exact; between bounds about a pixel apart (sampled); or, between such\n"
+      "bounds, from Cyber Radar's two rendered depth passes (passes) (default: exact)");
+}
+
 void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) {
   command.add_option("--scenarios", options.scenarios, "number of scenarios (default: 200)")
       ->check(whole_within(1, 1'000'000))
@@ -93,6 +101,7 @@ void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) 
 void add_options(CLI::App& command, FallthroughOptions& options) {
   add_recorded_room_options(command, options);
   add_simulated_room_options(command, options);
+  add_radar_option(command, options);
   add_report_option(command, options.report);
 }
 

@@ -11,6 +11,8 @@ namespace CLI {
 class App;
 }
 
+#include "radar/exact/radar_query.hpp"
+
 namespace roomradar {
 
 struct FallthroughOptions {
@@ -27,6 +29,8 @@ struct FallthroughOptions {
   std::optional<FrameRange> frames;
   /// Calibration file; empty: see calibration_for().
   std::string calibration;
+  /// Radar that moves the objects.
+  RadarMode radar = RadarMode::kExact;
   /// Side of the cells of the grid of drop positions.
   double cell_m = 0.1;
   /// PNG file with a plan of the room; empty: not written.

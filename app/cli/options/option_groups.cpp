@@ -108,7 +108,7 @@ std::vector<CommandHelp> command_helps() {
        "      --out kinect.json\n"},
       {"doctor", {}, "  roomradar doctor\n  roomradar doctor || echo something must be repaired\n"},
       {"fallthrough",
-       {{"Everyday options", {"--scenarios", "--html", "--report"}},
+       {{"Everyday options", {"--scenarios", "--radar", "--html", "--report"}},
         {"Scenarios", {"--seed", "--random-rooms", "--threads", "--maps", "--csv", "--scenario", "--video"}},
         {"Jobs", {"--jobs", "--job-size", "--processes", "--part", "--rows"}},
         {"A map instead of scenarios",

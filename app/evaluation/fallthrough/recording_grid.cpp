@@ -12,6 +12,7 @@
 #include "app/sim/room/room_mesh.hpp"
 #include "mapping/surface/unknown/unknown_surface.hpp"
 #include "mapping/types/system/classic_locale.hpp"
+#include "radar/batch/passes_radar.hpp"
 #include "radar/exact/cyber_radar.hpp"
 
 namespace roomradar {
@@ -131,7 +132,8 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
   grid.columns = static_cast<int>(std::ceil(bounds.sizes().x() / config.cell_m));
   grid.rows = static_cast<int>(std::ceil(bounds.sizes().y() / config.cell_m));
   const double lowest_m = bounds.min().z() - config.below_m;
-  CyberRadar radar;
+  CyberRadar exact;
+  const std::unique_ptr<Radar> radar = make_radar({.mode = config.radar}, context);
   const SceneTree truth{{&reference, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   Progress progress("drops", static_cast<std::int64_t>(grid.columns) * grid.rows);
   for (int row = 0; row < grid.rows; ++row)
@@ -147,14 +149,14 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
       T_world_ball.translation() = *start_world;
       const double limit_m = start_world->z() - lowest_m;
       const RadarQuery query{{&ball, T_world_ball}, -Vector3d::UnitZ(), limit_m};
-      if (const Contact contact = radar.query(query, {{&truth, 1}, {}})) {
+      if (const Contact contact = exact.query(query, {{&truth, 1}, {}})) {
         cell.has_truth = contact.contact_distance_m >= 0.0;  // < 0: the ball starts inside the reference
         cell.true_travel_m = contact.contact_distance_m;
         cell.is_hidden = !is_seen(frame, T_world_camera, contact.point_world);
       }
       for (std::size_t i = 0; i < kPolicyCount; ++i) {
-        const Contact contact = radar.query(query, {scenes.surfaces[i], {}});
-        cell.drops[i] = contact ? GridDrop{std::max(0.0, contact.contact_distance_m), contact.touched}
+        const Contact contact = radar->query(query, {scenes.surfaces[i], {}});
+        cell.drops[i] = contact ? GridDrop{std::max(0.0, contact.lower_m), contact.touched}
                                 : GridDrop{limit_m, SurfaceKind::kNothing};
       }
       grid.cells.push_back(cell);

@@ -10,10 +10,13 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/image.hpp"
 
+#include "radar/exact/radar_query.hpp"
+
 namespace roomradar {
 
 struct GridConfig {
   double cell_m = 0.1;
+  RadarMode radar = RadarMode::kExact;  ///< the radar that drops the balls
   double radius_m = 0.04;  ///< radius of the ball
   double below_m = 0.5;    ///< a ball farther than this below the lowest surface has fallen through
 };

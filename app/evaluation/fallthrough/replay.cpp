@@ -26,7 +26,7 @@ struct Panel {
 
 }  // namespace
 
-void write_replay(PreparedScenario& prepared, MappedRoom& room, CyberRadar& radar, VideoWriter& video) {
+void write_replay(PreparedScenario& prepared, MappedRoom& room, Radar& radar, VideoWriter& video) {
   constexpr double kShown_s = 4.0;
   const Scenario& scenario = prepared.scenario;
   const SideView side(scenario, room.scanned.simulated.room, kPanel_px, kPanel_px);

@@ -33,7 +33,7 @@ PreparedScenario::PreparedScenario(const ScenarioRoom& room, std::uint64_t seed,
   frames.at(0);
 }
 
-Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
+Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, Radar& radar,
                 const WatchTrial& watch) {
   return run_trial(prepared, *room.scenes[policy], {.policy = kFallthroughPolicies[policy].surfaces}, radar,
                    watch);
@@ -59,10 +59,11 @@ double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& h
   return ms_since(start);
 }
 
-Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar,
+Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& how, Radar& radar,
                 const WatchTrial& watch) {
   using Clock = std::chrono::steady_clock;
   constexpr double kAbout_m = 0.02;  // as in Session
+  constexpr double kArrived_m = 0.001, kBlocked_m = 1e-6;
   const Scenario& scenario = prepared.scenario;
   const bool is_still = scenario.occluder_velocity_world.isZero();
   Trial trial;
@@ -86,8 +87,12 @@ Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfac
     const Contact contact =
         radar.query({{&prepared.object, T_world_object}, scenario.direction_world, next_m}, {surfaces, {}});
     query_ms += ms_since(start);
-    stopped = static_cast<bool>(contact);
-    trial.travelled_m += stopped ? std::max(0.0, contact.contact_distance_m) : next_m;
+    // Objects move by the lower bound, and stop where the bounds agree or nothing is certainly free.
+    const double free_m =
+        contact.status == ContactStatus::kOverlap ? 0.0 : std::clamp(contact.lower_m, 0.0, next_m);
+    stopped =
+        (contact && (contact.upper_m - free_m < kArrived_m || free_m < kArrived_m)) || free_m < kBlocked_m;
+    trial.travelled_m += free_m;
     if (stopped) trial.rested_on = contact.touched;
     const bool is_last = stopped || trial.travelled_m >= scenario.limit_m;
     if (watch) watch({frame_number, surfaces, from_m, trial.travelled_m, is_last});

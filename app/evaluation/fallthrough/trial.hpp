@@ -9,7 +9,7 @@
 #include "app/evaluation/fallthrough/mapped_room.hpp"
 #include "app/evaluation/fallthrough/policies.hpp"
 #include "app/sim/scenarios/scenarios.hpp"
-#include "radar/exact/cyber_radar.hpp"
+#include "radar/exact/radar.hpp"
 
 namespace roomradar {
 
@@ -68,10 +68,10 @@ double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& h
 /// Runs the scenario frame by frame. Creates the policy's surfaces from each camera frame, with the camera at
 /// Scenario::T_world_believed, and moves the object as far as the radar permits. Ends when the object stops
 /// or has travelled Scenario::limit_m.
-Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& surfaces,
-                CyberRadar& radar, const WatchTrial& watch = {});
+Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& surfaces, Radar& radar,
+                const WatchTrial& watch = {});
 /// Runs the scenario in the room's scene for kFallthroughPolicies[policy].
-Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
+Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, Radar& radar,
                 const WatchTrial& watch = {});
 
 }  // namespace roomradar

@@ -151,8 +151,7 @@ void add_outline(const Scenario& scenario, double travelled_m, Rgb colour, doubl
   tint(picture, mask, colour, part);
 }
 
-ColourImage picture_of_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy,
-                             CyberRadar& radar) {
+ColourImage picture_of_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, Radar& radar) {
   constexpr int kCamera_px = 320, kHeight_px = 240;
   const Scenario& scenario = prepared.scenario;
   const SideView side(scenario, room.scanned.simulated.room, kHeight_px, kHeight_px);

@@ -43,7 +43,6 @@ void add_outline(const Scenario& scenario, double travelled_m, Rgb colour, doubl
 
 /// Returns camera view and section side by side, with the object at its start (blue), at the true contact
 /// (green) and at its end (red).
-ColourImage picture_of_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy,
-                             CyberRadar& radar);
+ColourImage picture_of_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, Radar& radar);
 
 }  // namespace roomradar

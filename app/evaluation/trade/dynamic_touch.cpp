@@ -67,7 +67,7 @@ std::vector<DynamicTouch> draw_dynamic_touches(
 
 DynamicTouchFacts judge_dynamic_touches(const std::vector<DynamicTouch>& touches,
                                         const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
-                                        FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar) {
+                                        FrameScene& scene, const TrialSurfaces& how, Radar& radar) {
   if (touches.empty()) return {};
   constexpr double kAbout_m = 0.02;  // as in Session
   Mesh ball_mesh;

@@ -46,6 +46,6 @@ struct DynamicTouchFacts {
 ///                 true contact
 DynamicTouchFacts judge_dynamic_touches(const std::vector<DynamicTouch>& touches,
                                         const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
-                                        FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar);
+                                        FrameScene& scene, const TrialSurfaces& how, Radar& radar);
 
 }  // namespace roomradar

@@ -12,6 +12,7 @@
 #include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
 #include "mapping/types/system/process_memory.hpp"
+#include "radar/batch/passes_radar.hpp"
 
 namespace roomradar {
 namespace {
@@ -139,13 +140,13 @@ ContactFacts touch_true_surfaces(const RunScene& scene, const RunQuality& qualit
   Shape shape(context);
   shape.set(scene.mesh_room, MeshUsage::kStatic);
   FrameScene live(context, shape, config.scene);
-  CyberRadar radar(config.radar);
+  const std::unique_ptr<Radar> radar = make_radar(config.radar, context);
   const TrialSurfaces how{
       .policy = SurfacePolicy::kMap, .depth_stride = config.depth_stride, .fine_mesh = config.fine_mesh};
   std::vector<double> errors_m;
   int passed = 0, false_stops = 0;
   for (const auto& prepared : scene.scenarios) {
-    const Trial trial = run_trial(*prepared, live, how, radar);
+    const Trial trial = run_trial(*prepared, live, how, *radar);
     passed += trial.verdict.outcome == Outcome::kPassedThrough ? 1 : 0;
     false_stops += trial.verdict.outcome == Outcome::kStoppedFalse ? 1 : 0;
     if (trial.rested_on != SurfaceKind::kNothing) errors_m.push_back(std::abs(trial.verdict.error_m));
@@ -155,7 +156,7 @@ ContactFacts touch_true_surfaces(const RunScene& scene, const RunQuality& qualit
           .error_p95_m = percentile(errors_m, 0.95),
           .passed = passed / count,
           .false_stops = false_stops / count,
-          .moved = judge_dynamic_touches(scene.touches, scene.scenarios, live, how, radar)};
+          .moved = judge_dynamic_touches(scene.touches, scene.scenarios, live, how, *radar)};
 }
 
 }  // namespace roomradar

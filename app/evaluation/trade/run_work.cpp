@@ -95,7 +95,7 @@ std::vector<Parameter> run_parameters(int objects) {
       {"verify_every_n_frames", {"30", "5", "1"}, 2},
       {"mesh_tolerance_sigmas", {"3.2", "1.6", "0.8", "0.4"}, 2},
       {"fine_mesh", {"off", "on"}, 0},
-      {"radar", {"sampled", "exact"}, 1},
+      {"radar", {"sampled", "passes", "exact"}, 2},
       {"radar_px", {"16", "32", "64", "128"}, 2},
       {"move_every_n_frames", {"8", "4", "2", "1"}, 3},
       {"object_error_px", {"6", "3", "2", "1", "0.7", "0.35"}, 4},

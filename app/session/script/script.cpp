@@ -44,8 +44,8 @@ constexpr std::array<Word<SurfacePolicy>, 4> kSurfaces = {{{"holes", SurfacePoli
                                                            {"border", SurfacePolicy::kBorder},
                                                            {"map", SurfacePolicy::kMap}}};
 constexpr std::array<Word<bool>, 2> kUnknown = {{{"free", false}, {"solid", true}}};
-constexpr std::array<Word<RadarMode>, 2> kRadarModes = {
-    {{"exact", RadarMode::kExact}, {"sampled", RadarMode::kSampled}}};
+constexpr std::array<Word<RadarMode>, 3> kRadarModes = {
+    {{"exact", RadarMode::kExact}, {"sampled", RadarMode::kSampled}, {"passes", RadarMode::kPasses}}};
 constexpr std::array<Word<FramePart>, 4> kFramePartWords = {{{"locate", FramePart::kLocate},
                                                              {"mesh", FramePart::kMesh},
                                                              {"physics", FramePart::kPhysics},

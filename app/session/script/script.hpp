@@ -40,7 +40,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     time 7     commit                          stationary objects in view are added to the map
 ///     frame 200  surfaces skirt                   holes, skirt, border or map
 ///     frame 210  unknown solid                    or free
-///     frame 220  radar sampled 64                 mode exact or sampled; resolution in pixels
+///     frame 220  radar sampled 64                 mode exact, sampled or passes; resolution in pixels
 ///     frame 225  quality depth_stride 2 shadows off       others as on the command line, or default
 ///     frame 226  quality from physics move_every_n_frames 4      from the physics stage on; or mesh, compose
 ///     frame 230  camera hold                      repeats this frame; or go, rewind, loop, stay, resume

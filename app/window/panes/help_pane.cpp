@@ -27,7 +27,7 @@ constexpr std::array<std::array<const char*, 2>, 23> kHelp = {
      {"+  -", "speed"},
      {"S", "next surface policy"},
      {"U", "unknown space free, solid"},
-     {"X", "radar exact, sampled"},
+     {"X", "radar exact, sampled, passes"},
      {"V", "camera, models, both"},
      {"C", "models: look at the chosen object"},
      {"M", "scan more of the room, then play on in it"},

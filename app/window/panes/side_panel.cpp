@@ -121,11 +121,13 @@ void draw_policies(const Snapshot& shown, UiChannel& link, PlaySettings& setting
   if (unknown >= 0) link.ask(unknown_command(unknown == 1));
 
   look::heading("RADAR", fonts);
-  constexpr std::array<const char*, 2> kModes = {"exact", "sampled"};
+  constexpr std::array<const char*, 3> kModes = {"exact", "sampled", "passes"};
+  constexpr std::array<RadarMode, 3> kOfModes = {RadarMode::kExact, RadarMode::kSampled, RadarMode::kPasses};
   RadarConfig radar = shown.radar;
-  const int mode = look::segments("mode", kModes.data(), 2, radar.mode == RadarMode::kSampled ? 1 : 0);
+  const auto lit_mode = std::find(kOfModes.begin(), kOfModes.end(), radar.mode) - kOfModes.begin();
+  const int mode = look::segments("mode", kModes.data(), 3, static_cast<int>(lit_mode));
   if (mode >= 0) {
-    radar.mode = mode == 1 ? RadarMode::kSampled : RadarMode::kExact;
+    radar.mode = kOfModes[static_cast<std::size_t>(mode)];
     link.ask(radar_command(radar));
   }
   if (!ImGui::IsAnyItemActive()) settings.radar_px = radar.resolution_px;

@@ -582,7 +582,7 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar(prescan + " --poses guessed"), 2,
                "--poses guessed: must be auto, recorded or tracked");
   const std::string run = "run sim:table --map " + map();
-  expect_fault(roomradar(run + " --radar roughly"), 2, "--radar roughly: must be exact or sampled");
+  expect_fault(roomradar(run + " --radar roughly"), 2, "--radar roughly: must be exact, sampled or passes");
   expect_fault(roomradar(run + " --object teapot --script s.txt"), 2, "--script says which objects");
   expect_fault(roomradar(run + " --radar-px 0"), 2, "4096");
   expect_fault(roomradar("fallthrough --map " + map()), 2, "--map: used only with a SOURCE");

@@ -58,7 +58,7 @@ TEST(Quality, JsonThatIsWrongIsRefusedByName) {
   EXPECT_EQ(fault(R"({"depth_stride": 3})"), "presets.json: fast: depth_stride = 3: must be 1, 2 or 4");
   EXPECT_EQ(fault(R"({"depth_stride": 2.5})"), "presets.json: fast: depth_stride = 2.5: must be 1, 2 or 4");
   EXPECT_EQ(fault(R"({"radar": "guessed"})"),
-            "presets.json: fast: radar = guessed: must be exact or sampled");
+            "presets.json: fast: radar = guessed: must be exact, sampled or passes");
   EXPECT_EQ(fault(R"({"shadows": 1})"), "presets.json: fast: shadows = 1: must be on or off");
   EXPECT_EQ(fault(R"({"tracking_px": 1e99})"),
             "presets.json: fast: tracking_px = 1e+99: must be between 40 and 640");

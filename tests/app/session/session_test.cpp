@@ -676,6 +676,22 @@ TEST(Session, WhatTheRadarLookedAtIsCountedAcrossAChangeOfRadar) {
   }
 }
 
+TEST(Session, ObjectsComeToRestAtTheSamePlaceByEveryRadar) {
+  const SavedMap map = half_floor_map();
+  std::vector<Eigen::Vector3d> at_world;
+  for (const RadarMode mode : {RadarMode::kExact, RadarMode::kSampled, RadarMode::kPasses}) {
+    SessionConfig config = by_recorded_poses();
+    config.radar.mode = mode;
+    Session session(map, config);
+    drop_pots(session, {{-1.0, 0.0, 0.0}});
+    go_on(session, 0, 60);
+    const Body& body = session.objects().front()->body;
+    EXPECT_TRUE(body.asleep) << to_string(mode);
+    at_world.emplace_back(body.T_world_object.translation());
+    EXPECT_LT((at_world.back() - at_world.front()).norm(), 0.002) << to_string(mode);
+  }
+}
+
 struct Thrown {
   const VirtualObject& pot;
   int unknown_contacts = 0;

@@ -13,7 +13,9 @@ namespace {
 
 const Eigen::Vector3d kDown(0, 0, -1);
 
-Eigen::Isometry3d at(double x, double y, double z) { return Eigen::Isometry3d(Eigen::Translation3d(x, y, z)); }
+Eigen::Isometry3d at(double x, double y, double z) {
+  return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
+}
 
 TriangleTree tree_of(const Mesh& mesh) {
   TriangleTree tree;
@@ -39,18 +41,21 @@ TEST_F(PassesRadarTest, BoundsHoldTheExactDistanceAmongBoxesOnAFloor) {
     const std::array<SceneTree, 4> scene = {
         SceneTree{{&floor, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic},
         SceneTree{{&box, at(side(random), side(random), 0.2)}, SurfaceKind::kObject},
-        SceneTree{{&box, at(side(random), side(random), 0.2) * Eigen::AngleAxisd(side(random), Eigen::Vector3d::UnitZ())},
+        SceneTree{{&box, at(side(random), side(random), 0.2) *
+                             Eigen::AngleAxisd(side(random), Eigen::Vector3d::UnitZ())},
                   SurfaceKind::kDynamic},
         SceneTree{{&cube, at(0, 0, 0.7)}, SurfaceKind::kObject}};
     Eigen::Isometry3d T = at(side(random), side(random), 0.8 + 0.2 * side(random));
-    T.rotate(Eigen::AngleAxisd(3.0 * side(random), Eigen::Vector3d(side(random), side(random), 1.0).normalized()));
+    T.rotate(
+        Eigen::AngleAxisd(3.0 * side(random), Eigen::Vector3d(side(random), side(random), 1.0).normalized()));
     const Eigen::Vector3d direction(side(random), side(random), -0.6);
     RadarQuery query{{&cube, T}, direction, 0.7};
     query.own_tree = 3;  // the object's own tree, wherever it stands
     const Contact truth = exact.query(query, {scene, {}});
     if (truth.status == ContactStatus::kOverlap) continue;
     const Contact rendered = passes.query(query, {scene, {}});
-    ASSERT_TRUE(rendered.status == ContactStatus::kContact || rendered.status == ContactStatus::kNoTarget) << i;
+    ASSERT_TRUE(rendered.status == ContactStatus::kContact || rendered.status == ContactStatus::kNoTarget)
+        << i;
     if (truth) {
       ++contacts;
       EXPECT_LE(rendered.lower_m, truth.contact_distance_m + 1e-5) << i;
@@ -75,7 +80,8 @@ TEST_F(PassesRadarTest, AFloorBelowACubeIsMetAtItsClearance) {
 
 TEST_F(PassesRadarTest, AOneSidedSurfaceBlocksFromOutsideOnly) {
   const SceneTree frontier{{&floor, Eigen::Isometry3d::Identity()}, SurfaceKind::kUnknownFrontier};
-  EXPECT_NEAR(passes.query({{&cube, at(0, 0, 0.6)}, kDown, 2.0}, {{&frontier, 1}, {}}).contact_distance_m, 0.5, 1e-5);
+  EXPECT_NEAR(passes.query({{&cube, at(0, 0, 0.6)}, kDown, 2.0}, {{&frontier, 1}, {}}).contact_distance_m,
+              0.5, 1e-5);
   EXPECT_FALSE(passes.query({{&cube, at(0, 0, -0.6)}, -kDown, 2.0}, {{&frontier, 1}, {}}));
   // Beside a surface that the passes see, the nearer one counts.
   const TriangleTree shelf = tree_of(shapes::floor(3.0F, 0.0F));
@@ -126,7 +132,8 @@ TEST_F(PassesRadarTest, TheModeNamesTheRadar) {
   for (const RadarMode mode : {RadarMode::kExact, RadarMode::kSampled, RadarMode::kPasses}) {
     const auto radar = make_radar({.mode = mode}, context);
     EXPECT_EQ(dynamic_cast<PassesRadar*>(radar.get()) != nullptr, mode == RadarMode::kPasses);
-    EXPECT_NEAR(radar->query({{&cube, at(0, 0, 0.6)}, kDown, 2.0}, {{&scene, 1}, {}}).contact_distance_m, 0.5, 1e-5);
+    EXPECT_NEAR(radar->query({{&cube, at(0, 0, 0.6)}, kDown, 2.0}, {{&scene, 1}, {}}).contact_distance_m, 0.5,
+                1e-5);
   }
 }
 
