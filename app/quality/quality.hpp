@@ -44,7 +44,7 @@ struct QualityField {
   const char* name;
   const char* option;  ///< name on the command line
   const char* unit;    ///< name of the value in help; "N" for counts
-  const char* help;
+  const char* help;    ///< without the default, which the help gets from the struct
   double low = 0.0, high = 0.0;  ///< range of numbers, inclusive
   const char* old_name = "";     ///< former name, accepted until the next version; empty: none
   const char* old_option = "";   ///< former name on the command line; empty: none
@@ -57,19 +57,16 @@ std::string words_of_choice(std::string_view type);
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, ScanQuality>
 void visit_fields(Quality& quality, Visit&& visit) {
-  visit(QualityField{"resolution_m", "--resolution", "M",
-                     "edge of the smallest voxels, metres (default: 0.01)", 0.001, 1.0},
+  visit(QualityField{"resolution_m", "--resolution", "M", "edge of the smallest voxels, metres", 0.001, 1.0},
         quality.resolution_m);
   visit(QualityField{"deviation_m", "--deviation", "M",
-                     "max distance of the simplified mesh from the full mesh, metres; 0 keeps all triangles\n"
-                     "(default: 0.002)",
+                     "max distance of the simplified mesh from the full mesh, metres; 0 keeps all triangles",
                      0.0, 1.0},
         quality.deviation_m);
-  visit(QualityField{"tracking_px", "--tracking-px", "N",
-                     "max width of the images that are aligned, pixels (default: 320)", 40, 640},
+  visit(QualityField{"tracking_px", "--tracking-px", "N", "max width of the images that are aligned, pixels",
+                     40, 640},
         quality.tracking_px);
-  visit(QualityField{"fuse_every", "--fuse-every", "N", "fuse only every Nth tracked frame (default: 1)", 1,
-                     1000},
+  visit(QualityField{"fuse_every", "--fuse-every", "N", "fuse only every Nth tracked frame", 1, 1000},
         quality.fuse_every);
 }
 /// Not split: one call per field.
@@ -77,75 +74,68 @@ template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, RunQuality>
 void visit_fields(Quality& quality, Visit&& visit) {
   visit(QualityField{"depth_stride", "--depth-stride", "1|2|4",
-                     "factor by which depth images are reduced in width and height (default: 1)", 1, 4},
+                     "factor by which depth images are reduced in width and height", 1, 4},
         quality.depth_stride);
-  visit(QualityField{"tracking_px", "--tracking-px", "N",
-                     "max width of the images for localisation, pixels (default: 160)", 40, 640},
+  visit(QualityField{"tracking_px", "--tracking-px", "N", "max width of the images for localisation, pixels",
+                     40, 640},
         quality.tracking_px);
   visit(
       QualityField{"verify_every_n_frames", "--verify-every", "N",
-                   "compare the measured with the expected depth in every Nth frame, to notice a wrong pose\n"
-                   "(default: 1)",
+                   "compare the measured with the expected depth in every Nth frame, to notice a wrong pose",
                    1, 1000},
       quality.verify_every_n_frames);
   visit(
       QualityField{
           "mesh_tolerance_sigmas", "--mesh-tolerance-sigmas", "X",
           "max deviation of the dynamic mesh from the measured depth, in standard deviations of the\n"
-          "sensor's noise (default: 0.8)",
+          "sensor's noise",
           0.1, 100.0, "mesh_sigmas", "--mesh-sigmas"},
       quality.mesh_tolerance_sigmas);
   visit(
       QualityField{
           "fine_mesh", "--fine-mesh", "on|off",
           "make every dynamic pixel near virtual objects a vertex, which helps if depth has less noise\n"
-          "than a Kinect's (default: off)"},
+          "than a Kinect's"},
       quality.fine_mesh);
   visit(
       QualityField{
           "radar", "--radar", "exact|sampled|passes",
           "distance to contact: exact; between bounds about a pixel apart (sampled); or, between such\n"
-          "bounds, from Cyber Radar's two rendered depth passes (passes) (default: exact)"},
+          "bounds, from Cyber Radar's two rendered depth passes (passes)"},
       quality.radar);
   visit(
       QualityField{"radar_px", "--radar-px", "N",
                    "pixels along the longer side of the object's outline; the exact radar's results do not\n"
-                   "depend on it (default: 64)",
+                   "depend on it",
                    1, 4096},
       quality.radar_px);
   visit(QualityField{"physics_step_s", "--physics-step", "S",
-                     "max substep of the physics, seconds; exceeded by up to 5 % (default: 0.0167)", 0.001,
-                     0.5},
+                     "max substep of the physics, seconds; exceeded by up to 5 %", 0.001, 0.5},
         quality.physics_step_s);
   visit(QualityField{"move_every_n_frames", "--move-every", "N",
-                     "move each object every Nth frame, by all of the time since its last move (default: 1)",
-                     1, 16, "object_turns", "--object-turns"},
+                     "move each object every Nth frame, by all of the time since its last move", 1, 16,
+                     "object_turns", "--object-turns"},
         quality.move_every_n_frames);
   visit(QualityField{"object_error_px", "--object-error", "PX",
-                     "max deviation of an object's drawn mesh from its file's, pixels (default: 0.7)", 0.01,
-                     100.0},
+                     "max deviation of an object's drawn mesh from its file's, pixels", 0.01, 100.0},
         quality.object_error_px);
   visit(QualityField{"soft_edges", "--soft-edges", "on|off",
-                     "occlude objects along edges of the colour image (on) or of the depth image (off)\n"
-                     "(default: on)"},
+                     "occlude objects along edges of the colour image (on) or of the depth image (off)"},
         quality.soft_edges);
   visit(QualityField{"bridge_gaps", "--bridge-gaps", "on|off",
                      "let what moved hide objects also where its depth has gaps, up to edges of the colour\n"
-                     "image (default: on)"},
+                     "image"},
         quality.bridge_gaps);
-  visit(QualityField{"shadows", "--shadows", "on|off",
-                     "draw shadows of objects on the surface below them (default: on)"},
+  visit(QualityField{"shadows", "--shadows", "on|off", "draw shadows of objects on the surface below them"},
         quality.shadows);
   visit(QualityField{"shadow_every_n_frames", "--shadow-every", "N",
-                     "compute the full-resolution shadow of one resting object every Nth frame (default: 1)",
-                     1, 1000, "shadow_turns", "--shadow-turns"},
+                     "compute the full-resolution shadow of one resting object every Nth frame", 1, 1000,
+                     "shadow_turns", "--shadow-turns"},
         quality.shadow_every_n_frames);
-  visit(
-      QualityField{"picture_every_n_frames", "--picture-every", "N",
-                   "make a picture every Nth frame, and move objects in the others; 1: both in every frame\n"
-                   "(default: 1)",
-                   1, 16, "picture_turns", "--picture-turns"},
-      quality.picture_every_n_frames);
+  visit(QualityField{"picture_every_n_frames", "--picture-every", "N",
+                     "make a picture every Nth frame, and move objects in the others; 1: both in every frame",
+                     1, 16, "picture_turns", "--picture-turns"},
+        quality.picture_every_n_frames);
 }
 
 /// Throws Error such as "depth_stride = 3: must be 1, 2 or 4".

@@ -9,14 +9,28 @@
 #include "app/cli/options/renamed_options.hpp"
 #include "app/quality/presets.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
 
+std::string word_in_help(double value) { return format_readable(value, 3); }
+std::string word_in_help(int value) { return std::to_string(value); }
+std::string word_in_help(bool value) { return value ? "on" : "off"; }
+std::string word_in_help(RadarMode value) { return std::string(to_string(value)); }
+
+/// Returns the help text with "(default: WORD)" at its end, on a new line if the last one has no room for it.
+std::string with_default(const std::string& help, const std::string& word) {
+  constexpr std::size_t kWidth = 100;
+  const std::string note = "(default: " + word + ")";
+  const std::size_t last_line = help.size() - (help.rfind('\n') + 1);  // npos + 1 is 0
+  return help + (last_line + 1 + note.size() > kWidth ? "\n" : " ") + note;
+}
+
 template <typename Quality>
 void add_field_options(CLI::App& command, FieldWords& fixed) {
   const Quality defaults;
-  visit_fields(defaults, [&](const QualityField& field, const auto& /*value*/) {
+  visit_fields(defaults, [&](const QualityField& field, const auto& value) {
     const std::string old_option = field.old_option;
     if (!old_option.empty()) add_old_name(command, old_option, field.option);
     command
@@ -33,7 +47,7 @@ void add_field_options(CLI::App& command, FieldWords& fixed) {
               }
               fixed.emplace_back(field.name, word);
             },
-            field.help)
+            with_default(field.help, word_in_help(value)))
         ->type_name(field.unit);
   });
 }

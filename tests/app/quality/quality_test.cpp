@@ -122,6 +122,8 @@ TEST(Quality, DefaultsChangeNothing) {
   const SessionConfig defaults;
   EXPECT_EQ(config.depth_stride, defaults.depth_stride);
   EXPECT_EQ(config.tracking_px, defaults.tracking_px);
+  EXPECT_EQ(config.verify_every_n_frames, defaults.verify_every_n_frames);
+  EXPECT_EQ(config.picture.bridge_gaps, defaults.picture.bridge_gaps);
   EXPECT_EQ(config.scene.moved.deviation_sigmas, defaults.scene.moved.deviation_sigmas);
   EXPECT_EQ(config.scene.foreground.min_region_px, defaults.scene.foreground.min_region_px);
   EXPECT_EQ(config.scene.foreground.hole_reach_px, defaults.scene.foreground.hole_reach_px);
