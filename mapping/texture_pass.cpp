@@ -20,7 +20,6 @@ constexpr double kMostBytes = 80e6;     // of all views
 constexpr double kBytesPerPixel = 2.1;  // of a view: colour, depth of half the size
 constexpr double kColourPixels = 640.0 * 480.0;
 constexpr double kBakeBytes = 150e6;  // of an atlas and its JPEG
-constexpr std::size_t kMostViews = 160;
 
 /// Returns each fused frame's pose, and the speed of its image from the poses before and after it.
 std::vector<ViewCandidate> candidates_of(const std::vector<FusedFrame>& fused,
@@ -48,8 +47,7 @@ std::size_t most_views(PrescanWork& work, const FusionPass& pass, std::size_t fi
   std::size_t index = 0;
   ChosenFrames(*work.source, pass.fused, {first}, work.times).next(frame, index);
   const double pixels = std::max(kColourPixels, static_cast<double>(frame.colour.pixels.size()));
-  return std::min(kMostViews,
-                  static_cast<std::size_t>(std::max(1.0, kMostBytes / (kBytesPerPixel * pixels))));
+  return static_cast<std::size_t>(std::max(1.0, kMostBytes / (kBytesPerPixel * pixels)));
 }
 
 bool exceeds_cap(const PrescanConfig& config) {

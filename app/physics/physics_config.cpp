@@ -29,7 +29,8 @@ void require_valid(const PhysicsConfig& config) {
   require_positive("max_advance_s", config.max_advance_s);
   require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,
           "at most 1000 max_step_s");
-  require(config.max_slides >= 1 && config.max_slides <= 64, "max_slides", config.max_slides, "in 1..64");
+  require(config.max_contact_events >= 1 && config.max_contact_events <= 64, "max_contact_events",
+          config.max_contact_events, "in 1..64");
   require_positive("sleep_drift_m", config.sleep_drift_m);
   require_positive("sleep_after_s", config.sleep_after_s);
   require_positive("wake_gap_m", config.wake_gap_m);

@@ -29,7 +29,7 @@ struct PhysicsConfig {
   /// a camera stall.
   double max_advance_s = 0.5;
   /// Max number of contact events per substep. The time left after the last event is not simulated.
-  int max_slides = 16;
+  int max_contact_events = 16;
   /// A supported body falls asleep if all its points move by at most this within sleep_after_s.
   double sleep_drift_m = 0.012;
   /// Time at rest before a balanced body falls asleep. An unbalanced body needs four times as long.

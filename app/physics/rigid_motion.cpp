@@ -392,7 +392,7 @@ void Substep::run() {
     moving.T_world_near.reset();
   }
   const auto is_any_active = [&] { return std::any_of(bodies_.begin(), bodies_.end(), is_active); };
-  for (int stop = 0; stop < config_.max_slides && is_any_active(); ++stop) {
+  for (int stop = 0; stop < config_.max_contact_events && is_any_active(); ++stop) {
     find_contacts(bodies_, config_, up_, system_);
     if (bounce()) continue;
     hold_up(stop == 0);

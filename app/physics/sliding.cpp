@@ -124,7 +124,7 @@ bool slide(Body& body, double dt_s, const CollisionQueries& probe, const Physics
   bool is_supported = false;
   body.rests_on = SurfaceKind::kNothing;
   MetSurfaces met;
-  for (int slide = 0; slide < config.max_slides; ++slide) {
+  for (int slide = 0; slide < config.max_contact_events; ++slide) {
     const double distance_m = remaining.norm();
     if (distance_m < kShortest_m) break;
     const Vec3 direction = remaining / distance_m;
