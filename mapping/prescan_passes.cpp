@@ -30,7 +30,7 @@ bool read(const Next& next, StageTimes& times, PrescanCounts& counts) {
   for (;;) {
     const ReadResult result = times.timed("read", next);
     if (result.status == ReadStatus::kEnd) return false;
-    if (result.waiting) continue;
+    if (result.status == ReadStatus::kWaiting) continue;
     ++counts.frames_read;
     if (result.status == ReadStatus::kFrame) return true;
     ++counts.frames_skipped;

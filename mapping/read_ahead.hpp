@@ -37,7 +37,7 @@ class ReadAhead {
       std::swap(frame, ahead_);
       std::swap(prepared, prepared_);
     }
-    if (!result.waiting) ++next_;
+    if (result.status != ReadStatus::kWaiting) ++next_;
     if (next_ < wanted_.size()) read_next();
     return result;
   }
@@ -55,7 +55,7 @@ class ReadAhead {
     if (position_ < wanted && source_.seek(wanted)) position_ = wanted;
     for (;;) {
       ReadResult result = source_.next(ahead_);
-      if (result.status == ReadStatus::kEnd || result.waiting) return result;
+      if (result.status == ReadStatus::kEnd || result.status == ReadStatus::kWaiting) return result;
       if (position_++ < wanted) continue;
       if (result.status == ReadStatus::kFrame) prepare_(ahead_, prepared_);
       return result;

@@ -61,7 +61,7 @@ roomradar_status roomradar_source_next(roomradar_source* source, roomradar_frame
     require_struct(frame, "frame");
     const ReadResult read = state.source->next(state.frame);
     if (read.status == ReadStatus::kEnd) throw Refusal(ROOMRADAR_END, "the recording has no more frames");
-    if (read.status == ReadStatus::kSkipped) throw Refusal(ROOMRADAR_SKIPPED, read.fault);
+    if (read.status != ReadStatus::kFrame) throw Refusal(ROOMRADAR_SKIPPED, read.fault);
     write_frame(state.frame, *frame);
   });
 }

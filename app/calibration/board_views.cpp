@@ -126,8 +126,8 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
   while (result.views.size() < most) {
     const ReadResult read = source.next(frame);
     if (read.status == ReadStatus::kEnd) break;
-    if (read.status == ReadStatus::kSkipped) {
-      if (!read.waiting) progress(result);
+    if (read.status != ReadStatus::kFrame) {
+      if (read.status == ReadStatus::kSkipped) progress(result);
       continue;
     }
     ++result.frames;

@@ -52,7 +52,7 @@ int run(const RecordOptions& options) {
     for (;;) {
       const ReadResult result = take_over(*source, writer, options.folder, frame);
       if (result.status == ReadStatus::kEnd) break;
-      if (result.waiting) continue;
+      if (result.status == ReadStatus::kWaiting) continue;
       if (result.status == ReadStatus::kSkipped) {
         ++skipped;
         progress.step("skipped: " + result.fault);

@@ -28,7 +28,7 @@ std::shared_ptr<Frame> Source::next() {
     const ReadResult read = without_gil([&] { return source.next(*frame); });
     if (read.status == ReadStatus::kFrame) return frame;
     if (read.status == ReadStatus::kEnd) return nullptr;
-    if (!read.waiting) {
+    if (read.status == ReadStatus::kSkipped) {
       ++skipped_;
       last_fault_ = read.fault;
     }

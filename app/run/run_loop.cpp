@@ -109,8 +109,8 @@ RunLoop::Next RunLoop::read() {
   ReadResult read;
   do {  // a live source itself tells the user why it waits
     read = run_.report.times.timed("read", [&] { return run_.source->next(frame_); });
-  } while (read.waiting && !(run_.host && run_.host->is_closed()));
-  if (read.status == ReadStatus::kEnd || read.waiting) return Next::kEnd;
+  } while (read.status == ReadStatus::kWaiting && !(run_.host && run_.host->is_closed()));
+  if (read.status == ReadStatus::kEnd || read.status == ReadStatus::kWaiting) return Next::kEnd;
   ++totals.read;
   if (read.status == ReadStatus::kSkipped) {
     count_skipped(read.fault);

@@ -11,14 +11,13 @@ namespace roomradar {
 enum class ReadStatus {
   kFrame,    ///< `frame` was filled
   kSkipped,  ///< one bad frame was skipped, see `fault`; call next() again
+  kWaiting,  ///< a live source had no new frame before its time-out; no frame was lost; call next() again
   kEnd,      ///< no more frames; `frame` is unchanged
 };
 
 struct [[nodiscard]] ReadResult {
   ReadStatus status = ReadStatus::kEnd;
-  std::string fault;  ///< a sentence; only with kSkipped
-  /// Only with kSkipped: a live source had no new frame before its time-out; no frame was lost.
-  bool waiting = false;
+  std::string fault;  ///< a sentence; only with kSkipped and kWaiting
 };
 
 /// Delivers frames in the order of their timestamps. Not thread safe.

@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
     int located = 0;
     for (ReadResult read = recording->next(frame); read.status != ReadStatus::kEnd;
          read = recording->next(frame)) {
-      if (read.status == ReadStatus::kSkipped) continue;
+      if (read.status != ReadStatus::kFrame) continue;
       const FrameResult result = session.step(frame, times);
       if (result.status != FrameStatus::kDone) continue;
       if (++located == 2) {  // half a metre over the pot, wherever that was dropped

@@ -21,7 +21,7 @@ class Endless final : public FrameSource {
     ++reads;
     if (next_ == 4 && !has_waited_) {
       has_waited_ = true;
-      return {ReadStatus::kSkipped, "no frame yet", /*waiting=*/true};
+      return {ReadStatus::kWaiting, "no frame yet"};
     }
     const std::int64_t index = next_++;
     if (index == faulty) throw Error("frame " + std::to_string(index) + " cannot be read");
@@ -74,7 +74,9 @@ std::vector<std::int64_t> delivered(FrameSource& source, std::int64_t count) {
     if (result.status == ReadStatus::kFrame) {
       EXPECT_EQ(prepared, 10 * frame.index);
     }
-    indices.push_back(result.status == ReadStatus::kFrame ? frame.index : result.waiting ? -2 : -1);
+    indices.push_back(result.status == ReadStatus::kFrame     ? frame.index
+                      : result.status == ReadStatus::kWaiting ? -2
+                                                              : -1);
   }
 }
 
@@ -127,7 +129,7 @@ TEST(ReadAhead, DeliversTheWantedFramesOnlyWhetherTheSourceCanSeekOrNot) {
     Frame frame;
     Prepared prepared = -1;
     for (ReadResult result; (result = frames.next(frame, prepared)).status != ReadStatus::kEnd;) {
-      if (result.waiting) continue;
+      if (result.status == ReadStatus::kWaiting) continue;
       indices.push_back(result.status == ReadStatus::kFrame ? frame.index : -1);
       EXPECT_TRUE(indices.back() == -1 || frames.position() == indices.back());
     }

@@ -32,12 +32,12 @@ class FrameRangeSource final : public FrameSource {
     // Half a second of a device's frames; returning then lets the caller stop.
     constexpr int kMostPassedOver = 15;
     for (int passed_over = 0; position_ <= last_; ++passed_over) {
-      if (passed_over == kMostPassedOver) return {ReadStatus::kSkipped, {}, true};
+      if (passed_over == kMostPassedOver) return {ReadStatus::kWaiting, {}};
       ReadResult result = source_->next(frame);
       // A device that ends early, by Ctrl-C or because it is gone, has given what there is.
       if (result.status == ReadStatus::kEnd && position_ > first_) return result;
       if (result.status == ReadStatus::kEnd) fail_outside(*source_, first_, last_, position_);
-      if (result.waiting) return result;
+      if (result.status == ReadStatus::kWaiting) return result;
       // Frames of a live device count by index, which includes dropped frames. Frames of its recording keep
       // these indices but count by position.
       const std::int64_t at = is_live_ && result.status == ReadStatus::kFrame ? frame.index : position_;

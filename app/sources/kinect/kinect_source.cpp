@@ -99,11 +99,11 @@ class KinectSource final : public FrameSource {
   ReadResult waited() {
     char text[64];
     format_classic(text, sizeof text, ": no depth image for %.1f s", waited_s_);
-    if (is_replay_) return {ReadStatus::kSkipped, name_ + text + ": the recording has a gap", true};
+    if (is_replay_) return {ReadStatus::kWaiting, name_ + text + ": the recording has a gap"};
     if (waited_s_ > timeout_s_)
       throw Error(name_ + text +
                   "; check its cable and power supply, then begin again (a scan goes on by --resume)");
-    return {ReadStatus::kSkipped, name_ + text + "; waiting for it", true};
+    return {ReadStatus::kWaiting, name_ + text + "; waiting for it"};
   }
 
   ReadResult passed_over() {

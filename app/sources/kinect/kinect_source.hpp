@@ -17,7 +17,7 @@ namespace roomradar {
 ///
 /// Frames of a live device that are not fetched in time are dropped, oldest first. Dropped frames are counted
 /// in Frame::index. With options.keep_all, several seconds of frames are queued. While the device sends no
-/// images or is unplugged, next() returns ReadResult::waiting about every second. The source cannot rewind
+/// images or is unplugged, next() returns ReadStatus::kWaiting about every second. The source cannot rewind
 /// (see spooled_source.hpp).
 ///
 /// A replay by fakenect drops no frames, and ends with the recording (FAKENECT_LOOP=0). It delivers the same

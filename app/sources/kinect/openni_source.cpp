@@ -162,7 +162,7 @@ class OpenniSource final : public FrameSource {
     const std::string text =
         name_ + ": no depth image for " + std::to_string(static_cast<int>(silent_s_)) + " s";
     if (silent_s_ > timeout_s_) throw Error(text + "; check its cable, then begin again");
-    return {ReadStatus::kSkipped, text + "; waiting for it", true};
+    return {ReadStatus::kWaiting, text + "; waiting for it"};
   }
 
   void fill(const openni::VideoFrameRef& depth, const openni::VideoFrameRef* colour,

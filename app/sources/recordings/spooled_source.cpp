@@ -126,10 +126,10 @@ bool SpooledSource::capture_one(Frame& frame) {
     frame.index += continued_.index_offset;
     frame.stamp_s += *continued_.stamp_offset_s;
     entry = write_spooled(frame, spool_.folder, position);
-  } else if (result.status == ReadStatus::kSkipped && !result.waiting) {
+  } else if (result.status == ReadStatus::kSkipped) {
     entry = SpoolEntry{{}, result.fault};
   }
-  if (!spool_.scratch && !result.waiting)
+  if (!spool_.scratch && result.status != ReadStatus::kWaiting)
     append_to_spool_list(entry ? &*entry : nullptr, spool_.folder, spool_.list);
   const std::lock_guard lock(mutex_);
   waiting_.reset();
@@ -139,7 +139,7 @@ bool SpooledSource::capture_one(Frame& frame) {
       newest_position_ = position;
       std::swap(newest_, frame);
     }
-  } else if (result.waiting) {
+  } else if (result.status == ReadStatus::kWaiting) {
     waiting_ = std::move(result);
   } else {
     at_end_ = true;

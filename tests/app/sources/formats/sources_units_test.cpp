@@ -241,10 +241,7 @@ TEST(FrameRange, WhoeverReadsCanStopBeforeItsFirstFrame) {
   Frame frame;
   int waited = 0;
   ReadResult read = source->next(frame);
-  for (; read.waiting; read = source->next(frame)) {
-    EXPECT_EQ(read.status, ReadStatus::kSkipped);
-    ++waited;
-  }
+  for (; read.status == ReadStatus::kWaiting; read = source->next(frame)) ++waited;
   EXPECT_EQ(waited, 2);
   EXPECT_EQ(read.status, ReadStatus::kFrame);
   EXPECT_EQ(frame.index, 40);
@@ -390,7 +387,7 @@ class PausingSource final : public FrameSource {
   ReadResult next(Frame& frame) override {
     if (left_-- > 0) return source_->next(frame);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return {ReadStatus::kSkipped, "nothing yet", /*waiting=*/true};
+    return {ReadStatus::kWaiting, "nothing yet"};
   }
   bool rewind() override { return false; }
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
@@ -406,7 +403,7 @@ TEST(SpooledSource, ASourceThatWaitsIsNoFrameAndHoldsNobody) {
   Frame frame;
   EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);
   EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(source.next(frame).waiting);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(source.next(frame).status, ReadStatus::kWaiting);
   EXPECT_FALSE(source.seek(2));
   ASSERT_TRUE(source.seek(1));
   EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);

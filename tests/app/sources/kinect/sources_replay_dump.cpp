@@ -22,9 +22,9 @@ int main(int argc, char** argv) {
       const roomradar::ReadResult result = source->next(frame);
       if (result.status == roomradar::ReadStatus::kEnd) return 0;
       const bool is_frame = result.status == roomradar::ReadStatus::kFrame;
-      std::puts(is_frame         ? roomradar::test::fingerprint(frame).c_str()
-                : result.waiting ? "waiting"
-                                 : "skipped");
+      std::puts(is_frame ? roomradar::test::fingerprint(frame).c_str()
+                : result.status == roomradar::ReadStatus::kWaiting ? "waiting"
+                                                                   : "skipped");
       if (is_frame) --frames_left;
     }
     return 0;
