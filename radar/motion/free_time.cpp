@@ -200,12 +200,6 @@ double path_m(const TreeInstance& instance, const RigidMotion& motion, double du
   return duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_m);
 }
 
-/// A tree and its motion.
-struct MovingTree {
-  const TreeInstance& instance;
-  const RigidMotion& motion;
-};
-
 RelativeMotion relative_motion(const MovingTree& moving_object, const MovingTree& moving_tree,
                                double duration_s, double keep_m, const TreePair& trees) {
   const auto& [object, motion] = moving_object;
@@ -333,8 +327,9 @@ void move_to_nearest(ClosestPoint& limit, const SceneTree& tree) {
 
 }  // namespace
 
-FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                   const RadarScene& scene, SurfaceKindMask left_out, const TreeStates& trees) {
+FreeTime free_time(const MovingTree& moving_object, double duration_s, double keep_m, const RadarScene& scene,
+                   SurfaceKindMask left_out, const TreeStates& trees) {
+  const auto& [object, motion] = moving_object;
   thread_local PendingPairs pending;  // scratch
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
@@ -351,7 +346,7 @@ FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double
     TreePair pair(object, tree.instance);
     TreeFreedom freedom{
         pair, tree.kind, number,
-        relative_motion({object, motion}, {tree.instance, tree_motion}, duration_s, keep_m, pair), result};
+        relative_motion(moving_object, {tree.instance, tree_motion}, duration_s, keep_m, pair), result};
     visit_pairs<PairOrder::kLeastFirst>(
         pair, pending, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
         [&](const PairBox& o, const PairBox& s) {
