@@ -98,7 +98,7 @@ bool is_too_large(const Eigen::Isometry3d& T_guess_found, const AlignConfig& con
   const Vector6d correction = local(T_guess_found);
   return !correction.allFinite() ||
          correction.head<3>().norm() > static_cast<double>(config.max_correction_m) ||
-         correction.tail<3>().norm() > static_cast<double>(config.max_correction_m);
+         correction.tail<3>().norm() > static_cast<double>(config.max_correction_rad);
 }
 
 /// Matches of one level's points.

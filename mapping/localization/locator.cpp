@@ -82,11 +82,14 @@ NormalEquation constraint_of(const std::vector<PointPair>& pairs, const Eigen::I
 /// matches. Solves the least squares of both.
 void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPair>& pairs,
           Tracking& tracking) {
-  constexpr double kFarthest = 0.3;  // m and rad; beyond it, the pairs do not constrain the pose either
+  constexpr double kMostPull_m = 0.3;  // beyond it, the pairs do not constrain the pose either
+  constexpr double kLever_m = 1.0;     // a rotation counts as this length per rad
   const NormalEquation by_patches = constraint_of(pairs, tracking.T_world_camera);
   const Eigen::Matrix<double, 6, 6> H = by_depth + by_patches.H;
   const Eigen::Matrix<double, 6, 1> twist = solve_symmetric(H, by_patches.g);
-  if (!(twist.norm() < kFarthest)) return;
+  Eigen::Matrix<double, 6, 1> twist_m = twist;
+  twist_m.tail<3>() *= kLever_m;
+  if (!(twist_m.norm() < kMostPull_m)) return;
   tracking.T_world_camera = tracking.T_world_camera * retract(twist);
   tracking.information = H;
 }
