@@ -101,11 +101,12 @@ bool is_held_out(std::int64_t frame_index, std::int64_t hold_out) {
 
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress, PrescanInput start) {
-  const double reach_m = start.map ? start.map->octree->reach_m() : StaticMap(config.resolution_m).reach_m();
+  const double reach_m =
+      start.map ? start.map->octree.load().reach_m() : StaticMap(config.resolution_m).reach_m();
   const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
   PrescanWork work{&source,       config, times, progress, start.checkpoints, reach_m, maps_recorded_world,
                    start.observer};
-  if (config.bake_texture && start.map) (void)*start.map->texture;  // damaged: said before the work
+  if (config.bake_texture && start.map) start.map->texture.load();  // damaged: said before the work
   PrescanResult result;
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;
@@ -129,15 +130,15 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
 
   // Keyframes. Parts that are not needed any more are saved at once, so that the next stages have the memory.
   map.keyframe_database = std::move(pass.found.keyframe_database);
-  transform(map.keyframe_database, pass.T_world_found);
+  transform(map.keyframe_database.load(), pass.T_world_found);
   if (start.writer && !start.map)
-    map.keyframe_database = start.writer->write_keyframes(map.keyframe_database);
+    map.keyframe_database = start.writer->write_keyframes(map.keyframe_database.load());
   release_unused_memory();
 
   // Surface extraction.
   work.show("surface", {});
-  map.mesh =
-      times.timed("surface", [&] { return extract_surface(map.octree, config.surface, &result.surface); });
+  map.mesh = times.timed("surface",
+                         [&] { return extract_surface(map.octree.load(), config.surface, &result.surface); });
   if (map.mesh.triangles.empty())
     throw Error(source.name() + ": " + std::to_string(pass.fused.size()) + " frames show no surface at " +
                 format_number(config.resolution_m) + " m; try another --resolution");
@@ -146,12 +147,14 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   release_unused_memory();
 
   // Unobserved regions; the octree is saved meanwhile.
-  const MapCounts octree_counts = map.octree->counts();
-  auto coverage = begin_coverage(
-      map.octree, map.mesh, start.map ? start.map->trajectory : std::vector<TimedPose>{}, map.trajectory);
+  const MapCounts octree_counts = map.octree.load().counts();
+  auto coverage =
+      begin_coverage(map.octree.load(), map.mesh,
+                     start.map ? start.map->trajectory : std::vector<TimedPose>{}, map.trajectory);
   std::optional<LazyPart<StaticMap>> saved_octree;
   if (start.writer)
-    times.timed("save_octree", [&] { saved_octree = start.writer->write_octree(map.octree, map.mesh); });
+    times.timed("save_octree",
+                [&] { saved_octree = start.writer->write_octree(map.octree.load(), map.mesh); });
   TimedCoverage surveyed = coverage.get();
   times.add_ms("coverage", surveyed.ms);
   map.coverage_png = std::move(surveyed.coverage.picture_png);

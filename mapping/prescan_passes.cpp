@@ -268,12 +268,12 @@ Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEst
   if (agreeing_anchors(odometry.state().graph).size() >= kManyAnchored) located.min_agreement = kMovedThings;
   Registration placed;
   if (odometry.state().located)
-    placed = refine_registration(map.octree, surface, Eigen::Isometry3d::Identity(), located);
+    placed = refine_registration(map.octree.load(), surface, Eigen::Isometry3d::Identity(), located);
   if (!placed) {
     RegistrationConfig anew;
     anew.up_b = found.up.up_world;
     const Registration found_anew =
-        register_to(map.octree, map.keyframe_database, found.keyframe_database, surface, anew);
+        register_to(map.octree.load(), map.keyframe_database.load(), found.keyframe_database, surface, anew);
     if (found_anew || !odometry.state().located) placed = found_anew;
   }
   if (!placed)
@@ -299,7 +299,7 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
     skip_frames(*work.source, pass.counts.frames_read);
   }
   const KeyframeDatabase* const known =
-      map && work.config.poses != PoseOrigin::kRecorded ? &*map->keyframe_database : nullptr;
+      map && work.config.poses != PoseOrigin::kRecorded ? &map->keyframe_database.load() : nullptr;
   if (known) pass.odometry.set_prior_map(*known);
   FusionPass fusing;
   fusing.found = estimate_trajectory(work, known, pass);
@@ -309,7 +309,7 @@ FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map) {
                 (fusing.counts.last_fault.empty() ? "" : "; the last fault: " + fusing.counts.last_fault));
   fusing.T_world_found = map ? transform_to_map(pass.odometry, fusing.found, *map, work.source->name())
                              : transform_to_new_map(fusing.found, work.config.poses);
-  fusing.octree = map ? std::move(*map->octree) : StaticMap(work.config.resolution_m);
+  fusing.octree = map ? std::move(map->octree.load()) : StaticMap(work.config.resolution_m);
   // The trajectory took the whole scan, so it is stored soon.
   if (work.checkpoints && work.checkpoints->is_due_at_end())
     write(*work.checkpoints, kFusingStage, fusing, work.times);

@@ -45,7 +45,8 @@ roomradar_status roomradar_locator_locate(roomradar_locator* locator, const room
       const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
         return state.rendered->scene.render_expected(state.frame.depth_camera, T_world_camera).depth_m;
       };
-      tracking = locate(state.locator, state.frame, state.map->map.keyframe_database, {}, expected_depth);
+      tracking =
+          locate(state.locator, state.frame, state.map->map.keyframe_database.load(), {}, expected_depth);
     });
     location->tracking = static_cast<int32_t>(tracking.status);
     location->T_world_camera = pose_of(tracking.T_world_camera);

@@ -73,7 +73,7 @@ roomradar_status roomradar_map_occupancy(const roomradar_map* map, const double*
     if (count == 0) return;
     require_given(points_world_m, "points_world_m");
     require_given(occupancy, "occupancy");
-    const StaticMap& octree = state.map.octree;
+    const StaticMap& octree = state.map.octree.load();
     for (size_t i = 0; i < count; ++i) {
       const double* p = points_world_m + 3 * i;
       occupancy[i] = static_cast<uint8_t>(octree.occupancy_at({p[0], p[1], p[2]}));

@@ -105,12 +105,12 @@ roomradar_status roomradar_session_open(const roomradar_map* map, const roomrada
     state->poses = wanted.poses;
     if (config.map_updates) {
       state->own_map = load_map(shared->folder);
-      static_cast<void>(*state->own_map->texture);  // is carried over when the map is saved
+      state->own_map->texture.load();  // is carried over when the map is saved
     } else {
       state->shared_map = std::move(shared);
     }
     state->thread.run([&] {
-      StaticMap* const octree = state->own_map ? &*state->own_map->octree : nullptr;
+      StaticMap* const octree = state->own_map ? &state->own_map->octree.load() : nullptr;
       state->session = std::make_unique<Session>(state->map(), config, octree);
       if (wanted.unknown_is_solid != 0) state->session->make_unknown_solid(state->times);
     });

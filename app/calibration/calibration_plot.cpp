@@ -17,13 +17,20 @@ constexpr double kShownAt_m = 2.0;  // depth at which the correction is plotted
 const cv::Scalar kInk(40, 40, 40), kFaint(215, 215, 215), kBefore(200, 70, 50), kAfter(40, 90, 180);
 
 /// A panel's frame and title, and the mapping from its values to pixels.
+/// Values at the edges of a plot.
+struct PlotRange {
+  double left, right, bottom, top;
+};
+
 struct Panel {
   cv::Rect inside;
-  double left, right, bottom, top;
+  PlotRange range;
 
   [[nodiscard]] cv::Point at(double x, double y) const {
-    return {inside.x + static_cast<int>(std::lround((x - left) / (right - left) * inside.width)),
-            inside.y + static_cast<int>(std::lround((top - y) / (top - bottom) * inside.height))};
+    return {inside.x +
+                static_cast<int>(std::lround((x - range.left) / (range.right - range.left) * inside.width)),
+            inside.y +
+                static_cast<int>(std::lround((range.top - y) / (range.top - range.bottom) * inside.height))};
   }
 };
 
@@ -31,13 +38,20 @@ void write(cv::Mat& picture, const std::string& text, cv::Point at, const cv::Sc
   cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.45, colour, 1, cv::LINE_AA);
 }
 
-Panel make_panel(cv::Mat& picture, int column, int row, const std::string& title, double left, double right,
-                 double bottom, double top) {
+Panel make_panel(cv::Mat& picture, int column, int row, const std::string& title, const PlotRange& range) {
   const cv::Rect inside(column * kPanelWidth_px + kMargin_px, row * kPanelHeight_px + kMargin_px,
                         kPanelWidth_px - kMargin_px - 20, kPanelHeight_px - 2 * kMargin_px);
   cv::rectangle(picture, inside, kFaint);
   write(picture, title, {inside.x, inside.y - 12});
-  return {inside, left, right, bottom, top};
+  return {inside, range};
+}
+
+/// Range of a panel that shows the pixels of an image.
+PlotRange image_range(const Intrinsics& camera) {
+  return {.left = 0.0,
+          .right = static_cast<double>(camera.width_px),
+          .bottom = static_cast<double>(camera.height_px),
+          .top = 0.0};
 }
 
 void number(cv::Mat& picture, const char* format, double value, cv::Point at) {
@@ -53,8 +67,8 @@ void draw_errors(cv::Mat& picture, const CalibrationFit& fit) {
     most_mm = std::max(
         {most_mm, 1.1e3 * std::abs(fit.before[i].depth_bias_m), 1.1e3 * std::abs(fit.after[i].depth_bias_m)});
   }
-  const Panel panel = make_panel(picture, 0, 1, "depth error of a view (mm, median) over distance (m)", 0.0,
-                                 far_m, -most_mm, most_mm);
+  const Panel panel = make_panel(picture, 0, 1, "depth error of a view (mm, median) over distance (m)",
+                                 {.left = 0.0, .right = far_m, .bottom = -most_mm, .top = most_mm});
   cv::line(picture, panel.at(0.0, 0.0), panel.at(far_m, 0.0), kFaint);
   number(picture, "%.0f", most_mm, {panel.inside.x - 36, panel.inside.y + 10});
   number(picture, "%.0f", -most_mm, {panel.inside.x - 36, panel.inside.y + panel.inside.height});
@@ -87,7 +101,7 @@ void draw_correction(cv::Mat& picture, const Calibration& calibration) {
   char title[96];
   format_classic(title, sizeof title, "depth correction at 2 m: red farther, blue nearer, by up to %.0f mm",
                  most_mm);
-  const Panel panel = make_panel(picture, 1, 1, title, 0.0, camera.width_px, camera.height_px, 0.0);
+  const Panel panel = make_panel(picture, 1, 1, title, image_range(camera));
   for (int row = 0; row < panel.inside.height; ++row)
     for (int column = 0; column < panel.inside.width; ++column) {
       const double part = correction_mm(static_cast<double>(column) / panel.inside.width * camera.width_px,
@@ -107,10 +121,8 @@ ColourImage calibration_plot(const BoardViews& views, const CalibrationFit& fit)
   picture.setTo(cv::Scalar(255, 255, 255));
   const Intrinsics& colour = *fit.calibration.rig.colour_camera;
   const Intrinsics& depth = fit.calibration.rig.depth_camera;
-  const Panel corners =
-      make_panel(picture, 0, 0, "corners in the colour image", 0.0, colour.width_px, colour.height_px, 0.0);
-  const Panel samples =
-      make_panel(picture, 1, 0, "the board in the depth image", 0.0, depth.width_px, depth.height_px, 0.0);
+  const Panel corners = make_panel(picture, 0, 0, "corners in the colour image", image_range(colour));
+  const Panel samples = make_panel(picture, 1, 0, "the board in the depth image", image_range(depth));
   for (const BoardView& view : views.views) {
     for (const Eigen::Vector2d& corner : view.corners_px)
       cv::circle(picture, corners.at(corner.x(), corner.y()), 1, kAfter, cv::FILLED);

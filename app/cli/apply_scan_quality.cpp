@@ -14,7 +14,7 @@ void apply(const ScanQuality& quality, PrescanConfig& config) {
 }
 
 void keep_settings_of(SavedMap& map, bool is_deviation_asked_for, PrescanConfig& config) {
-  config.resolution_m = map.octree->resolution_m();
+  config.resolution_m = map.octree.load().resolution_m();
   if (!is_deviation_asked_for && map.info.settings.contains(kDeviationSetting))
     config.surface.max_deviation_m = surface_config_of(map.info).max_deviation_m;
   map.info.settings[kDeviationSetting] = format_number(config.surface.max_deviation_m);

@@ -30,7 +30,7 @@ MapChanges changes_between(const SavedMap& a, const SavedMap& b, const std::stri
   const Registration found =
       share_world(a.info, b.info) ? Registration{} : require_registered(a, b, name_a, name_b, report);
   return {found.T_a_b, report.times.timed("diff", [&] {
-            return diff_maps(a.octree, b.octree, found.T_a_b, found.T_b_a, {});
+            return diff_maps(a.octree.load(), b.octree.load(), found.T_a_b, found.T_b_a, {});
           })};
 }
 

@@ -34,7 +34,7 @@ Eigen::Isometry3d read_located(const FallthroughOptions& options, const SavedMap
   room.set(map.mesh, MeshUsage::kStatic);
   FrameScene scene(context, room, {});
   Locator locator;
-  const Tracking tracking = locate(locator, frame, map.keyframe_database, {},
+  const Tracking tracking = locate(locator, frame, map.keyframe_database.load(), {},
                                    [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
                                      return scene.render_expected(frame.depth_camera, T_world_camera).depth_m;
                                    });

@@ -114,7 +114,7 @@ int run(const MapExportOptions& options) {
   } else if (options.unknown) {
     require_outside_maps(options.path);
     const SavedMap map = load_map(options.map);
-    write_mesh(unknown_surface(map.octree, map.mesh).mesh_world, options.path);
+    write_mesh(unknown_surface(map.octree.load(), map.mesh).mesh_world, options.path);
   } else {
     export_map(options.map, options.path);
   }

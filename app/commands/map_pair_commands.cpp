@@ -34,10 +34,11 @@ int run(const MapMergeOptions& options) {
   const Registration found = require_registered(a, b, options.a, options.b, report);
   const SavedMap both = report.times.timed("merge", [&] { return merge_maps(std::move(a), b, found.T_a_b); });
   report.times.timed("save", [&] { save_map(options.map, both); });
-  report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree->memory_bytes()}};
+  report.results["map"] = {{"triangles", both.mesh.triangles.size()},
+                           {"bytes", both.octree.load().memory_bytes()}};
   write_report(report, options.report);
   std::printf("%s: %zu triangles, %zu keyframes\n", options.map.c_str(), both.mesh.triangles.size(),
-              both.keyframe_database->keyframes.size());
+              both.keyframe_database.load().keyframes.size());
   return 0;
 }
 

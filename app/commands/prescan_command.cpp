@@ -100,17 +100,22 @@ void keep_settings_of_map(const PrescanOptions& options, SavedMap& map, PrescanC
                  static_cast<double>(config.surface.max_deviation_m));
 }
 
+struct TimedScan {
+  PrescanResult scanned;
+  double last_frame_s = 0.0;  ///< Report::seconds() when the last frame was tracked
+};
+
 /// Scans the room; the map to extend is moved from `start`. Errors say whether the scan can be resumed.
 /// @param writer  saves parts of the map as soon as they are ready
-/// @param last_frame_s  out: Report::seconds() when the last frame was tracked
-PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, ScanStart& start,
-                   ScanWindow& window, MapWriter& writer, Report& report, double& last_frame_s) {
+TimedScan scan(const PrescanOptions& options, const PrescanConfig& config, ScanStart& start,
+               ScanWindow& window, MapWriter& writer, Report& report) {
   if (start.checkpoints)
     start.checkpoints->tell_failure([](const std::string& sentence) {
       // On a terminal the progress line has no line end.
       std::fprintf(stderr, "%sroomradar: %s\n", isatty(STDERR_FILENO) != 0 ? "\n" : "", sentence.c_str());
     });
   ScanProgress progress(options, start, config, window);
+  double last_frame_s = 0.0;
   PrescanResult scanned = or_say_what_is_kept(options, start, [&] {
     const auto show = [&](const std::string& stage, const std::string& note) {
       if (is_tracking(stage)) last_frame_s = report.seconds();
@@ -122,7 +127,7 @@ PrescanResult scan(const PrescanOptions& options, const PrescanConfig& config, S
   report.frames_read = scanned.counts.frames_read;
   report.frames_skipped = scanned.counts.frames_skipped;
   report.results.update(results_of(scanned));
-  return scanned;
+  return {std::move(scanned), last_frame_s};
 }
 
 /// Returns the poses of this scan's frames. An extended map has those of earlier scans before them.
@@ -200,9 +205,9 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
                                    start.spool.empty() ? folder : start.spool, first_view_of(options));
   }
 
-  double last_frame_s = 0.0;
   MapWriter writer(options.map);
-  const PrescanResult scanned = scan(options, config, start, window, writer, report, last_frame_s);
+  const TimedScan timed = scan(options, config, start, window, writer, report);
+  const PrescanResult& scanned = timed.scanned;
   const bool was_stopped = scanned.counts.stopped_for_memory;
   const bool keep_frames = was_stopped && !start.spool.empty();
   if (extends && was_stopped) {
@@ -213,7 +218,7 @@ int scan_and_save(const PrescanOptions& options, ScanChannel* channel) {
   lines.say();
   report.results["input"] = to_json(start.input->decisions());
   or_say_what_is_kept(options, start, [&] { report.times.timed("save", [&] { writer.commit(scanned.map); }); });
-  report.results["ready_after_s"] = report.seconds() - last_frame_s;
+  report.results["ready_after_s"] = report.seconds() - timed.last_frame_s;
 
   Interrupt::say_when_ended("");  // the map is saved
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, poses_of_scan(scanned));

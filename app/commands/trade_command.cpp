@@ -143,8 +143,14 @@ class SweepByJobs {
   JobFaults failed_;
 };
 
-TradeResult traded(const MeasuredWork& work, const TradeOptions& options, Stop& stop, SweepByJobs& by_jobs,
-                   TradeCsv& csv) {
+/// How works are swept: until when, by which jobs, and to which file. Refers to all three.
+struct SweepMeans {
+  Stop& stop;
+  SweepByJobs& by_jobs;
+  TradeCsv& csv;
+};
+
+TradeResult traded(const MeasuredWork& work, const TradeOptions& options, const SweepMeans& means) {
   TradeResult result{.work = work};
   result.defaults = 0;
   result.is_by_jobs = !options.jobs.empty();
@@ -156,20 +162,20 @@ TradeResult traded(const MeasuredWork& work, const TradeOptions& options, Stop& 
     const std::size_t before = result.settings.size();
     result.settings.insert(result.settings.end(), settings.begin(), settings.end());
     SweepWatch watch;
-    watch.is_stopped = [&] { return stop.asked(); };
+    watch.is_stopped = [&] { return means.stop.asked(); };
     const auto of_all = [before](SweepRow row) {  // index among all settings
       row.setting += before;
       return row;
     };
     watch.on_row = [&](const SweepRow& made) {
       const SweepRow row = of_all(made);
-      csv.write(work, result.settings, row);
+      means.csv.write(work, result.settings, row);
       if (!progress) return;
       char note[64];
       format_classic(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
       progress->step(row.fault.empty() ? note : row.fault);
     };
-    SweptRows made = result.is_by_jobs ? by_jobs(work, settings, watch)
+    SweptRows made = result.is_by_jobs ? means.by_jobs(work, settings, watch)
                                        : sweep(work, {settings, options.repeats, options.seed}, watch);
     for (SweepRow& row : made.rows) result.rows.push_back(of_all(std::move(row)));
     result.fault = std::move(made.fault);
@@ -180,13 +186,13 @@ TradeResult traded(const MeasuredWork& work, const TradeOptions& options, Stop& 
   drawn.insert(drawn.begin(), default_setting(work.parameters));
   measure(drawn);
   if (result.rows.empty()) return result;
-  if (result.fault.empty() && !stop.asked()) {
+  if (result.fault.empty() && !means.stop.asked()) {
     const std::vector<Setting> greedy_search =
         greedy_settings(work, result.summaries, result.defaults, in_greedy_search);
     if (!greedy_search.empty()) measure(greedy_search);
   }
   result.choice = choose_presets(work, result.summaries, result.defaults);
-  result.was_cut_short = stop.asked() || !result.fault.empty();
+  result.was_cut_short = means.stop.asked() || !result.fault.empty();
   return result;
 }
 
@@ -247,13 +253,11 @@ int print_table1(const TradeOptions& options, Report report) {
 /// Measures the works one after another. Throws Error if nothing was measured; faults after the first
 /// measurement are added to `faults`.
 std::vector<TradeResult> measure_all(const std::vector<MeasuredWork>& works, const TradeOptions& options,
-                                     Stop& stop, SweepByJobs& by_jobs, TradeCsv& csv, StageTimes& times,
-                                     DeferredErrors& faults) {
+                                     const SweepMeans& means, StageTimes& times, DeferredErrors& faults) {
   std::vector<TradeResult> results;
   for (const MeasuredWork& work : works) {
     TradeResult result;
-    if (!stop.asked())
-      result = times.timed(work.name, [&] { return traded(work, options, stop, by_jobs, csv); });
+    if (!means.stop.asked()) result = times.timed(work.name, [&] { return traded(work, options, means); });
     if (!result.fault.empty()) faults.add("trade: " + work.name + ": " + result.fault);
     if (!result.rows.empty())
       results.push_back(std::move(result));
@@ -345,7 +349,7 @@ int run(const TradeOptions& options) {
   SweepByJobs by_jobs(options);
   DeferredErrors faults;  // errors do not keep earlier measurements from being written
   const std::vector<TradeResult> results =
-      measure_all(works, options, stop, by_jobs, csv, report.times, faults);
+      measure_all(works, options, {stop, by_jobs, csv}, report.times, faults);
   for (const TradeResult& result : results) {
     print_result(result);
     report.results[result.work.name] = result_json(result);

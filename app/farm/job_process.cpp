@@ -33,14 +33,22 @@ constexpr int kCannotBegin = 126;
 constexpr const char* kTunables = "GLIBC_TUNABLES";
 constexpr const char* kLargePages = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
 
+/// The program that a job runs.
+struct JobProgram {
+  const char* path;
+  char* const* arguments;
+  char* const* environment;
+  const char* folder;  ///< working directory
+};
+
 /// Becomes the program. Runs between fork and exec, where only few functions may be called.
-[[noreturn]] void become(const char* program, char* const* arguments, char* const* environment,
-                         const char* folder, int nothing, int log, pid_t parent) {
+[[noreturn]] void become(const JobProgram& program, int nothing, int log, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setpgid(0, 0);  // Ctrl-C reaches the farm, which then ends its jobs
-  const bool is_ready = getppid() == parent && chdir(folder) == 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
-                        dup2(log, STDOUT_FILENO) >= 0 && dup2(log, STDERR_FILENO) >= 0;
-  if (is_ready) execve(program, arguments, environment);
+  const bool is_ready = getppid() == parent && chdir(program.folder) == 0 &&
+                        dup2(nothing, STDIN_FILENO) >= 0 && dup2(log, STDOUT_FILENO) >= 0 &&
+                        dup2(log, STDERR_FILENO) >= 0;
+  if (is_ready) execve(program.path, program.arguments, program.environment);
   _exit(kCannotBegin);
 }
 
@@ -66,7 +74,11 @@ pid_t start(const fs::path& program, std::vector<std::string> words, const fs::p
   const pid_t parent = getpid();
   const pid_t child = nothing >= 0 && log >= 0 ? fork() : -1;
   if (child == 0)
-    become(program.c_str(), arguments.data(), environment.data(), folder.c_str(), nothing, log, parent);
+    become({.path = program.c_str(),
+            .arguments = arguments.data(),
+            .environment = environment.data(),
+            .folder = folder.c_str()},
+           nothing, log, parent);
   const std::string reason = system_reason(errno);
   if (nothing >= 0) close(nothing);
   if (log >= 0) close(log);

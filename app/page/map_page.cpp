@@ -25,7 +25,7 @@ void write_map_page(const SavedMap& map, const std::filesystem::path& folder,
   page.title = title_of(folder);
   const auto texture = fitting_texture(map);
   page.rooms = {{page.title, &map.mesh, texture.get()}};
-  page.holes = survey_coverage(map.octree, map.mesh, map.trajectory).holes;
+  page.holes = survey_coverage(map.octree.load(), map.mesh, map.trajectory).holes;
   page.trajectory = map.trajectory;
   write_room_page(page, path);
 }

@@ -32,7 +32,7 @@ CollisionQueries make_collision_queries(Radar& radar, const TriangleTree& object
                                   double duration_s, double keep_m, SurfaceKindMask left_out,
                                   const TreeStates& trees) {
     const Spent spent{spent_ms};
-    return free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out, trees);
+    return free_time({{&object, T_world_object}, motion}, duration_s, keep_m, scene, left_out, trees);
   };
   probe.patch = [&, spent_ms](std::uint32_t tree, const Eigen::Vector3d& point_world,
                               const Eigen::Vector3d& facing_world, double reach_m) {

@@ -46,8 +46,8 @@ class MapLocator {
       const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
         return room_->scene.render_expected(frame.depth_camera, T_world_camera).depth_m;
       };
-      tracking =
-          roomradar::locate(locator_, frame, map_->saved.keyframe_database, dynamic_mask, expected_depth);
+      tracking = roomradar::locate(locator_, frame, map_->saved.keyframe_database.load(), dynamic_mask,
+                                   expected_depth);
     });
     return tracking;
   }

@@ -21,7 +21,7 @@ using MapPointer = std::shared_ptr<Map>;
 
 std::shared_ptr<Octree> octree_of(Map& map) {
   const StaticMap& octree =
-      without_gil([&]() -> const StaticMap& { return *std::as_const(map.saved).octree; });
+      without_gil([&]() -> const StaticMap& { return std::as_const(map.saved).octree.load(); });
   return std::make_shared<Octree>(std::shared_ptr<const StaticMap>(map.shared_from_this(), &octree));
 }
 
@@ -55,7 +55,7 @@ py::object trajectory_of(const Map& map) {
 /// Returns the keyframes, each of which keeps the map alive.
 std::vector<std::shared_ptr<const MapKeyframe>> keyframes_of(Map& map) {
   std::vector<std::shared_ptr<const MapKeyframe>> keyframes;
-  for (const MapKeyframe& keyframe : map.saved.keyframe_database->keyframes)
+  for (const MapKeyframe& keyframe : map.saved.keyframe_database.load().keyframes)
     keyframes.emplace_back(map.shared_from_this(), &keyframe);
   return keyframes;
 }
@@ -63,9 +63,9 @@ std::vector<std::shared_ptr<const MapKeyframe>> keyframes_of(Map& map) {
 std::shared_ptr<Mesh> unknown_mesh_of(const Map& map) {
   return without_gil([&] {
     const SavedMap& saved = map.saved;
-    const std::shared_ptr<const UnknownSurface>& kept = *saved.unknown;
+    const std::shared_ptr<const UnknownSurface>& kept = saved.unknown.load();
     return std::make_shared<Mesh>(kept ? kept->mesh_world
-                                       : unknown_surface(saved.octree, saved.mesh).mesh_world);
+                                       : unknown_surface(saved.octree.load(), saved.mesh).mesh_world);
   });
 }
 
@@ -101,7 +101,7 @@ std::vector<Change> diff(const Map& a, const Map& b) {
   return without_gil([&] {
     const Registration found =
         share_world(a.saved.info, b.saved.info) ? Registration{} : registered(a, b);
-    return diff_maps(a.saved.octree, b.saved.octree, found.T_a_b, found.T_b_a, {});
+    return diff_maps(a.saved.octree.load(), b.saved.octree.load(), found.T_a_b, found.T_b_a, {});
   });
 }
 

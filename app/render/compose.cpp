@@ -45,11 +45,18 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
 }
 
+/// Depth in a rectangle of an image.
+struct DepthCutout {
+  const DepthImage& depth_m;  ///< of the rectangle's size
+  const PixelRect& rect;
+};
+
 /// Multiplies light_left by the fraction of light that the object's shadow leaves, in pixels with depth.
-/// @param depth_m     depth of real surfaces in the pixels of `rect`
-/// @param light_left  of the same size
+/// @param real        depth of real surfaces
+/// @param light_left  of the size of real.depth_m
 void darken(const ShadowCaster& caster, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-            const DepthImage& depth_m, float strength, const PixelRect& rect, Image<float>& light_left) {
+            const DepthCutout& real, float strength, Image<float>& light_left) {
+  const auto& [depth_m, rect] = real;
   const PixelRect shadowed = shadowed_pixels(caster, camera, T_world_camera);
   const float directed_fraction = std::clamp(caster.directed_fraction, 0.0F, 1.0F) * std::min(1.0F, strength);
   // From pixel and depth directly to the shadow's frame, with world axes and its own origin.
@@ -140,10 +147,12 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
                  camera.height_px);
 }
 
-void cast_shadows(const ColourImage& background, const Intrinsics& camera,
-                  const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
+void cast_shadows(const ColourImage& background, const PosedDepth& real,
                   std::span<const ShadowCaster> casters, const ComposeConfig& config, ColourImage& picture,
                   const MaskImage* is_decided) {
+  const DepthImage& real_depth_m = real.depth_m;
+  const Intrinsics& camera = real.camera;
+  const Eigen::Isometry3d& T_world_camera = real.T_world_camera;
   require_size("the background", background, camera.width_px, camera.height_px);
   require_size("the real depth", real_depth_m, camera.width_px, camera.height_px);
   picture.width = background.width;
@@ -155,7 +164,7 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
     Image<float> light_left(rect.width, rect.height, 1.0F);
     for (const ShadowCaster& caster : casters)
       if (caster.shadow != nullptr)
-        darken(caster, camera, T_world_camera, depth_m, config.shadow_strength, rect, light_left);
+        darken(caster, camera, T_world_camera, {depth_m, rect}, config.shadow_strength, light_left);
     return light_left;
   };
   DepthImage rect_depth_m(rect.width, rect.height), aligned_m;
@@ -184,9 +193,10 @@ void cast_shadows(const ColourImage& background, const Intrinsics& camera,
   }
 }
 
-void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
-                 Occlusion& occlusion, ColourImage& picture, const Feet& feet,
+void lay_objects(const RenderedObjects& objects, const DepthImage& real_depth_m,
+                 const OcclusionConfig& config, Occlusion& occlusion, ColourImage& picture,
                  const ColourImage* camera_image) {
+  const ObjectLayer& layer = objects.layer;
   require_size("the real depth", real_depth_m, picture.width, picture.height);
   if (layer.rect.width <= 0 || layer.rect.height <= 0) return;
   if (!(clamped(layer.rect, picture.width, picture.height) == layer.rect))
@@ -197,8 +207,8 @@ void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const
                layer.rect.height * layer.samples);
   if (camera_image != nullptr)
     require_size("the camera's image", *camera_image, picture.width, picture.height);
-  find_occlusion(camera_image != nullptr ? *camera_image : picture, picture, real_depth_m, layer, config,
-                 occlusion, feet);
+  find_occlusion(camera_image != nullptr ? *camera_image : picture, picture, real_depth_m, objects, config,
+                 occlusion);
   lay_over(layer, occlusion, picture);
 }
 

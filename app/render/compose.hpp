@@ -9,6 +9,7 @@
 #include "app/render/occlusion.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
+#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
 
@@ -48,36 +49,31 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 /// the objects. The run time is that of one copy, plus a time proportional to the area of the shadows'
 /// rectangles.
 ///
-/// @param background       colour image of the camera, or result of shade_depth(). Must have the size of
-///                         `camera`
-/// @param camera           colour camera
-/// @param T_world_camera   camera pose
-/// @param real_depth_m     depth of real surfaces in `camera`, with its size. Pixels with depth 0 get no
-///                         shadow
-/// @param casters          objects that cast a shadow
-/// @param config           shadow_strength and occlusion.edge_reach_px are used
-/// @param is_decided       of the size of `camera`; not 0 where real_depth_m agrees with the colours already.
-///                         Null: nowhere
-/// @param[out] picture     resized to the size of `camera`; must not be `background`
+/// @param background    colour image of the camera, or result of shade_depth(). Must have the size of
+///                      real.camera
+/// @param real          depth of real surfaces in the colour camera. Pixels with depth 0 get no shadow
+/// @param casters       objects that cast a shadow
+/// @param config        shadow_strength and occlusion.edge_reach_px are used
+/// @param is_decided    of the size of real.camera; not 0 where the real depth agrees with the colours
+///                      already. Null: nowhere
+/// @param[out] picture  resized to the size of real.camera; must not be `background`
 /// @throws Error if sizes differ
-void cast_shadows(const ColourImage& background, const Intrinsics& camera,
-                  const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
+void cast_shadows(const ColourImage& background, const PosedDepth& real,
                   std::span<const ShadowCaster> casters, const ComposeConfig& config, ColourImage& picture,
                   const MaskImage* is_decided = nullptr);
 
 /// Blends the objects over an image that already contains their shadows.
 ///
-/// @param layer         objects rendered by ObjectDrawer with the camera of `picture`
+/// @param objects       rendered by ObjectDrawer with the camera of `picture`. Objects are never hidden by
+///                      their support at their feet
 /// @param real_depth_m  depth of real surfaces, with the size of `picture`. Pixels with depth 0 occlude
 ///                      nothing
 /// @param[out] occlusion    occlusion of the objects; its buffers are reused
 /// @param[in,out] picture   image with the objects' shadows, over which the objects are blended
-/// @param feet          planes through the objects' lowest points, see contact_pixels.hpp. Objects are never
-///                      hidden by their support at these planes
 /// @param camera_image  the image without shadows, in which occluders' edges are found; null: `picture`
 /// @throws Error if sizes differ, or the layer exceeds the image
-void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
-                 Occlusion& occlusion, ColourImage& picture, const Feet& feet = {},
+void lay_objects(const RenderedObjects& objects, const DepthImage& real_depth_m,
+                 const OcclusionConfig& config, Occlusion& occlusion, ColourImage& picture,
                  const ColourImage* camera_image = nullptr);
 
 /// Renders a depth image as a grey image with a light source at the camera, for sources without colour.

@@ -127,9 +127,11 @@ float depth_in_gap(std::span<const ColourSample> samples, int x, int y, const Rg
 
 }  // namespace
 
-void view_measured(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& depth_camera,
-                   const Eigen::Isometry3d& T_view_depth, const Intrinsics& view_camera,
-                   const PixelRect& rect, MeasuredView& view) {
+void view_measured(const MeasuredFrame& frame, const Eigen::Isometry3d& T_view_depth,
+                   const Intrinsics& view_camera, const PixelRect& rect, MeasuredView& view) {
+  const DepthImage& depth_m = frame.depth_m;
+  const MaskImage& dynamic_mask = frame.dynamic_mask;
+  const Intrinsics& depth_camera = frame.camera;
   view.rect = rect;
   const auto fit = [&](auto& image) {
     if (image.width != view_camera.width_px || image.height != view_camera.height_px)

@@ -24,15 +24,20 @@ struct MeasuredView {
   std::vector<int> counts;
 };
 
+/// What one frame measured. Refers to its parts, which must outlive it.
+struct MeasuredFrame {
+  const DepthImage& depth_m;  ///< 0: no measurement
+  const MaskImage&
+      dynamic_mask;          ///< not 0: dynamic; of any size, scaled to that of depth_m. Empty: nothing is
+  const Intrinsics& camera;  ///< of the depth image
+};
+
 /// Projects measured depth into another camera. Each measured pixel covers as much of the view as its share
 /// of the depth image; cracks one pixel wide are closed. The nearer surface hides the farther.
-/// @param depth_m       measured depth, 0: no measurement
-/// @param dynamic_mask  not 0: dynamic; of any size, scaled to that of depth_m. Empty: nothing is
 /// @param T_view_depth  maps points of the depth camera to the view's camera
 /// @param rect          pixels of the view to set, within the view
-void view_measured(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& depth_camera,
-                   const Eigen::Isometry3d& T_view_depth, const Intrinsics& view_camera,
-                   const PixelRect& rect, MeasuredView& view);
+void view_measured(const MeasuredFrame& frame, const Eigen::Isometry3d& T_view_depth,
+                   const Intrinsics& view_camera, const PixelRect& rect, MeasuredView& view);
 
 /// Adds what was measured to the depth of the modelled surfaces, which are smoother and complete. A
 /// measurement counts where there is no model, and where it is nearer than the model by more than its error

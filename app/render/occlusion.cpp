@@ -169,19 +169,24 @@ bool find_edges(const DepthImage& real_depth_m, Occlusion& occlusion) {
   return found;
 }
 
+/// Colours of the two sides of an edge.
+struct EdgeColours {
+  SideColours front, behind;
+};
+
 /// Collects the colours of both sides around a pixel of the rectangle, from pixels away from edges.
-void look_about(const ColourImage& camera_image, const Occlusion& occlusion, int x, int y, int taps,
-                SideColours& front, SideColours& behind) {
-  front = behind = {};
+EdgeColours look_about(const ColourImage& camera_image, const Occlusion& occlusion, int x, int y, int taps) {
+  EdgeColours sides;
   for (int v = y - taps * kTapStep_px; v <= y + taps * kTapStep_px; v += kTapStep_px) {
     for (int u = x - taps * kTapStep_px; u <= x + taps * kTapStep_px; u += kTapStep_px) {
       if (!occlusion.by_depth.contains(u, v) || occlusion.near_edges.at(u, v) != 0) continue;
       const std::uint8_t hidden = occlusion.by_depth.at(u, v);
       if (hidden != 0 && hidden != 255) continue;
-      (hidden == 255 ? front : behind)
+      (hidden == 255 ? sides.front : sides.behind)
           .add(as_vector(camera_image.at(occlusion.rect.x + u, occlusion.rect.y + v)));
     }
   }
+  return sides;
 }
 
 /// Lists the pixels near edges, with each pixel's own odds from depth and colour.
@@ -196,15 +201,15 @@ void judge_alone(const ColourImage& camera_image, int reach_px, Occlusion& occlu
   occlusion.band.clear();
   for (int cell_y = 0; cell_y < rect.height; cell_y += kCell_px) {
     for (int cell_x = 0; cell_x < rect.width; cell_x += kCell_px) {
-      SideColours front, behind;
+      EdgeColours sides;
       bool has_looked = false;
       for (int y = cell_y; y < std::min(cell_y + kCell_px, rect.height); ++y) {
         for (int x = cell_x; x < std::min(cell_x + kCell_px, rect.width); ++x) {
           if (occlusion.near_edges.at(x, y) == 0) continue;
           if (!has_looked)
-            look_about(camera_image, occlusion, cell_x + kCell_px / 2, cell_y + kCell_px / 2, taps, front,
-                       behind);
+            sides = look_about(camera_image, occlusion, cell_x + kCell_px / 2, cell_y + kCell_px / 2, taps);
           has_looked = true;
+          const auto& [front, behind] = sides;
           if (front.count < kFewest || behind.count < kFewest || look_alike(front, behind)) continue;
           const int neighbours = (std::min(x + reach_px, rect.width - 1) - std::max(x - reach_px, 0) + 1) *
                                  (std::min(y + reach_px, rect.height - 1) - std::max(y - reach_px, 0) + 1);
@@ -269,8 +274,9 @@ int occlusion_margin_px(const OcclusionConfig& config) {
 }
 
 void find_occlusion(const ColourImage& camera_image, const ColourImage& background,
-                    const DepthImage& real_depth_m, const ObjectLayer& layer, const OcclusionConfig& config,
-                    Occlusion& occlusion, const Feet& feet) {
+                    const DepthImage& real_depth_m, const RenderedObjects& objects,
+                    const OcclusionConfig& config, Occlusion& occlusion) {
+  const ObjectLayer& layer = objects.layer;
   const int margin = occlusion_margin_px(config);
   const PixelRect rect = clamped({layer.rect.x - margin, layer.rect.y - margin, layer.rect.width + 2 * margin,
                                   layer.rect.height + 2 * margin},
@@ -279,8 +285,8 @@ void find_occlusion(const ColourImage& camera_image, const ColourImage& backgrou
   spread_object_depth(layer, rect, occlusion.object_m, occlusion.covered);
 
   hide_by_depth(real_depth_m, config, occlusion);
-  find_contacts(feet, rect, real_depth_m, occlusion.object_m, {config.tolerance_m, config.tolerance_per_m2},
-                occlusion.contact);
+  find_contacts(objects.feet, rect, real_depth_m, occlusion.object_m,
+                {config.tolerance_m, config.tolerance_per_m2}, occlusion.contact);
   for (std::size_t i = 0; i < occlusion.contact.pixels.size(); ++i)
     if (occlusion.contact.pixels[i] == kOnSupport) occlusion.by_depth.pixels[i] = 0;
   occlusion.front.resize(rect.width, rect.height);

@@ -26,6 +26,12 @@ struct OcclusionConfig {
 /// @throws Error naming the field, its value and the rule
 void require_valid(const OcclusionConfig& config);
 
+/// The rendered objects, and the planes on which they stand. Refers to both, which must outlive it.
+struct RenderedObjects {
+  const ObjectLayer& layer;
+  const Feet& feet;  ///< planes through the objects' lowest points, see contact_pixels.hpp
+};
+
 /// Result and buffers of find_occlusion(), for a rectangle of the image.
 struct Occlusion {
   /// The object layer's rectangle, enlarged by occlusion_margin_px(), within the image.
@@ -76,14 +82,13 @@ int occlusion_margin_px(const OcclusionConfig& config);
 /// @param background    camera_image with the objects' shadows; may be the same image
 /// @param real_depth_m  depth of real surfaces in the same camera, with the size of both images; pixels with
 ///                      depth 0 occlude nothing
-/// @param layer         the rendered objects, within the image
+/// @param objects       their layer must be within the image
 /// @param[out] occlusion  the result
-/// @param feet          planes through the objects' lowest points, see contact_pixels.hpp
 ///
 /// Source of the colour models and the band: Chuang et al., A Bayesian approach to digital matting, CVPR
 /// 2001. Here each side has one Gaussian, and pixels are opaque.
 void find_occlusion(const ColourImage& camera_image, const ColourImage& background,
-                    const DepthImage& real_depth_m, const ObjectLayer& layer, const OcclusionConfig& config,
-                    Occlusion& occlusion, const Feet& feet = {});
+                    const DepthImage& real_depth_m, const RenderedObjects& objects,
+                    const OcclusionConfig& config, Occlusion& occlusion);
 
 }  // namespace roomradar

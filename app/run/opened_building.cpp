@@ -56,7 +56,7 @@ OpenedBuilding open_building(const RunOptions& options, const Script& script) {
   info.source = options.map;
   info.up_source = "building";
   info.resolution_m = building.grid.resolution_m;
-  info.keyframes = opened.map.keyframe_database->keyframes.size();
+  info.keyframes = opened.map.keyframe_database.load().keyframes.size();
   for (const BuildingTile& tile : building.tiles) {
     info.triangles += static_cast<std::uint64_t>(std::max<std::int64_t>(tile.triangles, 0));
     info.counts.known_world.extend(tile.surface_world);

@@ -243,7 +243,8 @@ void add_object(Session& session, const ScriptEvent& add, const std::string& scr
 
 void open_session(OpenedRun& run, bool has_picture, std::future<ObjectParts> first_object) {
   const SessionConfig config = config_of(run, has_picture);
-  StaticMap* const octree = config.map_updates ? &*run.map.octree : nullptr;  // read only if it may change
+  StaticMap* const octree =
+      config.map_updates ? &run.map.octree.load() : nullptr;  // read only if it may change
   run.session = std::make_unique<Session>(run.map, config, octree);
   run.report.renderer = run.session->renderer();
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
@@ -321,7 +322,7 @@ std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) 
   if (!options.record_session.empty()) require_can_become_session(options.record_session);
   std::future<ObjectParts> first_object = first_object_of(run.script);
   open_map(run);
-  if (!options.save_map.empty()) (void)*run.map.texture;  // is carried over when the map is saved
+  if (!options.save_map.empty()) run.map.texture.load();  // is carried over when the map is saved
   say_if_up_is_not_known(run.map.info, options.map);
   const bool has_picture = makes_picture(options, link != nullptr);
   std::unique_ptr<FrameSource> frames = open_frames(run);

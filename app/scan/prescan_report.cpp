@@ -70,7 +70,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
     results["ate_max_m"] = counts.trajectory_error->max_m;
   }
   results["texture"] = nullptr;
-  if (const std::shared_ptr<const SurfaceTexture>& texture = *scanned.map.texture)
+  if (const std::shared_ptr<const SurfaceTexture>& texture = scanned.map.texture.load())
     results["texture"] = {{"width_px", texture->width_px},
                           {"height_px", texture->height_px},
                           {"bytes", texture->atlas_jpeg.size()}};

@@ -181,8 +181,9 @@ ScanStart start_scan(const PrescanOptions& options) {
   const std::string into = extend ? sha256_of_file(map / "map.json") : kNewMap;
   if (extend) {
     start.map = load_map(map);
-    require_memory_to_begin(options.max_memory_mb,
-                            memory_after_fusion(static_cast<double>(start.map->octree->memory_bytes())));
+    require_memory_to_begin(
+        options.max_memory_mb,
+        memory_after_fusion(static_cast<double>(start.map->octree.load().memory_bytes())));
   }
   if (extend && !live && holds(start.map->info, *start.source) &&
       (!is_unfinished(folder) || identity_of(folder)["into"] != into)) {

@@ -130,9 +130,7 @@ void require_small_enough(const VirtualObject& object, const DropRequest& drop) 
   throw Error(object.body.name + text.data());
 }
 
-DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,
-                                const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                                const ExpectedView& expected, const FrameForeground& foreground,
+DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop, const DropView& view,
                                 const DropScene& scene) {
   const Eigen::Matrix3d R_world_object = drop.R_world_object.value_or(object.body.T_world_object.linear());
   const Eigen::Vector3d to_middle = level_to_middle(object, R_world_object);
@@ -159,8 +157,8 @@ DropPosition find_drop_position(const VirtualObject& object, const DropRequest& 
     return stays_from(drop.height_m) || (drop.height_m > kGentleDrop_m && stays_from(kGentleDrop_m));
   };
   const double radius_m = footprint_radius_m(object, R_world_object);
-  const Support support = find_support(seen_room_depth_m(expected, foreground), camera, T_world_camera,
-                                       {radius_m, drop.near_world, is_free});
+  const Support support = find_support(seen_room_depth_m(view.expected, view.foreground), view.camera,
+                                       view.T_world_camera, {radius_m, drop.near_world, is_free});
   if (support) return {support.point_world - to_middle, height_m, note_of_height(height_m, drop.height_m)};
   if (first_free)
     return {*first_free - to_middle, drop.height_m,

@@ -54,6 +54,14 @@ struct DropScene {
   CyberRadar& radar;
 };
 
+/// The frame in which find_drop_position() looks for a surface. Refers to its parts, which must outlive it.
+struct DropView {
+  const Intrinsics& camera;  ///< depth camera of the frame
+  const Eigen::Isometry3d& T_world_camera;
+  const ExpectedView& expected;
+  const FrameForeground& foreground;
+};
+
 /// Result of find_drop_position().
 struct [[nodiscard]] DropPosition {
   /// Position of the object's origin for which its centre is above the surface point; z is the surface's
@@ -69,11 +77,8 @@ struct [[nodiscard]] DropPosition {
 /// fall freely and where it then stays. Dynamic surfaces count only if the scene has no static surface.
 /// Simulates a fall from drop.height_m, and from kGentleDrop_m if the object does not stay, for at most 6
 /// places. If the object stays in none of them, the first place is returned.
-/// @param camera                depth camera of the frame
-/// @param expected, foreground results for the current frame
-DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,
-                                const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                                const ExpectedView& expected, const FrameForeground& foreground,
+/// @param view  the current frame
+DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop, const DropView& view,
                                 const DropScene& scene);
 
 }  // namespace roomradar

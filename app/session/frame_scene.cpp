@@ -79,7 +79,7 @@ const MaskImage& FrameScene::previous_dynamic_mask(const Intrinsics& camera) {
 const FrameForeground& FrameScene::find_dynamic(const Frame& frame, const ExpectedView& expected) {
   config_.foreground.noise = frame.depth_noise;
   foreground_.counts =
-      mark_foreground(frame.depth_m, expected.depth_m, frame.depth_camera, expected.T_world_camera,
+      mark_foreground({frame.depth_m, frame.depth_camera, expected.T_world_camera}, expected.depth_m,
                       config_.foreground, foreground_history_, foreground_.labels, foreground_.dynamic_mask);
   return foreground_;
 }
@@ -111,8 +111,10 @@ void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_wo
   config_.moved.noise = frame.depth_noise;
   find_touchable(frame, T_world_camera, foreground.labels, objects);
   const MaskImage& touchable = buffers_.touchable;
-  mesh_dynamic(frame.depth_m, touchable, expected.depth_m, frame.depth_camera, T_world_camera, fine,
-               config_.moved, buffers_.dynamic, dynamic_world_);
+  mesh_dynamic({.measured = {frame.depth_m, frame.depth_camera, T_world_camera},
+                .dynamic_mask = touchable,
+                .expected_depth_m = expected.depth_m},
+               fine, config_.moved, buffers_.dynamic, dynamic_world_);
   points_world_.swap(last_points_world_);
   dynamic_points(frame.depth_m, touchable, frame.depth_camera, T_world_camera, points_world_);
   inferred_.build_in_order(dynamic_world_.inferred_world);
@@ -121,8 +123,8 @@ void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_wo
 
 void FrameScene::mesh_all_pixels(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   config_.mesh.noise = frame.depth_noise;
-  mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh, buffers_.mesh,
-             dynamic_world_.seen_world);
+  mesh_whole({frame.depth_m, frame.depth_camera, T_world_camera}, config_.surfaces, config_.mesh,
+             buffers_.mesh, dynamic_world_.seen_world);
   moved_.set(dynamic_world_.seen_world, MeshUsage::kStreamed);
 }
 

@@ -128,14 +128,14 @@ bool grip(const SurfaceSweep& sweep, const Eigen::Vector3d& shift_world, const D
 
 /// Removes the inferred back from the object's scene if it engulfs the object.
 void leave_out_engulfing_back(DueObject& one, const AdvancedBody& advanced, PhysicsConfig config,
-                              Radar& radar, std::atomic<double>& radar_ms) {
+                              const TimedRadar& timed) {
   const auto back = std::find_if(one.scene.begin(), one.scene.end(), [](const SceneTree& surface) {
     return surface.kind == SurfaceKind::kInferredBack;
   });
   if (back == one.scene.end()) return;
   const RadarScene of_back{{&*back, 1}, {}};
   const CollisionQueries probe =
-      make_collision_queries(radar, one.object->model->shape.touched, of_back, &radar_ms);
+      make_collision_queries(timed.radar, one.object->model->shape.touched, of_back, &timed.queries_ms);
   config.max_depenetration_mps = max_push_mps(advanced, config);
   if (is_engulfed(*advanced.body, advanced.dt_s, probe.travel, config,
                   advanced.depenetration_directions_world))
@@ -207,8 +207,7 @@ bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scen
 }
 
 void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
-                     Radar& radar, ContactSystem& contacts, ContactCounts& counts,
-                     std::atomic<double>& radar_ms) {
+                     const TimedRadar& timed, ContactSystem& contacts, ContactCounts& counts) {
   std::vector<RadarScene> scenes;
   std::vector<CollisionQueries> probes;
   std::vector<AdvancedBody> advanced;
@@ -219,8 +218,8 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
   int pieces = 1;
   for (DueObject& one : due) {
     scenes.push_back({one.scene, {}});
-    probes.push_back(
-        make_collision_queries(radar, one.object->model->shape.touched, scenes.back(), &radar_ms));
+    probes.push_back(make_collision_queries(timed.radar, one.object->model->shape.touched, scenes.back(),
+                                            &timed.queries_ms));
     probes.back().others = one.bodies;
     sweeps.push_back(moving == nullptr || one.is_undisturbed ? SurfaceSweep{} : sweep_near(one, *moving));
     Body& body = one.object->body;
@@ -246,11 +245,11 @@ void advance_objects(std::span<DueObject> due, const FrameScene* moving, const P
       if (moving == nullptr || due[i].is_undisturbed) continue;
       const double left_part = static_cast<double>(left - 1) / pieces;
       put_surfaces(sweeps[i], left_part, *moving, surfaces, due[i], advanced[i]);
-      advanced[i].is_gripped =
-          !due[i].object->carried_to_world && grip(sweeps[i], -left_part * sweeps[i].way_world,
-                                                   moving->dynamic_world(), due[i], advanced[i].dt_s, radar);
+      advanced[i].is_gripped = !due[i].object->carried_to_world &&
+                               grip(sweeps[i], -left_part * sweeps[i].way_world, moving->dynamic_world(),
+                                    due[i], advanced[i].dt_s, timed.radar);
       advanced[i].is_carried = advanced[i].is_gripped || due[i].object->carried_to_world;
-      leave_out_engulfing_back(due[i], advanced[i], config, radar, radar_ms);
+      leave_out_engulfing_back(due[i], advanced[i], config, timed);
     }
     advance_together(advanced, config, contacts);
     keep_contacts(due, advanced);

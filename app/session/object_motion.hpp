@@ -35,6 +35,12 @@ struct ContactCounts {
   std::array<int, kSurfaceKinds> by_kind{};  ///< contacts per kind of surface touched
 };
 
+/// A radar and the total duration of its queries. Refers to both, which must outlive it.
+struct TimedRadar {
+  Radar& radar;
+  std::atomic<double>& queries_ms;  ///< incremented by each query
+};
+
 /// Returns true if config.move_every_n_frames and config.picture_every_n_frames let the object with this
 /// index be advanced in this frame.
 bool is_turn_to_move(std::size_t index, std::int64_t frame_number, const SessionConfig& config);
@@ -70,10 +76,8 @@ bool is_undisturbed(const VirtualObject& object, std::span<const SceneTree> scen
 /// @param moving    this frame's surfaces; null: no surface is known to be dynamic
 /// @param contacts  buffers; keeps impulses as initial guesses for a next call with the same objects
 /// @param counts    incremented by the contacts of this call
-/// @param radar_ms  incremented by the duration of the radar's queries, ms
 void advance_objects(std::span<DueObject> due, const FrameScene* moving, const PhysicsConfig& config,
-                     Radar& radar, ContactSystem& contacts, ContactCounts& counts,
-                     std::atomic<double>& radar_ms);
+                     const TimedRadar& timed, ContactSystem& contacts, ContactCounts& counts);
 
 /// Returns one ball around each object in the room. Inside the balls, the dynamic mesh gets full resolution.
 std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects);

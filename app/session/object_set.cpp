@@ -139,7 +139,7 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
     DropRequest& drop = waiting.drop;
     VirtualObject& object = named(drop.name);
     DropPosition found =
-        find_drop_position(object, drop, frame.depth_camera, T_world_camera, expected, foreground,
+        find_drop_position(object, drop, {frame.depth_camera, T_world_camera, expected, foreground},
                            {room_, scene_without(&object), config_.physics, exact_radar_});
     if (found.position_world) {
       if (!found.note.empty()) notices_.push_back({drop.name, found.note});
@@ -166,7 +166,7 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
 
 ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes& times) {
   constexpr double kStuckLooksAfter_s = 0.5;  // overlaps are the most expensive contacts
-  std::atomic<double> radar_ms = 0.0;
+  std::atomic<double> queries_ms = 0.0;
   std::vector<DueObject> due;
   for (std::size_t index = 0; index < objects_.size(); ++index) {
     VirtualObject* const object = objects_[index].get();
@@ -186,8 +186,8 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
   }
   ContactCounts counts;
   Radar& radar = passes_ ? static_cast<Radar&>(*passes_) : radar_;
-  advance_objects(due, has_map ? &scene_ : nullptr, config_.physics, radar, contact_system_, counts,
-                  radar_ms);
+  advance_objects(due, has_map ? &scene_ : nullptr, config_.physics, {radar, queries_ms}, contact_system_,
+                  counts);
   const bool is_any_overlapped =  // an object shifted out of an overlap may overlap others now
       std::any_of(due.begin(), due.end(), [](const DueObject& one) { return one.was_overlapped; });
   for (const DueObject& one : due) {
@@ -198,7 +198,7 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
     const std::string news = free_or_stuck(object, way_out_of(object));
     if (!news.empty()) notices_.push_back({object.body.name, news});
   }
-  times.add_ms("radar", radar_ms);
+  times.add_ms("radar", queries_ms);
   return counts;
 }
 

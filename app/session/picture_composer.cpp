@@ -191,13 +191,15 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   const bool bridges = has_moved && config_.picture.bridge_gaps;
   const PixelRect measured = has_moved ? rect : without_depth(buffers_.real_depth_m, rect);
   if (measured.width > 0) {
-    view_measured(frame.depth_m, scene_.foreground().dynamic_mask, frame.depth_camera,
+    view_measured({.depth_m = frame.depth_m,
+                   .dynamic_mask = scene_.foreground().dynamic_mask,
+                   .camera = frame.depth_camera},
                   T_world_view.inverse() * T_world_camera, camera, measured, buffers_.measured);
     add_measured(buffers_.measured, frame.depth_noise, buffers_.real_depth_m);
     if (bridges) bridge_gaps(buffers_.background, buffers_.measured, buffers_.real_depth_m);
   }
   const MaskImage* is_decided = bridges && measured.width > 0 ? &buffers_.measured.is_decided : nullptr;
-  cast_shadows(buffers_.background, camera, T_world_view, buffers_.real_depth_m, casters, config_.picture,
+  cast_shadows(buffers_.background, {buffers_.real_depth_m, camera, T_world_view}, casters, config_.picture,
                picture_, is_decided);
   buffers_.patches.clear();
   for (const auto& object : objects_)
@@ -208,8 +210,8 @@ void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_wor
   hatch(buffers_.patches, camera, T_world_view, buffers_.real_depth_m, picture_);
   drawer_.finish(layer_);
   find_feet(*shown_view_);
-  lay_objects(layer_, buffers_.real_depth_m, config_.picture.occlusion, occlusion_, picture_, buffers_.feet,
-              &buffers_.background);
+  lay_objects({.layer = layer_, .feet = buffers_.feet}, buffers_.real_depth_m, config_.picture.occlusion,
+              occlusion_, picture_, &buffers_.background);
   ++pictures_;
   if (colour_.view && config_.picture.has_grain)
     add_grain(layer_, occlusion_, light_.noise, pictures_, picture_);

@@ -227,8 +227,8 @@ Tracking Session::locate_camera(const Frame& frame) {
     return scene_.render_expected(frame.depth_camera, T_world_camera).depth_m;
   };
   const MaskImage& moved = scene_.previous_dynamic_mask(frame.depth_camera);
-  if (!building_) return locate(locator_, frame, map_.keyframe_database, moved, expected_depth);
-  return building_->locate(locator_, frame, map_.keyframe_database, moved, expected_depth);
+  if (!building_) return locate(locator_, frame, map_.keyframe_database.load(), moved, expected_depth);
+  return building_->locate(locator_, frame, map_.keyframe_database.load(), moved, expected_depth);
 }
 
 void Session::renew_room() {

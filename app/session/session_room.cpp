@@ -10,7 +10,7 @@ namespace {
 /// Returns the box around the map's surface and observed space, in the world.
 Eigen::AlignedBox3d known_box(const SavedMap& map) {
   Eigen::AlignedBox3d box = map.info.counts.known_world.isEmpty()  // not loaded from a folder
-                                ? map.octree->counts().known_world
+                                ? map.octree.load().counts().known_world
                                 : map.info.counts.known_world;
   for (const Eigen::Vector3f& vertex : map.mesh.vertices) box.extend(map.mesh.origin + vertex.cast<double>());
   return box;
@@ -27,7 +27,7 @@ RoomPreparation prepare_room(const SavedMap& map, bool will_search) {
   });
   if (will_search)
     preparation.patches =
-        std::async(std::launch::async, [&map] { return build_patch_index(map.keyframe_database); });
+        std::async(std::launch::async, [&map] { return build_patch_index(map.keyframe_database.load()); });
   return preparation;
 }
 
@@ -44,8 +44,9 @@ bool is_loaded_round(const SessionRoom& room, const VirtualObject& object) {
 }
 
 void set_unknown(SessionRoom& room, const SavedMap& map) {
-  room.unknown = *map.unknown ? *map.unknown
-                              : std::make_shared<const UnknownSurface>(unknown_surface(map.octree, map.mesh));
+  room.unknown = map.unknown.load()
+                     ? map.unknown.load()
+                     : std::make_shared<const UnknownSurface>(unknown_surface(map.octree.load(), map.mesh));
   room.unknown_tree.build_by_place(room.unknown->mesh_world);
 }
 

@@ -55,7 +55,7 @@ void add_maps_in(const fs::path& folder, std::vector<MapEntry>& maps) {
 }
 
 void count_holes(const SavedMap& map, MapDetails& details) {
-  for (const Hole& hole : survey_coverage(map.octree, map.mesh, map.trajectory).holes) {
+  for (const Hole& hole : survey_coverage(map.octree.load(), map.mesh, map.trajectory).holes) {
     if (!is_inside_scan(hole)) {
       ++details.outer_holes;
       continue;

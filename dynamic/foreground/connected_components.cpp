@@ -56,8 +56,10 @@ void sum_regions(ConnectedComponents& found) {
 }  // namespace
 
 void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
-                     const RegionBits& bits, const Intrinsics& camera, const DepthNoise& noise,
-                     int max_gap_px, ConnectedComponents& found) {
+                     const RegionBits& bits, const Intrinsics& camera, const ConnectionRules& rules,
+                     ConnectedComponents& found) {
+  const DepthNoise noise = rules.noise;
+  const int max_gap_px = rules.max_gap_px;
   found.runs.reserve(depth_m.pixels.size());
   found.first_run.reserve(static_cast<std::size_t>(depth_m.height));
   found.regions.reserve(depth_m.pixels.size());

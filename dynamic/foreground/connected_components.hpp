@@ -34,6 +34,12 @@ struct RegionBits {
   std::uint8_t weak = 0, strong = 0, ambiguous = 0, before = 0, core = 0;
 };
 
+/// When two pixels belong to one surface.
+struct ConnectionRules {
+  DepthNoise noise = {};
+  int max_gap_px = 0;  ///< max number of unmeasured pixels between neighbours; 0: only adjacent pixels
+};
+
 /// Result of find_components(). runs[i].region is an index into `regions`. `regions` has one entry per run.
 /// Entries to which no run refers are meaningless.
 struct ConnectedComponents {
@@ -46,15 +52,14 @@ struct ConnectedComponents {
 /// have the strong bit, or if they are on one surface. Two pixels are on one surface if their depths differ
 /// by at most a bound. The bound is the noise plus the depth change of a plane at 80 degrees incidence.
 ///
-/// Pixels of a row or column with up to max_gap_px unmeasured pixels between them, and nothing else, are
-/// neighbours too, if they are on one surface. A surface that is measured only here and there, such as dark
-/// or shiny skin, is thus one region.
+/// Pixels of a row or column with up to ConnectionRules::max_gap_px unmeasured pixels between them, and
+/// nothing else, are neighbours too, if they are on one surface. A surface that is measured only here and
+/// there, such as dark or shiny skin, is thus one region.
 /// @param evidence  bits of each pixel of depth_m
-/// @param max_gap_px  0: only adjacent pixels are neighbours
 ///
 /// Allocates only if the image is larger than those of earlier calls.
 void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
-                     const RegionBits& bits, const Intrinsics& camera, const DepthNoise& noise,
-                     int max_gap_px, ConnectedComponents& found);
+                     const RegionBits& bits, const Intrinsics& camera, const ConnectionRules& rules,
+                     ConnectedComponents& found);
 
 }  // namespace roomradar

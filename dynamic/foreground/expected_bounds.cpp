@@ -245,15 +245,16 @@ void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, 
 
 }  // namespace
 
-void find_bounds(const DepthImage& expected_m, const Intrinsics& camera,
-                 const Eigen::Isometry3d& T_world_camera, const ForegroundConfig& config, float misfit_per_m,
+void find_bounds(const PosedDepth& expected, const ForegroundConfig& config, float misfit_per_m,
                  UnmappedSpace& unmapped, ExpectedBounds& bounds) {
+  const DepthImage& expected_m = expected.depth_m;
+  const Intrinsics& camera = expected.camera;
   bounds.grid = {blocks_along(expected_m.width), blocks_along(expected_m.height)};
   find_extremes(expected_m, bounds);
   bounds.model_m = bounds.farthest_m;
   find_islands(bounds);
   find_extremes_around_holes(config.hole_reach_px, bounds);
-  warp_unmapped(camera, T_world_camera, bounds.model_m, unmapped);
+  warp_unmapped(camera, expected.T_world_camera, bounds.model_m, unmapped);
   add_background(unmapped, bounds);
   choose_reach(camera, config, bounds);
   find_extremes_in_reach(bounds);

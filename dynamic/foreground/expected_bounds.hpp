@@ -9,7 +9,7 @@
 #include "dynamic/foreground/unmapped_space.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/image.hpp"
-#include "mapping/types/intrinsics.hpp"
+#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
 
@@ -64,11 +64,10 @@ inline float facing_sigma_m(const DepthNoise& noise, float depth_m, float model_
 }
 
 /// Computes the bounds of each block. Warps `unmapped` into the camera's view.
-/// @param expected_m  depth of the static model in the camera's view, 0 = no surface; must not be an empty
-///                    image
-/// @param unmapped    what the run has seen where the model has no surface
-void find_bounds(const DepthImage& expected_m, const Intrinsics& camera,
-                 const Eigen::Isometry3d& T_world_camera, const ForegroundConfig& config, float misfit_per_m,
+/// @param expected  depth of the static model in the camera's view, 0 = no surface; must not be an empty
+/// image
+/// @param unmapped  what the run has seen where the model has no surface
+void find_bounds(const PosedDepth& expected, const ForegroundConfig& config, float misfit_per_m,
                  UnmappedSpace& unmapped, ExpectedBounds& bounds);
 
 }  // namespace roomradar

@@ -73,8 +73,8 @@ std::size_t label_regions(const DepthImage& depth_m, const Difference& differenc
                           const ForegroundConfig& config, ForegroundState& state, LabelImage& labels) {
   const int max_gap_px =
       std::min(256, static_cast<int>(config.max_gap_rad * static_cast<float>(camera.fx_px)));
-  find_components(depth_m, state.evidence.bits, difference.bits, camera, config.noise, max_gap_px,
-                  state.regions);
+  find_components(depth_m, state.evidence.bits, difference.bits, camera,
+                  {.noise = config.noise, .max_gap_px = max_gap_px}, state.regions);
   const bool is_moved = difference.label == PixelLabel::kMoved;
   if (is_moved) find_firm_regions(depth_m, difference.bits.strong, state);
   const auto width = static_cast<std::uint32_t>(depth_m.width);
@@ -108,10 +108,11 @@ std::size_t label_regions(const DepthImage& depth_m, const Difference& differenc
 
 }  // namespace
 
-ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
-                                 const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+ForegroundCounts mark_foreground(const PosedDepth& measured, const DepthImage& expected_depth_m,
                                  const ForegroundConfig& config, ForegroundState& state, LabelImage& labels,
                                  MaskImage& dynamic_mask) {
+  const DepthImage& depth_m = measured.depth_m;
+  const Intrinsics& camera = measured.camera;
   assert(depth_m.width == expected_depth_m.width && depth_m.height == expected_depth_m.height);
   assert(depth_m.width == camera.width_px && depth_m.height == camera.height_px);
   if (labels.width != depth_m.width || labels.height != depth_m.height)
@@ -122,12 +123,15 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   state.evidence.resize(depth_m.width, depth_m.height);
 
   follow_misfit(depth_m, expected_depth_m, config.noise, state.fit);
-  find_bounds(expected_depth_m, camera, T_world_camera, config, state.fit.misfit_per_m, state.unmapped,
-              state.bounds);
+  find_bounds({expected_depth_m, camera, measured.T_world_camera}, config, state.fit.misfit_per_m,
+              state.unmapped, state.bounds);
   see_what_came(depth_m, state.bounds.model_m, config.noise, state.unmapped);
-  warp_history(state.memory, depth_m, camera, T_world_camera, state.before);
-  weigh_pixels(depth_m, expected_depth_m, config, state.bounds, state.unmapped, state.fit.misfit_per_m,
-               state.before, state.evidence, labels);
+  warp_history(state.memory, depth_m, camera, measured.T_world_camera, state.before);
+  const StaticExpectation expected{.depth_m = expected_depth_m,
+                                   .bounds = state.bounds,
+                                   .unmapped = state.unmapped,
+                                   .misfit_per_m = state.fit.misfit_per_m};
+  weigh_pixels(depth_m, expected, state.before, config, state.evidence, labels);
   mark_revealed_cores(depth_m, expected_depth_m, state.bounds, state.evidence);
   drop_far_weak(depth_m, config.weak_reach_px, state.bounds.grid, state.evidence);
 
@@ -147,7 +151,7 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   ForegroundCounts counts;
   counts.moved = label_regions(depth_m, moved, camera, config, state, labels);
   counts.revealed = label_regions(depth_m, revealed, camera, config, state, labels);
-  store_history(camera, T_world_camera, state.memory);
+  store_history(camera, measured.T_world_camera, state.memory);
 
   for (int y = 0; y < depth_m.height; ++y) {
     const float* live = depth_m.row(y);

@@ -13,7 +13,7 @@
 #include "dynamic/foreground/static_residual.hpp"
 #include "dynamic/foreground/unmapped_space.hpp"
 #include "mapping/types/image.hpp"
-#include "mapping/types/intrinsics.hpp"
+#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
 
@@ -40,13 +40,12 @@ struct ForegroundCounts {
 
 /// Compares a depth frame with the static model's depth at the same pose.
 ///
-/// @param depth_m           measured depth, height x width, metres along the optical axis, 0 = no measurement
+/// @param measured          measured depth; the pose is used to warp the previous frame's regions into this
+///                          frame
 /// @param expected_depth_m  depth of the static model at the camera pose, same size, 0 = no surface
-/// @param camera            intrinsics of both images
-/// @param T_world_camera    camera pose; used to warp the previous frame's regions into this frame
 /// @param state             one per camera; only the first frame of a size allocates
 /// @param labels            resized and set
-/// @param dynamic_mask        255 where the label is kMoved, else 0; resized and set
+/// @param dynamic_mask      255 where the label is kMoved, else 0; resized and set
 /// The two images and the camera must agree in size (asserted).
 ///
 /// A pixel seeds a dynamic region only if it is clearly nearer than the model at that pixel. In addition, the
@@ -65,8 +64,7 @@ struct ForegroundCounts {
 /// are lower where the previous frame had a region. A new region of less than three times min_region_px or
 /// min_region_m2 is accepted only if it persists for a second frame. In holes, a region needs a core of
 /// evidence 12 pixels wide.
-ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
-                                 const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+ForegroundCounts mark_foreground(const PosedDepth& measured, const DepthImage& expected_depth_m,
                                  const ForegroundConfig& config, ForegroundState& state, LabelImage& labels,
                                  MaskImage& dynamic_mask);
 

@@ -57,9 +57,19 @@ void stretch_unmapped(const UnmappedSpace& unmapped, const ExpectedBounds& bound
   }
 }
 
+// Measured and expected depth of a row of pixels.
+struct DepthRow {
+  const float* live_m;
+  const float* expected_m;
+  int width;
+};
+
 // Computes the evidence of one row of pixels, without their neighbours.
-void weigh_row(const float* live, const float* expected, int width, const ForegroundConfig& config,
-               const RowBounds& bounds, float misfit_per_m, std::uint8_t* bits, PixelLabel* labels) {
+void weigh_row(const DepthRow& row, const ForegroundConfig& config, const RowBounds& bounds,
+               float misfit_per_m, std::uint8_t* bits, PixelLabel* labels) {
+  const float* live = row.live_m;
+  const float* expected = row.expected_m;
+  const int width = row.width;
   const float* weak = bounds.weak_m.data();
   const float* strong = bounds.strong_m.data();
   const float* nearest = bounds.nearest_m.data();
@@ -124,8 +134,9 @@ void gather_blocks(const std::uint8_t* evidence, int width, int rows_px, std::ui
 // are dynamic if no expected surface within reach is at their depth, within tolerance. A block with an edge
 // represents its two sides, not the depths between them.
 std::uint8_t resolve_ambiguous(const DepthImage& depth_m, int column, int row, const ForegroundConfig& config,
-                               const ExpectedBounds& bounds, float misfit_per_m,
-                               std::vector<std::uint8_t>& bits) {
+                               const StaticExpectation& expected, std::vector<std::uint8_t>& bits) {
+  const ExpectedBounds& bounds = expected.bounds;
+  const float misfit_per_m = expected.misfit_per_m;
   constexpr int kLanes = kBlock_px * kBlock_px;
   std::array<std::size_t, kLanes> pixel;
   std::array<float, kLanes> depth, tolerance;
@@ -199,19 +210,20 @@ void PixelEvidence::resize(int width_px, int height_px) {
   row.bits.assign(static_cast<std::size_t>(blocks_along(width_px)) * kBlock_px, 0);
 }
 
-void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& settings,
-                  const ExpectedBounds& bounds, const UnmappedSpace& unmapped, float misfit_per_m,
-                  const std::vector<std::uint8_t>& before, PixelEvidence& evidence, LabelImage& labels) {
+void weigh_pixels(const DepthImage& depth_m, const StaticExpectation& expected,
+                  const std::vector<std::uint8_t>& before, const ForegroundConfig& settings,
+                  PixelEvidence& evidence, LabelImage& labels) {
+  const ExpectedBounds& bounds = expected.bounds;
   const ForegroundConfig config = settings;
   const int width = depth_m.width;
   const BlockGrid grid = bounds.grid;
   evidence.blocks.evidence.assign(grid.size(), 0);
   for (int row = 0; row < grid.rows; ++row) {
     stretch_bounds(config, bounds, before, row, width, evidence);
-    stretch_unmapped(unmapped, bounds, row, width, evidence.row);
+    stretch_unmapped(expected.unmapped, bounds, row, width, evidence.row);
     const int end = std::min((row + 1) * kBlock_px, depth_m.height);
     for (int y = row * kBlock_px; y < end; ++y) {
-      weigh_row(depth_m.row(y), expected_m.row(y), width, config, evidence.row, misfit_per_m,
+      weigh_row({depth_m.row(y), expected.depth_m.row(y), width}, config, evidence.row, expected.misfit_per_m,
                 evidence.bits.data() + depth_m.index(0, y), labels.row(y));
     }
     std::uint8_t* blocks = evidence.blocks.evidence.data() + grid.at(0, row);
@@ -220,8 +232,7 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
     const std::uint8_t* was_before = before.data() + grid.at(0, row);
     for (int column = 0; column < grid.columns; ++column) {
       if ((blocks[column] & kAmbiguousMoved) != 0)
-        blocks[column] |=
-            resolve_ambiguous(depth_m, column, row, config, bounds, misfit_per_m, evidence.bits);
+        blocks[column] |= resolve_ambiguous(depth_m, column, row, config, expected, evidence.bits);
       if (was_before[column] == 0 || blocks[column] == 0) continue;
       const int was =
           ((was_before[column] & (kBlockMoved | kBlockMaybeMoved)) != 0 ? kMovedBefore : 0) |

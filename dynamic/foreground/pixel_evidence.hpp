@@ -68,16 +68,22 @@ struct PixelEvidence {
   void resize(int width_px, int height_px);
 };
 
+/// What the static room looks like in this view. Refers to its parts, which must outlive it.
+struct StaticExpectation {
+  const DepthImage& depth_m;      ///< depth of the static model, m; 0: unknown
+  const ExpectedBounds& bounds;   ///< depth range of the static room per block, for depth_m
+  const UnmappedSpace& unmapped;  ///< what the run has seen in the model's holes, this frame included
+  /// Standard deviation of measured minus expected inverse depth of static surfaces.
+  float misfit_per_m;
+};
+
 /// Computes the evidence of all pixels. Labels a pixel kStatic if its measured and expected depth are both
 /// known, else kNotKnown.
-/// @param depth_m, expected_m  measured depth and the static model's depth, m, height x width, 0 = unknown
-/// @param bounds       depth range of the static room per block, for expected_m
-/// @param unmapped     what the run has seen in the model's holes, this frame included
-/// @param misfit_per_m  standard deviation of measured minus expected inverse depth of static surfaces
-/// @param before       history bits per block, see warp_history()
-void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& settings,
-                  const ExpectedBounds& bounds, const UnmappedSpace& unmapped, float misfit_per_m,
-                  const std::vector<std::uint8_t>& before, PixelEvidence& evidence, LabelImage& labels);
+/// @param depth_m  measured depth, m, height x width, 0 = unknown
+/// @param before   history bits per block, see warp_history()
+void weigh_pixels(const DepthImage& depth_m, const StaticExpectation& expected,
+                  const std::vector<std::uint8_t>& before, const ForegroundConfig& settings,
+                  PixelEvidence& evidence, LabelImage& labels);
 
 /// Sets kRevealedCore in blocks whose neighbourhood consists of revealed blocks (farther than the model). The
 /// neighbourhood's radius is more than half the max edge error, rounded up to blocks. A model edge displaced

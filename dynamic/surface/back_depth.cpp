@@ -35,16 +35,15 @@ float limited(float depth_m, float thickness_m, float expected_m, const BackRule
 
 class BackMaker {
  public:
-  BackMaker(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
-            const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
-            BackLattice& back)
+  BackMaker(const DynamicPixels& pixels, const DynamicLattice& lattice, const DynamicView& view,
+            const BackRules& rules, BackLattice& back)
       : pixels_(pixels),
         lattice_(lattice),
-        depth_m_(depth_m),
-        expected_m_(expected_depth_m),
+        depth_m_(view.measured.depth_m),
+        expected_m_(view.expected_depth_m),
         rules_(rules),
         back_(back),
-        focal_px_(static_cast<float>(std::min(camera.fx_px, camera.fy_px))) {
+        focal_px_(static_cast<float>(std::min(view.measured.camera.fx_px, view.measured.camera.fy_px))) {
     for (std::size_t k = 0; k < kSteps.size(); ++k)
       to_[k] = static_cast<std::ptrdiff_t>(kSteps[k].y) * lattice.columns + kSteps[k].x;
   }
@@ -226,9 +225,8 @@ class BackMaker {
 
 }  // namespace
 
-void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
-               const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
-               BackLattice& back) {
+void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DynamicView& view,
+               const BackRules& rules, BackLattice& back) {
   const std::size_t size = lattice.inverse_depth.size();
   back.thickness_m.assign(size, 0.0F);
   back.inverse_depth.assign(size, 0.0F);
@@ -240,7 +238,7 @@ void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const
   back.stack.reserve(size);
   back.parts.reserve(size + 1);
   back.parts.assign(1, {});
-  BackMaker maker(pixels, lattice, depth_m, expected_depth_m, camera, rules, back);
+  BackMaker maker(pixels, lattice, view, rules, back);
   maker.join();
   maker.measure_distances();
   maker.measure_widths();
@@ -248,8 +246,9 @@ void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const
   maker.set_depths();
 }
 
-float back_at(int x, int y, float front_inverse_depth, const DynamicLattice& lattice,
-              const DepthImage& expected_depth_m, const BackRules& rules, const BackLattice& back) {
+float back_at(const FrontPixel& front, const DynamicLattice& lattice, const DepthImage& expected_depth_m,
+              const BackRules& rules, const BackLattice& back) {
+  const int x = front.x, y = front.y;
   const int column = x / kCell_px, row = y / kCell_px;
   const float along_x = static_cast<float>(x % kCell_px) / kCell_px;
   const float along_y = static_cast<float>(y % kCell_px) / kCell_px;
@@ -260,7 +259,7 @@ float back_at(int x, int y, float front_inverse_depth, const DynamicLattice& lat
     const float there_m = back.thickness_m[lattice.index(column + k % 2, row + k / 2)];
     thickness_m += weight * std::max(there_m, rules.least_thickness_m);
   }
-  return 1.0F / limited(1.0F / front_inverse_depth, thickness_m, expected_depth_m.at(x, y), rules);
+  return 1.0F / limited(1.0F / front.inverse_depth, thickness_m, expected_depth_m.at(x, y), rules);
 }
 
 }  // namespace roomradar

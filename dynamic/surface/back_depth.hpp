@@ -5,6 +5,7 @@
 
 #include "dynamic/surface/depth_discontinuity.hpp"
 #include "dynamic/surface/dynamic_lattice.hpp"
+#include "dynamic/surface/dynamic_view.hpp"
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
@@ -46,15 +47,18 @@ struct BackLattice {
 /// the static model, but always behind the front. A boundary where a nearer surface or the image's edge cuts
 /// the object off is not an outline. The thickness does not decrease towards such a boundary.
 ///
-/// @param depth_m           measured depth of all pixels, dynamic or not
-/// @param expected_depth_m  depth of the static model; 0 is unknown and does not limit the back
-void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
-               const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
-               BackLattice& back);
+/// @param view  its expected depth limits the back, where it is known
+void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DynamicView& view,
+               const BackRules& rules, BackLattice& back);
 
-/// Returns the inverse depth of the back, 1/m, at a dynamic pixel (x, y) whose front has inverse depth
-/// front_inverse_depth.
-float back_at(int x, int y, float front_inverse_depth, const DynamicLattice& lattice,
-              const DepthImage& expected_depth_m, const BackRules& rules, const BackLattice& back);
+/// A dynamic pixel (x, y) and the inverse depth of its front, 1/m.
+struct FrontPixel {
+  int x, y;
+  float inverse_depth;
+};
+
+/// Returns the inverse depth of the back, 1/m, behind a dynamic pixel.
+float back_at(const FrontPixel& front, const DynamicLattice& lattice, const DepthImage& expected_depth_m,
+              const BackRules& rules, const BackLattice& back);
 
 }  // namespace roomradar

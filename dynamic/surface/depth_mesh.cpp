@@ -199,12 +199,12 @@ void require_valid(const DepthMeshConfig& config) {
           config.border_push_m, "in 0..100");
 }
 
-void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& camera,
-                 const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
+void mesh_masked(const PosedDepth& measured, const MaskImage& dynamic_mask, const DepthMeshConfig& config,
                  DepthMeshScratch& scratch, Mesh& mesh) {
+  const DepthImage& depth_m = measured.depth_m;
   assert(depth_m.width == dynamic_mask.width && depth_m.height == dynamic_mask.height);
-  start(depth_m, T_world_camera, config, scratch, mesh);
-  GridMesher mesher(camera, T_world_camera, config, /*skirts=*/false, mesh);
+  start(depth_m, measured.T_world_camera, config, scratch, mesh);
+  GridMesher mesher(measured.camera, measured.T_world_camera, config, /*skirts=*/false, mesh);
   const auto depth_at = [&](int x, int y) {
     const std::size_t i = depth_m.index(x, y);
     return dynamic_mask.pixels[i] != 0 ? depth_m.pixels[i] : 0.0F;
@@ -213,12 +213,13 @@ void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const
   mesher.finish();
 }
 
-void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh) {
+void mesh_whole(const PosedDepth& measured, SurfacePolicy policy, const DepthMeshConfig& config,
+                DepthMeshScratch& scratch, Mesh& mesh) {
+  const DepthImage& depth_m = measured.depth_m;
   const bool border = policy == SurfacePolicy::kBorder;
   const bool skirts = border || policy == SurfacePolicy::kSkirt;
-  start(depth_m, T_world_camera, config, scratch, mesh);
-  GridMesher mesher(camera, T_world_camera, config, skirts, mesh);
+  start(depth_m, measured.T_world_camera, config, scratch, mesh);
+  GridMesher mesher(measured.camera, measured.T_world_camera, config, skirts, mesh);
   if (border) mesher.push_border(depth_m.width, depth_m.height, config.stride_px, config.border_push_m);
   const float* depths = depth_m.pixels.data();
   if (skirts) {

@@ -7,8 +7,8 @@
 #include "dynamic/surface/surface_policy.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/image.hpp"
-#include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
+#include "mapping/types/posed_depth.hpp"
 
 namespace roomradar {
 
@@ -38,14 +38,11 @@ struct DepthMeshScratch {
 /// a triangle. Triangles connect neighbours on one surface. No triangle spans a depth discontinuity or the
 /// mask's edge.
 ///
-/// @param depth_m         height x width, metres along the optical axis, 0 = no measurement
-/// @param dynamic_mask      same size; not 0: dynamic
-/// @param T_world_camera  pose of the depth camera
-/// @param mesh            overwritten, allocations kept. Origin at the camera's position, axes of the world
-///                        frame, unit normals, counter-clockwise towards the camera, no colours. Empty if no
-///                        pixel is dynamic
-void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& camera,
-                 const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
+/// @param dynamic_mask  of the depth image's size; not 0: dynamic
+/// @param mesh          overwritten, allocations kept. Origin at the camera's position, axes of the world
+///                      frame, unit normals, counter-clockwise towards the camera, no colours. Empty if no
+///                      pixel is dynamic
+void mesh_masked(const PosedDepth& measured, const MaskImage& dynamic_mask, const DepthMeshConfig& config,
                  DepthMeshScratch& scratch, Mesh& mesh);
 
 /// Meshes the whole frame, as a system without a map would. kHoles and kMap leave depth discontinuities open.
@@ -55,7 +52,7 @@ void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const
 /// outwards in the image plane and by border_push_m nearer, so objects that leave the view do not fall.
 /// Parameters as for mesh_masked().
 /// Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
-void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);
+void mesh_whole(const PosedDepth& measured, SurfacePolicy policy, const DepthMeshConfig& config,
+                DepthMeshScratch& scratch, Mesh& mesh);
 
 }  // namespace roomradar

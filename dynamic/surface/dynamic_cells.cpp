@@ -297,8 +297,7 @@ class CellSorter {
 }  // namespace
 
 void make_cells(const DynamicPixels& pixels, const DynamicLattice& lattice, const Intrinsics& camera,
-                std::span<const FineBall> fine, std::size_t regions, const CellRules& rules,
-                DynamicCells& cells) {
+                const FineBalls& fine, const CellRules& rules, DynamicCells& cells) {
   const auto count =
       static_cast<std::size_t>(lattice.columns - 1) * static_cast<std::size_t>(lattice.rows - 1);
   cells.kinds.assign(count, CellKind::kEmpty);
@@ -306,7 +305,7 @@ void make_cells(const DynamicPixels& pixels, const DynamicLattice& lattice, cons
   cells.parts.resize(count);
   cells.must_be_vertex.assign(lattice.inverse_depth.size(), 0);
   cells.counts = {};
-  cells.fine_of_region.assign(regions, 0);
+  cells.fine_of_region.assign(fine.regions, 0);
   cells.triangles.clear();
   cells.triangles.reserve(2 * static_cast<std::size_t>(pixels.smooth.width) *
                           static_cast<std::size_t>(pixels.smooth.height));
@@ -314,7 +313,7 @@ void make_cells(const DynamicPixels& pixels, const DynamicLattice& lattice, cons
   cells.has_flat.reserve(count / (kSquareCells * kSquareCells));
   cells.first_triangle.clear();
   cells.first_triangle.reserve(count / (kSquareCells * kSquareCells) + 1);
-  CellSorter sorter(pixels, lattice, camera, fine, rules, cells);
+  CellSorter sorter(pixels, lattice, camera, fine.balls, rules, cells);
   sorter.sort();
   sorter.make_triangles();
 }

@@ -52,6 +52,12 @@ struct DynamicCells {
   std::vector<std::uint32_t> first_triangle;  ///< per square, index into triangles; the last entry is the end
 };
 
+/// The balls to mesh at full resolution.
+struct FineBalls {
+  std::span<const FineBall> balls;  ///< every cell that a ball reaches becomes full
+  std::size_t regions = 0;          ///< number of regions; each FineBall::region must be less
+};
+
 struct CellRules {
   DepthDiscontinuity jump;  ///< test between neighbouring pixels
   float most_sigmas;  ///< max RMS distance of a cut cell's pixels from its triangles; above it the cell is
@@ -59,10 +65,7 @@ struct CellRules {
 };
 
 /// Classifies the cells and makes the triangles of cut and full cells.
-/// @param fine     balls; every cell that a ball reaches becomes full
-/// @param regions  number of regions; each FineBall::region must be less
 void make_cells(const DynamicPixels& pixels, const DynamicLattice& lattice, const Intrinsics& camera,
-                std::span<const FineBall> fine, std::size_t regions, const CellRules& rules,
-                DynamicCells& cells);
+                const FineBalls& fine, const CellRules& rules, DynamicCells& cells);
 
 }  // namespace roomradar

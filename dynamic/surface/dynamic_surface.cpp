@@ -77,7 +77,7 @@ class Assembler {
     const auto value = [&](std::uint32_t pixel) {
       const std::uint32_t x = pixel % width_, y = pixel / width_;
       if ((x | y) % kCell_px == 0) return scratch_.back.inverse_depth[lattice_point(x, y)];
-      return back_at(static_cast<int>(x), static_cast<int>(y), scratch_.smoothed[pixel], scratch_.lattice,
+      return back_at({static_cast<int>(x), static_cast<int>(y), scratch_.smoothed[pixel]}, scratch_.lattice,
                      expected_m_, back_rules_, scratch_.back);
     };
     walk(inferred_, value, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -226,8 +226,8 @@ class Assembler {
     if (!with_back) return;
     const std::uint32_t f = put(inferred_, front);
     const std::uint32_t b = put(
-        inferred_, {back_at(x0, y0, front[0], scratch_.lattice, expected_m_, back_rules_, scratch_.back),
-                    back_at(x1, y1, front[1], scratch_.lattice, expected_m_, back_rules_, scratch_.back)});
+        inferred_, {back_at({x0, y0, front[0]}, scratch_.lattice, expected_m_, back_rules_, scratch_.back),
+                    back_at({x1, y1, front[1]}, scratch_.lattice, expected_m_, back_rules_, scratch_.back)});
     inferred_.triangles.push_back({b, b + 2, b + 1});
     inferred_.triangles.push_back({b, b + 3, b + 2});
     for (std::uint32_t k = 0; k < 4; ++k) {
@@ -266,12 +266,12 @@ void reserve(std::size_t pixels, bool with_back, DynamicSurfaceScratch& scratch,
 
 }  // namespace
 
-void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
-                  const DepthImage& expected_depth_m, const Intrinsics& camera,
-                  const Eigen::Isometry3d& T_world_camera, std::span<const FineRegion> regions,
+void mesh_dynamic(const DynamicView& view, std::span<const FineRegion> regions,
                   const DynamicSurfaceConfig& config, DynamicSurfaceScratch& scratch,
                   DynamicSurface& surface) {
-  assert(depth_m.width == dynamic_mask.width && depth_m.height == dynamic_mask.height);
+  const auto& [depth_m, camera, T_world_camera] = view.measured;
+  const DepthImage& expected_depth_m = view.expected_depth_m;
+  assert(depth_m.width == view.dynamic_mask.width && depth_m.height == view.dynamic_mask.height);
   assert(depth_m.width == expected_depth_m.width && depth_m.height == expected_depth_m.height);
   clear(surface.seen_world, T_world_camera.translation());
   clear(surface.inferred_world, T_world_camera.translation());
@@ -286,12 +286,12 @@ void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
       scratch.fine.push_back({centre.cast<float>(), static_cast<float>(regions[i].radius_m), i});
   }
 
-  take_dynamic_pixels(depth_m, dynamic_mask, scratch.pixels);
+  take_dynamic_pixels(depth_m, view.dynamic_mask, scratch.pixels);
   make_lattice(scratch.pixels, camera, config.noise, config.flat_sigmas, scratch.lattice);
   const CellRules cell_rules{
       DepthDiscontinuity(config.noise, config.jump_sigmas, config.jump_incidence_deg, 1.0F, camera),
       config.cut_sigmas};
-  make_cells(scratch.pixels, scratch.lattice, camera, scratch.fine, regions.size(), cell_rules,
+  make_cells(scratch.pixels, scratch.lattice, camera, {scratch.fine, regions.size()}, cell_rules,
              scratch.cells);
 
   scratch.values = scratch.lattice.inverse_depth;
@@ -306,7 +306,7 @@ void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
   Assembler assembler(expected_depth_m, rays, back_rules, scratch, surface);
   assembler.make_seen();
   if (config.has_back) {
-    make_back(scratch.pixels, scratch.lattice, depth_m, expected_depth_m, camera, back_rules, scratch.back);
+    make_back(scratch.pixels, scratch.lattice, view, back_rules, scratch.back);
     assembler.make_inferred();
   }
   assembler.add_thin(config.has_back);

@@ -10,8 +10,8 @@
 #include "dynamic/surface/dynamic_lattice.hpp"
 #include "dynamic/surface/dynamic_pixels.hpp"
 #include "dynamic/surface/dynamic_surface_config.hpp"
+#include "dynamic/surface/dynamic_view.hpp"
 #include "mapping/types/image.hpp"
-#include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
@@ -67,16 +67,11 @@ struct DynamicSurfaceScratch {
 /// image, the mesh comes within a pixel of every pixel of the mask, except for specks whose neighbours are at
 /// other depths.
 ///
-/// @param depth_m           height x width, metres along the optical axis, 0 = no measurement
-/// @param dynamic_mask        same size; not 0: dynamic
-/// @param expected_depth_m  same size; depth of the static model, which limits the back; 0: unknown
-/// @param T_world_camera    pose of the depth camera
-/// @param regions           balls to mesh at full resolution; may be empty; non-finite regions are skipped
-/// @param surface           overwritten, allocations kept
+/// @param view     its expected depth limits the back, where it is known
+/// @param regions  balls to mesh at full resolution; may be empty; non-finite regions are skipped
+/// @param surface  overwritten, allocations kept
 /// Sizes must agree (asserted). Only the first frame of a size allocates.
-void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
-                  const DepthImage& expected_depth_m, const Intrinsics& camera,
-                  const Eigen::Isometry3d& T_world_camera, std::span<const FineRegion> regions,
+void mesh_dynamic(const DynamicView& view, std::span<const FineRegion> regions,
                   const DynamicSurfaceConfig& config, DynamicSurfaceScratch& scratch,
                   DynamicSurface& surface);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "mapping/alignment/point_to_plane.hpp"
 #include "mapping/types/linear_algebra.hpp"
@@ -97,30 +98,40 @@ bool is_too_large(const Eigen::Isometry3d& T_guess_found, const AlignConfig& con
   const Vector6d correction = local(T_guess_found);
   return !correction.allFinite() ||
          correction.head<3>().norm() > static_cast<double>(config.max_correction_m) ||
-         correction.tail<3>().norm() > static_cast<double>(config.max_correction_m);
+         correction.tail<3>().norm() > static_cast<double>(config.max_correction_rad);
 }
 
-/// Sums the matches of one level's points over all references, and updates their exposures.
-/// @param overlap  out, if the first reference has the level: fraction of the points with a correspondence
-PointMatches match_references(const std::vector<SourcePoint>& points,
-                              std::span<const PosedReference> references, std::size_t level,
-                              const Eigen::Isometry3d& T_world_camera, const MatchLimits& limits,
-                              const RowMotion& motion, std::vector<Exposure>& exposures, double& overlap) {
-  PointMatches total;
+/// Matches of one level's points.
+struct LevelMatches {
+  PointMatches total;  ///< summed over all references
+  /// Fraction of the points with a correspondence in the first reference. Unset: it lacks the level.
+  std::optional<double> overlap;
+};
+
+/// Matches one level's points with all references, and updates the references' exposures.
+LevelMatches match_references(const MovingPoints& live, std::span<const PosedReference> references,
+                              std::size_t level, const Eigen::Isometry3d& T_world_camera,
+                              const MatchLimits& limits, std::vector<Exposure>& exposures) {
+  const std::vector<SourcePoint>& points = live.points;
+  LevelMatches matches;
+  PointMatches& total = matches.total;
   for (std::size_t k = 0; k < references.size(); ++k) {
     const TargetView& reference = *references[k].view;
     if (level >= reference.levels.size()) continue;
     PointMatches pass;
-    match_points(points, reference.levels[level], references[k].T_world_view.inverse() * T_world_camera,
-                 limits, exposures[k], motion, pass);
+    match_points(
+        live, reference.levels[level],
+        {.T_view_camera = references[k].T_world_view.inverse() * T_world_camera, .exposure = exposures[k]},
+        limits, pass);
     exposures[k] = match_exposure(pass);
     total.depth.H += pass.depth.H, total.depth.g += pass.depth.g, total.depth.weight += pass.depth.weight;
     total.colour.H += pass.colour.H, total.colour.g += pass.colour.g;
     total.met += pass.met, total.inliers += pass.inliers, total.squares += pass.squares;
     if (k == 0)
-      overlap = points.empty() ? 0.0 : static_cast<double>(pass.met) / static_cast<double>(points.size());
+      matches.overlap =
+          points.empty() ? 0.0 : static_cast<double>(pass.met) / static_cast<double>(points.size());
   }
-  return total;
+  return matches;
 }
 
 /// Returns the motion of a level's points if the camera is at T_world_camera.
@@ -192,8 +203,11 @@ Tracking align(const SourcePoints& live, std::span<const PosedReference> referen
     const MatchLimits limits = limits_at(level, config);
     const Matrix6d fixed_coarser = fixed;
     for (int iteration = 0; iteration < config.iterations; ++iteration) {
-      total = match_references(points, references, static_cast<std::size_t>(level), T_world_camera, limits,
-                               motion_at(live, level, T_world_camera, readout), exposures, result.overlap);
+      const LevelMatches matches =
+          match_references({.points = points, .motion = motion_at(live, level, T_world_camera, readout)},
+                           references, static_cast<std::size_t>(level), T_world_camera, limits, exposures);
+      total = matches.total;
+      result.overlap = matches.overlap.value_or(result.overlap);
       // Coarser levels have fewer points, so the min count is divided by 4 per level.
       const int coarser = std::min(level - std::min(config.finest_level, last), 8);
       if (total.met < static_cast<std::size_t>(std::max(config.min_points >> (2 * coarser), 12))) {
@@ -281,9 +295,11 @@ DepthFit depth_fit(const SourcePoints& live, std::span<const PosedReference> ref
   if (references.empty() || live.levels.empty() || !T_world_camera.matrix().allFinite()) return fit;
   const int level = std::min(config.finest_level, static_cast<int>(live.levels.size()) - 1);
   std::vector<Exposure> exposures(references.size());
-  const PointMatches total = match_references(live.levels[static_cast<std::size_t>(level)], references,
-                                              static_cast<std::size_t>(level), T_world_camera,
-                                              limits_at(level, config), {}, exposures, fit.overlap);
+  const LevelMatches matches =
+      match_references({.points = live.levels[static_cast<std::size_t>(level)], .motion = {}}, references,
+                       static_cast<std::size_t>(level), T_world_camera, limits_at(level, config), exposures);
+  fit.overlap = matches.overlap.value_or(fit.overlap);
+  const PointMatches& total = matches.total;
   if (total.met > 0)
     fit.inlier_fraction = static_cast<double>(total.inliers) / static_cast<double>(total.met);
   return fit;

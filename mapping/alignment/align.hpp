@@ -16,7 +16,7 @@ enum class TrackStatus {
   /// keep the initial guess's values; the others are aligned.
   kDegenerate,
   /// The image disagrees with the references at the aligned pose, or the correction exceeds
-  /// AlignConfig::max_correction_m. The returned pose is the guess.
+  /// AlignConfig::max_correction_m or max_correction_rad. The returned pose is the guess.
   kDiverged,
   /// A pose that nothing has verified for more than 0.15 s: directions that depth leaves unconstrained were
   /// only predicted. Returned by locate(), not by align().
@@ -89,9 +89,9 @@ struct AlignConfig {
   /// Max standard deviation of the pose along a constrained direction, m. Above it, the direction counts as
   /// unconstrained.
   float max_uncertainty_m = 0.01F;
-  /// Max correction of the guess: of the translation in m, and of the rotation in rad (the same number). A
-  /// larger correction gives kDiverged.
+  /// Max corrections of the guess's translation and rotation. A larger correction gives kDiverged.
   float max_correction_m = 0.5F;
+  float max_correction_rad = 0.5F;
 };
 
 /// A reference view with a pose that replaces the view's own T_world_view.

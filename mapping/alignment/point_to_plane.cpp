@@ -210,13 +210,14 @@ void match(const std::vector<SourcePoint>& points, const Matcher<Float8>& matche
 
 }  // namespace
 
-void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
-                  const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
-                  const RowMotion& motion, PointMatches& pass, Arithmetic arithmetic) {
+void match_points(const MovingPoints& live, const TargetLevel& reference, const ViewRelation& relation,
+                  const MatchLimits& limits, PointMatches& pass, Arithmetic arithmetic) {
+  const auto& [T_view_camera, exposure] = relation;
   if (arithmetic == Arithmetic::kFastest)
-    match(points, Matcher<Float8>(reference, T_view_camera, limits, exposure, motion), pass);
+    match(live.points, Matcher<Float8>(reference, T_view_camera, limits, exposure, live.motion), pass);
   else
-    match(points, Matcher<PortableFloat8>(reference, T_view_camera, limits, exposure, motion), pass);
+    match(live.points, Matcher<PortableFloat8>(reference, T_view_camera, limits, exposure, live.motion),
+          pass);
 }
 
 Exposure match_exposure(const PointMatches& pass) {

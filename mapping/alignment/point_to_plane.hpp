@@ -43,6 +43,19 @@ struct PointMatches {
   double n = 0.0, live = 0.0, reference = 0.0, live_live = 0.0, reference_reference = 0.0;
 };
 
+/// Points of one pyramid level of the live image, and their motion during its readout. Refers to both, which
+/// must outlive it.
+struct MovingPoints {
+  const std::vector<SourcePoint>& points;
+  const RowMotion& motion;
+};
+
+/// Pose and brightness of the live image relative to a reference. Refers to both, which must outlive it.
+struct ViewRelation {
+  const Eigen::Isometry3d& T_view_camera;
+  const Exposure& exposure;
+};
+
 /// Limits and weights of the residuals.
 struct MatchLimits {
   float gate_m;  ///< max point-to-plane distance of an inlier, m
@@ -61,14 +74,13 @@ Real robust_weight(const Real& x) {
 }
 
 /// Projects the points into the reference to find correspondences, and sums their residuals. Residuals are
-/// the distance to the reference's plane and, if exposure.known, the difference of intensity. Residuals are
-/// linearised with respect to the camera's twist in the camera frame.
-/// @param motion  motion of the points during their image's readout
+/// the distance to the reference's plane and, if the exposure is known, the difference of intensity.
+/// Residuals are linearised with respect to the camera's twist in the camera frame.
 /// @param[in,out] pass  sums to which the residuals are added. Only the upper triangle of H is filled
 /// @param arithmetic    results are bit-identical for all values
-void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
-                  const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
-                  const RowMotion& motion, PointMatches& pass, Arithmetic arithmetic = Arithmetic::kFastest);
+void match_points(const MovingPoints& live, const TargetLevel& reference, const ViewRelation& relation,
+                  const MatchLimits& limits, PointMatches& pass,
+                  Arithmetic arithmetic = Arithmetic::kFastest);
 
 /// Computes the gain and offset that map the mean and standard deviation of the live intensities to those of
 /// the reference's intensities. The gain is limited to 0.5..2. `known` is false if there are too few

@@ -67,9 +67,16 @@ Row pose_part(const Correspondence& c, const Vector3d& m) {
   return J;
 }
 
+/// The live image's camera and that of the view it is compared with.
+struct CameraPair {
+  const Eigen::Matrix3d& R_view_camera;
+  const Intrinsics& live;
+  const Intrinsics& view;
+};
+
 /// Adds the distance to the plane; returns its robust weight, 0 beyond the gate.
-double add_depth(const Correspondence& c, const Eigen::Matrix3d& R_view_camera, const Intrinsics& live_camera,
-                 const Intrinsics& view_camera, Sums& sums) {
+double add_depth(const Correspondence& c, const CameraPair& cameras, Sums& sums) {
+  const auto& [R_view_camera, live_camera, view_camera] = cameras;
   const Vector3d normal = c.pixel->normal.cast<double>();
   const double r_m = normal.dot(c.p_view) - static_cast<double>(c.pixel->offset_m);
   if (!(std::abs(r_m) < kGate_m)) return 0.0;
@@ -87,9 +94,9 @@ double add_depth(const Correspondence& c, const Eigen::Matrix3d& R_view_camera, 
   return weight;
 }
 
-void add_colour(const Correspondence& c, float live_intensity, const Eigen::Matrix3d& R_view_camera,
-                const Intrinsics& live_camera, const Intrinsics& view_camera, const Exposure& exposure,
-                double depth_weight, Sums& sums) {
+void add_colour(const Correspondence& c, float live_intensity, const CameraPair& cameras,
+                const Exposure& exposure, double depth_weight, Sums& sums) {
+  const auto& [R_view_camera, live_camera, view_camera] = cameras;
   const double inverse_z = 1.0 / c.p_view.z();
   const auto gradient_u = static_cast<double>(c.pixel->gradient_u);
   const auto gradient_v = static_cast<double>(c.pixel->gradient_v);
@@ -136,11 +143,12 @@ TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camer
   const Eigen::Isometry3d T_view_camera = view.T_world_camera.inverse() * camera.T_world_camera;
   const Eigen::Matrix3d R = T_view_camera.linear();
   PointMatches matches;
-  match_points(points, target, T_view_camera,
+  match_points({.points = points, .motion = motion}, target, {.T_view_camera = T_view_camera, .exposure = {}},
                {static_cast<float>(kGate_m), static_cast<float>(1.0 / kSoft),
                 static_cast<float>(1.0 / kIntensitySigma)},
-               {}, motion, matches);
+               matches);
   const Exposure exposure = match_exposure(matches);
+  const CameraPair cameras{.R_view_camera = R, .live = live_camera, .view = view_camera};
   Sums sums;
   for (std::size_t i = 0; i < points.size(); i += kEvery) {
     Correspondence c;
@@ -161,10 +169,10 @@ TimingEvidence timing_evidence(const SourcePoints& live, const MovingView& camer
     c.colour_late_s = camera.timing.colour_delay_s - view.timing.colour_delay_s +
                       (camera.timing.colour_readout_s - view.timing.colour_readout_s) *
                           row_fraction(view_camera, c.view_px.y());
-    const double weight = add_depth(c, R, live_camera, view_camera, sums);
+    const double weight = add_depth(c, cameras, sums);
     const bool is_textured = c.pixel->gradient_u != 0.0F || c.pixel->gradient_v != 0.0F;
     if (weight > 0.0 && exposure.known && is_textured && points[i].intensity >= 0.0F)
-      add_colour(c, points[i].intensity, R, live_camera, view_camera, exposure, weight, sums);
+      add_colour(c, points[i].intensity, cameras, exposure, weight, sums);
   }
   return without_pose(sums);
 }

@@ -115,6 +115,7 @@ void add_links(const Submap& a, const Submap& b, const Vote& vote, std::vector<K
   AlignConfig config;
   config.coarsest_level = 1;
   config.max_correction_m = 0.15F;
+  config.max_correction_rad = 0.15F;
   const AlignedPreview view_a = prepared(a.keyframes.keyframes[vote.a]),
                        view_b = prepared(b.keyframes.keyframes[vote.b]);
   const Tracking b_in_a = align(view_b.source, view_a.target, vote.T_camera_a_camera_b, config);

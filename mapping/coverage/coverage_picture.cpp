@@ -184,9 +184,17 @@ void draw_axes(const Projection& view, cv::Mat3b& picture) {
   }
 }
 
-void draw_view(const Mesh& mesh, const std::vector<std::uint8_t>& well, const Frontier& frontier,
-               std::span<const Hole> holes, std::span<const TimedPose> trajectory, const Projection& view,
-               cv::Mat3b& picture) {
+// The scan that a coverage picture shows.
+struct DrawnScan {
+  const Mesh& mesh;
+  const std::vector<std::uint8_t>& well;  // see seen_well()
+  const Frontier& frontier;
+  std::span<const Hole> holes;
+  std::span<const TimedPose> trajectory;
+};
+
+void draw_view(const DrawnScan& scan, const Projection& view, cv::Mat3b& picture) {
+  const auto& [mesh, well, frontier, holes, trajectory] = scan;
   draw_surface(mesh, well, view, picture);
   draw_border(frontier, view, picture);
   std::vector<cv::Point> way;
@@ -334,7 +342,8 @@ ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Front
   } else {
     const std::array<Projection, 3> views = lay_out(surface, frontier, trajectory);
     const std::vector<std::uint8_t> well = seen_well(map, surface);
-    for (const Projection& view : views) draw_view(surface, well, frontier, holes, trajectory, view, picture);
+    const DrawnScan scan{surface, well, frontier, holes, trajectory};
+    for (const Projection& view : views) draw_view(scan, view, picture);
     draw_scale(views[0], views[2].panel.width, picture);
     height = views[2].panel.br().y;
   }

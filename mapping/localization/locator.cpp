@@ -82,11 +82,14 @@ NormalEquation constraint_of(const std::vector<PointPair>& pairs, const Eigen::I
 /// matches. Solves the least squares of both.
 void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPair>& pairs,
           Tracking& tracking) {
-  constexpr double kFarthest = 0.3;  // m and rad; beyond it, the pairs do not constrain the pose either
+  constexpr double kMostPull_m = 0.3;  // beyond it, the pairs do not constrain the pose either
+  constexpr double kLever_m = 1.0;     // a rotation counts as this length per rad
   const NormalEquation by_patches = constraint_of(pairs, tracking.T_world_camera);
   const Eigen::Matrix<double, 6, 6> H = by_depth + by_patches.H;
   const Eigen::Matrix<double, 6, 1> twist = solve_symmetric(H, by_patches.g);
-  if (!(twist.norm() < kFarthest)) return;
+  Eigen::Matrix<double, 6, 1> twist_m = twist;
+  twist_m.tail<3>() *= kLever_m;
+  if (!(twist_m.norm() < kMostPull_m)) return;
   tracking.T_world_camera = tracking.T_world_camera * retract(twist);
   tracking.information = H;
 }
@@ -416,21 +419,22 @@ Tracking prove(Locator& locator, const Frame& frame, const KeyframeDatabase& key
   return proven;
 }
 
-/// Decides whether a followed pose counts as located. Directions that depth does not constrain are predicted
-/// for kLongest_s at most. Then a pose must be proven at or near the predicted one, or found by a search. If
-/// the depth is bent, patches suffice, since the camera stands.
-void require_verified(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
-                      double dt_s, bool is_bent, const ExpectedDepth& expected_depth, Tracking& tracking) {
+/// Returns the followed pose if it counts as located, a proven pose near it, or an uncertain one. Directions
+/// that depth does not constrain are predicted for kLongest_s at most. Then a pose must be proven at or near
+/// the predicted one, or found by a search. If the depth is bent, patches suffice, since the camera stands.
+Tracking verified(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+                  double dt_s, const ExpectedDepth& expected_depth, const FollowedPose& followed) {
+  Tracking tracking = followed.tracking;
   constexpr double kLongest_s = 0.15;
   constexpr int kEvery = 3, kSearchEvery = 9;  // frames between two proofs, and between two searches
   if (tracking.status == TrackStatus::kTracked && !locator.is_uncertain) {
     locator.carried_s = 0.0;
-    return;
+    return tracking;
   }
   locator.carried_s += dt_s;
-  if (!locator.is_uncertain && locator.carried_s <= kLongest_s) return;
+  if (!locator.is_uncertain && locator.carried_s <= kLongest_s) return tracking;
   Tracking proven;
-  if (is_bent && is_verified_by_appearance(locator, frame, keyframe_database, tracking)) {
+  if (followed.is_bent && is_verified_by_appearance(locator, frame, keyframe_database, tracking)) {
     proven = tracking;
   } else if (locator.uncertain_frames % kEvery == 0) {
     proven = prove(locator, frame, keyframe_database, tracking.T_world_camera, expected_depth);
@@ -442,15 +446,15 @@ void require_verified(Locator& locator, const Frame& frame, const KeyframeDataba
   if (has_pose(proven)) {
     if (!is_same_pose(proven.T_world_camera, tracking.T_world_camera))
       locator.T_world_camera.reset();  // the jump is not a motion
-    tracking = proven;
     locator.carried_s = 0.0;
     locator.is_uncertain = false;
     locator.uncertain_frames = 0;
-    return;
+    return proven;
   }
   locator.is_uncertain = true;
   ++locator.uncertain_frames;
   tracking.status = TrackStatus::kUncertain;
+  return tracking;
 }
 
 /// Returns true if the images show that the camera has hardly moved since the last frame in which it moved.
@@ -520,7 +524,8 @@ Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
     if (has_pose(tracking))
       may_be_found = verify_tracking(locator, frame, keyframe_database, expected_depth, tracking);
     if (has_pose(tracking) && !is_held)
-      require_verified(locator, frame, keyframe_database, dt_s, followed.is_bent, expected_depth, tracking);
+      tracking = verified(locator, frame, keyframe_database, dt_s, expected_depth,
+                          {.tracking = tracking, .is_bent = followed.is_bent});
   }
   if (locator.T_world_camera && !has_guess(tracking)) {
     locator.T_world_lost = locator.T_world_camera;

@@ -14,9 +14,9 @@ void save_changed_map(SavedMap& map, std::size_t changes, const std::filesystem:
   if (changes > 0) {
     EarlierTextures earlier;
     add_texture_of(map, Eigen::Isometry3d::Identity(), earlier);
-    map.mesh = extract_surface(map.octree, surface_config_of(map.info));
+    map.mesh = extract_surface(map.octree.load(), surface_config_of(map.info));
     renew_texture(earlier, map);
-    map.coverage_png = survey_coverage(map.octree, map.mesh, map.trajectory).picture_png;
+    map.coverage_png = survey_coverage(map.octree.load(), map.mesh, map.trajectory).picture_png;
   }
   map.info.settings["adopted"] = std::to_string(changes);
   save_map(folder, map);

@@ -140,11 +140,10 @@ LazyPart<Part> read_later(const fs::path& folder, const MapInfo& info, const std
 template <typename Part>
 LazyPart<Part> read_meanwhile(LazyPart<Part> part) {
   const auto whole = std::make_shared<LazyPart<Part>>(std::move(part));
-  const std::shared_future<void> reading =
-      std::async(std::launch::async, [whole] { static_cast<void>(**whole); }).share();
+  const std::shared_future<void> reading = std::async(std::launch::async, [whole] { whole->load(); }).share();
   return LazyPart<Part>([whole, reading] {
     reading.get();
-    return std::move(**whole);
+    return std::move(whole->load());
   });
 }
 
@@ -236,7 +235,7 @@ MapInfo load_map_info(const fs::path& folder) {
 SavedMap load_map(const fs::path& folder, KeyframeReading keyframes) {
   return read_consistent(folder, [&] {
     SavedMap map = read_map(folder);
-    if (keyframes == KeyframeReading::kBefore) static_cast<void>(*map.keyframe_database);
+    if (keyframes == KeyframeReading::kBefore) map.keyframe_database.load();
     return map;
   });
 }
@@ -266,7 +265,7 @@ KeyframeDatabase load_map_keyframes(const fs::path& folder) {
 }
 
 std::shared_ptr<const SurfaceTexture> fitting_texture(const SavedMap& map) {
-  const std::shared_ptr<const SurfaceTexture>& texture = *map.texture;
+  const std::shared_ptr<const SurfaceTexture>& texture = map.texture.load();
   return texture && fits(*texture, map.mesh) ? texture : nullptr;
 }
 

@@ -37,13 +37,13 @@ struct SavedMap {
 /// When load_map() reads the keyframes.
 enum class KeyframeReading {
   kBefore,     ///< before it returns
-  kMeanwhile,  ///< on another thread; their first use waits for it. A child forked before must not use them
+  kMeanwhile,  ///< on another thread; load() waits for it. A child forked before must not load them
 };
 
 /// Reads a map of this or an earlier format version. Verifies the sizes of all files, and the checksum of
-/// each file before parsing it. Octree, unknown surface and texture are read and verified when they are first
-/// used. Throws Error naming the file and the fault. The first use of one of these three, and of keyframes
-/// read meanwhile, throws in the same cases, and if the folder was replaced before that part was read.
+/// each file before parsing it. Octree, unknown surface and texture are read and verified by their load().
+/// Throws Error naming the file and the fault. load() of these three, and of keyframes read meanwhile, throws
+/// in the same cases, and if the folder was replaced before that part was read.
 SavedMap load_map(const std::filesystem::path& folder, KeyframeReading keyframes = KeyframeReading::kBefore);
 
 /// Returns the SHA-256 of the file of the map's octree, 64 hexadecimal digits. Empty if the map was not

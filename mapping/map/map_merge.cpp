@@ -143,9 +143,9 @@ void append_session(SavedMap& map, const SavedMap& session) {
     pose.stamp_s += shift_s;
     map.trajectory.push_back(pose);
   }
-  map.keyframe_database->keyframes.insert(map.keyframe_database->keyframes.end(),
-                                          session.keyframe_database->keyframes.begin(),
-                                          session.keyframe_database->keyframes.end());
+  map.keyframe_database.load().keyframes.insert(map.keyframe_database.load().keyframes.end(),
+                                                session.keyframe_database.load().keyframes.begin(),
+                                                session.keyframe_database.load().keyframes.end());
   map.info.source += "; " + session.info.source;
   if (const auto stopped = session.info.settings.find(kStoppedSetting);
       stopped != session.info.settings.end())
@@ -157,11 +157,11 @@ void append_session(SavedMap& map, const SavedMap& session) {
 namespace {
 
 Registration register_into(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config) {
-  Registration there = register_to(a.octree, a.keyframe_database, b.keyframe_database,
+  Registration there = register_to(a.octree.load(), a.keyframe_database.load(), b.keyframe_database.load(),
                                    sample_surface(b.mesh, config.points), config);
   if (!there) return there;
-  const Registration back =
-      verify_registration(b.octree, sample_surface(a.mesh, config.points), there.T_a_b.inverse(), config);
+  const Registration back = verify_registration(b.octree.load(), sample_surface(a.mesh, config.points),
+                                                there.T_a_b.inverse(), config);
   // A small part of a in b proves nothing: b may be one corner of a.
   if (back.status == RegistrationStatus::kNoOverlap) return there;
   there.agreement = std::min(there.agreement, back.agreement);
@@ -194,8 +194,8 @@ namespace {
 /// Throws Error if the resolutions differ so much that one of the maps should be scanned again.
 void require_alike(const SavedMap& a, const SavedMap& b) {
   constexpr double kMostTimes = 4.0;  // 64 voxels for one
-  const double finer_m = std::min(a.octree->resolution_m(), b.octree->resolution_m());
-  const double coarser_m = std::max(a.octree->resolution_m(), b.octree->resolution_m());
+  const double finer_m = std::min(a.octree.load().resolution_m(), b.octree.load().resolution_m());
+  const double coarser_m = std::max(a.octree.load().resolution_m(), b.octree.load().resolution_m());
   if (coarser_m <= kMostTimes * finer_m * (1.0 + 1e-9)) return;
   throw Error("the cells of one map are " + format_number(finer_m) + " m and of the other " +
               format_number(coarser_m) + " m; to be joined they may differ by " + format_number(kMostTimes) +
@@ -204,7 +204,7 @@ void require_alike(const SavedMap& a, const SavedMap& b) {
 
 /// Throws Error if a map, in the merged map's world frame, is out of reach at this resolution.
 void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map, double resolution_m) {
-  const Eigen::AlignedBox3d known = map.octree->counts().known_world;
+  const Eigen::AlignedBox3d known = map.octree.load().counts().known_world;
   if (known.isEmpty()) return;
   const double reach_m = StaticMap(resolution_m).reach_m();
   double farthest_m = 0.0;
@@ -225,31 +225,31 @@ void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map
 }  // namespace
 
 SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b) {
-  const double finer_m = std::min(a.octree->resolution_m(), b.octree->resolution_m());
+  const double finer_m = std::min(a.octree.load().resolution_m(), b.octree.load().resolution_m());
   require_in_reach(a, Eigen::Isometry3d::Identity(), finer_m);
   require_in_reach(b, T_a_b, finer_m);
   require_alike(a, b);
-  if (b.octree->resolution_m() < a.octree->resolution_m()) {
-    StaticMap finer(b.octree->resolution_m(), a.octree->config());
-    add_map(a.octree, Eigen::Isometry3d::Identity(), finer);
+  if (b.octree.load().resolution_m() < a.octree.load().resolution_m()) {
+    StaticMap finer(b.octree.load().resolution_m(), a.octree.load().config());
+    add_map(a.octree.load(), Eigen::Isometry3d::Identity(), finer);
     a.octree = std::move(finer);
     if (const auto setting = b.info.settings.find("resolution_m"); setting != b.info.settings.end())
       a.info.settings["resolution_m"] = setting->second;
   }
-  add_map(b.octree, T_a_b, a.octree);
+  add_map(b.octree.load(), T_a_b, a.octree.load());
   EarlierTextures earlier;
   add_texture_of(a, Eigen::Isometry3d::Identity(), earlier);
   add_texture_of(b, T_a_b, earlier);
-  a.mesh = extract_surface(a.octree, surface_config_of(a.info));
+  a.mesh = extract_surface(a.octree.load(), surface_config_of(a.info));
   renew_texture(earlier, a);
   SavedMap session;
   session.info = b.info;
-  session.keyframe_database = *b.keyframe_database;
-  transform(session.keyframe_database, T_a_b);
+  session.keyframe_database = b.keyframe_database.load();
+  transform(session.keyframe_database.load(), T_a_b);
   session.trajectory = b.trajectory;
   for (TimedPose& pose : session.trajectory) pose.T_world_camera = T_a_b * pose.T_world_camera;
   append_session(a, session);
-  a.coverage_png = survey_coverage(a.octree, a.mesh, a.trajectory).picture_png;
+  a.coverage_png = survey_coverage(a.octree.load(), a.mesh, a.trajectory).picture_png;
   return a;
 }
 

@@ -58,8 +58,8 @@ LazyPart<StaticMap> MapWriter::write_octree(const StaticMap& octree, const Mesh&
 void MapWriter::commit(const SavedMap& map) {
   require_savable(target_, map.mesh);
   const std::filesystem::path& path = begin();
-  if (!keyframes_) write_keyframes(map.keyframe_database);
-  if (!resolution_m_) write_octree(map.octree, map.mesh);
+  if (!keyframes_) write_keyframes(map.keyframe_database.load());
+  if (!resolution_m_) write_octree(map.octree.load(), map.mesh);
   write_mesh(map.mesh, path / kMapMeshFile);
   write_trajectory(path / kMapTrajectoryFile, map.trajectory);
   if (!map.coverage_png.empty())

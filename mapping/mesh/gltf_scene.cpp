@@ -377,7 +377,9 @@ class GltfCollector {
       if (indices) corners = gltf_wholes(document_, *indices, 1);
     }
     morph(of, weights, read);
-    return joined(of, material, points, influences, mode, read, corners);
+    const PrimitiveForm form{
+        .material = material, .texture_points = points, .influences = influences, .mode = mode};
+    return joined(of, form, read, corners);
   }
 
   /// Reads the attributes that are compressed, and returns the corners of the triangles.
@@ -455,10 +457,18 @@ class GltfCollector {
     for (auto& [name, numbers] : morphed) read.named[name] = std::move(numbers);
   }
 
+  /// What a primitive consists of.
+  struct PrimitiveForm {
+    std::optional<std::size_t> material{};
+    std::string texture_points{};  ///< name of the attribute; empty: none
+    std::size_t influences = 0;    ///< number of pairs of JOINTS_ and WEIGHTS_ attributes
+    std::uint64_t mode = 4;        ///< list, strip or fan of triangles
+  };
+
   /// Makes the triangles of a primitive, and merges equal vertices.
-  Primitive joined(const GltfObject& of, const std::optional<std::size_t>& material,
-                   const std::string& points_name, std::size_t influences, std::uint64_t mode,
-                   const Attributes& read, std::optional<std::vector<std::uint32_t>>& corners) {
+  Primitive joined(const GltfObject& of, const PrimitiveForm& form, const Attributes& read,
+                   std::optional<std::vector<std::uint32_t>>& corners) {
+    const std::size_t influences = form.influences;
     const GltfNumbers& positions = *read.find("POSITION");
     if (!corners) {
       corners.emplace(positions.size());
@@ -470,7 +480,7 @@ class GltfCollector {
       vertex_of[corner] = 1;
     }
     const GltfNumbers* const normals = read.find("NORMAL");
-    const GltfNumbers* const points = points_name.empty() ? nullptr : read.find(points_name);
+    const GltfNumbers* const points = form.texture_points.empty() ? nullptr : read.find(form.texture_points);
     const GltfNumbers* const colours = read.find("COLOR_0");
     std::vector<std::pair<const GltfNumbers*, const GltfNumbers*>> joints_weights;
     for (std::size_t i = 0; i < influences; ++i)
@@ -494,7 +504,7 @@ class GltfCollector {
         }
       vertex_of[v] = rows.add();
     }
-    Primitive primitive{material, {}};
+    Primitive primitive{form.material, {}};
     for (std::size_t v = 0; v < rows.size(); ++v) {
       const float* const row = rows.at(v);
       primitive.positions.emplace_back(row[0], row[1], row[2]);
@@ -505,7 +515,7 @@ class GltfCollector {
     }
     primitive.influence_count = 4 * influences;
     for (std::uint32_t& corner : *corners) corner = vertex_of[corner];
-    primitive.triangles = triangles_of(mode, *corners);
+    primitive.triangles = triangles_of(form.mode, *corners);
     return primitive;
   }
 

@@ -21,9 +21,19 @@ DepthBounds merged(const DepthBounds& a, const DepthBounds& b) {
           std::min(a.unused, b.unused)};
 }
 
+// Two adjacent rows of a depth image.
+struct RowPair {
+  const float* upper;
+  const float* lower;
+  int width;
+};
+
 // Computes the row of level-1 cells that two image rows give.
-void bound_rows(const float* upper, const float* lower, int width, const TruncationBand& band,
-                float max_range_m, DepthPyramid& pyramid, DepthBounds* cells) {
+void bound_rows(const RowPair& rows, const TruncationBand& band, float max_range_m, DepthPyramid& pyramid,
+                DepthBounds* cells) {
+  const float* upper = rows.upper;
+  const float* lower = rows.lower;
+  const int width = rows.width;
   float* nearest = pyramid.row_nearest_m.data();    // min over the measured pixels
   float* farthest = pyramid.row_farthest_m.data();  // max over the pixels within max_range_m
   float* deepest = pyramid.row_deepest_m.data();    // max over all pixels
@@ -103,8 +113,8 @@ void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionC
   pyramid.steps_per_m = kFarthestStep / (config.max_range_m + band.widest_m(config.max_range_m));
   resize(depth_m.width, depth_m.height, pyramid);
   for (int y = 0; y < pyramid.cells_down(1); ++y)
-    bound_rows(depth_m.row(2 * y), depth_m.row(std::min(2 * y + 1, depth_m.height - 1)), depth_m.width, band,
-               config.max_range_m, pyramid, pyramid.row(1, y));
+    bound_rows({depth_m.row(2 * y), depth_m.row(std::min(2 * y + 1, depth_m.height - 1)), depth_m.width},
+               band, config.max_range_m, pyramid, pyramid.row(1, y));
   for (int level = 2; level <= pyramid.levels; ++level) {
     halve(pyramid, level);
     if (level <= kHoleLevel) block_holes(pyramid, level - 1);

@@ -273,12 +273,11 @@ void descend(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_w
 }  // namespace
 
 void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                const FusionConfig& config, const FusionScratch& scratch, unsigned threads,
-                Arithmetic arithmetic) {
-  if (arithmetic == Arithmetic::kFastest)
-    descend<Float8>(tree, frame, T_world_camera, config, scratch, threads);
+                const FusionConfig& config, const FusionScratch& scratch, const FusionExecution& execution) {
+  if (execution.arithmetic == Arithmetic::kFastest)
+    descend<Float8>(tree, frame, T_world_camera, config, scratch, execution.threads);
   else
-    descend<PortableFloat8>(tree, frame, T_world_camera, config, scratch, threads);
+    descend<PortableFloat8>(tree, frame, T_world_camera, config, scratch, execution.threads);
 }
 
 }  // namespace roomradar

@@ -11,6 +11,12 @@
 
 namespace roomradar {
 
+/// How a frame is fused. The result does not depend on it.
+struct FusionExecution {
+  unsigned threads = 1;  ///< 1..kMaxLanes
+  Arithmetic arithmetic = Arithmetic::kFastest;
+};
+
 /// Fuses the frame in one descent from the root. Call build_pyramid() and collect_hits() for this frame and
 /// `scratch` first. All voxels of a node wholly in front of the measured depth are misses. A node wholly
 /// occluded or outside the image is unchanged. All other nodes are split down to leaves. A leaf that contains
@@ -19,9 +25,7 @@ namespace roomradar {
 /// within the truncation band. Sources: Hornung et al., OctoMap, Autonomous Robots 2013, equations (2) and
 /// (4) (log-odds and clamping); Curless and Levoy, SIGGRAPH 1996, equations (3) and (4), with 1/sigma^2 as
 /// weight (projective TSDF).
-/// @param threads  1..kMaxLanes; the result does not depend on it
 void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                const FusionConfig& config, const FusionScratch& scratch, unsigned threads,
-                Arithmetic arithmetic = Arithmetic::kFastest);
+                const FusionConfig& config, const FusionScratch& scratch, const FusionExecution& execution);
 
 }  // namespace roomradar

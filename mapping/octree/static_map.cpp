@@ -70,7 +70,7 @@ void StaticMap::prepare(const Frame& frame, const Eigen::Isometry3d& T_world_cam
 FuseStatus StaticMap::fuse(const Frame& frame, const PreparedFrame& prepared) {
   if (prepared.status == FuseStatus::kFused)
     fuse_depth(octree_->tree, frame, prepared.T_world_camera, prepared.config, prepared.scratch,
-               threads_for(frame.depth_m, config()));
+               {.threads = threads_for(frame.depth_m, config())});
   return prepared.status;
 }
 

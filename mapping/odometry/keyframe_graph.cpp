@@ -118,8 +118,10 @@ bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t 
   const Keyframe& a = graph.keyframes[older];
   const Keyframe& b = graph.keyframes[newer];
   const Eigen::Isometry3d change = (a.T_world_camera.inverse() * b.T_world_camera).inverse() * T_older_newer;
-  const double most = config.drift_m + config.drift_part * std::abs(b.path_length_m - a.path_length_m);
-  return change.translation().norm() < most && Eigen::AngleAxisd(change.linear()).angle() < most;
+  const double path_m = std::abs(b.path_length_m - a.path_length_m);
+  const double most_m = config.drift_m + config.drift_part * path_m;
+  const double most_rad = config.drift_rad + config.drift_rad_per_m * path_m;
+  return change.translation().norm() < most_m && Eigen::AngleAxisd(change.linear()).angle() < most_rad;
 }
 
 bool add_constraints(KeyframeGraph& graph, const KeyframePair& pair, const KeyframeGraphConfig& config) {

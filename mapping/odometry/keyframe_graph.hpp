@@ -22,12 +22,14 @@ struct KeyframeGraphConfig {
   /// Max difference between the two results of aligning a pair in both directions.
   double max_gap_m = 0.05;
   double max_gap_rad = 0.05;
-  /// Max assumed drift between two keyframes: drift_m plus drift_part times the length of the path between
-  /// them in m. The sum limits the translation in m and the rotation in rad. An edge that would change the
-  /// relative pose by more is rejected as perceptual aliasing (a false match between similar parts of the
-  /// room).
+  /// Max assumed drift between two keyframes: of the translation, drift_m plus drift_part times the length of
+  /// the path between them; of the rotation, drift_rad plus drift_rad_per_m times that length. An edge that
+  /// would change the relative pose by more is rejected as perceptual aliasing (a false match between similar
+  /// parts of the room).
   double drift_m = 0.15;
   double drift_part = 0.05;
+  double drift_rad = 0.15;
+  double drift_rad_per_m = 0.05;
   std::size_t cached_keyframes = 8;  ///< capacity of the keyframe cache; 4 MB per keyframe
 };
 
@@ -65,7 +67,7 @@ std::vector<std::size_t> keyframes_near(std::span<const Keyframe> keyframes,
                                         int part = 0);
 
 /// Returns true if T_older_newer differs from the two keyframes' current relative pose by less than the
-/// assumed drift (drift_m + drift_part * path length).
+/// assumed drift (KeyframeGraphConfig::drift_m and the following).
 bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t newer,
                      const Eigen::Isometry3d& T_older_newer, const KeyframeGraphConfig& config);
 

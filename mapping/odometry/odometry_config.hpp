@@ -16,12 +16,13 @@ struct OdometryConfig {
   ViewConfig view;
   /// Settings for aligning frames with keyframes. Intensity has less weight than its noise justifies, since
   /// the calibration of the colour camera is inexact and walls are glossy.
-  AlignConfig align = {.intensity_sigma = 16.0F, .max_correction_m = 0.25F};
+  AlignConfig align = {.intensity_sigma = 16.0F, .max_correction_m = 0.25F, .max_correction_rad = 0.25F};
   /// Settings for aligning keyframes with each other. Keyframes are farther apart than consecutive frames, so
   /// the distortion of depth matters. A wide robust kernel averages the distortion out. robust_sigma and the
   /// intensity_sigma of both AlignConfigs were chosen on the kitchen recording. Each changes the absolute
   /// trajectory error and the relative pose error over 30 frames by at most 0.3 mm.
-  AlignConfig align_keyframes = {.robust_sigma = 4.0F, .intensity_sigma = 8.0F, .max_correction_m = 0.25F};
+  AlignConfig align_keyframes = {
+      .robust_sigma = 4.0F, .intensity_sigma = 8.0F, .max_correction_m = 0.25F, .max_correction_rad = 0.25F};
   KeyframeGraphConfig graph;
   KeyframeDatabaseConfig place;
   RelocaliseConfig relocalise;

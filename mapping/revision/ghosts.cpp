@@ -167,8 +167,9 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
       if (hidden.is_hidden(x, y)) return;
       const WindowDepth window = window_at();
       const bool beside_nearer = window.nearest_m < z - margin_m(z);
-      absence_looks_.unmeasured(frame, x, y, p_camera, window.measured_share, beside_nearer, has_colour,
-                                absence_[i]);
+      absence_looks_.unmeasured(
+          frame, {.x = x, .y = y, .measured_share = window.measured_share, .beside_nearer = beside_nearer},
+          p_camera, has_colour, absence_[i]);
       return;
     }
     if (std::abs(measured_m - z) <= margin_m(measured_m)) {

@@ -128,17 +128,17 @@ void AbsenceVoter::measured(const Frame& frame, const Eigen::Vector3f& p_camera,
   turn(frame, p_camera, State::kMeasured, votes);
 }
 
-void AbsenceVoter::unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera,
-                              float measured_share, bool beside_nearer, bool has_colour,
-                              AbsenceVotes& votes) const {
+void AbsenceVoter::unmeasured(const Frame& frame, const UnmeasuredPixel& pixel,
+                              const Eigen::Vector3f& p_camera, bool has_colour, AbsenceVotes& votes) const {
   const float z = p_camera.z();
   const int border_x = frame.depth_m.width / kBorder;
   const int border_y = frame.depth_m.height / kBorder;
-  if (!(z > kNearestMeasured_m && z < kFarthest_m) || measured_share >= kUnmeasuredShare || x < border_x ||
-      y < border_y || x >= frame.depth_m.width - border_x || y >= frame.depth_m.height - border_y)
+  if (!(z > kNearestMeasured_m && z < kFarthest_m) || pixel.measured_share >= kUnmeasuredShare ||
+      pixel.x < border_x || pixel.y < border_y || pixel.x >= frame.depth_m.width - border_x ||
+      pixel.y >= frame.depth_m.height - border_y)
     return;
-  if (!beside_nearer) add(votes.unmeasured);
-  if (measured_share >= kGoneShare) return;
+  if (!pixel.beside_nearer) add(votes.unmeasured);
+  if (pixel.measured_share >= kGoneShare) return;
   add(votes.gone);
   if (has_colour) turn(frame, p_camera, State::kGone, votes);
 }

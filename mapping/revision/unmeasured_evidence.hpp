@@ -33,6 +33,15 @@ struct AbsenceVotes {
   Rgb colour{};                   ///< colour in frame last_look
 };
 
+/// A pixel without depth, to which a voxel projects, and what is measured around it.
+struct UnmeasuredPixel {
+  int x = 0, y = 0;
+  float measured_share = 0.0F;  ///< fraction of the pixels within about 3 cm of the voxel that have depth
+  /// True if one of these pixels has a smaller depth than the voxel. The nearer surface may then shadow the
+  /// projector's light.
+  bool beside_nearer = false;
+};
+
 /// Adds a frame's evidence to the votes of voxels. Use one instance per map, and pass frames in the order of
 /// the recording.
 class AbsenceVoter {
@@ -41,13 +50,10 @@ class AbsenceVoter {
   void begin(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   /// Adds the vote of a frame that measures the voxel's surface in the pixel to which the voxel projects.
   void measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const;
-  /// Adds the vote of a frame that has no depth in pixel (x, y), to which the voxel projects.
-  /// @param measured_share  fraction of the pixels within about 3 cm of the voxel that have depth
-  /// @param beside_nearer   true if one of these pixels has a smaller depth than the voxel. The nearer
-  ///                        surface may then shadow the projector's light
-  /// @param has_colour      true if the voxel's colour is tracked
-  void unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera, float measured_share,
-                  bool beside_nearer, bool has_colour, AbsenceVotes& votes) const;
+  /// Adds the vote of a frame that has no depth in the pixel to which the voxel projects.
+  /// @param has_colour  true if the voxel's colour is tracked
+  void unmeasured(const Frame& frame, const UnmeasuredPixel& pixel, const Eigen::Vector3f& p_camera,
+                  bool has_colour, AbsenceVotes& votes) const;
 
  private:
   void turn(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes::State state,

@@ -8,9 +8,8 @@
 
 namespace roomradar {
 
-/// Holds a value, or a function that makes the value at its first use. Converts to a reference to the value,
-/// like std::reference_wrapper. Concurrent const calls are thread safe. A use rethrows what the function
-/// throws, and the next use calls the function again. A moved-from part can only be assigned or destroyed.
+/// Holds a value, or a function that makes the value at its first use. Concurrent calls of load() are thread
+/// safe. A moved-from part can only be assigned or destroyed.
 template <typename Part>
 class LazyPart {
  public:
@@ -21,12 +20,10 @@ class LazyPart {
     state_->make = std::move(make);
   }
 
-  [[nodiscard]] Part& operator*() { return state_->used(); }
-  [[nodiscard]] const Part& operator*() const { return state_->used(); }
-  [[nodiscard]] Part* operator->() { return &state_->used(); }
-  [[nodiscard]] const Part* operator->() const { return &state_->used(); }
-  operator Part&() { return state_->used(); }
-  operator const Part&() const { return state_->used(); }
+  /// Returns the value. The first call makes it: reads the part's files, and may throw Error. The call after
+  /// one that threw reads the files again.
+  Part& load() { return state_->load(); }
+  const Part& load() const { return state_->load(); }
 
  private:
   struct State {
@@ -34,7 +31,7 @@ class LazyPart {
     std::function<Part()> make;
     std::optional<Part> part;
 
-    Part& used() {
+    Part& load() {
       const std::lock_guard lock(mutex);
       if (!part) {
         part.emplace(make());

@@ -79,8 +79,8 @@ std::size_t DepthPass::render(std::span<const MeshInstance> scene, const Intrins
   const PixelRect inside = clamped(rect, camera.width_px, camera.height_px);
   if (inside.width == 0 || inside.height == 0) return 0;
   if (raster_)
-    return raster_->render(scene, camera, T_world_camera, inside, config_.near_m, config_.cull_back_faces,
-                           depth_m);
+    return raster_->render(scene, camera, T_world_camera, inside,
+                           {.near_m = config_.near_m, .cull_back_faces = config_.cull_back_faces}, depth_m);
   return render_with_gl(scene, camera, T_world_camera, inside, depth_m);
 }
 

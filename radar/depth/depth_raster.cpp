@@ -180,13 +180,13 @@ void DepthRaster::paint_cut(const RasterMesh& mesh, const RasterPiece& piece, co
 }
 
 std::size_t DepthRaster::render(std::span<const MeshInstance> scene, const Intrinsics& camera,
-                                const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, double near_m,
-                                bool cull_back_faces, DepthImage& depth_m) {
+                                const Eigen::Isometry3d& T_world_camera, const PixelRect& rect,
+                                const RasterRules& rules, DepthImage& depth_m) {
   ++drawings_;
   width_px_ = rect.width;
   height_px_ = rect.height;
-  near_m_ = near_m;
-  cull_back_faces_ = cull_back_faces;
+  near_m_ = rules.near_m;
+  cull_back_faces_ = rules.cull_back_faces;
   const std::size_t triangles = find_visible(scene, camera, T_world_camera, rect);
 
   next_piece_ = 0;

@@ -19,18 +19,24 @@
 
 namespace roomradar {
 
+/// Which surfaces DepthRaster draws, see DepthPassConfig.
+struct RasterRules {
+  double near_m = 0.1;
+  bool cull_back_faces = false;
+};
+
 /// Renders the images of DepthPass without OpenGL, several times as fast as software OpenGL. Two threads
 /// divide the meshes' pieces (RasterPiece) between them. Each thread draws on its own canvas, and the nearest
 /// surface of both canvases is kept. The result thus does not depend on the assignment of pieces to threads.
 /// Not thread safe.
 class DepthRaster {
  public:
-  /// Renders a rectangle of an image. Parameters are those of DepthPass::render() and DepthPassConfig. `rect`
+  /// Renders a rectangle of an image. Parameters are those of DepthPass::render(). `rect`
   /// must lie within the image and have pixels. Allocates nothing once meshes and images of this size have
   /// been drawn.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
-                     const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, double near_m,
-                     bool cull_back_faces, DepthImage& depth_m);
+                     const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, const RasterRules& rules,
+                     DepthImage& depth_m);
 
   /// Takes the pieces that cut_into_pieces() made of the mesh's vertices and triangles, possibly on another
   /// thread. Without this call, the pieces are made when the mesh is first drawn, which delays that frame.

@@ -200,9 +200,10 @@ double path_m(const TreeInstance& instance, const RigidMotion& motion, double du
   return duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_m);
 }
 
-RelativeMotion relative_motion(const TreeInstance& object, const RigidMotion& motion,
-                               const TreeInstance& tree, const RigidMotion& tree_motion, double duration_s,
-                               double keep_m, const TreePair& trees) {
+RelativeMotion relative_motion(const MovingTree& moving_object, const MovingTree& moving_tree,
+                               double duration_s, double keep_m, const TreePair& trees) {
+  const auto& [object, motion] = moving_object;
+  const auto& [tree, tree_motion] = moving_tree;
   const Vec3 centre_world = object.T_world_mesh * motion.centre_object;
   Vec3 linear_world = motion.linear_m_s, angular_world = motion.angular_rad_s;
   const double reach_m = reach_of(*object.tree, motion.centre_object);
@@ -326,8 +327,9 @@ void move_to_nearest(ClosestPoint& limit, const SceneTree& tree) {
 
 }  // namespace
 
-FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                   const RadarScene& scene, SurfaceKindMask left_out, const TreeStates& trees) {
+FreeTime free_time(const MovingTree& moving_object, double duration_s, double keep_m, const RadarScene& scene,
+                   SurfaceKindMask left_out, const TreeStates& trees) {
+  const auto& [object, motion] = moving_object;
   thread_local PendingPairs pending;  // scratch
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
@@ -342,9 +344,9 @@ FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double
     const double paths_m = object_path_m + path_m(tree.instance, tree_motion, duration_s);
     if (are_farther_apart(object, tree.instance, paths_m + 2.0 * keep_m)) continue;
     TreePair pair(object, tree.instance);
-    TreeFreedom freedom{pair, tree.kind, number,
-                        relative_motion(object, motion, tree.instance, tree_motion, duration_s, keep_m, pair),
-                        result};
+    TreeFreedom freedom{
+        pair, tree.kind, number,
+        relative_motion(moving_object, {tree.instance, tree_motion}, duration_s, keep_m, pair), result};
     visit_pairs<PairOrder::kLeastFirst>(
         pair, pending, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
         [&](const PairBox& o, const PairBox& s) {

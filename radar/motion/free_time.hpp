@@ -20,6 +20,12 @@ struct FreeTime {
   ClosestPoint limit;
 };
 
+/// A tree and its rigid motion. Refers to both, which must outlive it.
+struct MovingTree {
+  const TreeInstance& instance;
+  const RigidMotion& motion;
+};
+
 /// Trees of a scene to ignore, and the trees' motions, both in the scene's order. A tree beyond the end of
 /// left_out is not ignored; one beyond the end of `motions` is at rest.
 struct TreeStates {
@@ -40,7 +46,7 @@ struct TreeStates {
 ///
 /// @param keep_m    minimum distance to keep, m
 /// @param left_out  kinds of surfaces to ignore
-FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                   const RadarScene& scene, SurfaceKindMask left_out = 0, const TreeStates& trees = {});
+FreeTime free_time(const MovingTree& moving_object, double duration_s, double keep_m, const RadarScene& scene,
+                   SurfaceKindMask left_out = 0, const TreeStates& trees = {});
 
 }  // namespace roomradar

@@ -124,7 +124,8 @@ struct Heap {
 /// unknown space does not stop what comes from behind it.
 void take_map(const std::string& folder, Heap& heap) {
   const SavedMap map = load_map(folder);
-  const UnknownSurface unknown = *map.unknown ? **map.unknown : unknown_surface(map.octree, map.mesh);
+  const UnknownSurface unknown =
+      map.unknown.load() ? *map.unknown.load() : unknown_surface(map.octree.load(), map.mesh);
   for (const Entry& entry : heap.entries)
     for (const Eigen::Vector3f& v : entry.thing->mesh.vertices)
       if (is_unknown(unknown, entry.T_world_object * (entry.thing->mesh.origin + v.cast<double>())))

@@ -55,8 +55,8 @@ void measure_times(Rows& rows) {
   Times segmentation;
   for (int i = 0; i < kWarmUp + kRepeats; ++i) {
     const double start_ms = thread_ms();
-    counts = mark_foreground(frame.depth_m, expected_m, frame.depth_camera, source.truth().T_world_camera, {},
-                             foreground, labels, dynamic_mask);
+    counts = mark_foreground({frame.depth_m, frame.depth_camera, source.truth().T_world_camera}, expected_m,
+                             {}, foreground, labels, dynamic_mask);
     if (i >= kWarmUp) segmentation.samples_ms.push_back(thread_ms() - start_ms);
   }
   const double fraction =

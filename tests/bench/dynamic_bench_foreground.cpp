@@ -81,7 +81,7 @@ void judge_mover(const std::string& room, MoverKind mover, GlContext& context, c
           cast_room(source.room(), frame.depth_camera, T_world_camera, caster, expected_m);
         else
           depth_pass.render({&instance, 1}, frame.depth_camera, T_world_camera, expected_m);
-        mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, {}, opponent.state,
+        mark_foreground({frame.depth_m, frame.depth_camera, T_world_camera}, expected_m, {}, opponent.state,
                         labels, dynamic_mask);
         add_frame(frame.depth_m, dynamic_mask, source.truth().moved, opponent.score);
       }

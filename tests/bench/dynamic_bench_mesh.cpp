@@ -136,11 +136,11 @@ void measure_mesh_times(nlohmann::json& rows) {
   DynamicSurfaceScratch scratch;
   DynamicSurface surface;
   const auto find = [&] {
-    (void)mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, {}, foreground,
+    (void)mark_foreground({frame.depth_m, frame.depth_camera, T_world_camera}, expected_m, {}, foreground,
                           labels, dynamic_mask);
   };
   const auto mesh = [&](const DynamicSurfaceConfig& config) {
-    mesh_dynamic(frame.depth_m, dynamic_mask, expected_m, frame.depth_camera, T_world_camera, {}, config,
+    mesh_dynamic({{frame.depth_m, frame.depth_camera, T_world_camera}, dynamic_mask, expected_m}, {}, config,
                  scratch, surface);
   };
   TriangleTree seen_tree, back_tree;
@@ -165,14 +165,14 @@ void measure_mesh_times(nlohmann::json& rows) {
   DepthMeshScratch full_scratch;
   Mesh full;
   const Times full_times = timed(kRepeats / 4, [&] {
-    mesh_masked(frame.depth_m, dynamic_mask, frame.depth_camera, T_world_camera, kEveryPixel, full_scratch,
+    mesh_masked({frame.depth_m, frame.depth_camera, T_world_camera}, dynamic_mask, kEveryPixel, full_scratch,
                 full);
   });
   rows.push_back(time_row("mesh of every moved pixel", full.triangles.size(), full_times));
   rows.push_back(time_row("its tree", full.triangles.size(),
                           timed(kRepeats / 4, [&] { seen_tree.build_in_order(full); })));
   const Times whole_times = timed(kRepeats / 10, [&] {
-    mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, SurfacePolicy::kHoles, kEveryPixel,
+    mesh_whole({frame.depth_m, frame.depth_camera, T_world_camera}, SurfacePolicy::kHoles, kEveryPixel,
                full_scratch, full);
   });
   rows.push_back(time_row("mesh of the whole frame", full.triangles.size(), whole_times));
@@ -212,12 +212,12 @@ void measure_mesh_quality(nlohmann::json& rows) {
           cast_room(source.room(), frame.depth_camera, truth.T_world_camera, caster, expected_m);
           MaskImage mask = truth.moved;
           if (noise > 0.0) {
-            (void)mark_foreground(frame.depth_m, expected_m, frame.depth_camera, truth.T_world_camera, {},
+            (void)mark_foreground({frame.depth_m, frame.depth_camera, truth.T_world_camera}, expected_m, {},
                                   foreground, labels, mask);
           }
-          mesh_dynamic(frame.depth_m, mask, expected_m, frame.depth_camera, truth.T_world_camera, {}, {},
+          mesh_dynamic({{frame.depth_m, frame.depth_camera, truth.T_world_camera}, mask, expected_m}, {}, {},
                        scratch, surface);
-          mesh_masked(frame.depth_m, mask, frame.depth_camera, truth.T_world_camera, kEveryPixel,
+          mesh_masked({frame.depth_m, frame.depth_camera, truth.T_world_camera}, mask, kEveryPixel,
                       full_scratch, full);
           if (full.triangles.empty()) continue;
           ++quality.frames;

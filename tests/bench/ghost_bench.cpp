@@ -135,7 +135,7 @@ Scan scan(const SimOptions& options, bool glass, const Settings& settings) {
   if (const auto found = summaries.find("ghosts"); found != summaries.end())
     scan.ghosts_s = found->second.median_ms * static_cast<double>(found->second.count) / 1e3;
   const Eigen::Isometry3d T_room_map = result.map.info.T_world_recorded.inverse();
-  result.map.octree->visit_leaves([&](const MapLeaf& leaf) {
+  result.map.octree.load().visit_leaves([&](const MapLeaf& leaf) {
     if (!(leaf.log_odds > 0.0F)) return;
     const int edge = leaf.edge_voxels;
     for (int i = 0; i < edge * edge * edge; ++i) {

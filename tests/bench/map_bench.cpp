@@ -75,7 +75,7 @@ nlohmann::json judge(const Cell& cell, double resolution_m) {
       score_surface(scanned.map.mesh, T_room_map, source.room(), seen_surface(source), kSpacing_m);
   const double both = score.precision + score.cover;
   const std::map<std::string, StageSummary> stages = times.summaries();
-  const MapCounts octree = scanned.map.octree->counts();
+  const MapCounts octree = scanned.map.octree.load().counts();
   nlohmann::json row = {
       {"source", cell.source},
       {"poses", cell.poses},

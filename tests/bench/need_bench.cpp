@@ -231,7 +231,7 @@ void measure_mesh(Rows& rows) {
   DynamicSurface surface;
   std::vector<std::size_t> triangles(parts.size());
   const auto medians = medians_ms(parts.size(), 100, [&](std::size_t i) {
-    mesh_dynamic(depths[i], masks[i], expected_m, kCamera, Eigen::Isometry3d::Identity(), {}, {}, scratch,
+    mesh_dynamic({{depths[i], kCamera, Eigen::Isometry3d::Identity()}, masks[i], expected_m}, {}, {}, scratch,
                  surface);
     triangles[i] = surface.seen_world.triangles.size();
   });

@@ -81,7 +81,7 @@ Frame render(std::span<const Solid> table, std::span<const Solid> hand,
   Frame frame;
   view.prepare(solids, kCamera, T_world_camera);
   render_exact(solids, view, kCamera, {}, exact);
-  measure_depth(solids, infrared, view, exact, kCamera, T_world_camera, {}, 1.0, 1, index, scratch,
+  measure_depth({solids, infrared}, {view, exact, kCamera, T_world_camera}, {{}, 1.0, 1, index}, scratch,
                 frame.depth_m);
   frame.index = index;
   frame.stamp_s = index * kHandFrame_s;

@@ -311,8 +311,9 @@ int run(int argc, char** argv) {
         Floor(map.mesh).lanes(options.lanes, options.length_m, options.step_m, options.seed);
     World world;
     world.add(map.mesh);
-    world.add((*map.unknown ? **map.unknown : unknown_surface(map.octree, map.mesh)).mesh_world,
-              SurfaceKind::kUnknownFrontier);
+    world.add(
+        (map.unknown.load() ? *map.unknown.load() : unknown_surface(map.octree.load(), map.mesh)).mesh_world,
+        SurfaceKind::kUnknownFrontier);
     const std::string name = folder.substr(folder.find_last_of('/') + 1);
     for (const Thing& thing : things_of(options)) {
       test::Times times;

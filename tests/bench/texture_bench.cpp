@@ -194,7 +194,7 @@ nlohmann::json judge(const Cell& cell, const std::filesystem::path& pictures) {
   const double bake_s =
       std::chrono::duration<double>(Clock::now() - begun).count() - 1e-3 * stages.at("coverage").max_ms;
   const double peak_mb = peak_rss_mb();
-  const std::shared_ptr<const SurfaceTexture> texture = *scanned.map.texture;
+  const std::shared_ptr<const SurfaceTexture> texture = scanned.map.texture.load();
   if (!texture) throw Error(cell.source + ": no texture was baked; have the frames colour?");
 
   const Surface surface(scanned.map.mesh, *texture);

@@ -60,7 +60,7 @@ Tracking SearchedRoom::find(Locator& locator, const Frame& frame, const MaskImag
     drawing_ms += test::thread_ms() - start_ms;
     return expected.depth_m;
   };
-  return locate(locator, frame, map.keyframe_database, dynamic_mask, expected_depth);
+  return locate(locator, frame, map.keyframe_database.load(), dynamic_mask, expected_depth);
 }
 
 SimOptions scan_of(const std::string& room, std::uint64_t seed) {

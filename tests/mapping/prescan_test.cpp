@@ -54,8 +54,8 @@ TEST(Prescan, ARecordedPoseThatNoMapReachesIsNone) {
     EXPECT_EQ(result.counts.frames_lost, 1) << away_m;
     EXPECT_EQ(result.counts.frames_fused, kFrames - 1) << away_m;
     EXPECT_TRUE(knows_recorded_world(result.map.info));
-    ASSERT_FALSE(result.map.keyframe_database->keyframes.empty());
-    for (const MapKeyframe& place : result.map.keyframe_database->keyframes)
+    ASSERT_FALSE(result.map.keyframe_database.load().keyframes.empty());
+    for (const MapKeyframe& place : result.map.keyframe_database.load().keyframes)
       EXPECT_LT(place.T_world_camera.translation().norm(), 3.0) << away_m;
     for (const TimedPose& pose : result.map.trajectory)
       EXPECT_LT(pose.T_world_camera.translation().norm(), 3.0) << away_m;
@@ -127,13 +127,13 @@ TEST(Prescan, AMapOfImagesOfAFewRowsIsReadAgain) {
       frame.colour.resize(0, 0);
     }
     const SavedMap map = prescan_of(std::move(frames), PoseOrigin::kRecorded, 0.01).map;
-    ASSERT_FALSE(map.keyframe_database->keyframes.empty());
-    EXPECT_GT(map.keyframe_database->keyframes.front().preview_depth_mm.height, 0);
+    ASSERT_FALSE(map.keyframe_database.load().keyframes.empty());
+    EXPECT_GT(map.keyframe_database.load().keyframes.front().preview_depth_mm.height, 0);
     const test::TemporaryFolder folder;
     save_map(folder.path() / "slit", map);
     EXPECT_TRUE(verify_map(folder.path() / "slit").empty());
-    EXPECT_EQ(load_map(folder.path() / "slit").keyframe_database->keyframes.size(),
-              map.keyframe_database->keyframes.size());
+    EXPECT_EQ(load_map(folder.path() / "slit").keyframe_database.load().keyframes.size(),
+              map.keyframe_database.load().keyframes.size());
   }
 }
 
@@ -184,13 +184,13 @@ PrescanResult textured_prescan(std::vector<Frame> frames, std::size_t max_memory
 
 TEST(Prescan, TheTextureFitsTheMeshThatIsSaved) {
   const PrescanResult result = textured_prescan(posed_frames());
-  ASSERT_NE(*result.map.texture, nullptr);
+  ASSERT_NE(result.map.texture.load(), nullptr);
   const test::TemporaryFolder folder;
   save_map(folder.path() / "map", result.map);
   const auto [mesh, texture] = load_textured_map_mesh(folder.path() / "map");
   EXPECT_TRUE(fits(texture, mesh));
   EXPECT_EQ(verify_map(folder.path() / "map"), std::vector<std::string>{});
-  EXPECT_EQ(*prescan_of(posed_frames()).map.texture, nullptr);  // only where it is asked for
+  EXPECT_EQ(prescan_of(posed_frames()).map.texture.load(), nullptr);  // only where it is asked for
 }
 
 std::string content(const std::filesystem::path& file) { return read_bytes(file, "a map's file", 1U << 26U); }
@@ -211,7 +211,7 @@ TEST(Prescan, AnOctreeThatIsSavedBeforeTheTextureIsThatOfTheMap) {
     ++files;
   }
   EXPECT_GE(files, 8U);
-  EXPECT_EQ(result.map.octree->counts().nodes, load_map_octree(at_once).counts().nodes);
+  EXPECT_EQ(result.map.octree.load().counts().nodes, load_map_octree(at_once).counts().nodes);
   EXPECT_EQ(result.map.info.counts.nodes, load_map_octree(at_once).counts().nodes);
 }
 
@@ -231,14 +231,14 @@ TEST(Prescan, WithoutColourThereIsNoTexture) {
   std::vector<Frame> frames = posed_frames();
   for (Frame& frame : frames) frame.colour = {};
   const PrescanResult result = textured_prescan(std::move(frames));
-  EXPECT_EQ(*result.map.texture, nullptr);
+  EXPECT_EQ(result.map.texture.load(), nullptr);
   EXPECT_FALSE(result.map.mesh.triangles.empty());
 }
 
 TEST(Prescan, AMemoryCapLeavesOutTheTextureNotTheMap) {
   const std::size_t cap = resident_bytes() + 100'000'000;
   const PrescanResult result = textured_prescan(posed_frames(), cap);
-  EXPECT_EQ(*result.map.texture, nullptr);
+  EXPECT_EQ(result.map.texture.load(), nullptr);
   EXPECT_FALSE(result.counts.stopped_for_memory);
 }
 

@@ -50,10 +50,10 @@ void fuse_walk(const SimOptions& walk, const RoomScan& scan, const std::function
   Frame frame;
   while (source.next(frame).status == ReadStatus::kFrame) {
     ++map.info.frames_read;
-    if (map.octree->fuse(frame, *frame.T_world_camera) == FuseStatus::kFused) ++map.info.frames_fused;
+    if (map.octree.load().fuse(frame, *frame.T_world_camera) == FuseStatus::kFused) ++map.info.frames_fused;
     progress();
   }
-  map.mesh = extract_surface(map.octree);
+  map.mesh = extract_surface(map.octree.load());
 }
 
 }  // namespace
@@ -85,8 +85,8 @@ ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std:
       throw Error("room " + room.title + ": the walk round it shows no surface; use a finer resolution");
     if (!folder.empty()) save_map(folder, map);
   }
-  const std::shared_ptr<const UnknownSurface>& stored = *map.unknown;
-  room.unknown_world = stored ? stored->mesh_world : unknown_surface(map.octree, map.mesh).mesh_world;
+  const std::shared_ptr<const UnknownSurface>& stored = map.unknown.load();
+  room.unknown_world = stored ? stored->mesh_world : unknown_surface(map.octree.load(), map.mesh).mesh_world;
   room.mesh_world = std::move(map.mesh);
   return room;
 }

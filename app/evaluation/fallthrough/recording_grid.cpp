@@ -118,7 +118,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
   Shape room(context);
   room.set(map.mesh, MeshUsage::kStatic);
   TriangleTree unknown, reference, ball;
-  unknown.build_by_place(unknown_surface(map.octree, map.mesh).mesh_world);
+  unknown.build_by_place(unknown_surface(map.octree.load(), map.mesh).mesh_world);
   reference.build_by_place(reference_world);
   Mesh ball_mesh;
   append_mesh(sphere(Vector3d::Zero(), config.radius_m), {}, kMeshDeviation_m, ball_mesh);
@@ -140,7 +140,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
     for (int column = 0; column < grid.columns; ++column) {
       progress.step();
       const std::optional<Vector3d> start_world =
-          place_to_start(map.octree, bounds.min().x() + (column + 0.5) * config.cell_m,
+          place_to_start(map.octree.load(), bounds.min().x() + (column + 0.5) * config.cell_m,
                          bounds.min().y() + (row + 0.5) * config.cell_m, T_world_camera.translation().z(),
                          bounds.min().z(), config.radius_m);
       if (!start_world) continue;

@@ -72,8 +72,8 @@ PictureErrors PictureJudge::errors_of(const JudgedPicture& judged, const Frame& 
   drawer_.draw(drawn, frame.colour_camera, T_world_camera, {}, layer_);
   ComposeConfig config;
   config.occlusion.edge_reach_px = 0;  // exact depth needs no correction of edges
-  cast_shadows(frame.colour, frame.colour_camera, T_world_camera, true_depth_m, casters, config, right_);
-  lay_objects(layer_, true_depth_m, config.occlusion, occlusion_, right_);
+  cast_shadows(frame.colour, {true_depth_m, frame.colour_camera, T_world_camera}, casters, config, right_);
+  lay_objects({.layer = layer_, .feet = {}}, true_depth_m, config.occlusion, occlusion_, right_);
   PictureErrors errors;
   for (std::size_t i = 0; i < right_.pixels.size(); ++i) {
     errors.difference += difference(right_.pixels[i], judged.picture.pixels[i]);

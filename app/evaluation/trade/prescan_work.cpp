@@ -111,7 +111,7 @@ Readings measure(const ScanScene& scene, const Setting& setting) {
           median_of(stages, "fuse"),
           median_of(stages, "surface"),
           memory_mb,
-          static_cast<double>(scanned.map.octree->memory_bytes()) / 1e6,
+          static_cast<double>(scanned.map.octree.load().memory_bytes()) / 1e6,
           static_cast<double>(scanned.map.mesh.triangles.size()),
           median_m,
           p95_m,

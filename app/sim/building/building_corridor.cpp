@@ -162,9 +162,11 @@ void add_corridor_piece(Room& room, const BuildingPlan& plan, int piece, int flo
   const CorridorPiece& own = plan.pieces[static_cast<std::size_t>(piece)];
   const std::uint64_t floor_seed = hash_of(plan.seed, 0x666c6f6f, static_cast<std::uint64_t>(floor));
   const Material ceiling{Pattern::kTiles, {232, 230, 224}, {196, 194, 188}, look + 1, 0.65F};
-  add_piece_shell(
-      room, plan, own, floor, floor_covering(floor_seed, look + 2), ceiling,
-      wall_paint(hash_of(floor_seed, static_cast<std::uint64_t>(piece / kPiecesPerPaint)), look + 3));
+  const std::uint64_t paint_seed = hash_of(floor_seed, static_cast<std::uint64_t>(piece / kPiecesPerPaint));
+  add_piece_shell(room, plan, own, floor,
+                  {.ground = floor_covering(floor_seed, look + 2),
+                   .ceiling = ceiling,
+                   .walls = wall_paint(paint_seed, look + 3)});
   for (unsigned side = 0; side < 4; ++side) {
     std::vector<WallOpening> doors;
     bool is_wall = true;

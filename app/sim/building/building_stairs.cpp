@@ -61,14 +61,14 @@ void add_walls(Room& room, const Isometry3d& T_world_stairs, int storey, double 
     return result;
   };
   constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
-  add_wall(room, T_world_storey * standing_at(0, 0, 0, kQuarter_rad), -kHalfWidth_m, kHalfWidth_m, front_m,
+  add_wall(room, T_world_storey * standing_at(0, 0, 0, kQuarter_rad), {-kHalfWidth_m, kHalfWidth_m, front_m},
            {{-0.5 * kStairDoorWidth_m, 0.5 * kStairDoorWidth_m, kDoorwayHeight_m}}, own(1));
-  add_wall(room, T_world_storey * standing_at(kStairwellLength_m, 0, 0, -kQuarter_rad), -kHalfWidth_m,
-           kHalfWidth_m, height_m, {}, own(2));
-  add_wall(room, T_world_storey * standing_at(0, kHalfWidth_m, 0), -kShellThickness_m,
-           kStairwellLength_m + kShellThickness_m, height_m, {}, own(3));
+  add_wall(room, T_world_storey * standing_at(kStairwellLength_m, 0, 0, -kQuarter_rad),
+           {-kHalfWidth_m, kHalfWidth_m, height_m}, {}, own(2));
+  add_wall(room, T_world_storey * standing_at(0, kHalfWidth_m, 0),
+           {-kShellThickness_m, kStairwellLength_m + kShellThickness_m, height_m}, {}, own(3));
   add_wall(room, T_world_storey * standing_at(0, -kHalfWidth_m, 0, std::numbers::pi),
-           -kStairwellLength_m - kShellThickness_m, kShellThickness_m, height_m, {}, own(4));
+           {-kStairwellLength_m - kShellThickness_m, kShellThickness_m, height_m}, {}, own(4));
 }
 
 /// Adds pictures beside a storey's flights and landings, lower than eyes, as the camera looks down.

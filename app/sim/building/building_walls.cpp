@@ -30,7 +30,7 @@ double beyond_m(const BuildingPlan& plan, const CorridorPiece& piece, unsigned s
 
 }  // namespace
 
-void add_wall(Room& room, const Isometry3d& T_world_wall, double from_m, double to_m, double height_m,
+void add_wall(Room& room, const Isometry3d& T_world_wall, const WallExtent& extent,
               std::vector<WallOpening> openings, const WallPaint& paint) {
   std::sort(openings.begin(), openings.end(),
             [](const WallOpening& a, const WallOpening& b) { return a.from_m < b.from_m; });
@@ -43,19 +43,19 @@ void add_wall(Room& room, const Isometry3d& T_world_wall, double from_m, double 
         material);
   };
   WallPaint part = paint;
-  double left_m = from_m;
+  double left_m = extent.from_m;
   const auto add_part = [&](double right_m) {
     ++part.dado.seed;
     ++part.upper.seed;
     add_box(left_m, right_m, 0.0, kDado_m, part.dado);
-    add_box(left_m, right_m, kDado_m, height_m, part.upper);
+    add_box(left_m, right_m, kDado_m, extent.height_m, part.upper);
   };
   for (const WallOpening& opening : openings) {
     add_part(opening.from_m);
-    add_box(opening.from_m, opening.to_m, opening.high_m, height_m, part.upper);
+    add_box(opening.from_m, opening.to_m, opening.high_m, extent.height_m, part.upper);
     left_m = opening.to_m;
   }
-  add_part(to_m);
+  add_part(extent.to_m);
 }
 
 bool is_open_on(const BuildingPlan& plan, const PieceOpening& opening, int floor) {
@@ -89,7 +89,7 @@ WallOpening opening_in_side(const CorridorPiece& piece, const PieceOpening& open
 }
 
 void add_piece_shell(Room& room, const BuildingPlan& plan, const CorridorPiece& piece, int floor,
-                     const Material& ground, const Material& ceiling, const WallPaint& paint) {
+                     const ShellMaterials& materials) {
   Eigen::AlignedBox2d slab = piece.interior_m;
   const Eigen::Vector2d size = piece.interior_m.sizes();
   for (unsigned side = 0; side < 4; ++side) {
@@ -106,10 +106,10 @@ void add_piece_shell(Room& room, const BuildingPlan& plan, const CorridorPiece& 
     // Walls along y end beside walls along x. The wall's x axis points north on side 2, south on side 3.
     const double right_m = side < 2 ? 0.0 : beyond_m(plan, piece, side, side == 2 ? 0 : 1),
                  left_m = side < 2 ? 0.0 : beyond_m(plan, piece, side, side == 2 ? 1 : 0);
-    WallPaint own = paint;
+    WallPaint own = materials.walls;
     own.dado.seed += 40 * (side + 1);
     own.upper.seed += 40 * (side + 1);
-    add_wall(room, T_world_wall, -half_m - left_m, half_m + right_m, kCorridorHeight_m, std::move(openings),
+    add_wall(room, T_world_wall, {-half_m - left_m, half_m + right_m, kCorridorHeight_m}, std::move(openings),
              own);
     // The floor extends under walls with doorways.
     if (side == 0) slab.max().y() += kShellThickness_m;
@@ -123,11 +123,11 @@ void add_piece_shell(Room& room, const BuildingPlan& plan, const CorridorPiece& 
   add(room, world,
       box({middle.x(), middle.y(), z_m - 0.5 * kShellThickness_m},
           {extent.x(), extent.y(), kShellThickness_m}),
-      ground);
+      materials.ground);
   add(room, world,
       box({middle.x(), middle.y(), z_m + kCorridorHeight_m + 0.5 * kShellThickness_m},
           {extent.x(), extent.y(), kShellThickness_m}),
-      ceiling);
+      materials.ceiling);
 }
 
 }  // namespace roomradar

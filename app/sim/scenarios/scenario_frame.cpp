@@ -29,9 +29,16 @@ void render_scenario(const Scenario& scenario, const Room& room, int frame_numbe
   render_exact(solids, view, scenario.depth_camera, {}, exact);
   if (noise_scale > 0.0) {
     KinectScratch scratch;
-    measure_depth(solids, infrared, view, exact, scenario.depth_camera, scenario.T_world_camera, {},
-                  noise_scale, mixed(scenario.seed + static_cast<std::uint64_t>(scenario.number)),
-                  frame_number, scratch, frame.depth_m);
+    measure_depth({solids, infrared},
+                  {.caster = view,
+                   .exact = exact,
+                   .camera = scenario.depth_camera,
+                   .T_world_camera = scenario.T_world_camera},
+                  {.faults = {},
+                   .noise_scale = noise_scale,
+                   .seed = mixed(scenario.seed + static_cast<std::uint64_t>(scenario.number)),
+                   .frame_index = frame_number},
+                  scratch, frame.depth_m);
   } else {
     frame.depth_m = exact.depth_m;
     for (float& depth_m : frame.depth_m.pixels)

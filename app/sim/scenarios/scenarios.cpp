@@ -40,10 +40,10 @@ bool is_well_posed(const Room& room, const Scenario& scenario) {
   return true;
 }
 
-/// Places an object in front of a patch, on course to hit it, and computes the true contact. Returns false if
-/// it does not fit.
-bool place_object(const ScenarioRoom& from, const Patch& patch, bool drop, ObjectShape shape,
-                  CounterRandom& random, Scenario& scenario, Patch& contact) {
+/// Places an object in front of a patch, on course to hit it. Returns the patch that it hits, or nullopt if
+/// the object does not fit.
+std::optional<Patch> place_object(const ScenarioRoom& from, const Patch& patch, bool drop, ObjectShape shape,
+                                  CounterRandom& random, Scenario& scenario) {
   constexpr double kStartClear_m = 0.02, kLeastTravel_m = 0.05;
   scenario.object = draw_object(shape, random);
   scenario.direction_world = drop ? Vector3d(-Vector3d::UnitZ())
@@ -58,19 +58,20 @@ bool place_object(const ScenarioRoom& from, const Patch& patch, bool drop, Objec
       (Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()) * Eigen::AngleAxisd(tilt_rad, tilt_axis))
           .toRotationMatrix();
   scenario.T_world_object.translation() = patch.point_world - (start_m + reach_m) * scenario.direction_world;
-  if (signed_distance_m(from.room, scenario.T_world_object.translation()) < kStartClear_m) return false;
+  if (signed_distance_m(from.room, scenario.T_world_object.translation()) < kStartClear_m)
+    return std::nullopt;
   if (clearance_m(from.room.solids, scenario.object.parts, scenario.T_world_object, kStartClear_m) <
       kStartClear_m)
-    return false;
+    return std::nullopt;
   const double limit_m = start_m + 2.0 * reach_m;
   const SweptTravel swept = swept_travel(from.room.solids, scenario.object.parts, scenario.T_world_object,
                                          scenario.direction_world, limit_m);
-  if (!swept.touches || swept.contact_distance_m < kLeastTravel_m) return false;
+  if (!swept.touches || swept.contact_distance_m < kLeastTravel_m) return std::nullopt;
   scenario.true_travel_m = swept.contact_distance_m;
   scenario.contact_world = swept.point_world;
-  contact = {swept.point_world, swept.normal_world};
   scenario.limit_m = swept.contact_distance_m + 0.4;
-  return is_well_posed(from.room, scenario);
+  if (!is_well_posed(from.room, scenario)) return std::nullopt;
+  return Patch{swept.point_world, swept.normal_world};
 }
 
 /// Draws a tracking error: 1.5 mm along and 0.1 degrees about each axis (one sigma).
@@ -94,12 +95,12 @@ std::optional<Scenario> draw_scenario(const ScenarioRoom& from, std::int64_t num
   const std::optional<Patch> patch = draw_patch(from, random);
   if (!patch) return std::nullopt;
   if (drop ? patch->normal_world.z() < 0.9 : std::abs(patch->normal_world.z()) > 0.3) return std::nullopt;
-  Patch contact;
-  if (!was_seen(from, *patch) || !place_object(from, *patch, drop, shape, random, scenario, contact))
-    return std::nullopt;
+  if (!was_seen(from, *patch)) return std::nullopt;
+  const std::optional<Patch> contact = place_object(from, *patch, drop, shape, random, scenario);
+  if (!contact) return std::nullopt;
   std::vector<Patch> patches = stopping_patches(from.room, scenario, scenario.true_travel_m + kBeyond_m);
   if (patches.size() < 3) return std::nullopt;
-  patches.push_back(contact);
+  patches.push_back(*contact);
   if (!std::all_of(patches.begin(), patches.end(), [&](const Patch& one) { return was_seen(from, one); }))
     return std::nullopt;
   if (!way_was_seen(from, scenario)) return std::nullopt;

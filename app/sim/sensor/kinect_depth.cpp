@@ -121,11 +121,8 @@ double quantised_depth_m(const Intrinsics& camera, double depth_m) {
   return scale / std::max(std::round(scale / depth_m), 1.0);
 }
 
-void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
-                   const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                   const DepthFaults& faults, double noise_scale, std::uint64_t seed,
-                   std::int64_t frame_index, const RowBand& band, KinectScratch& scratch,
-                   DepthImage& depth_m) {
+void measure_depth(const InfraredSolids& lit, const DepthCameraView& view, const DepthErrors& errors,
+                   const RowBand& band, KinectScratch& scratch, DepthImage& depth_m) {
   // Min returned light, relative to a white surface at 1 m. White paper is measured beyond the range, black
   // plastic (0.05) to some 3 m, and a wall at 4 m up to 82 degrees from its normal.
   constexpr double kFaintest = 0.005;
@@ -133,10 +130,13 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
   // Keeps a surface from shadowing itself.
   constexpr double kShadowMargin_m = 0.003;
 
-  const std::uint64_t key = hash_of(seed, static_cast<std::uint64_t>(frame_index), 0x6b696e65);
+  const Intrinsics& camera = view.camera;
+  const ExactView& exact = view.exact;
+  const std::uint64_t key = hash_of(errors.seed, static_cast<std::uint64_t>(errors.frame_index), 0x6b696e65);
   const PatchNoise patch_noise = make_patch_noise(camera, mixed(key), scratch);
-  const Eigen::Isometry3d T_world_projector = T_world_camera * Eigen::Translation3d(kKinectBaseline_m, 0, 0);
-  scratch.projector.prepare(solids, camera, T_world_projector);
+  const Eigen::Isometry3d T_world_projector =
+      view.T_world_camera * Eigen::Translation3d(kKinectBaseline_m, 0, 0);
+  scratch.projector.prepare(lit.solids, camera, T_world_projector);
   const double disparity_px_m = camera.fx_px * kKinectBaseline_m;
 
   for (int y = band.begin; y < band.end; ++y)
@@ -146,28 +146,28 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
       const double theta = std::min(std::acos(exact.cosine.at(x, y)), 1.4835F);
 
       const std::uint64_t pixel_key = mixed(key + exact.depth_m.index(x, y));
-      const double sigma_px = noise_scale * camera.width_px / kKinectWidth_px *
+      const double sigma_px = errors.noise_scale * camera.width_px / kKinectWidth_px *
                               (0.8 + 0.035 * theta / (0.5 * std::numbers::pi - theta));
       const double aside_x = sigma_px * gaussian(mixed(pixel_key + 1));
       const double aside_y = sigma_px * gaussian(mixed(pixel_key + 2));
       const int nearest_x = std::clamp(static_cast<int>(std::lround(x + aside_x)), 0, camera.width_px - 1);
       const int nearest_y = std::clamp(static_cast<int>(std::lround(y + aside_y)), 0, camera.height_px - 1);
-      const PlanePoint<double> ray = ray_of(faults.rays, x, y);
+      const PlanePoint<double> ray = ray_of(errors.faults.rays, x, y);
       const double u = ray.x + aside_x;
       const double v = ray.y + aside_y;
       solid = exact.solid.at(nearest_x, nearest_y);
       if (solid < 0) continue;
-      double z = view.depth_of(solid, u, v);
+      double z = view.caster.depth_of(solid, u, v);
       if (z <= 0.0) z = exact.depth_m.at(nearest_x, nearest_y);  // just beside the solid's outline
 
       const float cosine = exact.cosine.at(nearest_x, nearest_y);
       const double ragged = 1.0 + kRaggedness * gaussian(mixed(pixel_key + 3));
-      if (infrared[static_cast<std::size_t>(solid)] * cosine / (z * z) < kFaintest * ragged) continue;
+      if (lit.infrared[static_cast<std::size_t>(solid)] * cosine / (z * z) < kFaintest * ragged) continue;
       if (scratch.projector.is_blocked(u - disparity_px_m / z, v, z - kShadowMargin_m)) continue;
 
-      z = reported_m(faults, x, y, z);
+      z = reported_m(errors.faults, x, y, z);
       const double sigma_m =
-          noise_scale * depth_sigma_m(DepthNoise{}, static_cast<float>(z), std::acos(cosine));
+          errors.noise_scale * depth_sigma_m(DepthNoise{}, static_cast<float>(z), std::acos(cosine));
       const double step_m = quantisation_step_m(camera, z);
       const double before_quantising_m = std::sqrt(std::max(sigma_m * sigma_m - step_m * step_m / 12.0, 0.0));
       const double noisy_m = z + before_quantising_m * patch_noise.at(x, y);
@@ -178,13 +178,10 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
     }
 }
 
-void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
-                   const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                   const DepthFaults& faults, double noise_scale, std::uint64_t seed,
-                   std::int64_t frame_index, KinectScratch& scratch, DepthImage& depth_m) {
-  depth_m.resize(camera.width_px, camera.height_px);
-  measure_depth(solids, infrared, view, exact, camera, T_world_camera, faults, noise_scale, seed, frame_index,
-                {0, camera.height_px, 0.0}, scratch, depth_m);
+void measure_depth(const InfraredSolids& lit, const DepthCameraView& view, const DepthErrors& errors,
+                   KinectScratch& scratch, DepthImage& depth_m) {
+  depth_m.resize(view.camera.width_px, view.camera.height_px);
+  measure_depth(lit, view, errors, {0, view.camera.height_px, 0.0}, scratch, depth_m);
 }
 
 }  // namespace roomradar

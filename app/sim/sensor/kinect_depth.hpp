@@ -69,6 +69,28 @@ PlanePoint<double> ray_of(const PixelRays& rays, int x, int y);
 /// Returns the depth that a camera with these errors reports at a pixel for a true depth > 0, m.
 double reported_m(const DepthFaults& faults, int x, int y, double depth_m);
 
+/// Solids and what they return of the projector's light.
+struct InfraredSolids {
+  std::span<const Solid> solids;
+  std::span<const float> infrared;  ///< reflected fraction of the infrared light, per solid
+};
+
+/// The view of the depth camera on the solids. Refers to its parts, which must outlive it.
+struct DepthCameraView {
+  const ViewCaster& caster;  ///< prepared for camera and pose
+  const ExactView& exact;    ///< exact images, rendered with the camera's DepthFaults::rays
+  const Intrinsics& camera;
+  const Eigen::Isometry3d& T_world_camera;
+};
+
+/// Errors of one frame's measured depth. Refers to the faults, which must outlive it.
+struct DepthErrors {
+  const DepthFaults& faults;
+  double noise_scale = 1.0;  ///< factor on both standard deviations of the noise; > 0
+  std::uint64_t seed = 0;
+  std::int64_t frame_index = 0;
+};
+
 /// Buffers of measure_depth().
 struct KinectScratch {
   ViewCaster projector;
@@ -76,7 +98,7 @@ struct KinectScratch {
   std::uint64_t lattice_key = 0;  ///< key of the frame whose noise is in `lattice`; 0: none
 };
 
-/// Simulates the sensor's depth image of frame `frame_index` by the steps below. z is the depth, theta the
+/// Simulates the sensor's depth image of a frame by the steps below. z is the depth, theta the
 /// angle between ray and surface normal.
 /// - Lateral noise: each ray deviates from its pixel's centre, with standard deviation
 ///   sigma_L = 0.8 + 0.035 theta / (pi/2 - theta) px.
@@ -87,22 +109,14 @@ struct KinectScratch {
 ///   quantisation. Correlated over about 3 pixels.
 /// - Quantisation of the disparity. Depth is 0 outside 0.5 to 8 m.
 ///
-/// The result is deterministic in (seed, frame_index) and independent of other frames. Source: Nguyen, Izadi,
-/// Lovell, 3DIMPVT 2012, equations (1) and (3).
-/// @param infrared     reflected fraction of the infrared light, per solid
-/// @param exact        exact images, rendered with faults.rays
-/// @param noise_scale  factor on both standard deviations; > 0
-/// @param band         rows to be measured; T_world_camera is the camera pose at the time of these rows
-/// @param[in,out] depth_m   image of the camera's size, 0 in these rows
-void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
-                   const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                   const DepthFaults& faults, double noise_scale, std::uint64_t seed,
-                   std::int64_t frame_index, const RowBand& band, KinectScratch& scratch,
-                   DepthImage& depth_m);
+/// The result is deterministic in (errors.seed, errors.frame_index) and independent of other frames. Source:
+/// Nguyen, Izadi, Lovell, 3DIMPVT 2012, equations (1) and (3).
+/// @param band  rows to be measured; view.T_world_camera is the camera pose at the time of these rows
+/// @param[in,out] depth_m  image of the camera's size, 0 in these rows
+void measure_depth(const InfraredSolids& lit, const DepthCameraView& view, const DepthErrors& errors,
+                   const RowBand& band, KinectScratch& scratch, DepthImage& depth_m);
 /// The same for the whole image, which is resized to the camera's size.
-void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
-                   const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                   const DepthFaults& faults, double noise_scale, std::uint64_t seed,
-                   std::int64_t frame_index, KinectScratch& scratch, DepthImage& depth_m);
+void measure_depth(const InfraredSolids& lit, const DepthCameraView& view, const DepthErrors& errors,
+                   KinectScratch& scratch, DepthImage& depth_m);
 
 }  // namespace roomradar

@@ -238,8 +238,16 @@ void SimulatedSource::State::fill_depth(std::int64_t index, const PoseAt& T_worl
     for (const RowBand& band : row_bands(depth_m.height, options.timing.shutter_s)) {
       const Eigen::Isometry3d T_world_camera = T_world_camera_at(band.t_s);
       if (options.timing.shutter_s > 0.0) views.depth.prepare(solids, options.depth_camera, T_world_camera);
-      measure_depth(solids, infrared, views.depth, views.depth_exact, options.depth_camera, T_world_camera,
-                    depth_faults, options.noise_scale, noise_seed, index, band, views.scratch, depth_m);
+      measure_depth({solids, infrared},
+                    {.caster = views.depth,
+                     .exact = views.depth_exact,
+                     .camera = options.depth_camera,
+                     .T_world_camera = T_world_camera},
+                    {.faults = depth_faults,
+                     .noise_scale = options.noise_scale,
+                     .seed = noise_seed,
+                     .frame_index = index},
+                    band, views.scratch, depth_m);
     }
     return;
   }

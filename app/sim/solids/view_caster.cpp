@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 namespace roomradar {
 namespace {
@@ -58,16 +60,14 @@ void ViewCaster::prepare(std::span<const Solid> solids, const Intrinsics& camera
     nearest_first_.push_back({static_cast<int>(i), std::max(depth.least, 0.0)});
     // A tile's column is the wedge between two planes through the camera's centre. It extends half a pixel
     // beyond the outermost pixel centres, so rays between two pixels find their solids too.
-    const auto range = [&](int tiles, int beside, double focal_px, double centre_px, int axis, int& begin,
-                           int& end) {
+    const auto range = [&](int tiles, int beside, double focal_px, double centre_px, int axis) {
       const auto plane_before = [&](int tile) {  // positive on the side of greater image coordinates
         Vector3d n = Vector3d::Zero();
         n[axis] = focal_px;
         n.z() = centre_px - edge_px(tile, beside);
         return extent_along(n, centre_camera, R_solid_camera, half_m);
       };
-      begin = tiles;
-      end = 0;
+      int begin = tiles, end = 0;
       Extent low = plane_before(0);
       for (int tile = 0; tile < tiles; ++tile) {
         const Extent high = plane_before(tile + 1);
@@ -77,10 +77,11 @@ void ViewCaster::prepare(std::span<const Solid> solids, const Intrinsics& camera
         }
         low = high;
       }
+      return std::pair(begin, end);
     };
-    range(columns_, kColumnsBeside, camera.fx_px, camera.cx_px, 0, prepared.column_begin,
-          prepared.column_end);
-    range(rows_, kRowsBeside, camera.fy_px, camera.cy_px, 1, prepared.row_begin, prepared.row_end);
+    std::tie(prepared.column_begin, prepared.column_end) =
+        range(columns_, kColumnsBeside, camera.fx_px, camera.cx_px, 0);
+    std::tie(prepared.row_begin, prepared.row_end) = range(rows_, kRowsBeside, camera.fy_px, camera.cy_px, 1);
   }
   const auto is_nearer = [](const Candidate& a, const Candidate& b) {
     return a.nearest_m < b.nearest_m || (a.nearest_m == b.nearest_m && a.solid < b.solid);

@@ -31,11 +31,17 @@ Intrinsics with_focal(const Intrinsics& camera, double factor) {
   return changed;
 }
 
-/// Differences of the points of `from` to the image `to`, m and relative to depth. Returns false if too few
-/// points are seen in both.
+/// Differences of the points of one depth image to another.
+struct PointDifferences {
+  std::vector<double> differences_m;
+  double clipped_sum = 0.0;  ///< of the differences relative to depth, each limited to 1
+  std::size_t count = 0;     ///< number of summands
+};
+
+/// Adds the differences of the points of `from` to the image `to`. Returns false if too few points are seen
+/// in both; then adds only to differences_m.
 bool add_differences(const DepthImage& from, const DepthImage& to, const Intrinsics& camera,
-                     const Eigen::Isometry3d& T_to_from, std::vector<double>& differences_m, double& sum,
-                     std::size_t& count) {
+                     const Eigen::Isometry3d& T_to_from, PointDifferences& all) {
   constexpr double kPoints = 1500.0, kTolerance = 0.02, kNear_m = 1e-3;
   const int step =
       std::max(1, static_cast<int>(std::sqrt(static_cast<double>(from.pixels.size()) / kPoints)));
@@ -54,13 +60,13 @@ bool add_differences(const DepthImage& from, const DepthImage& to, const Intrins
           to.at(static_cast<int>(std::lround(uv.x())), static_cast<int>(std::lround(uv.y())));
       if (!(seen_m > 0.0F)) continue;
       const double difference_m = std::abs(p.z() - static_cast<double>(seen_m));
-      differences_m.push_back(difference_m);
+      all.differences_m.push_back(difference_m);
       clipped += std::min(difference_m / (kTolerance * static_cast<double>(seen_m)), 1.0);
       ++both;
     }
   if (valid == 0 || both * 5 < valid) return false;
-  sum += clipped;
-  count += both;
+  all.clipped_sum += clipped;
+  all.count += both;
   return true;
 }
 
@@ -717,14 +723,12 @@ void question_focal(const DecidedRecording& recording, Samples& samples) {
 
 DepthDifference depth_difference(const DepthImage& from, const DepthImage& to, const Intrinsics& camera,
                                  const Eigen::Isometry3d& T_to_from) {
-  std::vector<double> differences_m;
-  double sum = 0.0;
-  std::size_t count = 0;
-  const bool forward = add_differences(from, to, camera, T_to_from, differences_m, sum, count);
-  const bool backward = add_differences(to, from, camera, T_to_from.inverse(), differences_m, sum, count);
+  PointDifferences all;
+  const bool forward = add_differences(from, to, camera, T_to_from, all);
+  const bool backward = add_differences(to, from, camera, T_to_from.inverse(), all);
   DepthDifference difference;
-  if (!differences_m.empty()) difference.median_m = median_of(std::move(differences_m));
-  if (forward || backward) difference.disagreement = sum / static_cast<double>(count);
+  if (!all.differences_m.empty()) difference.median_m = median_of(std::move(all.differences_m));
+  if (forward || backward) difference.disagreement = all.clipped_sum / static_cast<double>(all.count);
   if (forward != backward) difference.disagreement = 0.5 * (difference.disagreement + 1.0);
   return difference;
 }

@@ -89,20 +89,25 @@ void draw_material(const Snapshot& shown, UiChannel& link, PlaySettings& setting
     settings.friction = static_cast<float>(chosen->on_room.friction);
     settings.restitution = static_cast<float>(chosen->on_room.restitution);
   }
-  const auto slider = [&](const char* id, float& value, float least, float most, const char* format,
-                          ImGuiSliderFlags flags, std::optional<double> BodyMaterial::*field) {
-    ImGui::SliderFloat(id, &value, least, most, format, flags | ImGuiSliderFlags_AlwaysClamp);
+  struct Scale {
+    float least, most;
+    const char* format;
+    ImGuiSliderFlags flags = 0;
+  };
+  const auto slider = [&](const char* id, float& value, const Scale& scale,
+                          std::optional<double> BodyMaterial::*field) {
+    ImGui::SliderFloat(id, &value, scale.least, scale.most, scale.format,
+                       scale.flags | ImGuiSliderFlags_AlwaysClamp);
     if (!ImGui::IsItemDeactivatedAfterEdit()) return;
     BodyMaterial change;
     change.*field = static_cast<double>(value);
     link.ask(material_command(chosen->name, change));
   };
   ImGui::PushItemWidth(-1.0F);
-  slider("##mass", settings.mass_kg, 0.001F, 1000.0F, "weighs %.3g kg", ImGuiSliderFlags_Logarithmic,
+  slider("##mass", settings.mass_kg, {0.001F, 1000.0F, "weighs %.3g kg", ImGuiSliderFlags_Logarithmic},
          &BodyMaterial::mass_kg);
-  slider("##friction", settings.friction, 0.0F, 2.0F, "friction %.2f", 0, &BodyMaterial::friction);
-  slider("##restitution", settings.restitution, 0.0F, 1.0F, "restitution %.2f", 0,
-         &BodyMaterial::restitution);
+  slider("##friction", settings.friction, {0.0F, 2.0F, "friction %.2f"}, &BodyMaterial::friction);
+  slider("##restitution", settings.restitution, {0.0F, 1.0F, "restitution %.2f"}, &BodyMaterial::restitution);
   ImGui::PopItemWidth();
 }
 

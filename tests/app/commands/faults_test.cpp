@@ -265,8 +265,8 @@ TEST_F(DeferredErrors, AMapIsReadWholeWhileAnotherProcessSavesItAnew) {
   SavedMap a = load_map(at("map"));
   SavedMap b = load_map(at("map"));
   for (const SavedMap* map : {&a, &b}) {  // before its folder is replaced
-    static_cast<void>(*map->octree);
-    static_cast<void>(*map->texture);
+    map->octree.load();
+    map->texture.load();
   }
   b.trajectory.pop_back();
   b.info.source = "another";

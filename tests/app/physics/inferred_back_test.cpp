@@ -62,7 +62,7 @@ class InferredBack : public ::testing::Test {
       }
     }
     const FineRegion near_body{body_.T_world_object.translation(), 2.0 * kCube_m};
-    mesh_dynamic(depth_m, mask, DepthImage(kCamera.width_px, kCamera.height_px), kCamera, T_world_camera_,
+    mesh_dynamic({{depth_m, kCamera, T_world_camera_}, mask, DepthImage(kCamera.width_px, kCamera.height_px)},
                  {&near_body, 1}, {}, scratch_, surface_);
     seen_.build_in_order(surface_.seen_world);
     inferred_.build_in_order(surface_.inferred_world);

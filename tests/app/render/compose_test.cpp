@@ -32,7 +32,7 @@ ColourImage composed(const DepthImage& real_depth_m, const ObjectLayer& layer,
                      const ComposeConfig& config = {}) {
   ColourImage picture(kCamera.width_px, kCamera.height_px, kGrey);
   Occlusion occlusion;
-  lay_objects(layer, real_depth_m, config.occlusion, occlusion, picture);
+  lay_objects({layer, {}}, real_depth_m, config.occlusion, occlusion, picture);
   return picture;
 }
 
@@ -245,8 +245,8 @@ TEST(Compose, AShadowStaysUnderAnObjectThatTurnedALittleWhereverItsOriginIs) {
     ComposeConfig config;
     config.shadow_strength = 1.0F;
     ColourImage picture;
-    cast_shadows(ColourImage(64, 48, kGrey), kCamera, T_world_camera, DepthImage(64, 48, 1.0F), {&caster, 1},
-                 config, picture);
+    cast_shadows(ColourImage(64, 48, kGrey), {DepthImage(64, 48, 1.0F), kCamera, T_world_camera},
+                 {&caster, 1}, config, picture);
     return picture;
   };
   const ColourImage about_its_middle = picture_of({0, 0, 0}), far_off = picture_of({2, -1, 0.5F});
@@ -263,7 +263,7 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
   const DepthImage table_m(64, 48, 1.0F);
   const ColourImage grey(64, 48, kGrey);
   ColourImage picture;
-  cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, {}, picture);
+  cast_shadows(grey, {table_m, kCamera, T_world_camera}, {&caster, 1}, {}, picture);
   const int x = static_cast<int>(std::lround(60.0 * 0.2 + 31.5));
   const int y = static_cast<int>(std::lround(60.0 * -0.1 + 23.5));  // world y points up in the picture
   EXPECT_LT(picture.at(x, y).r, 60);
@@ -278,13 +278,13 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
       }
     }
   }
-  cast_shadows(grey, kCamera, T_world_camera, DepthImage(64, 48), {&caster, 1}, {}, picture);
+  cast_shadows(grey, {DepthImage(64, 48), kCamera, T_world_camera}, {&caster, 1}, {}, picture);
   EXPECT_EQ(picture.pixels, grey.pixels);  // no surface, no shadow
   ComposeConfig config;
   config.shadow_strength = 0.0F;
-  cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, config, picture);
+  cast_shadows(grey, {table_m, kCamera, T_world_camera}, {&caster, 1}, config, picture);
   EXPECT_EQ(picture.pixels, grey.pixels);
-  EXPECT_THROW(cast_shadows(grey, kCamera, T_world_camera, DepthImage(63, 48), {}, {}, picture), Error);
+  EXPECT_THROW(cast_shadows(grey, {DepthImage(63, 48), kCamera, T_world_camera}, {}, {}, picture), Error);
 }
 
 TEST(Compose, AShadowEndsAtTheColourEdgeOfWhatStandsInIt) {
@@ -307,7 +307,7 @@ TEST(Compose, AShadowEndsAtTheColourEdgeOfWhatStandsInIt) {
     ComposeConfig config;
     config.occlusion.edge_reach_px = edge_reach_px;
     ColourImage picture;
-    cast_shadows(image, kCamera, T_world_camera, depth_m, {&caster, 1}, config, picture, is_decided);
+    cast_shadows(image, {depth_m, kCamera, T_world_camera}, {&caster, 1}, config, picture, is_decided);
     int wrong = 0;
     for (int y = 20; y < 28; ++y) {
       for (int x = kEdge_px - 5; x < kEdge_px + 5; ++x) {
@@ -324,7 +324,7 @@ TEST(Compose, AShadowEndsAtTheColourEdgeOfWhatStandsInIt) {
   // Without a difference of colour the shadow's edge stays within the band, and what has no depth stays lit.
   image = ColourImage(64, 48, kGrey);
   ColourImage picture;
-  cast_shadows(image, kCamera, T_world_camera, depth_m, {&caster, 1}, {}, picture);
+  cast_shadows(image, {depth_m, kCamera, T_world_camera}, {&caster, 1}, {}, picture);
   EXPECT_LT(picture.at(kEdge_px - 12, 24).r, 0.8 * kGrey.r);
   EXPECT_EQ(picture.at(kEdge_px + 12, 24), kGrey);
 }

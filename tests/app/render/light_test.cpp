@@ -257,7 +257,7 @@ TEST(Occlusion, WhatAnObjectStandsOnDoesNotHideItsContact) {
   const int foot_y = 49;  // the object's last row, 8 mm above the table's true height
   const auto hidden_at = [&](const Feet& given, const DepthImage& depth_m) {
     Occlusion occlusion;
-    find_occlusion(picture, picture, depth_m, layer, {}, occlusion, given);
+    find_occlusion(picture, picture, depth_m, {layer, given}, {}, occlusion);
     return occlusion.hidden.at(32 - occlusion.rect.x, foot_y - occlusion.rect.y);
   };
   EXPECT_GT(hidden_at({}, real_m), 0.1F);
@@ -287,7 +287,7 @@ TEST(Occlusion, AShadowIsNotTakenForAnOccluder) {
   layer.depth_m.resize(32, 32, 1.0F);
   const auto hidden_above_edge = [&](const ColourImage& judged) {
     Occlusion occlusion;
-    find_occlusion(judged, shadowed, real_m, layer, {}, occlusion);
+    find_occlusion(judged, shadowed, real_m, {layer, {}}, {}, occlusion);
     return occlusion.hidden.at(32 - occlusion.rect.x, 40 - occlusion.rect.y);
   };
   EXPECT_GT(hidden_above_edge(shadowed), 0.7F);

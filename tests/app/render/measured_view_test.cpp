@@ -25,7 +25,7 @@ DepthImage square_before_wall(float square_m, float wall_m) {
 
 MeasuredView seen(const DepthImage& depth_m, const MaskImage& dynamic_mask = {}) {
   MeasuredView view;
-  view_measured(depth_m, dynamic_mask, kDepth, Eigen::Isometry3d::Identity(), kDepth, kAll, view);
+  view_measured({depth_m, dynamic_mask, kDepth}, Eigen::Isometry3d::Identity(), kDepth, kAll, view);
   return view;
 }
 
@@ -43,7 +43,7 @@ TEST(MeasuredView, AFinerCameraBesideItSeesAllPixelsOfASurfaceAndItsParallax) {
   Eigen::Isometry3d T_view_depth = Eigen::Isometry3d::Identity();
   T_view_depth.translation().x() = -0.05;
   MeasuredView view;
-  view_measured(square_before_wall(0.8F, 2.0F), {}, kDepth, T_view_depth, colour, {0, 0, 640, 480}, view);
+  view_measured({square_before_wall(0.8F, 2.0F), {}, kDepth}, T_view_depth, colour, {0, 0, 640, 480}, view);
   const DepthImage& seen_m = view.depth_m;
   int near_px = 0;
   for (int y = 0; y < 480; ++y)
@@ -58,7 +58,7 @@ TEST(MeasuredView, OnlyTheRectangleIsWritten) {
   view.depth_m.resize(kDepth.width_px, kDepth.height_px, 7.0F);
   view.is_dynamic.resize(kDepth.width_px, kDepth.height_px, 7);
   const PixelRect rect{50, 30, 20, 20};
-  view_measured(square_before_wall(0.8F, 2.0F), {}, kDepth, Eigen::Isometry3d::Identity(), kDepth, rect,
+  view_measured({square_before_wall(0.8F, 2.0F), {}, kDepth}, Eigen::Isometry3d::Identity(), kDepth, rect,
                 view);
   const DepthImage& seen_m = view.depth_m;
   for (int y = 0; y < seen_m.height; ++y)

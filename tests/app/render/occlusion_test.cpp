@@ -60,7 +60,7 @@ double mean_error(const Occlusion& occlusion, const ObjectLayer& layer) {
 Occlusion found(const ColourImage& background, const DepthImage& real_depth_m, const ObjectLayer& layer,
                 const OcclusionConfig& config = {}) {
   Occlusion occlusion;
-  find_occlusion(background, background, real_depth_m, layer, config, occlusion);
+  find_occlusion(background, background, real_depth_m, {layer, {}}, config, occlusion);
   return occlusion;
 }
 

@@ -208,13 +208,13 @@ TEST(Extremes, ARoomOfTwoHundredMetres) {
   const auto at_end = [](const Vec3& p) { return p.x() > kHall_m - 20.0; };
   const Quantiles near = errors_m(scan.map.mesh, T_room_map, distance_m, in_middle);
   const Quantiles far = errors_m(scan.map.mesh, T_room_map, distance_m, at_end);
-  const MapCounts counts = scan.map.octree->counts();
+  const MapCounts counts = scan.map.octree.load().counts();
   EXPECT_LT(far.median, 0.2 * config.resolution_m);
   EXPECT_LT(far.median, near.median + 0.001);  // numbers are as precise 200 m from the origin
   const test::TemporaryFolder folder;
   save_map(folder.path() / "hall", scan.map);
   const SavedMap loaded = load_map(folder.path() / "hall");
-  EXPECT_EQ(loaded.octree->counts().occupied_leaves, counts.occupied_leaves);
+  EXPECT_EQ(loaded.octree.load().counts().occupied_leaves, counts.occupied_leaves);
   const Vec3 onto = scan.map.info.T_world_recorded * Vec3(kHall_m - 4.0, 0.0, 0.0);
   const Dropped pot = drop_pot(loaded, onto);
   EXPECT_TRUE(pot.asleep);

@@ -27,8 +27,9 @@ SavedMap map_of(const std::string& crate) {
   map.octree = StaticMap(0.02);
   SimulatedSource source(view("frames=30&crate=" + crate));
   Frame frame;
-  while (source.next(frame).status == ReadStatus::kFrame) map.octree->fuse(frame, *frame.T_world_camera);
-  map.mesh = extract_surface(map.octree);
+  while (source.next(frame).status == ReadStatus::kFrame)
+    map.octree.load().fuse(frame, *frame.T_world_camera);
+  map.mesh = extract_surface(map.octree.load());
   return map;
 }
 
@@ -48,7 +49,7 @@ SessionConfig updating(std::optional<double> after_s) {
 class UpdatingSession {
  public:
   UpdatingSession(SavedMap& map, const SimOptions& options, const SessionConfig& config)
-      : source_(options), session(map, config, &*map.octree) {}
+      : source_(options), session(map, config, &map.octree.load()) {}
 
   /// Runs this many frames; `hidden`: a hand close to the lens covers the middle of the image.
   FrameResult run(int frames, bool hidden = false) {
@@ -152,7 +153,7 @@ TEST(Adopt, WhatACrateHeldFallsWhenItIsTakenAway) {
   ASSERT_EQ(run.session.committed_changes().size(), 1U);
   EXPECT_EQ(run.session.committed_changes().front().kind, LastingKind::kWent);
   EXPECT_NEAR(run.pot_m(), 0.75, 0.01);
-  EXPECT_EQ(map.octree->occupancy_at(kCrateTop - Vector3d(0, 0, 0.1)), Occupancy::kFree);
+  EXPECT_EQ(map.octree.load().occupancy_at(kCrateTop - Vector3d(0, 0, 0.1)), Occupancy::kFree);
 }
 
 TEST(Adopt, SolidUnknownSpaceInsideACrateGoesWithIt) {
@@ -225,21 +226,21 @@ TEST(Adopt, AMapWithoutAnOctreeIsRefusedInWords) {
   map.mesh.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}};
   map.mesh.triangles = {{0, 1, 2}};
   try {
-    Session session(map, updating(1.0), &*map.octree);
+    Session session(map, updating(1.0), &map.octree.load());
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("octree contains no surface"), std::string::npos)
         << error.what();
   }
   EXPECT_THROW(Session(map, updating(1.0)), Error);
-  EXPECT_THROW(Session(map, updating(0.0), &*map.octree), Error);
+  EXPECT_THROW(Session(map, updating(0.0), &map.octree.load()), Error);
 }
 
 TEST(Adopt, AskingASessionThatDoesNotWatchIsSaid) {
   SavedMap map = map_of("0");
   SessionConfig config = updating(1.0);
   config.map_updates.reset();
-  Session session(map, config, &*map.octree);
+  Session session(map, config, &map.octree.load());
   EXPECT_THROW(ask(session), Error);
 }
 

@@ -442,7 +442,7 @@ SavedMap half_floor_map() {
   for (int z = 0; z < 6; ++z)
     for (int y = -6; y < 6; ++y)
       for (int x = -6; x < 6; ++x)
-        map.octree->add_evidence(MapLeaf{kEdge * Eigen::Vector3i(x, y, z), kEdge, -1.0F});
+        map.octree.load().add_evidence(MapLeaf{kEdge * Eigen::Vector3i(x, y, z), kEdge, -1.0F});
   return map;
 }
 

@@ -16,15 +16,15 @@ inline void save_small_map(const std::filesystem::path& folder, bool has_ball = 
   SavedMap map;
   map.octree = StaticMap(0.02);
   for (int i = 0; i < 8; ++i)
-    map.octree->fuse(exact_frame(scene, kCamera, T_world_camera, Rgb{90, 60, 30}), T_world_camera);
-  map.mesh = extract_surface(map.octree);
+    map.octree.load().fuse(exact_frame(scene, kCamera, T_world_camera, Rgb{90, 60, 30}), T_world_camera);
+  map.mesh = extract_surface(map.octree.load());
   MapKeyframe keyframe;  // the same in all maps: they have one world
   keyframe.T_world_camera = T_world_camera;
   keyframe.points_camera = {{0.1F, 0.2F, 1.5F}};
   keyframe.descriptors = {Descriptor{1, 2, 3}};
   keyframe.preview_camera = {4, 3, 4.0, 4.0, 1.5, 1.0};
   keyframe.preview_depth_mm = {4, 3, 1500};
-  map.keyframe_database->keyframes = {keyframe};
+  map.keyframe_database.load().keyframes = {keyframe};
   map.trajectory.push_back({0, 0.0, T_world_camera});
   map.info.source = "a wall";
   map.info.frames_read = map.info.frames_fused = 8;

@@ -62,7 +62,7 @@ TEST(ConnectedComponents, AreThoseOfAFloodFill) {
       evidence[i] = static_cast<std::uint8_t>(random() % holes == 0 && holes > 1 ? 0 : random() % 32);
     }
     ConnectedComponents found;
-    find_components(depth_m, evidence, kBits, camera, {}, 0, found);
+    find_components(depth_m, evidence, kBits, camera, {}, found);
     const std::vector<int> truth = flood(depth_m, evidence, 100.0);
 
     std::vector<int> number(evidence.size(), 0);
@@ -107,7 +107,7 @@ std::size_t components_across(const DepthImage& depth_m, int max_gap_px) {
     if (!(depth_m.pixels[i] > 0.0F)) evidence[i] = 0;
   ConnectedComponents found;
   const Intrinsics camera{depth_m.width, depth_m.height, 585.0, 585.0, 0.0, 0.0};
-  find_components(depth_m, evidence, kBits, camera, {}, max_gap_px, found);
+  find_components(depth_m, evidence, kBits, camera, {.max_gap_px = max_gap_px}, found);
   std::size_t roots = 0;
   for (std::size_t run = 0; run < found.runs.size(); ++run) roots += found.runs[run].region == run;
   return roots;

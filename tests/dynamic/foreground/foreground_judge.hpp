@@ -83,7 +83,7 @@ inline MaskScore judge_foreground(const SimOptions& options, std::int64_t step, 
     const Eigen::Isometry3d T_world_camera =
         source.truth().T_world_camera * pose_error(shift_m, turn_deg, static_cast<int>(i));
     cast_room(source.room(), frame.depth_camera, T_world_camera, caster, expected_m);
-    mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, config, state, labels,
+    mark_foreground({frame.depth_m, frame.depth_camera, T_world_camera}, expected_m, config, state, labels,
                     dynamic_mask);
     add_frame(frame.depth_m, dynamic_mask, source.truth().moved, score);
   }

@@ -18,7 +18,7 @@ struct Watch {
 
   void see(const DepthImage& live_m, const DepthImage& expected_m,
            const Eigen::Isometry3d& T_world_camera = Eigen::Isometry3d::Identity()) {
-    marked.counts = mark_foreground(live_m, expected_m, kKinect, T_world_camera, {}, state, marked.labels,
+    marked.counts = mark_foreground({live_m, kKinect, T_world_camera}, expected_m, {}, state, marked.labels,
                                     marked.dynamic_mask);
   }
 };
@@ -173,7 +173,7 @@ TEST(ForegroundInTime, AnotherCameraRemembersNothing) {
   Intrinsics wider = kKinect;
   wider.fx_px = wider.fy_px = 500.0;
   const ForegroundCounts counts =
-      mark_foreground(wall_with(1.5F, 5), flat(2.0F), wider, Eigen::Isometry3d::Identity(), {}, run.state,
+      mark_foreground({wall_with(1.5F, 5), wider, Eigen::Isometry3d::Identity()}, flat(2.0F), {}, run.state,
                       run.marked.labels, run.marked.dynamic_mask);
   EXPECT_EQ(counts.moved, 0U);
 }

@@ -88,8 +88,8 @@ inline Marked mark(const DepthImage& depth_m, const DepthImage& expected_m,
   Marked marked;
   ForegroundState state;
   for (int i = 0; i < frames; ++i) {
-    marked.counts = mark_foreground(depth_m, expected_m, camera, Eigen::Isometry3d::Identity(), config, state,
-                                    marked.labels, marked.dynamic_mask);
+    marked.counts = mark_foreground({depth_m, camera, Eigen::Isometry3d::Identity()}, expected_m, config,
+                                    state, marked.labels, marked.dynamic_mask);
   }
   return marked;
 }

@@ -36,14 +36,14 @@ Mesh masked(const DepthImage& depth_m, const MaskImage& mask, const DepthMeshCon
             const Eigen::Isometry3d& T_world_camera = Eigen::Isometry3d::Identity()) {
   DepthMeshScratch scratch;
   Mesh mesh;
-  mesh_masked(depth_m, mask, kKinect, T_world_camera, config, scratch, mesh);
+  mesh_masked({depth_m, kKinect, T_world_camera}, mask, config, scratch, mesh);
   return mesh;
 }
 
 Mesh whole(const DepthImage& depth_m, SurfacePolicy policy, const DepthMeshConfig& config = {}) {
   DepthMeshScratch scratch;
   Mesh mesh;
-  mesh_whole(depth_m, kKinect, Eigen::Isometry3d::Identity(), policy, config, scratch, mesh);
+  mesh_whole({depth_m, kKinect, Eigen::Isometry3d::Identity()}, policy, config, scratch, mesh);
   return mesh;
 }
 
@@ -308,9 +308,9 @@ TEST(DepthMesh, NoFrameAfterTheFirstReallocates) {
   const DepthImage depth_m = flat(1.0F);
   MaskImage mask(640, 480, 0);
   const Eigen::Isometry3d T_world_camera = somewhere();
-  mesh_masked(depth_m, mask, kKinect, T_world_camera, {}, scratch, mesh);
+  mesh_masked({depth_m, kKinect, T_world_camera}, mask, {}, scratch, mesh);
   const void* before[] = {mesh.vertices.data(), mesh.normals.data(), mesh.triangles.data()};
-  mesh_masked(depth_m, everything(), kKinect, T_world_camera, {}, scratch, mesh);
+  mesh_masked({depth_m, kKinect, T_world_camera}, everything(), {}, scratch, mesh);
   const void* after[] = {mesh.vertices.data(), mesh.normals.data(), mesh.triangles.data()};
   for (std::size_t i = 0; i < std::size(before); ++i) EXPECT_EQ(before[i], after[i]);
   EXPECT_FALSE(mesh.triangles.empty());

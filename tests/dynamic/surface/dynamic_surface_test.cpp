@@ -68,8 +68,8 @@ DynamicSurface meshed(const Scene& scene, const DynamicSurfaceConfig& config = {
                       std::span<const FineRegion> regions = {}) {
   DynamicSurfaceScratch scratch;
   DynamicSurface surface;
-  mesh_dynamic(scene.depth_m, scene.mask, scene.expected_m, kKinect, scene.T_world_camera, regions, config,
-               scratch, surface);
+  mesh_dynamic({{scene.depth_m, kKinect, scene.T_world_camera}, scene.mask, scene.expected_m}, regions,
+               config, scratch, surface);
   return surface;
 }
 
@@ -78,7 +78,7 @@ Mesh in_full(const Scene& scene) {
   config.stride_px = 1;
   DepthMeshScratch scratch;
   Mesh mesh;
-  mesh_masked(scene.depth_m, scene.mask, kKinect, scene.T_world_camera, config, scratch, mesh);
+  mesh_masked({scene.depth_m, kKinect, scene.T_world_camera}, scene.mask, config, scratch, mesh);
   return mesh;
 }
 
@@ -481,8 +481,10 @@ TEST(DynamicSurface, ImagesOfAnySizeAreMeshed) {
     const Intrinsics camera{width, height, 585.0, 585.0, 0.5 * width, 0.5 * height};
     DynamicSurfaceScratch scratch;
     DynamicSurface surface;
-    mesh_dynamic(DepthImage(width, height, 1.0F), MaskImage(width, height, 255),
-                 DepthImage(width, height, 0.0F), camera, somewhere(), {}, {}, scratch, surface);
+    mesh_dynamic({{DepthImage(width, height, 1.0F), camera, somewhere()},
+                  MaskImage(width, height, 255),
+                  DepthImage(width, height, 0.0F)},
+                 {}, {}, scratch, surface);
     EXPECT_EQ(open_edges(surface), 0U);
     EXPECT_FALSE(surface.seen_world.triangles.empty()) << width << " x " << height;
   }
@@ -498,7 +500,7 @@ TEST(DynamicSurface, NoFrameAfterTheFirstAllocates) {
   DynamicSurfaceScratch scratch;
   DynamicSurface surface;
   const auto mesh = [&](const Scene& scene, std::span<const FineRegion> fine) {
-    mesh_dynamic(scene.depth_m, scene.mask, scene.expected_m, kKinect, scene.T_world_camera, fine, {},
+    mesh_dynamic({{scene.depth_m, kKinect, scene.T_world_camera}, scene.mask, scene.expected_m}, fine, {},
                  scratch, surface);
   };
   mesh(nothing, regions);

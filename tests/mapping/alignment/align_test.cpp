@@ -113,8 +113,8 @@ MatchCase match_case() {
 
 void match(const MatchCase& of, std::span<const SourcePoint> points, const RowMotion& motion,
            PointMatches& pass, Arithmetic arithmetic = Arithmetic::kFastest) {
-  match_points({points.begin(), points.end()}, of.reference.levels[0], kStep, {0.1F, 0.5F, 0.2F},
-               {1.1F, -3.0F, true}, motion, pass, arithmetic);
+  match_points({{points.begin(), points.end()}, motion}, of.reference.levels[0], {kStep, {1.1F, -3.0F, true}},
+               {0.1F, 0.5F, 0.2F}, pass, arithmetic);
 }
 
 TEST(MatchPoints, CountsEachPointOnce) {

@@ -26,10 +26,10 @@ SavedMap wall_seen(int count) {
   for (int i = 0; i < count; ++i) {
     const Eigen::Isometry3d T = test::looking_at({0.001 * i, 0.0, 1.0}, {0.001 * i, 2.0, 1.0});
     const Frame frame = test::exact_frame(test::plane(Vector3d::UnitY(), 2.0), kCamera, T);
-    EXPECT_EQ(map.octree->fuse(frame, T), FuseStatus::kFused);
+    EXPECT_EQ(map.octree.load().fuse(frame, T), FuseStatus::kFused);
     map.trajectory.push_back({i, i / 30.0, T});
   }
-  map.mesh = extract_surface(map.octree);
+  map.mesh = extract_surface(map.octree.load());
   return map;
 }
 
@@ -40,7 +40,7 @@ bool is_orange(Rgb c) { return c.r > 130 && c.r > c.g + 50 && c.g > c.b + 15; }
 bool is_violet(Rgb c) { return c.r > c.g + 60 && c.b > c.g + 60; }
 
 ColourImage picture_of(const SavedMap& map, const Frontier& frontier) {
-  return draw_coverage(map.octree, map.mesh, frontier, frontier.holes, map.trajectory);
+  return draw_coverage(map.octree.load(), map.mesh, frontier, frontier.holes, map.trajectory);
 }
 
 TEST(CoveragePicture, SurfaceSeenOnceIsThinAndSurfaceSeenOftenIsNot) {
@@ -73,13 +73,13 @@ TEST(CoveragePicture, AMapWithoutSurfaceIsDrawnAllTheSame) {
 TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {
   // The wall's mesh without the triangles within 15 cm of a point; space is unchanged.
   SavedMap map = wall_seen(30);
-  map.mesh = extract_surface(map.octree, {.max_deviation_m = 0.0F});
+  map.mesh = extract_surface(map.octree.load(), {.max_deviation_m = 0.0F});
   const Vector3d middle(0.2, 2.0, 1.1);
   std::erase_if(map.mesh.triangles, [&](const Triangle& t) {
     return (map.mesh.origin + map.mesh.vertices[t[0]].cast<double>() - middle).norm() < 0.15;
   });
   const std::vector<Hole> holes =
-      find_holes(map.octree, map.mesh, {.cell_m = 0.08, .holes = {}, .cells = {}});
+      find_holes(map.octree.load(), map.mesh, {.cell_m = 0.08, .holes = {}, .cells = {}});
   ASSERT_EQ(holes.size(), 1U);
   EXPECT_EQ(holes[0].kind, HoleKind::kSurfaceBorder);
   EXPECT_LT((holes[0].position_world - middle).norm(), 0.03);
@@ -90,7 +90,7 @@ TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {
   EXPECT_NEAR(holes[0].viewpoint_world->y(), 0.8, 0.1);
 
   Frontier known{.cell_m = 0.08, .holes = {Hole{}}, .cells = {{middle, 0}}};
-  const std::vector<Hole> once = find_holes(map.octree, map.mesh, known);
+  const std::vector<Hole> once = find_holes(map.octree.load(), map.mesh, known);
   EXPECT_EQ(once.size(), 1U) << "the frontier's hole there is the same one";
 }
 
@@ -102,7 +102,7 @@ TEST(Coverage, HolesAreSortedByAreaAndTheScansEndComesLast) {
         std::pair{HoleKind::kOuterBorder, 9.0}, std::pair{HoleKind::kUnknownSpace, 0.7}})
     frontier.holes.push_back({.kind = kind, .area_m2 = area_m2, .viewpoint_world = {}});
   std::vector<double> areas_m2;
-  for (const Hole& hole : find_holes(map.octree, Mesh{}, frontier)) areas_m2.push_back(hole.area_m2);
+  for (const Hole& hole : find_holes(map.octree.load(), Mesh{}, frontier)) areas_m2.push_back(hole.area_m2);
   EXPECT_EQ(areas_m2, (std::vector<double>{0.7, 0.5, 0.1, 9.0}));
 }
 
@@ -115,7 +115,7 @@ TEST(Coverage, NoNumberOfAHolesDescriptionIsMinusZero) {
 
 TEST(Coverage, ASurveyHasTheFrontiersHolesAndAPicture) {
   const SavedMap scan = wall_seen(30);
-  const Coverage coverage = survey_coverage(scan.octree, scan.mesh, scan.trajectory);
+  const Coverage coverage = survey_coverage(scan.octree.load(), scan.mesh, scan.trajectory);
   ASSERT_FALSE(coverage.holes.empty());  // the view of a single wall has an outer border
   EXPECT_TRUE(std::all_of(coverage.holes.begin(), coverage.holes.end(),
                           [](const Hole& hole) { return hole.kind == HoleKind::kOuterBorder; }));

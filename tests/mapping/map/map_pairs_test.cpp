@@ -55,11 +55,11 @@ SavedMap scan_painted(const Grey& grey_of, const Scene& scene, double from_m, do
     if (seed > 0) test::add_depth_noise(frame, seed + static_cast<unsigned>(i));
     frame.index = i;
     const Isometry3d T_own_camera = T_own_world * T_world_camera;
-    EXPECT_EQ(map.octree->fuse(frame, T_own_camera), FuseStatus::kFused);
-    if (i % 2 == 0) map.keyframe_database->keyframes.push_back(make_map_keyframe(frame, T_own_camera));
+    EXPECT_EQ(map.octree.load().fuse(frame, T_own_camera), FuseStatus::kFused);
+    if (i % 2 == 0) map.keyframe_database.load().keyframes.push_back(make_map_keyframe(frame, T_own_camera));
     map.trajectory.push_back({i, i / 30.0, T_own_camera});
   }
-  map.mesh = extract_surface(map.octree);
+  map.mesh = extract_surface(map.octree.load());
   map.info.source = "painted";
   map.info.frames_read = map.info.frames_fused = 16;
   return map;
@@ -178,7 +178,7 @@ TEST_F(MapPairs, ALookAlikeIsRefused) {
 
 TEST_F(MapPairs, WithoutColourNothingIsRecognised) {
   SavedMap blind = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 3);
-  for (MapKeyframe& place : blind.keyframe_database->keyframes) {
+  for (MapKeyframe& place : blind.keyframe_database.load().keyframes) {
     place.points_camera.clear();
     place.descriptors.clear();
   }
@@ -189,11 +189,11 @@ TEST_F(MapPairs, WithoutColourNothingIsRecognised) {
 TEST_F(MapPairs, MergedWithAFinerMapItSaysTheFinerResolution) {
   SavedMap coarse;
   coarse.octree = StaticMap(2.0 * kVoxel_m);
-  coarse.info.settings["resolution_m"] = std::to_string(coarse.octree->resolution_m());
+  coarse.info.settings["resolution_m"] = std::to_string(coarse.octree.load().resolution_m());
   SavedMap fine = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
-  fine.info.settings["resolution_m"] = std::to_string(fine.octree->resolution_m());
+  fine.info.settings["resolution_m"] = std::to_string(fine.octree.load().resolution_m());
   const SavedMap merged = merge_maps(std::move(coarse), fine, Isometry3d::Identity());
-  EXPECT_EQ(merged.octree->resolution_m(), fine.octree->resolution_m());
+  EXPECT_EQ(merged.octree.load().resolution_m(), fine.octree.load().resolution_m());
   EXPECT_EQ(merged.info.settings.at("resolution_m"), fine.info.settings.at("resolution_m"));
 }
 
@@ -201,9 +201,9 @@ TEST_F(MapPairs, WhatLiesPastTheReachOfTheFinerCellsIsRefusedInWords) {
   SavedMap far, fine;
   far.info.source = "corridor";
   far.octree = StaticMap(0.01);
-  far.octree->add_evidence(MapLeaf{{7'000, 0, 0}, 8, -1.0F});
+  far.octree.load().add_evidence(MapLeaf{{7'000, 0, 0}, 8, -1.0F});
   fine.octree = StaticMap(0.002);
-  fine.octree->add_evidence(MapLeaf{{0, 0, 0}, 8, -1.0F});
+  fine.octree.load().add_evidence(MapLeaf{{0, 0, 0}, 8, -1.0F});
   const std::string fault =
       test::error_of([&] { (void)merge_maps(std::move(far), fine, Isometry3d::Identity()); });
   EXPECT_NE(fault.find("the map of corridor: reaches 70.1 m"), std::string::npos) << fault;
@@ -228,8 +228,8 @@ TEST_F(MapPairs, MergedItsSurfaceIsAsCloseAsTheFirstOnes) {
 
 TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
   const SavedMap merged = merge_maps(scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1), b(), kT_a_b);
-  EXPECT_EQ(merged.keyframe_database->keyframes.size(),
-            a().keyframe_database->keyframes.size() + b().keyframe_database->keyframes.size());
+  EXPECT_EQ(merged.keyframe_database.load().keyframes.size(),
+            a().keyframe_database.load().keyframes.size() + b().keyframe_database.load().keyframes.size());
   ASSERT_EQ(merged.trajectory.size(), 32U);
   for (std::size_t i = 1; i < merged.trajectory.size(); ++i)
     EXPECT_GT(merged.trajectory[i].stamp_s, merged.trajectory[i - 1].stamp_s);
@@ -249,9 +249,9 @@ TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
   // Every point of either surface is on the merged surface.
   for (const Vector3d& p_b : sample_surface(b().mesh, 2000)) {
     const Vector3d p = kT_a_b * p_b;
-    const auto at = distance_at(merged.octree, p);
+    const auto at = distance_at(merged.octree.load(), p);
     if (!at || std::abs(at->distance_m) > kVoxel_m) ++lost;
-    if (!a().octree->sample_at(p)) ++only_b;
+    if (!a().octree.load().sample_at(p)) ++only_b;
   }
   EXPECT_GT(only_b, 100U);
   EXPECT_LT(lost, 60U);  // 3 %: at rims, where not all eight samples are known
@@ -259,13 +259,13 @@ TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
 
 TEST_F(MapPairs, InOneWorldAddingIsExact) {
   StaticMap sum(kVoxel_m);
-  add_map(a().octree, Isometry3d::Identity(), sum);
-  EXPECT_EQ(sum.counts().occupied_leaves, a().octree->counts().occupied_leaves);
-  EXPECT_EQ(sum.counts().free_leaves, a().octree->counts().free_leaves);
-  EXPECT_EQ(sum.counts().memory_bytes, a().octree->counts().memory_bytes) << "coarse cells stay coarse";
+  add_map(a().octree.load(), Isometry3d::Identity(), sum);
+  EXPECT_EQ(sum.counts().occupied_leaves, a().octree.load().counts().occupied_leaves);
+  EXPECT_EQ(sum.counts().free_leaves, a().octree.load().counts().free_leaves);
+  EXPECT_EQ(sum.counts().memory_bytes, a().octree.load().counts().memory_bytes) << "coarse cells stay coarse";
   sum.visit_samples([](const SurfaceSample& sample) {
     const auto before =
-        a().octree->sample_at((sample.voxel.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m);
+        a().octree.load().sample_at((sample.voxel.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m);
     ASSERT_TRUE(before);
     EXPECT_NEAR(before->distance_m, sample.distance_m, 1e-5F);
   });
@@ -338,20 +338,20 @@ TEST_F(MapPairs, CellsThatDifferByMoreThanFourTimesAreNotJoined) {
 }
 
 TEST_F(MapPairs, TwoScansOfOneRoomDoNotDiffer) {
-  EXPECT_TRUE(diff_maps(a().octree, b().octree, kT_a_b).empty());
-  EXPECT_TRUE(diff_maps(a().octree, a().octree, Isometry3d::Identity()).empty());
+  EXPECT_TRUE(diff_maps(a().octree.load(), b().octree.load(), kT_a_b).empty());
+  EXPECT_TRUE(diff_maps(a().octree.load(), a().octree.load(), Isometry3d::Identity()).empty());
 }
 
 TEST_F(MapPairs, AThingThatAppearsIsMeasuredAndVanishesTheOtherWayRound) {
   const SavedMap after = scan(with(room(), kThing), -0.6, 0.8, kT_b_world, 50);
-  const std::vector<Change> appeared = diff_maps(a().octree, after.octree, kT_a_b);
+  const std::vector<Change> appeared = diff_maps(a().octree.load(), after.octree.load(), kT_a_b);
   ASSERT_EQ(appeared.size(), 1U);
   EXPECT_EQ(appeared[0].kind, ChangeKind::kAppeared);
   // Its front and top are observed; the space behind them is no longer free.
   EXPECT_LT((appeared[0].box_world.center() - kThing.center()).norm(), 0.05);
   EXPECT_LT((appeared[0].box_world.sizes() - kThing.sizes()).cwiseAbs().maxCoeff(), 0.08);
   EXPECT_NEAR(appeared[0].volume_m3, kThing.volume(), 0.4 * kThing.volume());
-  const std::vector<Change> vanished = diff_maps(after.octree, a().octree, kT_b_world);
+  const std::vector<Change> vanished = diff_maps(after.octree.load(), a().octree.load(), kT_b_world);
   ASSERT_EQ(vanished.size(), 1U);
   EXPECT_EQ(vanished[0].kind, ChangeKind::kVanished);
   EXPECT_LT((kT_a_b * vanished[0].position_world - appeared[0].position_world).norm(), 0.02);
@@ -410,16 +410,16 @@ TEST_F(MapPairs, WhatOneMapHasNotSeenHasNotChanged) {
   // The object is where a has no observations.
   const Eigen::AlignedBox3d far_off(Vector3d(0.2, -1.6, 0.0), Vector3d(0.6, -1.2, 0.4));
   const SavedMap after = scan(with(room(), far_off), -0.6, 0.8, Isometry3d::Identity(), 60);
-  EXPECT_TRUE(diff_maps(a().octree, after.octree, Isometry3d::Identity()).empty());
+  EXPECT_TRUE(diff_maps(a().octree.load(), after.octree.load(), Isometry3d::Identity()).empty());
 }
 
 TEST_F(MapPairs, PosesThatAreOffAreNoChange) {
   const Isometry3d T_off(Eigen::Translation3d(0.02, -0.10, 0.01));
   DiffConfig doubting, trusting;
   doubting.max_pose_error_m = 0.11;
-  EXPECT_TRUE(diff_maps(a().octree, b().octree, T_off * kT_a_b, doubting).empty());
+  EXPECT_TRUE(diff_maps(a().octree.load(), b().octree.load(), T_off * kT_a_b, doubting).empty());
   trusting.max_pose_error_m = 0.0;
-  EXPECT_FALSE(diff_maps(a().octree, b().octree, T_off * kT_a_b, trusting).empty());
+  EXPECT_FALSE(diff_maps(a().octree.load(), b().octree.load(), T_off * kT_a_b, trusting).empty());
 }
 
 TEST(MapDiff, OfASolidCubeTheSkinHasChanged) {

@@ -22,7 +22,7 @@ class MapTexture : public ::testing::Test {
  protected:
   MapTexture() {
     const Eigen::Isometry3d T_world_camera = test::wall_poses()[0];
-    map_.octree->fuse(test::wall_frame(test::wall_scene(), T_world_camera), T_world_camera);
+    map_.octree.load().fuse(test::wall_frame(test::wall_scene(), T_world_camera), T_world_camera);
     map_.mesh = test::wall_mesh();
     map_.trajectory = {{0, 0.0, T_world_camera}};
     map_.texture = std::make_shared<const SurfaceTexture>(test::red_texture(map_.mesh));
@@ -35,14 +35,14 @@ class MapTexture : public ::testing::Test {
 
 TEST_F(MapTexture, IsLoadedAsItWasSaved) {
   const SavedMap read = load_map(path_);
-  ASSERT_NE(*read.texture, nullptr);
-  EXPECT_TRUE(fits(**read.texture, read.mesh));
-  EXPECT_EQ((*read.texture)->atlas_jpeg, (*map_.texture)->atlas_jpeg);
+  ASSERT_NE(read.texture.load(), nullptr);
+  EXPECT_TRUE(fits(*read.texture.load(), read.mesh));
+  EXPECT_EQ(read.texture.load()->atlas_jpeg, map_.texture.load()->atlas_jpeg);
   EXPECT_EQ(verify_map(path_), std::vector<std::string>{});
   // Saved again, it is still there.
   save_map(path_, read);
   EXPECT_TRUE(fs::exists(path_ / "texture.jpg"));
-  EXPECT_NE(*load_map(path_).texture, nullptr);
+  EXPECT_NE(load_map(path_).texture.load(), nullptr);
 }
 
 TEST_F(MapTexture, IsLeftOutWhenTheMeshHasChanged) {
@@ -51,7 +51,7 @@ TEST_F(MapTexture, IsLeftOutWhenTheMeshHasChanged) {
   save_map(path_, read);
   EXPECT_FALSE(fs::exists(path_ / "texture.jpg"));
   EXPECT_FALSE(fs::exists(path_ / "texture.bin"));
-  EXPECT_EQ(*load_map(path_).texture, nullptr);
+  EXPECT_EQ(load_map(path_).texture.load(), nullptr);
   EXPECT_EQ(verify_map(path_), std::vector<std::string>{});
   EXPECT_TRUE(load_textured_map_mesh(path_).second.corners.empty());
 }
@@ -66,7 +66,7 @@ TEST_F(MapTexture, DamageIsFoundWhenItIsUsed) {
     ASSERT_EQ(faults.size(), 1U) << name;
     EXPECT_NE(faults[0].find(name), std::string::npos) << faults[0];
     const SavedMap read = load_map(path_);
-    EXPECT_NE(test::error_of([&] { (void)*read.texture; }).find(name), std::string::npos);
+    EXPECT_NE(test::error_of([&] { read.texture.load(); }).find(name), std::string::npos);
     EXPECT_NE(test::error_of([&] { export_map(path_, folder_.path() / "room.glb"); }).find(name),
               std::string::npos);
     export_map(path_, folder_.path() / "room.ply");  // needs no texture
@@ -81,7 +81,7 @@ TEST_F(MapTexture, GlbEmbedsIt) {
   const std::string bytes = read_bytes(path, "a glb");
   EXPECT_NE(bytes.find("\"baseColorTexture\""), std::string::npos);
   EXPECT_NE(bytes.find("image/jpeg"), std::string::npos);
-  const std::vector<std::uint8_t>& jpeg = (*map_.texture)->atlas_jpeg;
+  const std::vector<std::uint8_t>& jpeg = map_.texture.load()->atlas_jpeg;
   EXPECT_NE(bytes.find(std::string(jpeg.begin(), jpeg.end())), std::string::npos);
   EXPECT_EQ(bytes.find("COLOR_0"), std::string::npos);  // would multiply the texture
   EXPECT_EQ(read_mesh(path).triangles.size(), map_.mesh.triangles.size());
@@ -97,8 +97,8 @@ TEST_F(MapTexture, ObjHasItBeside) {
   EXPECT_NE(mtl.find("newmtl room\n"), std::string::npos);
   EXPECT_NE(mtl.find("map_Kd room.jpg\n"), std::string::npos);
   const std::string jpeg = read_bytes(folder_.path() / "room.jpg", "a jpg");
-  EXPECT_TRUE(std::equal(jpeg.begin(), jpeg.end(), (*map_.texture)->atlas_jpeg.begin(),
-                         (*map_.texture)->atlas_jpeg.end(),
+  EXPECT_TRUE(std::equal(jpeg.begin(), jpeg.end(), map_.texture.load()->atlas_jpeg.begin(),
+                         map_.texture.load()->atlas_jpeg.end(),
                          [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }));
   EXPECT_EQ(read_mesh(folder_.path() / "room.obj").triangles.size(), map_.mesh.triangles.size());
 }
@@ -128,7 +128,7 @@ TEST_F(MapTexture, FilesBesideAnObjHaveNamesThatEveryReaderTakesWhole) {
 }
 
 TEST_F(MapTexture, OtherFormatsRefuseATexture) {
-  const TexturedMesh textured = textured_mesh(map_.mesh, **map_.texture);
+  const TexturedMesh textured = textured_mesh(map_.mesh, *map_.texture.load());
   EXPECT_NE(test::error_of([&] { write_mesh(textured, folder_.path() / "a.ply"); }).find(".glb and .obj"),
             std::string::npos);
   TexturedMesh without = textured;

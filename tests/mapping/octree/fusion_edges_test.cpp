@@ -199,8 +199,8 @@ TEST(FusionEdges, PlainAndFastestArithmeticMakeTheSameMapBitForBit) {
       depth_m = random() % 12 == 0 ? 0.0F : std::max(depth_m + noise_m(random), 0.1F);
     ASSERT_EQ(collect_hits(frame, T_world_camera, 0.02, config, scratch), HitStatus::kCollected);
     build_pyramid(frame.depth_m, 0.02, config, scratch.pyramid);
-    fuse_depth(fastest, frame, T_world_camera, config, scratch, 1, Arithmetic::kFastest);
-    fuse_depth(plain, frame, T_world_camera, config, scratch, 3, Arithmetic::kPortable);
+    fuse_depth(fastest, frame, T_world_camera, config, scratch, {1, Arithmetic::kFastest});
+    fuse_depth(plain, frame, T_world_camera, config, scratch, {3, Arithmetic::kPortable});
   }
   const auto a = content(fastest), b = content(plain);
   EXPECT_GT(a.size(), 50'000U);

@@ -50,7 +50,7 @@ struct RoundTrip {
   }
   KeyframeJobResult run_job() const {
     return run({last, graph, KeyframeCache(8), &keyframe_database, nullptr},
-               {{{}, {.max_correction_m = 0.25F}, {}}, {}, {}});
+               {{{}, {.max_correction_m = 0.25F, .max_correction_rad = 0.25F}, {}}, {}, {}});
   }
 };
 

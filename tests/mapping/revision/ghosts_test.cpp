@@ -313,9 +313,9 @@ TEST(Ghosts, NoDepthBesideSomethingNearerMayBeItsShadow) {
   AbsenceVoter looks;
   looks.begin(frame, Eigen::Isometry3d::Identity());
   AbsenceVotes votes;
-  looks.unmeasured(frame, 80, 60, {0.0F, 0.0F, 2.0F}, 0.3F, /*beside_nearer=*/true, false, votes);
+  looks.unmeasured(frame, {80, 60, 0.3F, /*beside_nearer=*/true}, {0.0F, 0.0F, 2.0F}, false, votes);
   EXPECT_EQ(votes.unmeasured, 0);
-  looks.unmeasured(frame, 80, 60, {0.0F, 0.0F, 2.0F}, 0.3F, /*beside_nearer=*/false, false, votes);
+  looks.unmeasured(frame, {80, 60, 0.3F, /*beside_nearer=*/false}, {0.0F, 0.0F, 2.0F}, false, votes);
   EXPECT_EQ(votes.unmeasured, 1);
 }
 

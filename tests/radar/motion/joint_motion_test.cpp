@@ -39,7 +39,7 @@ struct Two {
   FreeTime free_time(double duration_s) {
     const SceneTree scene{{&trees[1], T[1]}, SurfaceKind::kObject};
     const TreeStates states{{}, {motions[1]}};
-    return roomradar::free_time({&trees[0], T[0]}, motions[0], duration_s, kKeep_m, {{&scene, 1}, {}}, 0,
+    return roomradar::free_time({{&trees[0], T[0]}, motions[0]}, duration_s, kKeep_m, {{&scene, 1}, {}}, 0,
                                 states);
   }
 };
@@ -189,7 +189,7 @@ struct Row {
       states.left_out[k] = k == i || (only == kNoMover ? is_moving && k < i : k != only);
       if (is_moving) states.motions[k] = movers[k].motion;
     }
-    const FreeTime free = roomradar::free_time({&trees[i], T[i]}, movers[i].motion, duration_s, kKeep_m,
+    const FreeTime free = roomradar::free_time({{&trees[i], T[i]}, movers[i].motion}, duration_s, kKeep_m,
                                                {scene, {}}, 0, states);
     return {free, free.limit.kind == SurfaceKind::kNothing ? kNoMover : free.limit.tree};
   }

@@ -34,7 +34,7 @@ struct Pair {
   }
   FreeTime free_time(const Eigen::Isometry3d& T, const RigidMotion& motion, double duration_s,
                      double keep_m) {
-    return roomradar::free_time({&object_tree, T}, motion, duration_s, keep_m, radar_scene());
+    return roomradar::free_time({{&object_tree, T}, motion}, duration_s, keep_m, radar_scene());
   }
   [[nodiscard]] double distance_m(const Eigen::Isometry3d& T) const {
     return exact_clearance(object, T, scene, Eigen::Isometry3d::Identity());

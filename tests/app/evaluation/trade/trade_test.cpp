@@ -748,9 +748,9 @@ struct TwoSides {
     config.occlusion.edge_reach_px = 0;
     Occlusion occlusion;
     JudgedPicture judged{{}, {{0, T_world_teapot}}};
-    cast_shadows(frame.colour, frame.colour_camera, Eigen::Isometry3d::Identity(), depth_m,
+    cast_shadows(frame.colour, {depth_m, frame.colour_camera, Eigen::Isometry3d::Identity()},
                  std::array{ShadowCaster{&object->shadow, T_world_teapot}}, config, judged.picture);
-    lay_objects(layer, depth_m, config.occlusion, occlusion, judged.picture);
+    lay_objects({layer, {}}, depth_m, config.occlusion, occlusion, judged.picture);
     return judged;
   }
 };

@@ -29,8 +29,8 @@ struct Scene {
   }
   DepthImage measured(double noise_scale, std::int64_t frame = 0, std::uint64_t seed = 5) {
     DepthImage depth_m;
-    measure_depth(solids, infrared, view, exact, camera, Eigen::Isometry3d::Identity(), {}, noise_scale, seed,
-                  frame, scratch, depth_m);
+    measure_depth({solids, infrared}, {view, exact, camera, Eigen::Isometry3d::Identity()},
+                  {{}, noise_scale, seed, frame}, scratch, depth_m);
     return depth_m;
   }
 };
